@@ -4,6 +4,32 @@
 //! as elements and wires, and these as the [`Graph`] of each rung. [`reduce`](reduce::reduce) turns a graph into the
 //! series-parallel [`Shape`](reduce::Shape) that the printer draws. IL is unknown here.
 
+mod chunks;
+pub use chunks::{ChunkKind, chunk_ends, kind_of, split};
+
+mod reader;
+pub use reader::{parse, parse_with};
+
+mod lines;
+
+mod glyph;
+
+mod grid;
+
+mod blocks;
+
+mod scan;
+
+mod content;
+
+mod uprights;
+
+mod wires;
+
+mod names;
+
+mod rungs;
+
 mod element;
 pub use element::{
     Block, CoilKind, CompareOperator, ContactKind, Element, ElementId, ElementKind, OperandPlace, Pin,
