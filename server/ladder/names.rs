@@ -30,8 +30,8 @@ enum Candidate {
     None,
     /// One symbol, at a distance in rows.
     One(usize, usize),
-    /// Two symbols by the same number of cells.
-    Two(usize, usize),
+    /// Two symbols, the one that it overlaps more first, at a distance in rows.
+    Two(usize, usize, usize),
 }
 
 impl Candidate {
@@ -136,27 +136,32 @@ impl Naming<'_> {
             let line = &self.tokens.rows[row];
             let from = line.partition_point(|token| token.end <= word.start);
             let over = line[from..].iter().take_while(|token| token.start < word.end).filter(|t| is_drawn(t));
-            let mut best: Option<(usize, usize)> = None;
-            let mut equal = None;
             let mut blocked = false;
+            // Cells of overlap and symbol, the largest overlap first; symbols that take no name come last.
+            let mut first = (0, 0);
+            let mut second = (0, 0);
             for token in over {
                 blocked = true;
                 let What::Symbol(symbol) = token.what else { continue };
-                if self.tokens.symbols[symbol].element.block().is_some() && !self.is_border(row, token, symbol) {
+                let found = &self.tokens.symbols[symbol];
+                if found.element.block().is_some() && !self.is_border(row, token, symbol) {
                     continue;
                 }
-                let overlap = token.end.min(word.end) - token.start.max(word.start);
-                match best {
-                    Some((_, most)) if overlap < most => {}
-                    Some((first, most)) if overlap == most => equal = Some((first, symbol)),
-                    _ => (best, equal) = (Some((symbol, overlap)), None),
+                let cells = 2 * (token.end.min(word.end) - token.start.max(word.start));
+                let overlap = if found.wants == Wants::Nothing { 1 } else { cells };
+                if overlap > first.0 {
+                    second = std::mem::replace(&mut first, (overlap, symbol));
+                } else if overlap > second.0 {
+                    second = (overlap, symbol);
                 }
             }
-            match (best, equal) {
-                (_, Some((first, second))) => return Candidate::Two(first, second),
-                (Some((symbol, _)), None) => return Candidate::One(symbol, distance + 1),
-                (None, None) if blocked => return Candidate::None,
-                (None, None) => {}
+            // One cell is not enough to be in doubt, unless it is one for each.
+            let doubtful = second.0 > 2 || (second.0 == 2 && first.0 == 2);
+            match (first, second) {
+                ((0, _), _) if blocked => return Candidate::None,
+                ((0, _), _) => {}
+                ((_, first), (_, second)) if doubtful => return Candidate::Two(first, second, distance + 1),
+                ((_, first), _) => return Candidate::One(first, distance + 1),
             }
         }
         Candidate::None
@@ -180,6 +185,19 @@ impl Naming<'_> {
             if let Some(owner) = word.owner {
                 counts[owner] += 1;
             }
+        }
+        // A name over two elements is clear if one of them has another name.
+        for word in words.iter_mut() {
+            let wanted = if names_below { &mut word.above } else { &mut word.below };
+            let Candidate::Two(first, second, distance) = *wanted else { continue };
+            let owner = match (counts[first], counts[second]) {
+                (_, 1..) => first,
+                (1.., 0) => second,
+                (0, 0) => continue,
+            };
+            *wanted = Candidate::One(owner, distance);
+            word.owner = Some(owner);
+            counts[owner] += 1;
         }
         // The second operand of a comparison may stand on the other side. It can be told from the upper line of a
         // name only if the element there has a nearer name.
@@ -284,7 +302,7 @@ impl Naming<'_> {
             let span = self.grid.span(word.row, word.start, word.end);
             let wanted = if names_below { word.above } else { word.below };
             let text = span.of(self.text);
-            if let Candidate::Two(first, second) = wanted {
+            if let Candidate::Two(first, second, _) = wanted {
                 let mut problem =
                     Diagnostic::new("stray-operand", span, Message::new("stray-operand.two").with("text", text));
                 for symbol in [first, second] {
@@ -344,8 +362,9 @@ impl Naming<'_> {
         let shared: rustc_hash::FxHashSet<usize> = words
             .iter()
             .filter(|word| word.owner.is_none())
-            .flat_map(|word| match word.below {
-                Candidate::Two(first, second) => vec![first, second],
+            .flat_map(|word| [word.below, word.above])
+            .flat_map(|over| match over {
+                Candidate::Two(first, second, _) => vec![first, second],
                 _ => Vec::new(),
             })
             .collect();

@@ -163,6 +163,9 @@ impl Scanner<'_> {
                 before == '#' || (end == column + 1 && matches!(first, 'K' | 'k' | 'E' | 'e'))
                     || (matches!(first, 'E' | 'e') && before.is_ascii_digit())
             };
+            // A single hyphen inside a word is no wire, whatever becomes of the word.
+            let hyphen = character == '-' && at(end - 1).is_alphanumeric() && at(end + 1).is_alphabetic();
+            let signs = signs || hyphen;
             // A name does not end in a run of underscores that is a wire.
             let wire = character == '_' && !continues_word(at(end + 1)) && at(end + 1) != ' ';
             let wire = wire || (character == '_' && at(end + 1) == '_');
