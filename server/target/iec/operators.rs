@@ -1,6 +1,7 @@
 //! The operators of Instruction List (IEC 61131-3 2nd ed. table 52, 3rd ed. table 68).
 
 use super::GenericType;
+use super::page::Page;
 
 /// One operator.
 #[derive(Debug)]
@@ -13,10 +14,20 @@ pub struct Operator {
     pub modifiers: Modifiers,
     /// What it does to the current result.
     pub role: OperatorRole,
-    /// What its operand and the current result may be.
+    /// What its operand and the current result may be; nothing for those without a value (JMP, CAL, RET).
     pub operand: Option<GenericType>,
-    /// The page: Markdown with a runnable `il` example.
-    pub page: &'static str,
+    pub(super) page: Page,
+}
+
+/// An operator as it is written in one word: `ANDN`, `JMPCN`, `&`. The `(` is a token of its own.
+#[derive(Clone, Copy, Debug)]
+pub struct Written {
+    /// The row.
+    pub operator: &'static Operator,
+    /// With `N` as a negation: `LDN`, `ORN`.
+    pub negate: bool,
+    /// With `C`: `Some(true)`, with `CN`: `Some(false)`; the value that the current result must have.
+    pub condition: Option<bool>,
 }
 
 /// The modifiers that an operator takes.
