@@ -23,4 +23,4 @@ mod mention;
 pub use mention::{Mention, Symbol, Use};
 
 mod scope;
-pub use scope::{Pou, Scopes, Variable};
+pub use scope::{DeclaredType, Pou, Scopes, Variable};

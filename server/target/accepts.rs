@@ -68,6 +68,11 @@ impl Accepts {
     /// K H and every word: word sources.
     pub const WORD_SOURCE: Accepts = Self::WORD_DESTINATION.or(Self::KNX).or(Self::K);
 
+    /// X Y M S, and bits of words: bits that applied instructions read.
+    pub const BIT_SOURCE: Accepts = Self::X.or(Self::Y).or(Self::M).or(Self::S).or(Self::WORD_BIT);
+    /// Y M S, and bits of words: bits that applied instructions write.
+    pub const BIT_DESTINATION: Accepts = Self::Y.or(Self::M).or(Self::S).or(Self::WORD_BIT);
+
     /// Both.
     pub const fn or(self, other: Accepts) -> Accepts {
         Accepts(self.0 | other.0)

@@ -4,7 +4,7 @@ use super::{Accepts, Model, Operand, instructions};
 use std::fmt;
 
 /// One instruction of the FX family: everything that any room needs to know about it.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Instruction {
     /// The plain mnemonic, upper case: `MOV`, `LD=`.
     pub mnemonic: &'static str,
@@ -80,7 +80,7 @@ pub enum Access {
 }
 
 /// One operand of an instruction.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct OperandSpec {
     /// The manual's name: `S`, `S1`, `D`, `m`, `n`.
     pub name: &'static str,
