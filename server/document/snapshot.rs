@@ -53,6 +53,28 @@ impl Document {
         document
     }
 
+    /// Keeps `text` without reading it: the last resort after a failure of a reader.
+    pub fn unread(text: &str, notation: Notation, target: &'static Target) -> Document {
+        let rope = Rope::from_str(text);
+        Document { rope, notation, target, pages: Pages::default(), scopes: OnceLock::new() }
+    }
+
+    /// The bytes of `old` that were replaced and those of `self` that replaced them, to whole chunks;
+    /// `None` if nothing changed.
+    pub fn changed_since(&self, old: &Document) -> Option<(Range<usize>, Range<usize>)> {
+        let same = |(left, right): &(&Arc<Page>, &Arc<Page>)| Arc::ptr_eq(left, right);
+        let (new_pages, old_pages) = (self.pages.pages(), old.pages.pages());
+        let head = new_pages.iter().zip(old_pages).take_while(same).count();
+        if head == new_pages.len() && head == old_pages.len() {
+            return None;
+        }
+        let tail = new_pages[head..].iter().rev().zip(old_pages[head..].iter().rev()).take_while(same).count();
+        let bytes = |pages: &[Arc<Page>]| pages.iter().map(|page| page.bytes()).sum::<usize>();
+        let start = bytes(&new_pages[..head]);
+        let end = bytes(&new_pages[new_pages.len() - tail..]);
+        Some((start..old.len() - end, start..self.len() - end))
+    }
+
     /// In which language it is written.
     pub fn notation(&self) -> Notation {
         self.notation
