@@ -6,10 +6,30 @@ use std::sync::LazyLock;
 
 pub mod specs;
 
+mod clock;
+mod contact_compare;
 mod contacts;
+mod external;
+mod floats;
+mod gray_and_analog;
+mod handy;
+mod high_speed;
+mod positioning;
+mod serial;
 
 /// The families in the order of the manual.
-static FAMILIES: &[&[Instruction]] = &[contacts::ROWS];
+static FAMILIES: &[&[Instruction]] = &[
+    contacts::ROWS,
+    high_speed::ROWS,
+    handy::ROWS,
+    external::ROWS,
+    serial::ROWS,
+    floats::ROWS,
+    positioning::ROWS,
+    clock::ROWS,
+    gray_and_analog::ROWS,
+    contact_compare::ROWS,
+];
 
 /// Every row, in the order of the manual.
 pub fn all() -> impl Iterator<Item = &'static Instruction> {
