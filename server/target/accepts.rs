@@ -1,6 +1,6 @@
 //! Sets of operand kinds.
 
-use super::{Constant, DeviceKind, Operand};
+use super::{Constant, DeviceKind, Model, Operand};
 
 /// The kinds of operand that a place in an instruction takes.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -81,6 +81,14 @@ impl Accepts {
     /// This without `other`.
     pub const fn without(self, other: Accepts) -> Accepts {
         Accepts(self.0 & !other.0)
+    }
+
+    /// What of it exists on `model`: extension registers, bits of words and real constants came with the FX3U.
+    pub const fn on(self, model: Model) -> Accepts {
+        match model {
+            Model::Fx3u => self,
+            _ => self.without(Self::R.or(Self::WORD_BIT).or(Self::E)),
+        }
     }
 
     /// Whether every kind of `other` is in it.

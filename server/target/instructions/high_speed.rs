@@ -53,8 +53,8 @@ END
         "\
 Reads the inputs with a digital filter (`X0` to `X17`, or to `X7` on small units) at once, with a filter
 time of `n` milliseconds; `K0` gives the shortest that the hardware has, some tens of microseconds.
-Drive it in every scan, usually by `M8000`: the ordinary reading at the end of the scan goes on with the
-time in `D8020`, 10 ms after power-up. A filter shorter than the bounce of a mechanical contact makes
+Drive it in every scan, usually by `M8000`: the ordinary reading between scans goes on with the time in
+`D8020`, 10 ms after power-up. A filter shorter than the bounce of a mechanical contact makes
 one press look like several.
 
 ```il

@@ -35,7 +35,7 @@ pub const fn operand(
     access: Access,
     accepts: Accepts,
 ) -> OperandSpec {
-    OperandSpec { name, meaning, access, accepts, range: None, count: 1, optional: false }
+    OperandSpec { name, meaning, access, accepts, range: None, wide_range: None, count: 1, optional: false }
 }
 
 /// A value that is read: any word, bits as a word (`K4M0`), a constant.
@@ -92,6 +92,11 @@ impl OperandSpec {
     /// A constant here lies in `least..=most`.
     pub const fn within(self, least: i64, most: i64) -> OperandSpec {
         OperandSpec { range: Some((least, most)), ..self }
+    }
+
+    /// A constant in the 32-bit form lies in `least..=most`, where that differs.
+    pub const fn within_wide(self, least: i64, most: i64) -> OperandSpec {
+        OperandSpec { wide_range: Some((least, most)), ..self }
     }
 
     /// Covers `count` consecutive devices.
