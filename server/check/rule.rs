@@ -45,4 +45,15 @@ impl Rule {
         }
         page
     }
+
+    /// The first sentence of its page.
+    pub fn summary(&self) -> String {
+        let page = self.page();
+        let text = page.split_once("\n\n").map_or("", |(_, text)| text);
+        let paragraph = text.split("\n\n").next().unwrap_or("").replace('\n', " ");
+        match paragraph.find(". ") {
+            Some(end) => paragraph[..=end].to_string(),
+            None => paragraph.trim().to_string(),
+        }
+    }
 }
