@@ -4,7 +4,8 @@
 
 use proptest::prelude::*;
 use rungwise::target::{
-    Access, Constant, Device, DeviceKind, Form, Model, Opcode, Operand, Target, Wide, instructions,
+    Access, Constant, Device, DeviceKind, Form, Instruction, Model, Opcode, Operand, Target, Wide,
+    instructions,
 };
 use std::collections::HashMap;
 
@@ -335,22 +336,32 @@ fn constants_that_fit() {
 
 #[test]
 fn pages_are_one_paragraph_and_a_program() {
-    for instruction in instructions::all().chain([&instructions::LABEL]) {
-        let name = instruction.mnemonic;
-        let (paragraph, rest) =
-            instruction.page.split_once("\n\n```il\n").unwrap_or_else(|| panic!("{name}"));
-        assert!(!paragraph.contains('\n') && paragraph.ends_with('.') && paragraph.len() > 80, "{name}");
-        let program = rest.strip_suffix("```\n").unwrap_or_else(|| panic!("{name} has more than a fence"));
-        assert!(program.ends_with("\nEND\n") && !program.contains("```"), "{name}");
-        let forms: Vec<Option<Form>> =
-            program.lines().map(|line| Form::named(line.split(' ').next().unwrap())).collect();
-        let shown = forms.iter().flatten().any(|form| form.instruction.mnemonic == name);
-        assert!(shown || name == "label", "the example of {name} does not show it");
-        assert!(!instruction.models.is_empty() && !instruction.title.is_empty());
-        for &model in instruction.models {
-            check_program(program, model).unwrap_or_else(|problem| panic!("{name} on {model:?}: {problem}"));
-        }
+    let rows = instructions::all().chain([&instructions::LABEL]);
+    let problems: Vec<String> = rows
+        .filter_map(|row| check_page(row).err().map(|problem| format!("{}: {problem}", row.mnemonic)))
+        .collect();
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
+fn check_page(row: &Instruction) -> Result<(), String> {
+    let (paragraph, rest) = row.page.split_once("\n\n```il\n").ok_or("no il fence")?;
+    if paragraph.contains("\n\n") || !paragraph.ends_with('.') || paragraph.len() < 80 {
+        return Err(format!("not one paragraph: {paragraph}"));
     }
+    let program = rest.strip_suffix("```\n").ok_or("something after the fence")?;
+    if !program.ends_with("\nEND\n") || program.contains("```") {
+        return Err("not one program with END".to_string());
+    }
+    let mut forms = program.lines().filter_map(|line| Form::named(line.split(' ').next()?));
+    if row.opcode != Opcode::Label && !forms.any(|form| form.instruction.mnemonic == row.mnemonic) {
+        return Err("the example does not show it".to_string());
+    }
+    if row.models.is_empty() || row.title.is_empty() {
+        return Err("no model or no title".to_string());
+    }
+    row.models.iter().try_for_each(|&model| {
+        check_program(program, model).map_err(|problem| format!("{model:?}: {problem}"))
+    })
 }
 
 /// A plain reading of a small program, stricter than a PLC: words, operands, devices, limits, order of blocks.
