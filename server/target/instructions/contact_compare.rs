@@ -21,9 +21,9 @@ macro_rules! page {
     ($own:literal, $wide:literal, $example:literal) => {
         concat!(
             $own,
-            "\nBoth values are signed: `H8000` to `HFFFF` are negative in the 16-bit form. `",
+            "\nBoth values are signed: `H8000` to `HFFFF` are negative in the 16-bit form.\n`",
             $wide,
-            "` compares pairs of registers,\nand only that form can read a 32-bit counter (`C200` and above).\n\n",
+            "` compares pairs of registers, and only that form can read a 32-bit counter (`C200` and above).\n\n",
             "```il\n",
             $example,
             "\nEND\n```\n"

@@ -9,7 +9,10 @@ pub const ROWS: &[Instruction] = &[
         170,
         "GRY",
         "binary to Gray code",
-        &[source("S", "number"), destination("D", "Gray code")],
+        &[
+            source("S", "number").within(0, 32_767).within_wide(0, 2_147_483_647),
+            destination("D", "Gray code"),
+        ],
         "\
 Turns a number into Gray code, in which neighbours differ in one bit only. It takes 0 to 32,767 (`DGRY`
 to 2,147,483,647); a negative number is an operation error. It works in every scan in which it is
@@ -32,7 +35,10 @@ END
         171,
         "GBIN",
         "Gray code to binary",
-        &[source("S", "Gray code"), destination("D", "number")],
+        &[
+            source("S", "Gray code").within(0, 32_767).within_wide(0, 2_147_483_647),
+            destination("D", "number"),
+        ],
         "\
 Turns Gray code into a number, mostly that of an absolute encoder at the inputs: `K3X0` for twelve
 tracks. It takes 0 to 32,767 (`DGBIN` to 2,147,483,647). The position is as old as a scan and the input

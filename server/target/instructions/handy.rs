@@ -47,7 +47,7 @@ END
             source("S1", "first word of the table").accepting(BITS_AS_WORDS.or(STORED)),
             source("S2", "value to look for"),
             destination("D", "first of 5 results").except(Accepts::V.or(Accepts::Z)).covering(5),
-            count("n", "words in the table", (1, 256)).or_register(),
+            count("n", "words in the table", (1, 256)).within_wide(1, 128).or_register(),
         ],
         "\
 Looks through `n` words from `S1` on for the value `S2`. The five results from `D` on are how many are

@@ -69,7 +69,7 @@ END
         "ZRN",
         "return to zero",
         &[
-            source("S1", "speed towards zero in Hz").within(10, 200_000),
+            source("S1", "speed towards zero in Hz").within(10, 32_767).within_wide(10, 200_000),
             source("S2", "creep speed in Hz").within(10, 32_767),
             bits("S3", "proximity switch in front of zero"),
             pulse_output("D"),
@@ -128,7 +128,7 @@ END
         "drive by an increment",
         &[
             source("S1", "pulses, negative for reverse"),
-            source("S2", "speed in Hz").within(10, 200_000),
+            source("S2", "speed in Hz").within(10, 32_767).within_wide(10, 200_000),
             pulse_output("D1"),
             bits_out("D2", "direction, on for forward"),
         ],
@@ -159,7 +159,7 @@ END
         "drive to a position",
         &[
             source("S1", "target position in pulses"),
-            source("S2", "speed in Hz").within(10, 200_000),
+            source("S2", "speed in Hz").within(10, 32_767).within_wide(10, 200_000),
             pulse_output("D1"),
             bits_out("D2", "direction, on for forward"),
         ],
