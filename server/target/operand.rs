@@ -67,7 +67,8 @@ pub enum OperandProblem {
     UnknownDevice,
     /// An 8 or a 9 in the number of an input or an output.
     OctalDigit,
-    /// A `K`, `H` or `E` whose number cannot be read or has more than 64 bits, or a group of bits that is none (`K9M0`).
+    /// A `K`, `H` or `E` whose number cannot be read or has more than 64 bits, or a group of bits that is none
+    /// (`K9M0`).
     MalformedConstant,
     /// An IEC literal that cannot be read, with the reason.
     MalformedLiteral(iec::LiteralProblem),
