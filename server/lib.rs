@@ -15,11 +15,9 @@ pub mod ladder;
 
 pub mod document;
 
-pub mod project;
-
-pub mod logic;
-
 pub mod check;
+
+pub mod project;
 
 pub mod ide;
 

@@ -1,1 +1,17 @@
-//! (room: ladder)
+//! Ladder diagrams drawn in characters: text to graph, and graph to canonical text.
+//!
+//! Data takes one way: [`split`] cuts a document into chunks, [`parse`] reads a chunk as a grid of cells, the cells
+//! as elements and wires, and these as the [`Graph`] of each rung. [`reduce`](reduce::reduce) turns a graph into the
+//! series-parallel [`Shape`](reduce::Shape) that the printer draws. IL is unknown here.
+
+mod element;
+pub use element::{
+    Block, CoilKind, CompareOperator, ContactKind, Element, ElementId, ElementKind, OperandPlace, Pin,
+    PinWire,
+};
+
+mod graph;
+pub use graph::{Arc, ArcId, Graph, Vertex, VertexId, VertexKind};
+
+mod tree;
+pub use tree::{LadderTree, NetworkHeader, Rung};
