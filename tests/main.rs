@@ -1,3 +1,4 @@
 //! Every test of the package that needs no private item, one module for each subject.
 
 mod target_fx;
+mod target_fx_applied;

@@ -21,10 +21,10 @@ macro_rules! page {
     ($own:literal, $wide:literal, $example:literal) => {
         concat!(
             $own,
-            "\nBoth values are signed: `H8000` to `HFFFF` are negative in the 16-bit form. `",
+            " Both values are signed: `H8000` to `HFFFF` are negative in the 16-bit form. `",
             $wide,
-            "` compares pairs of registers,\nand only that form can read a 32-bit counter (`C200` and above).\n\n",
-            "```il\n",
+            "` compares pairs of registers, and only that form can read a 32-bit counter (`C200` and above).",
+            "\n\n```il\n",
             $example,
             "\nEND\n```\n"
         )
@@ -39,10 +39,9 @@ pub const ROWS: &[Instruction] = &[
         "load compare equal",
         Role::Load,
         page!(
-            "\
-Starts a rung or a block with a contact that conducts while `S1` is equal to `S2`. It is evaluated in
-every scan. A counted or measured value can jump over the one number that you wait for: prefer `LD>=`
-for these.",
+            "Starts a rung or a block with a contact that conducts while `S1` is equal to `S2`. It is \
+             evaluated in every scan. A counted or measured value can jump over the one number that you \
+             wait for: prefer `LD>=` for these.",
             "LDD=",
             "LD= D0 K3\nOUT Y0"
         ),
@@ -53,10 +52,9 @@ for these.",
         "load compare greater",
         Role::Load,
         page!(
-            "\
-Starts a rung or a block with a contact that conducts while `S1` is greater than `S2`. It is evaluated
-in every scan. A measured value near the limit makes the output flutter: switch off at a lower value
-than you switch on.",
+            "Starts a rung or a block with a contact that conducts while `S1` is greater than `S2`. It \
+             is evaluated in every scan. A measured value near the limit makes the output flutter: \
+             switch off at a lower value than you switch on.",
             "LDD>",
             "LD> D0 K1000\nSET Y0\nLD< D0 K950\nRST Y0"
         ),
@@ -67,9 +65,9 @@ than you switch on.",
         "load compare less",
         Role::Load,
         page!(
-            "\
-Starts a rung or a block with a contact that conducts while `S1` is less than `S2`. It is evaluated in
-every scan. A register that nothing has written yet holds 0, so it conducts from the first scan on.",
+            "Starts a rung or a block with a contact that conducts while `S1` is less than `S2`. It is \
+             evaluated in every scan. A register that nothing has written yet holds 0, so it conducts \
+             from the first scan on.",
             "LDD<",
             "LD< D0 K200\nOUT Y0"
         ),
@@ -80,10 +78,9 @@ every scan. A register that nothing has written yet holds 0, so it conducts from
         "load compare not equal",
         Role::Load,
         page!(
-            "\
-Starts a rung or a block with a contact that conducts while `S1` and `S2` differ. It is evaluated in
-every scan. Compare a value with a copy of it from the scan before, and the contact shows each change
-for one scan.",
+            "Starts a rung or a block with a contact that conducts while `S1` and `S2` differ. It is \
+             evaluated in every scan. Compare a value with a copy of it from the scan before, and the \
+             contact shows each change for one scan.",
             "LDD<>",
             "LD<> D0 D1\nALTP M0\nLD M8000\nMOV D0 D1\nLD M0\nOUT Y0"
         ),
@@ -94,10 +91,9 @@ for one scan.",
         "load compare less or equal",
         Role::Load,
         page!(
-            "\
-Starts a rung or a block with a contact that conducts while `S1` is less than `S2` or equal to it. It is
-evaluated in every scan. With the current value of a timer it gives a time window without a second
-timer.",
+            "Starts a rung or a block with a contact that conducts while `S1` is less than `S2` or \
+             equal to it. It is evaluated in every scan. With the current value of a timer it gives a \
+             time window without a second timer.",
             "LDD<=",
             "LD X0\nOUT T0 K100\nLD<= T0 K50\nAND X0\nOUT Y0"
         ),
@@ -108,10 +104,9 @@ timer.",
         "load compare greater or equal",
         Role::Load,
         page!(
-            "\
-Starts a rung or a block with a contact that conducts while `S1` is greater than `S2` or equal to it. It
-is evaluated in every scan. It is the safe way to see that a count has been reached, even if the count
-goes on by more than one.",
+            "Starts a rung or a block with a contact that conducts while `S1` is greater than `S2` or \
+             equal to it. It is evaluated in every scan. It is the safe way to see that a count has \
+             been reached, even if the count goes on by more than one.",
             "LDD>=",
             "LD X0\nOUT C0 K100\nLD>= C0 K80\nOUT Y0\nLD X1\nRST C0"
         ),
@@ -122,10 +117,9 @@ goes on by more than one.",
         "and compare equal",
         Role::Series,
         page!(
-            "\
-A contact in series that conducts while `S1` is equal to `S2`. It is evaluated in every scan, and passes
-power only if the contacts before it do. It suits numbers that a program sets itself, such as modes and
-step numbers.",
+            "A contact in series that conducts while `S1` is equal to `S2`. It is evaluated in every \
+             scan, and passes power only if the contacts before it do. It suits numbers that a program \
+             sets itself, such as modes and step numbers.",
             "ANDD=",
             "LD X0\nAND= D0 K2\nOUT Y0"
         ),
@@ -136,10 +130,9 @@ step numbers.",
         "and compare greater",
         Role::Series,
         page!(
-            "\
-A contact in series that conducts while `S1` is greater than `S2`. It is evaluated in every scan, and
-passes power only if the contacts before it do. Leave a gap between switching on and off where a
-measured value wavers.",
+            "A contact in series that conducts while `S1` is greater than `S2`. It is evaluated in \
+             every scan, and passes power only if the contacts before it do. Leave a gap between \
+             switching on and off where a measured value wavers.",
             "ANDD>",
             "LD X0\nAND> D0 K500\nOUT Y0"
         ),
@@ -150,10 +143,9 @@ measured value wavers.",
         "and compare less",
         Role::Series,
         page!(
-            "\
-A contact in series that conducts while `S1` is less than `S2`. It is evaluated in every scan, and
-passes power only if the contacts before it do. A sensor with a broken wire mostly reads 0 and so counts
-as *less*: test for that first.",
+            "A contact in series that conducts while `S1` is less than `S2`. It is evaluated in every \
+             scan, and passes power only if the contacts before it do. A sensor with a broken wire \
+             mostly reads 0 and so counts as *less*: test for that first.",
             "ANDD<",
             "LD> D0 K10\nAND< D0 K200\nOUT Y0"
         ),
@@ -164,9 +156,9 @@ as *less*: test for that first.",
         "and compare not equal",
         Role::Series,
         page!(
-            "\
-A contact in series that conducts while `S1` and `S2` differ. It is evaluated in every scan, and passes
-power only if the contacts before it do. Typical is a lock: everything except one mode.",
+            "A contact in series that conducts while `S1` and `S2` differ. It is evaluated in every \
+             scan, and passes power only if the contacts before it do. Typical is a lock: everything \
+             except one mode.",
             "ANDD<>",
             "LD X0\nAND<> D0 K0\nOUT Y0"
         ),
@@ -177,10 +169,9 @@ power only if the contacts before it do. Typical is a lock: everything except on
         "and compare less or equal",
         Role::Series,
         page!(
-            "\
-A contact in series that conducts while `S1` is less than `S2` or equal to it. It is evaluated in every
-scan, and passes power only if the contacts before it do. After `LD>=` it makes a window whose two
-limits belong to it.",
+            "A contact in series that conducts while `S1` is less than `S2` or equal to it. It is \
+             evaluated in every scan, and passes power only if the contacts before it do. After `LD>=` \
+             it makes a window whose two limits belong to it.",
             "ANDD<=",
             "LD>= D0 K100\nAND<= D0 K200\nOUT Y0"
         ),
@@ -191,10 +182,9 @@ limits belong to it.",
         "and compare greater or equal",
         Role::Series,
         page!(
-            "\
-A contact in series that conducts while `S1` is greater than `S2` or equal to it. It is evaluated in
-every scan, and passes power only if the contacts before it do. With the current value of a timer it
-switches a second output later.",
+            "A contact in series that conducts while `S1` is greater than `S2` or equal to it. It is \
+             evaluated in every scan, and passes power only if the contacts before it do. With the \
+             current value of a timer it switches a second output later.",
             "ANDD>=",
             "LD X0\nOUT T0 K100\nAND>= T0 K50\nOUT Y0"
         ),
@@ -205,9 +195,9 @@ switches a second output later.",
         "or compare equal",
         Role::Parallel,
         page!(
-            "\
-A contact in parallel to everything since the last load that conducts while `S1` is equal to `S2`. It is
-evaluated in every scan. Several in a row collect the numbers of the steps in which an output is on.",
+            "A contact in parallel to everything since the last load that conducts while `S1` is equal \
+             to `S2`. It is evaluated in every scan. Several in a row collect the numbers of the steps \
+             in which an output is on.",
             "ORD=",
             "LD= D0 K1\nOR= D0 K4\nOUT Y0"
         ),
@@ -218,10 +208,9 @@ evaluated in every scan. Several in a row collect the numbers of the steps in wh
         "or compare greater",
         Role::Parallel,
         page!(
-            "\
-A contact in parallel to everything since the last load that conducts while `S1` is greater than `S2`.
-It is evaluated in every scan. With `LD<` it signals a value outside of its window; the limits
-themselves count as inside.",
+            "A contact in parallel to everything since the last load that conducts while `S1` is \
+             greater than `S2`. It is evaluated in every scan. With `LD<` it signals a value outside of \
+             its window; the limits themselves count as inside.",
             "ORD>",
             "LD< D0 K100\nOR> D0 K200\nOUT Y0"
         ),
@@ -232,10 +221,9 @@ themselves count as inside.",
         "or compare less",
         Role::Parallel,
         page!(
-            "\
-A contact in parallel to everything since the last load that conducts while `S1` is less than `S2`. It
-is evaluated in every scan. A register that nothing has written yet holds 0, so an alarm like this is on
-at start: release it after the first value.",
+            "A contact in parallel to everything since the last load that conducts while `S1` is less \
+             than `S2`. It is evaluated in every scan. A register that nothing has written yet holds 0, \
+             so an alarm like this is on at start: release it after the first value.",
             "ORD<",
             "LD X0\nOR< D0 K50\nOUT Y0"
         ),
@@ -246,10 +234,9 @@ at start: release it after the first value.",
         "or compare not equal",
         Role::Parallel,
         page!(
-            "\
-A contact in parallel to everything since the last load that conducts while `S1` and `S2` differ. It is
-evaluated in every scan. Do not join two of them for *neither A nor B*: a number always differs from one
-of the two, so that is always on.",
+            "A contact in parallel to everything since the last load that conducts while `S1` and `S2` \
+             differ. It is evaluated in every scan. Do not join two of them for *neither A nor B*: a \
+             number always differs from one of the two, so that is always on.",
             "ORD<>",
             "LD X0\nOR<> D0 D1\nOUT Y0"
         ),
@@ -260,10 +247,9 @@ of the two, so that is always on.",
         "or compare less or equal",
         Role::Parallel,
         page!(
-            "\
-A contact in parallel to everything since the last load that conducts while `S1` is less than `S2` or
-equal to it. It is evaluated in every scan. A series contact after it belongs to the whole block, not to
-the comparison alone.",
+            "A contact in parallel to everything since the last load that conducts while `S1` is less \
+             than `S2` or equal to it. It is evaluated in every scan. A series contact after it belongs \
+             to the whole block, not to the comparison alone.",
             "ORD<=",
             "LD X0\nOR<= D0 K50\nANI X1\nOUT Y0"
         ),
@@ -274,9 +260,9 @@ the comparison alone.",
         "or compare greater or equal",
         Role::Parallel,
         page!(
-            "\
-A contact in parallel to everything since the last load that conducts while `S1` is greater than `S2` or
-equal to it. It is evaluated in every scan. It can end a batch either by the count or by a button.",
+            "A contact in parallel to everything since the last load that conducts while `S1` is \
+             greater than `S2` or equal to it. It is evaluated in every scan. It can end a batch either \
+             by the count or by a button.",
             "ORD>=",
             "LD X0\nOR>= C0 K50\nOUT Y0\nLD X1\nOUT C0 K100\nLD X2\nRST C0"
         ),
