@@ -1,5 +1,6 @@
 //! The tree of a chunk: flat records with offsets, no heap node for each token.
 
+use crate::target::instructions::LABEL;
 use crate::target::{Device, Form, Operand};
 use crate::text::{Diagnostic, Span, Spanned};
 
@@ -61,6 +62,17 @@ impl FxTree {
         self.operands.get(line.operands.0 as usize..line.operands.1 as usize).unwrap_or(&[])
     }
 
+    /// The program steps that a line takes, see [`steps`].
+    pub fn steps_of(&self, line: &FxLine) -> u32 {
+        let form = match line.kind {
+            LineKind::Instruction(form) => form,
+            LineKind::Label(_) => Form { instruction: &LABEL, wide: false, pulse: false },
+            LineKind::Unknown => return 0,
+        };
+        let operands: Vec<Operand> = self.operands(line).iter().map(|operand| operand.value).collect();
+        form.steps(&operands)
+    }
+
     /// The last line that begins at or before `offset`: the one in which a cursor stands, or is about to add to.
     pub fn line_before(&self, offset: usize) -> Option<&FxLine> {
         let after = self.lines.partition_point(|line| line.span.start as usize <= offset);
@@ -111,18 +123,5 @@ impl FxTree {
 
 /// The program steps that the chunk takes: a label one, unknown words none.
 pub fn steps(tree: &FxTree) -> u32 {
-    let mut operands = Vec::new();
-    let mut sum: u32 = 0;
-    for line in &tree.lines {
-        sum = sum.saturating_add(match line.kind {
-            LineKind::Instruction(form) => {
-                operands.clear();
-                operands.extend(tree.operands(line).iter().map(|operand| operand.value));
-                form.steps(&operands)
-            }
-            LineKind::Label(_) => 1,
-            LineKind::Unknown => 0,
-        });
-    }
-    sum
+    tree.lines.iter().fold(0, |sum, line| sum.saturating_add(tree.steps_of(line)))
 }
