@@ -73,6 +73,10 @@ pub enum OperandProblem {
     MalformedLiteral(iec::LiteralProblem),
     /// `%` without a readable address.
     MalformedAddress,
+    /// An IEC keyword where a name or a value belongs.
+    Keyword,
+    /// An IEC name that breaks the rules of identifiers, or a path with a broken member, subscript or bit.
+    MalformedName,
     /// Nothing of the above.
     Unreadable,
 }
@@ -123,14 +127,9 @@ impl Operand {
     /// ```
     pub fn read(word: &str, model: Model) -> Operand {
         match model {
-            Model::Iec => Operand::read_iec(word),
+            Model::Iec => iec::read_operand(word),
             _ => Operand::read_fx(word),
         }
-    }
-
-    fn read_iec(word: &str) -> Operand {
-        let _ = word;
-        Operand::Variable
     }
 
     fn read_fx(word: &str) -> Operand {

@@ -1,6 +1,7 @@
 //! The standard function blocks (IEC 61131-3 2nd ed. tables 34 to 37).
 
 use super::Parameter;
+use super::page::Page;
 
 /// One standard function block.
 #[derive(Debug)]
@@ -15,6 +16,5 @@ pub struct FunctionBlock {
     pub outputs: &'static [Parameter],
     /// The inputs that are also operators of Instruction List (`CU C10`), table 54.
     pub input_operators: &'static [&'static str],
-    /// The page: Markdown with a runnable `il` example.
-    pub page: &'static str,
+    pub(super) page: Page,
 }

@@ -1,5 +1,6 @@
 //! The standard functions; the order of inputs matters for non-formal calls.
 
+use super::page::Page;
 use super::{ElementaryType, GenericType};
 
 /// One standard function.
@@ -15,8 +16,14 @@ pub struct Function {
     pub extensible: bool,
     /// The result.
     pub result: ParameterType,
-    /// The page: Markdown with a runnable `il` example.
-    pub page: &'static str,
+    pub(super) page: FunctionPage,
+}
+
+/// Where the page of a function comes from.
+#[derive(Debug)]
+pub(super) enum FunctionPage {
+    /// Written out.
+    Own(Page),
 }
 
 /// An input or output of a function or a function block.

@@ -26,8 +26,8 @@ pub enum LiteralValue {
     Date(i32),
     /// `TOD#23:59:59.999`, in nanoseconds since midnight.
     TimeOfDay(i64),
-    /// `DT#2024-01-31-12:00:00`, in nanoseconds since 1970-01-01.
-    DateAndTime(i64),
+    /// `DT#2024-01-31-12:00:00`, in nanoseconds since 1970-01-01; 64 bits would not reach the year 1.
+    DateAndTime(i128),
     /// `'single byte'`.
     Text,
     /// `"double byte"`.
@@ -47,16 +47,22 @@ pub enum LiteralProblem {
     Underscore,
     /// A real without a digit on both sides of the point.
     RealForm,
+    /// A sign where the form has none: `-16#FF`, `WORD#-1`.
+    Sign,
     /// Units of a duration not in descending order, unknown, or a fraction before the last.
     DurationForm,
     /// A lower unit of a duration past its limit, as in `T#1h90m`.
     DurationOverflow,
+    /// A date or a time of day not written as `2024-01-31`, `12:00:00`, `2024-01-31-12:00:00`.
+    DateForm,
     /// No such day or time of day.
     NoSuchDate,
     /// A type name before `#` that does not exist or does not fit the value.
     Type,
     /// A number that the named type cannot hold.
     Range,
+    /// No literal at all: a bare name, a lone sign, nothing.
+    Form,
     /// A text that does not end on its line, or an unknown `$` sequence.
     Text,
 }
