@@ -15,3 +15,7 @@ pub use graph::{Arc, ArcId, Graph, Vertex, VertexId, VertexKind};
 
 mod tree;
 pub use tree::{LadderTree, NetworkHeader, Rung};
+
+mod contract;
+
+pub mod reduce;
