@@ -1,5 +1,7 @@
 //! IEC 61131-3 as data: types, literals, operands, operators, functions, blocks and their pages.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use proptest::prelude::*;
 use rungwise::target::iec::{
     ElementaryType, Function, FunctionBlock, GenericType, KEYWORDS, Literal, LiteralProblem, LiteralValue,
@@ -265,7 +267,7 @@ fn reals() {
         ("1.0", 1.0),
         ("-12.0", -12.0),
         ("0.4560", 0.456),
-        ("3.14159_26", 3.1415926),
+        ("12.345_6", 12.3456),
         ("1.5E-3", 0.0015),
         ("-1.34E-12", -1.34e-12),
         ("1.0e+6", 1e6),
@@ -438,7 +440,7 @@ fn the_calendar_agrees_with_counting_days_one_by_one() {
         let lengths = [31, if leap { 29 } else { 28 }, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31];
         for (month, length) in (1..).zip(lengths) {
             for day in 1..=length {
-                if day < 2 || day > 27 {
+                if !(2..=27).contains(&day) {
                     let word = format!("D#{year:04}-{month:02}-{day:02}");
                     assert_eq!(value(&word), LiteralValue::Date(count), "{word}");
                 }
@@ -796,6 +798,19 @@ fn conversions_name_their_types() {
         for to in numbers.split_whitespace().filter(|to| *to != from) {
             types(&format!("{from}_TO_{to}"));
         }
+    }
+}
+
+#[test]
+fn enable_pins_are_no_ones_own() {
+    use rungwise::target::iec::{EN, ENO};
+    for pin in [EN, ENO] {
+        assert_eq!(pin.kind, ParameterType::Elementary(ElementaryType::Bool));
+        assert!(Function::all().all(|function| function.input_named(pin.name).is_none()));
+        let mut blocks = FunctionBlock::all();
+        assert!(blocks.all(|block| {
+            block.input_named(pin.name).is_none() && block.output_named(pin.name).is_none()
+        }));
     }
 }
 
