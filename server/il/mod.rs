@@ -1,1 +1,5 @@
-//! (room: il)
+//! Instruction List in both dialects: text to tree. Ladder is unknown here.
+
+pub mod fx;
+
+pub mod iec;
