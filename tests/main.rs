@@ -3,4 +3,5 @@
 mod rules;
 mod target_fx;
 mod target_fx_applied;
+mod target_iec;
 mod tidy;
