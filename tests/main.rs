@@ -1,1 +1,3 @@
+mod il_fx;
+
 fn main() {}
