@@ -1,3 +1,5 @@
-mod il_fx;
+//! Every test of the package that needs no private item, one module for each subject.
 
-fn main() {}
+mod il_fx;
+mod target_fx;
+mod target_fx_applied;

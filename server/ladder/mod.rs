@@ -14,4 +14,4 @@ mod graph;
 pub use graph::{Arc, ArcId, Graph, Vertex, VertexId, VertexKind};
 
 mod tree;
-pub use tree::{LadderTree, NetworkHeader, Rung};
+pub use tree::{LadderTree, Mention, NameHabit, NetworkHeader, Rung};

@@ -67,12 +67,17 @@ pub enum OperandProblem {
     UnknownDevice,
     /// An 8 or a 9 in the number of an input or an output.
     OctalDigit,
-    /// A `K`, `H` or `E` whose number cannot be read or has more than 64 bits, or a group of bits that is none (`K9M0`).
+    /// A `K`, `H` or `E` whose number cannot be read or has more than 64 bits, or a group of bits that is none
+    /// (`K9M0`).
     MalformedConstant,
     /// An IEC literal that cannot be read, with the reason.
     MalformedLiteral(iec::LiteralProblem),
     /// `%` without a readable address.
     MalformedAddress,
+    /// An IEC keyword where a name or a value belongs.
+    Keyword,
+    /// An IEC name that breaks the rules of identifiers, or a path with a broken member, subscript or bit.
+    MalformedName,
     /// Nothing of the above.
     Unreadable,
 }
@@ -123,14 +128,9 @@ impl Operand {
     /// ```
     pub fn read(word: &str, model: Model) -> Operand {
         match model {
-            Model::Iec => Operand::read_iec(word),
+            Model::Iec => iec::read_operand(word),
             _ => fx::read(word),
         }
-    }
-
-    fn read_iec(word: &str) -> Operand {
-        let _ = word;
-        Operand::Variable
     }
 
     /// The device that it names or starts from, index and bit aside.

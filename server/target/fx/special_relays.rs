@@ -18,7 +18,7 @@ pub const RELAYS: &[Row] = &[
     relay(8012, "Clock of 100 ms: 50 ms on, 50 ms off"),
     relay(8013, "Clock of 1 s: 0.5 s on, 0.5 s off"),
     relay(8014, "Clock of 1 min: 30 s on, 30 s off"),
-    relay(8015, "Stops the real-time clock so that D8013 to D8019 can be set; the clock starts with their values when it goes off").writable(),
+    relay(8015, "Stops the clock; it starts with what D8013 to D8019 hold when this goes off").writable(),
     relay(8016, "Freezes D8013 to D8019 for reading; the clock itself goes on").writable(),
     relay(8017, "On a rising edge rounds the clock to the nearest minute").writable(),
     relay(8018, "On while a real-time clock is fitted"),

@@ -226,7 +226,6 @@ pub const ROWS: &[Instruction] = &[
          ```il\n\
          LD X0\n\
          FLT D0 D2\n\
-         DEDIV D2 K10 D4\n\
          END\n\
          ```\n",
     )

@@ -35,6 +35,24 @@ mod shift;
 
 mod data;
 
+mod high_speed;
+
+mod handy;
+
+mod external;
+
+mod serial;
+
+mod floats;
+
+mod positioning;
+
+mod clock;
+
+mod gray_and_analog;
+
+mod contact_compare;
+
 /// The families in the order of the manual.
 static FAMILIES: &[&[Instruction]] = &[
     contacts::ROWS,
@@ -48,6 +66,15 @@ static FAMILIES: &[&[Instruction]] = &[
     arithmetic::ROWS,
     shift::ROWS,
     data::ROWS,
+    high_speed::ROWS,
+    handy::ROWS,
+    external::ROWS,
+    serial::ROWS,
+    floats::ROWS,
+    positioning::ROWS,
+    clock::ROWS,
+    gray_and_analog::ROWS,
+    contact_compare::ROWS,
 ];
 
 /// Every row, in the order of the manual.
