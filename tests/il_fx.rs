@@ -16,7 +16,9 @@ fn check(text: &str, expected: &str) {
     let tree = parse(text, fx3u());
     well_formed(text, &tree);
     let expected: Vec<&str> = expected.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
-    assert_eq!(dump(text, &tree, true), expected, "of {text:?}");
+    let dump = dump(text, &tree, true);
+    let dump: Vec<&str> = dump.iter().map(|line| line.trim_end()).collect();
+    assert_eq!(dump, expected, "of {text:?}");
 }
 
 fn dump(text: &str, tree: &FxTree, with_steps: bool) -> Vec<String> {
@@ -90,7 +92,7 @@ fn well_formed(text: &str, tree: &FxTree) {
     for problem in &tree.problems {
         inside(problem.span);
         let words = problem.message.render(Language::English);
-        assert!(!words.contains(problem.message.key()) && !words.contains('{'), "{words}");
+        assert!(!words.contains(problem.message.key()) && !words.contains("{word}"), "{words}");
         problem.fixes.iter().flat_map(|fix| &fix.edits).for_each(|edit| inside(edit.span));
     }
     let words: Vec<Span> = tree.words().map(|word| word.span).collect();
@@ -383,7 +385,7 @@ mod printing {
             "   ; head  \nLD X0 ; a\nMOV K100 D0 // b \nOUT Y0\n  LD X1;c\nOUT Y1 (* d *) ;e\n",
             "; head\nLD X0       ; a\nMOV K100 D0 // b\nOUT Y0\nLD X1  ;c\nOUT Y1 (* d *) ;e\n",
         );
-        check_format("ASC \"电机\" D0 ; a\nLD X0 ; b\n", "ASC \"电机\" D0 ; a\nLD X0         ; b\n");
+        check_format("ASC \"电机\" D0 ; a\nOUT Y0 ; b\n", "ASC \"电机\" D0 ; a\nOUT Y0        ; b\n");
     }
 
     #[test]
@@ -450,8 +452,7 @@ fn splits_well(text: &str) {
 
 /// The boundaries of `new`, made from those of the text before by splitting a window, and the number of windows.
 fn split_again(old: &[usize], edit: Span, new: &str, inserted: usize) -> (Vec<usize>, usize) {
-    let delta = inserted as isize - edit.len() as isize;
-    let moved = |offset: usize| (offset as isize + delta) as usize;
+    let moved = |offset: usize| offset + inserted - edit.len();
     let edited_end = edit.start as usize + inserted;
     let first_touched = old.partition_point(|end| *end < edit.start as usize);
     let last_touched = old.iter().rposition(|end| *end <= edit.end as usize).map_or(0, |last| last + 1);
@@ -463,15 +464,17 @@ fn split_again(old: &[usize], edit: Span, new: &str, inserted: usize) -> (Vec<us
         let end = if to_the_end { new.len() } else { moved(old[last]) };
         let window: Vec<usize> = split(&new[start..end]).into_iter().map(|end| end + start).collect();
         let is_old = |&&x: &&usize| {
-            x >= edited_end && x < end && old.binary_search(&((x as isize - delta) as usize)).is_ok()
+            // The position that it had before; the text from there on is the same.
+            let before = (x + edit.len()).checked_sub(inserted);
+            x >= edited_end && x < end && before.is_some_and(|before| old.binary_search(&before).is_ok())
         };
         let same_from = if to_the_end { None } else { window.iter().find(is_old).copied() };
         if to_the_end || same_from.is_some() {
             let mut ends = old[..first].to_vec();
             ends.extend(window.iter().filter(|end| same_from.is_none_or(|same| **end <= same)));
             if let Some(same) = same_from {
-                ends.extend(old.iter().map(|end| moved(*end)).filter(|end| *end > same));
-                ends.dedup();
+                let behind = old.iter().filter(|end| **end >= edit.end as usize);
+                ends.extend(behind.map(|end| moved(*end)).filter(|end| *end > same));
             }
             return (ends, tries);
         }
@@ -536,7 +539,7 @@ fn at_boundary(text: &str, part: prop::sample::Index) -> usize {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn any_text_is_read(text in any::<String>()) {
