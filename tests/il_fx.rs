@@ -40,21 +40,27 @@ fn dump(text: &str, tree: &FxTree, with_steps: bool) -> Vec<String> {
         lines.push(row);
     }
     lines.extend(tree.comments.iter().map(|comment| format!("comment {}", comment.of(text).trim_end())));
-    lines.extend(tree.problems.iter().map(|problem| {
-        format!("{} {} at {}", problem.code, problem.message.key(), problem.span.of(text))
-    }));
+    lines.extend(
+        tree.problems.iter().map(|problem| {
+            format!("{} {} at {}", problem.code, problem.message.key(), problem.span.of(text))
+        }),
+    );
     lines
 }
 
 fn operand_dump(operand: &Operand, word: &str) -> String {
-    let index = |index: &Option<_>| index.map_or(String::new(), |index: rungwise::target::Device| format!("+{index}"));
+    let index = |index: &Option<_>| {
+        index.map_or(String::new(), |index: rungwise::target::Device| format!("+{index}"))
+    };
     match operand {
         Operand::Device(device) => device.to_string(),
         Operand::Indexed { device, index } => format!("{device}+{index}"),
         Operand::Nibbles { digits, first, index: by } => format!("{digits}x4({first}){}", index(by)),
         Operand::WordBit { word, bit } => format!("{word}.bit{bit}"),
         Operand::Constant { value: Constant::Decimal(value), index: by } => format!("{value}{}", index(by)),
-        Operand::Constant { value: Constant::Hexadecimal(value), index: by } => format!("{value:#x}{}", index(by)),
+        Operand::Constant { value: Constant::Hexadecimal(value), index: by } => {
+            format!("{value:#x}{}", index(by))
+        }
         Operand::Constant { value: Constant::Real(value), index: by } => format!("{value:?}{}", index(by)),
         Operand::Text => format!("text({word})"),
         Operand::Invalid(_) => format!("invalid({word})"),
@@ -97,8 +103,10 @@ fn well_formed(text: &str, tree: &FxTree) {
     }
     let words: Vec<Span> = tree.words().map(|word| word.span).collect();
     assert!(words.is_sorted_by(|a, b| a.end <= b.start), "{words:?} of {text:?}");
-    for (line, operand) in tree.lines.iter().flat_map(|line| tree.operands(line).iter().map(move |o| (line, o))) {
-        let (at, place) = tree.operand_at(operand.span.end as usize).unwrap();
+    for (line, operand) in
+        tree.lines.iter().flat_map(|line| tree.operands(line).iter().map(move |o| (line, o)))
+    {
+        let (at, place) = tree.operand_at(operand.span.start as usize).unwrap();
         assert_eq!((at, tree.operands[place].span), (line, operand.span));
     }
 }
@@ -135,7 +143,10 @@ mod reading {
         check("ASC \"ABCD; (*\" D300", "ASC text(\"ABCD; (*\") D300");
         check("ASC 'AB' D300", "ASC text('AB') D300");
         check("ASC X0 D300", "ASC text(X0) D300");
-        check("ASC \"AB D300\nEND", "ASC text(\"AB D300)\nEND\nsyntax-error fx-syntax.open-text at \"AB D300");
+        check(
+            "ASC \"AB D300\nEND",
+            "ASC text(\"AB D300)\nEND\nsyntax-error fx-syntax.open-text at \"AB D300",
+        );
     }
 
     #[test]
@@ -154,7 +165,10 @@ mod reading {
 
     #[test]
     fn comments() {
-        check("; all\nLD X0 ; a // b\nOUT Y0// c", "LD X0\nOUT Y0\ncomment ; all\ncomment ; a // b\ncomment // c");
+        check(
+            "; all\nLD X0 ; a // b\nOUT Y0// c",
+            "LD X0\nOUT Y0\ncomment ; all\ncomment ; a // b\ncomment // c",
+        );
         check("(* a *) LD (* b *) X0 (*c*)", "LD X0\ncomment (* a *)\ncomment (* b *)\ncomment (*c*)");
         check("(**)LD X0", "LD X0\ncomment (**)");
         check("; (* no comment\nLD X0", "LD X0\ncomment ; (* no comment");
@@ -208,10 +222,7 @@ mod reading {
         check(text, "LD X0\nOUT Y0\nsyntax-error fx-syntax.second-instruction at OUT");
         let problem = &parse(text, fx3u()).problems[0];
         assert_eq!(TextEdit::apply_all(&problem.fixes[0].edits, text), "LD X0\nOUT Y0");
-        check(
-            "LD X0, AND= D0 K1\r\n",
-            "LD X0\nAND= D0 1\nsyntax-error fx-syntax.second-instruction at AND",
-        );
+        check("LD X0, AND= D0 K1\r\n", "LD X0\nAND= D0 1\nsyntax-error fx-syntax.second-instruction at AND");
     }
 
     #[test]
@@ -330,7 +341,9 @@ mod rungs {
 
     #[test]
     fn contacts_and_branches_continue() {
-        check_split("LD X0\nMPS\nAND X1\nOUT Y0\nMRD\nLD X2\nOR X3\nANB\nOUT Y1\nMPP\nOUT Y2\n--\nLD X4\nOUT Y3\n");
+        check_split(
+            "LD X0\nMPS\nAND X1\nOUT Y0\nMRD\nLD X2\nOR X3\nANB\nOUT Y1\nMPP\nOUT Y2\n--\nLD X4\nOUT Y3\n",
+        );
         check_split("LD X0\nLD X1\nORB\nLDI X2\nOR X3\nANB\nOUT Y0\n");
         check_split("LD X0\nOUT Y0\nAND X1\nOUT Y1\n--\nLD X0\nOUT Y2\n");
         check_split("LD X0\nNOP\nOUT Y0\n--\nNOP\nLD X1\nOUT Y1\n");
@@ -345,8 +358,12 @@ mod rungs {
 
     #[test]
     fn labels_steps_and_instructions_without_contacts() {
-        check_split("LD X0\nCALL P0\n--\nFEND\n--\nP0\nLD X1\nOUT Y0\n--\nP1: LD X2\nOUT Y1\n--\nSRET\n--\nEND\n");
-        check_split("LD M8002\nSET S0\n--\nSTL S0\nOUT Y0\n--\nLD X0\nSET S20\n--\nSTL S20\nLD X1\nOUT Y1\n--\nRET\n");
+        check_split(
+            "LD X0\nCALL P0\n--\nFEND\n--\nP0\nLD X1\nOUT Y0\n--\nP1: LD X2\nOUT Y1\n--\nSRET\n--\nEND\n",
+        );
+        check_split(
+            "LD M8002\nSET S0\n--\nSTL S0\nOUT Y0\n--\nLD X0\nSET S20\n--\nSTL S20\nLD X1\nOUT Y1\n--\nRET\n",
+        );
         check_split("FOR K5\n--\nLD X0\nINC D0\n--\nNEXT\n--\nMCR N0\n--\nMCR N1\n");
         check_split("0 LD X0\n1 OUT Y0\n--\n2 P0\n3 LD X0\n4 OUT Y1\n--\n5 END\n");
     }
@@ -390,7 +407,10 @@ mod printing {
 
     #[test]
     fn labels_and_blank_lines() {
-        check_format("\n\n\nLD X0\nOUT Y0\n \n\n  p1: ld x1\nOUT Y1\n\n\n", "\nLD X0\nOUT Y0\n\nP1\nLD X1\nOUT Y1\n");
+        check_format(
+            "\n\n\nLD X0\nOUT Y0\n \n\n  p1: ld x1\nOUT Y1\n\n\n",
+            "\nLD X0\nOUT Y0\n\nP1\nLD X1\nOUT Y1\n",
+        );
         check_format(" \n ", "");
     }
 
@@ -486,7 +506,9 @@ fn split_again(old: &[usize], edit: Span, new: &str, inserted: usize) -> (Vec<us
 fn a_usual_edit_needs_one_window() {
     let text = "LD X0\nOR Y0\nOUT Y0\n".repeat(50);
     let old = split(&text);
-    for (edit, by) in [(Span::new(500, 501), "1"), (Span::new(513, 513), "AND X5\n"), (Span::new(513, 513), "; a\n")] {
+    for (edit, by) in
+        [(Span::new(500, 501), "1"), (Span::new(513, 513), "AND X5\n"), (Span::new(513, 513), "; a\n")]
+    {
         let new = TextEdit::apply_all(&[TextEdit::new(edit, by)], &text);
         let (ends, windows) = split_again(&old, edit, &new, by.len());
         assert_eq!((ends, windows), (split(&new), 1), "{by}");
@@ -496,14 +518,74 @@ fn a_usual_edit_needs_one_window() {
 /// Pieces from which half-sensible texts are made.
 fn piece() -> impl Strategy<Value = &'static str> {
     let words = prop::sample::select(vec![
-        "LD X0", "ld x1", "LDI M0", "LD=", "LD = D0 K1", "AND X2", "OR Y0", "ANI T0", "ANB", "ORB", "MPS", "MRD",
-        "MPP", "INV", "OUT Y0", "OUT T0 K50", "SET S20", "STL S20", "RET", "END", "FEND", "NOP", "P0", "P1:", "I001",
-        "MOV K10,D0", "MOV K4M0 D0Z1", "ASC \"a;(*b\" D0", "ASC abc D0", "MC N0 M1", "MCR N0", "FOR K2", "NEXT",
-        "FOO", "X0", "K5", "D0.3", "E1.5", "X8", "12",
+        "LD X0",
+        "ld x1",
+        "LDI M0",
+        "LD=",
+        "LD = D0 K1",
+        "AND X2",
+        "OR Y0",
+        "ANI T0",
+        "ANB",
+        "ORB",
+        "MPS",
+        "MRD",
+        "MPP",
+        "INV",
+        "OUT Y0",
+        "OUT T0 K50",
+        "SET S20",
+        "STL S20",
+        "RET",
+        "END",
+        "FEND",
+        "NOP",
+        "P0",
+        "P1:",
+        "I001",
+        "MOV K10,D0",
+        "MOV K4M0 D0Z1",
+        "ASC \"a;(*b\" D0",
+        "ASC abc D0",
+        "MC N0 M1",
+        "MCR N0",
+        "FOR K2",
+        "NEXT",
+        "FOO",
+        "X0",
+        "K5",
+        "D0.3",
+        "E1.5",
+        "X8",
+        "12",
     ]);
     let signs = prop::sample::select(vec![
-        " ", "\t", ",", ":", "=", "<>", ";", "//", "(*", "*)", "(", ")", "/", "*", "\"", "'", "\0", "é", "\u{3000}",
-        "，", "\u{feff}", "; c", "// d  ", "(* e *)", "(* f\n g *)", "\r",
+        " ",
+        "\t",
+        ",",
+        ":",
+        "=",
+        "<>",
+        ";",
+        "//",
+        "(*",
+        "*)",
+        "(",
+        ")",
+        "/",
+        "*",
+        "\"",
+        "'",
+        "\0",
+        "é",
+        "\u{3000}",
+        "，",
+        "\u{feff}",
+        "; c",
+        "// d  ",
+        "(* e *)",
+        "(* f\n g *)",
+        "\r",
     ]);
     let line_ends = prop::sample::select(vec!["\n", "\n", "\n", "\n\n", "\r\n"]);
     prop_oneof![4 => words, 2 => signs, 4 => line_ends]
