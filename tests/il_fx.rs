@@ -1,5 +1,8 @@
 //! FX instruction list: split, parse, format.
 
+// Clippy takes functions beside tests for production code.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 use proptest::prelude::*;
 use rungwise::il::fx::{FxTree, LineKind, WordKind, format, format_chunk, parse, split, steps};
 use rungwise::target::{Constant, Model, Operand, Target};
@@ -240,6 +243,11 @@ mod reading {
         check("LDé X0", "?LDé X0");
         check("\0\0 LD X0", "LD X0\nsyntax-error fx-syntax.stray at \0\0");
         check("LD\u{3000}X0", "LD X0\nsyntax-error fx-syntax.wide-blank at \u{3000}");
+        let nulls = "\0".repeat(100);
+        let problems = parse(&nulls, fx3u()).problems;
+        assert_eq!((problems.len(), problems[0].span), (1, Span::new(0, 100)));
+        let words = problems[0].message.render(Language::English);
+        assert!(words.starts_with("`U+0000U+0000") && words.len() < 200, "{words}");
         let text = "MOV K1，D0";
         let problem = &parse(text, fx3u()).problems[0];
         assert_eq!(problem.message.key(), "fx-syntax.wide-character");
@@ -274,11 +282,14 @@ mod reading {
             ("operand", "D0"),
         ];
         assert_eq!(words, expected);
+        assert_eq!(tree.line_at(6).unwrap().mnemonic.of(text), "LD");
         assert_eq!(tree.line_at(9).unwrap().mnemonic.of(text), "LD");
         assert_eq!(tree.line_at(11).unwrap().mnemonic.of(text), "LD");
         assert_eq!(tree.line_at(13), None);
         assert_eq!(tree.line_before(13).unwrap().mnemonic.of(text), "LD");
         assert_eq!(tree.comment_at(13).unwrap().of(text), "; a");
+        assert_eq!(tree.comment_at(12).unwrap().of(text), "; a");
+        assert_eq!(tree.comment_at(11), None);
         assert_eq!(tree.operand_at(21).unwrap().1, 1);
         assert_eq!(tree.line_before(0), None);
     }
@@ -302,6 +313,8 @@ mod reading {
             let tree = parse(&text, fx3u());
             well_formed(&text, &tree);
             assert_eq!(tree.problems, [], "{}", path.display());
+            let dump = dump(&text, &tree, true);
+            assert!(!dump.iter().any(|line| line.starts_with('?') || line.contains("invalid(")), "{dump:#?}");
             let code = text.lines().filter(|line| !line.starts_with(';')).count();
             assert_eq!(tree.lines.len(), code, "{}", path.display());
             formats_well(&text);
@@ -506,6 +519,7 @@ fn split_again(old: &[usize], edit: Span, new: &str, inserted: usize) -> (Vec<us
 fn a_usual_edit_needs_one_window() {
     let text = "LD X0\nOR Y0\nOUT Y0\n".repeat(50);
     let old = split(&text);
+    assert_eq!(old.len(), 50);
     for (edit, by) in
         [(Span::new(500, 501), "1"), (Span::new(513, 513), "AND X5\n"), (Span::new(513, 513), "; a\n")]
     {
