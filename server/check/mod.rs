@@ -18,6 +18,5 @@ mod order;
 mod words;
 
 /// All rules, in the order of the catalogue.
-pub static RULES: std::sync::LazyLock<Vec<&'static Rule>> = std::sync::LazyLock::new(|| {
-    [drawing::RULES, words::RULES, order::RULES, declarations::RULES].concat()
-});
+pub static RULES: std::sync::LazyLock<Vec<&'static Rule>> =
+    std::sync::LazyLock::new(|| [drawing::RULES, words::RULES, order::RULES, declarations::RULES].concat());

@@ -75,7 +75,9 @@ impl Symbol {
     /// The label called `name`: a pointer of the PLC where it reads as one, as in FX programs, else an IEC label.
     pub fn label(name: &str) -> Symbol {
         match Operand::read(name, Model::Fx3u) {
-            Operand::Device(device) if matches!(device.kind, DeviceKind::P | DeviceKind::I) => Symbol::Device(device),
+            Operand::Device(device) if matches!(device.kind, DeviceKind::P | DeviceKind::I) => {
+                Symbol::Device(device)
+            }
             _ => Symbol::Label(folded(name)),
         }
     }
@@ -83,7 +85,11 @@ impl Symbol {
 
 /// A name without letter case.
 pub(super) fn folded(name: &str) -> SmolStr {
-    if name.is_ascii() { SmolStr::from(name.to_ascii_lowercase()) } else { SmolStr::from(name.to_lowercase()) }
+    if name.is_ascii() {
+        SmolStr::from(name.to_ascii_lowercase())
+    } else {
+        SmolStr::from(name.to_lowercase())
+    }
 }
 
 pub(super) fn of_chunk(chunk: &Chunk) -> Vec<Mention> {
@@ -135,7 +141,8 @@ pub(super) fn of_operand(text: &str, operand: &Operand, span: Span, usage: Use, 
         DeviceKind::P | DeviceKind::I => Use::Jump,
         _ => usage,
     };
-    let index_read = |index: Device| one(Symbol::Device(index), Span { start: span.end, end: span.end }, Use::Read);
+    let index_read =
+        |index: Device| one(Symbol::Device(index), Span { start: span.end, end: span.end }, Use::Read);
     match *operand {
         Operand::Device(device) => mentions.push(one(Symbol::Device(device), span, usage_of(device))),
         Operand::Indexed { device, index } => {
@@ -144,7 +151,8 @@ pub(super) fn of_operand(text: &str, operand: &Operand, span: Span, usage: Use, 
         }
         Operand::Nibbles { digits, first, index } => {
             mentions.extend(index.map(index_read));
-            mentions.push(Mention { count: u16::from(digits) * 4, ..one(Symbol::Device(first), span, usage) });
+            mentions
+                .push(Mention { count: u16::from(digits) * 4, ..one(Symbol::Device(first), span, usage) });
         }
         Operand::WordBit { word, .. } => mentions.push(one(Symbol::Device(word), span, usage)),
         Operand::Direct(address) => mentions.push(one(Symbol::Direct(address), span, usage)),

@@ -35,7 +35,8 @@ pub fn detect_notation(text: &str) -> Notation {
     }
     let mut balance = 0i32;
     for line in text.lines().take(1000) {
-        let mut words = line.split(|c: char| c.is_whitespace() || c == ',' || c == '(').filter(|word| !word.is_empty());
+        let mut words =
+            line.split(|c: char| c.is_whitespace() || c == ',' || c == '(').filter(|word| !word.is_empty());
         let first = match words.next() {
             Some(word) if word.bytes().all(|byte| byte.is_ascii_digit()) => words.next().unwrap_or(word),
             Some(word) => word,
@@ -96,7 +97,9 @@ fn drawing_words(text: &str) -> impl Iterator<Item = &str> {
 
 fn is_declaration_keyword(word: &str) -> bool {
     let word = word.trim_end_matches(';');
-    ["PROGRAM", "FUNCTION", "FUNCTION_BLOCK", "CONFIGURATION", "TYPE"].iter().any(|key| word.eq_ignore_ascii_case(key))
+    ["PROGRAM", "FUNCTION", "FUNCTION_BLOCK", "CONFIGURATION", "TYPE"]
+        .iter()
+        .any(|key| word.eq_ignore_ascii_case(key))
         || word.get(..3).is_some_and(|head| head.eq_ignore_ascii_case("VAR"))
             && (word.len() == 3 || word.as_bytes()[3] == b'_')
 }

@@ -37,7 +37,8 @@ impl Chunk {
                 Some(Operation { form, symbol: line.mnemonic, is_word: true, operands: tree.operands(line) })
             })
         });
-        let elements = ladder.into_iter().flat_map(|tree| tree.rungs.iter()).flat_map(|rung| &rung.graph.elements);
+        let elements =
+            ladder.into_iter().flat_map(|tree| tree.rungs.iter()).flat_map(|rung| &rung.graph.elements);
         lines.chain(elements.filter_map(of_element))
     }
 }

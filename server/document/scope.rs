@@ -76,7 +76,9 @@ impl Chunk {
     /// How many POUs start in it.
     pub fn pou_starts(&self) -> usize {
         match self.tree() {
-            Tree::Iec(tree) => tree.items.iter().filter(|item| matches!(item.kind, ItemKind::Pou { .. })).count(),
+            Tree::Iec(tree) => {
+                tree.items.iter().filter(|item| matches!(item.kind, ItemKind::Pou { .. })).count()
+            }
             _ => 0,
         }
     }
@@ -120,9 +122,9 @@ impl Scopes {
     /// The variable called `name` in POU number `pou`, or else the global one.
     pub fn variable(&self, pou: Option<usize>, name: &str) -> Option<&Variable> {
         let name = folded(name);
-        let local = pou.and_then(|number| self.pous.get(number)).and_then(|pou| {
-            pou.index.get(&name).and_then(|position| pou.variables.get(*position))
-        });
+        let local = pou
+            .and_then(|number| self.pous.get(number))
+            .and_then(|pou| pou.index.get(&name).and_then(|position| pou.variables.get(*position)));
         local.or_else(|| self.globals.get(&name))
     }
 
@@ -195,7 +197,10 @@ impl Scopes {
                 None => {
                     let pou = self.pou_named(&block)?;
                     let name = folded(name);
-                    pou.index.get(&name).and_then(|at| pou.variables.get(*at)).map(|found| found.declared.clone())
+                    pou.index
+                        .get(&name)
+                        .and_then(|at| pou.variables.get(*at))
+                        .map(|found| found.declared.clone())
                 }
             },
             DeclaredType::Unknown => Some(DeclaredType::Unknown),
@@ -215,8 +220,9 @@ impl Scopes {
                 }),
                 ItemKind::Section { kind, constant, declarations, .. } => {
                     for declaration in declarations.of(&tree.declarations) {
-                        let declared =
-                            declaration.declared.map_or(DeclaredType::Unknown, |id| declared_type(text, tree, id));
+                        let declared = declaration
+                            .declared
+                            .map_or(DeclaredType::Unknown, |id| declared_type(text, tree, id));
                         let address = match declaration.address.map(|id| tree.operand(id).value) {
                             Some(Operand::Direct(address)) => Some(address),
                             _ => None,
@@ -267,14 +273,15 @@ fn declared_type(text: &str, tree: &IecTree, id: TypeId) -> DeclaredType {
         TypeSpec::Text { wide: false, .. } => DeclaredType::Elementary(ElementaryType::String),
         TypeSpec::Text { wide: true, .. } => DeclaredType::Elementary(ElementaryType::Wstring),
         TypeSpec::Subrange { base, .. } => declared_type(text, tree, base),
-        TypeSpec::Enumeration { values } => {
-            DeclaredType::Enumeration(values.of(&tree.names).iter().map(|name| folded(name.of(text))).collect())
-        }
+        TypeSpec::Enumeration { values } => DeclaredType::Enumeration(
+            values.of(&tree.names).iter().map(|name| folded(name.of(text))).collect(),
+        ),
         TypeSpec::Array { element, .. } => DeclaredType::Array(Box::new(declared_type(text, tree, element))),
         TypeSpec::Structure { fields } => {
             let declarations = fields.of(&tree.declarations).iter();
             let fields = declarations.flat_map(|declaration| {
-                let declared = declaration.declared.map_or(DeclaredType::Unknown, |id| declared_type(text, tree, id));
+                let declared =
+                    declaration.declared.map_or(DeclaredType::Unknown, |id| declared_type(text, tree, id));
                 let names = declaration.names.of(&tree.names).iter();
                 names.map(move |name| (folded(name.of(text)), declared.clone()))
             });

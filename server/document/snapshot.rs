@@ -68,7 +68,8 @@ impl Document {
         if head == new_pages.len() && head == old_pages.len() {
             return None;
         }
-        let tail = new_pages[head..].iter().rev().zip(old_pages[head..].iter().rev()).take_while(same).count();
+        let tail =
+            new_pages[head..].iter().rev().zip(old_pages[head..].iter().rev()).take_while(same).count();
         let bytes = |pages: &[Arc<Page>]| pages.iter().map(|page| page.bytes()).sum::<usize>();
         let start = bytes(&new_pages[..head]);
         let end = bytes(&new_pages[new_pages.len() - tail..]);
@@ -243,7 +244,8 @@ impl Document {
             let sentinel = old.last().map_or(0, |chunk| chunk.len());
             let head = old.first().map_or(0, |chunk| chunk.len());
             let end_holds = at_text_end || (old.len() > 1 && ends_with(&ends, text.len(), sentinel));
-            let start_holds = window_start == 0 || (ends.first() == Some(&head) && window_start + head <= range.start);
+            let start_holds =
+                window_start == 0 || (ends.first() == Some(&head) && window_start + head <= range.start);
             if end_holds && start_holds {
                 let new = self.read_pieces(&text, &old);
                 let declares = |chunks: &[Arc<Chunk>]| chunks.iter().any(|chunk| chunk.declares());

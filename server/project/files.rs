@@ -37,7 +37,10 @@ impl Project {
     /// The project to which `path` belongs: the nearest manifest in its folder or above.
     pub fn of(path: &Path) -> Option<Project> {
         let start = if path.is_dir() { path } else { path.parent()? };
-        start.ancestors().find(|folder| folder.join(MANIFEST_NAME).is_file()).and_then(|root| Project::read(root).ok())
+        start
+            .ancestors()
+            .find(|folder| folder.join(MANIFEST_NAME).is_file())
+            .and_then(|root| Project::read(root).ok())
     }
 
     /// The program files in order of execution: those that the manifest lists, else all in the folder, by name.

@@ -32,7 +32,9 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     for operand in context.chunk.operations().flat_map(|operation| operation.operands) {
         let unknown = match operand.value {
             Operand::Invalid(OperandProblem::UnknownDevice | OperandProblem::Unreadable) => true,
-            Operand::Device(device) => context.target.is_fx() && context.target.ranges(device.kind).next().is_none(),
+            Operand::Device(device) => {
+                context.target.is_fx() && context.target.ranges(device.kind).next().is_none()
+            }
             _ => false,
         };
         if unknown {
