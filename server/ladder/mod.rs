@@ -14,8 +14,19 @@ mod graph;
 pub use graph::{Arc, ArcId, Graph, Vertex, VertexId, VertexKind};
 
 mod tree;
-pub use tree::{LadderTree, NetworkHeader, Rung};
+pub use tree::{LadderTree, Mention, NameHabit, NetworkHeader, Rung};
 
 mod contract;
 
 pub mod reduce;
+
+mod isomorphism;
+
+mod symbol;
+
+mod layout;
+
+mod canvas;
+
+mod printer;
+pub use printer::{Drawing, Style, StyleKind, print};
