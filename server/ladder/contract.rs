@@ -119,7 +119,8 @@ struct Raw {
 
 impl Raw {
     fn of(graph: &Graph) -> Raw {
-        let mut raw = Raw { nodes: Vec::new(), edges: Vec::new(), sides: Vec::new(), contraction: Vec::new() };
+        let mut raw =
+            Raw { nodes: Vec::new(), edges: Vec::new(), sides: Vec::new(), contraction: Vec::new() };
         // Rails come first in every graph, so their raw nodes are those of `Nodes`.
         let mut plain = vec![u32::MAX; graph.vertices.len()];
         for id in graph.vertex_ids() {
@@ -218,7 +219,8 @@ impl Raw {
             }
         };
         let mut placed: Vec<(Option<u32>, u32)> = outs.iter().map(|edge| (place(edge), *edge)).collect();
-        let elements = outs.iter().any(|edge| matches!(self.edges[*edge as usize].kind, EdgeKind::Element(_)));
+        let elements =
+            outs.iter().any(|edge| matches!(self.edges[*edge as usize].kind, EdgeKind::Element(_)));
         if elements && placed.iter().all(|(place, _)| place.is_some()) {
             placed.sort();
         }
@@ -356,8 +358,7 @@ impl Raw {
                 contracted.nodes[end(id as u32) as usize].vertices.extend_from_slice(&node.vertices);
             }
         }
-        contracted.sides =
-            self.sides.iter().map(|side| Side { node: end(side.node), ..*side }).collect();
+        contracted.sides = self.sides.iter().map(|side| Side { node: end(side.node), ..*side }).collect();
         contracted
     }
 

@@ -128,7 +128,8 @@ fn find_open_circuit(graph: &Graph, nodes: &Nodes) -> Result<(), NotSeriesParall
         NotSeriesParallel::OpenCircuit(junction.unwrap_or_else(|| vertex_of(graph, fallback)))
     };
     for (id, node) in nodes.nodes.iter().enumerate() {
-        let side = |input: bool| nodes.sides.iter().find(|side| side.node as usize == id && side.input == input);
+        let side =
+            |input: bool| nodes.sides.iter().find(|side| side.node as usize == id && side.input == input);
         let unfed = node.ins.is_empty() && id != Nodes::LEFT as usize;
         let ends = node.outs.is_empty() && id != Nodes::RIGHT as usize;
         let starts_at_pin = unfed && !nodes.sides.is_empty() && side(false).is_some();
@@ -137,10 +138,11 @@ fn find_open_circuit(graph: &Graph, nodes: &Nodes) -> Result<(), NotSeriesParall
         if unused_rail || !(node.loose || unfed && !starts_at_pin || ends && !ends_at_pin) {
             continue;
         }
-        let beside = node.outs.iter().chain(&node.ins).find_map(|edge| match nodes.edges[*edge as usize].kind {
-            EdgeKind::Element(element) => Some(element),
-            EdgeKind::Wire { .. } => None,
-        });
+        let beside =
+            node.outs.iter().chain(&node.ins).find_map(|edge| match nodes.edges[*edge as usize].kind {
+                EdgeKind::Element(element) => Some(element),
+                EdgeKind::Wire { .. } => None,
+            });
         return Err(open(id, beside.unwrap_or(ElementId(0))));
     }
     if nodes.nodes[Nodes::LEFT as usize].outs.is_empty() {

@@ -13,7 +13,8 @@ const TRIALS_MAX: usize = 64;
 pub(super) fn find(stuck: &Reduction<'_>, graph: &Graph) -> Bridge {
     let mut core: Vec<Link> = stuck.between.values().map(|link| stuck.links[*link as usize]).collect();
     core.sort_by_key(|link| (weight(stuck, link), link.tail, link.order));
-    let across: Vec<&Link> = core.iter().take(4 * TRIALS_MAX).filter(|link| runs_across(&core, link)).collect();
+    let across: Vec<&Link> =
+        core.iter().take(4 * TRIALS_MAX).filter(|link| runs_across(&core, link)).collect();
     let mends = across.iter().take(TRIALS_MAX).find(|link| reduces_without(stuck, &core, link));
     let link = mends.or(across.first()).copied().or(core.first());
     link.map_or_else(nothing, |link| describe(stuck, graph, &core, link))
@@ -62,7 +63,8 @@ fn reduces_without(stuck: &Reduction<'_>, core: &[Link], without: &Link) -> bool
 
 fn describe(stuck: &Reduction<'_>, graph: &Graph, core: &[Link], link: &Link) -> Bridge {
     let nodes = &stuck.nodes.nodes;
-    let junction = |node: u32| nodes[node as usize].vertices.iter().max_by_key(|id| height(graph, **id)).copied();
+    let junction =
+        |node: u32| nodes[node as usize].vertices.iter().max_by_key(|id| height(graph, **id)).copied();
     let vertical = |id: VertexId| graph.cells(graph.vertex(id).cells).to_vec();
     let mut bridge = Bridge { from: junction(link.tail), to: junction(link.head), ..nothing() };
     bridge.elements = stuck.elements(link.label);
