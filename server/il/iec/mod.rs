@@ -14,6 +14,18 @@ pub use tree::{
 mod mention;
 pub use mention::{Mention, MentionRole, fold_case, same_name};
 
+mod token;
+
+mod grammar;
+
+mod reader;
+
+mod lower;
+
+mod declare;
+
+mod configure;
+
 mod split;
 pub use split::split;
 
