@@ -20,6 +20,8 @@ pub use operators::{Modifiers, Operator, OperatorRole, Written};
 mod functions;
 pub use functions::{Function, Parameter, ParameterType};
 
+mod conversions;
+
 mod blocks;
 pub use blocks::FunctionBlock;
 
