@@ -121,7 +121,12 @@ pub fn read_section(reader: &mut Reader, block: &Block, start: usize) -> usize {
         }
         at += 1;
     }
-    let stop = |kind: &TokenKind| kind.closes() || kind.opens_section() || *kind == TokenKind::Resource;
+    let configuration = block.kinds.first() == Some(&TokenKind::Configuration);
+    let stop = |kind: &TokenKind| match kind {
+        TokenKind::EndVar => true,
+        TokenKind::Resource | TokenKind::Task | TokenKind::Program => configuration,
+        kind => kind.opens_section() || configuration && kind.closes(),
+    };
     let end = block.kinds[at..].iter().position(stop).map_or(block.kinds.len(), |length| at + length);
     let grammar: Grammar = match kind {
         SectionKind::Access => grammar::access_path().boxed(),
@@ -215,12 +220,13 @@ fn read_declarations<'b>(
                     reader.mismatch(&block.tokens[at..end], error);
                 }
                 let next = at + node.tokens.end + 1;
-                (node, next)
+                (Some(node), next)
             }
             None => recover(reader, block, at, end, &errors, grammar),
         };
-        let declaration = Lowering { reader, tokens: &block.tokens[at..end] }.declaration(&node);
-        found.push(declaration);
+        if let Some(node) = node {
+            found.push(Lowering { reader, tokens: &block.tokens[at..end] }.declaration(&node));
+        }
         at = next;
     }
     append(&mut reader.tree.declarations, found)
@@ -234,7 +240,7 @@ fn recover<'b>(
     end: usize,
     errors: &[Mismatch],
     grammar: &Grammar<'b>,
-) -> (DeclarationNode, usize) {
+) -> (Option<DeclarationNode>, usize) {
     let tokens = &block.tokens[at..end];
     let last = errors.last().copied();
     let missing = last.filter(|error| {
@@ -247,7 +253,7 @@ fn recover<'b>(
             let before = block.token_span(at + error.at - 1);
             let message = Message::new("syntax-error.expected-at-end").with("expected", ";");
             reader.problem("syntax-error", Span::at(before.end as usize), message);
-            return (node, at + error.at);
+            return (Some(node), at + error.at);
         }
     }
     for error in errors {
@@ -260,7 +266,7 @@ fn recover<'b>(
 }
 
 /// The names of a declaration whose type or value cannot be read, so that their uses are not reported as well.
-fn salvage(kinds: &[TokenKind]) -> DeclarationNode {
+fn salvage(kinds: &[TokenKind]) -> Option<DeclarationNode> {
     let mut names = Vec::new();
     let mut pairs = kinds.iter().enumerate().step_by(2);
     loop {
@@ -270,16 +276,8 @@ fn salvage(kinds: &[TokenKind]) -> DeclarationNode {
             break;
         }
     }
-    let tokens = (0..names.last().map_or(1, |last| last + 1)).into();
-    DeclarationNode {
-        tokens,
-        names,
-        address: None,
-        path: None,
-        spec: None,
-        suffix: None,
-        initial: Vec::new(),
-    }
+    let tokens = (0..names.last()? + 1).into();
+    Some(DeclarationNode::of(tokens, names, None))
 }
 
 fn section_kind(opening: TokenKind) -> SectionKind {

@@ -245,7 +245,8 @@ pub fn instance<'s>() -> impl Parser<'s, Kinds<'s>, InstanceNode, Extra> + Clone
 }
 
 impl DeclarationNode {
-    fn of(tokens: Tokens, names: Vec<usize>, spec: Option<SpecNode>) -> DeclarationNode {
+    /// Names with a type.
+    pub fn of(tokens: Tokens, names: Vec<usize>, spec: Option<SpecNode>) -> DeclarationNode {
         DeclarationNode { tokens, names, address: None, path: None, spec, suffix: None, initial: Vec::new() }
     }
 }

@@ -26,6 +26,10 @@ mod declare;
 
 mod configure;
 
+mod instruct;
+
+mod call;
+
 mod split;
 pub use split::split;
 

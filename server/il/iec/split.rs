@@ -149,9 +149,10 @@ impl Cutter<'_> {
             let named = names_parameter(line, self.text);
             *innermost = if named { Parenthesis::Parameters } else { Parenthesis::Instructions };
         }
-        let forgotten = *innermost == Parenthesis::Parameters && ends_open_list(line, self.text);
-        if forgotten || leaves_parentheses(line, self.text) {
+        if leaves_parentheses(line, self.text) {
             self.parentheses.clear();
+        } else if *innermost == Parenthesis::Parameters && ends_open_list(line, self.text) {
+            self.parentheses.pop();
         }
     }
 
