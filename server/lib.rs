@@ -15,14 +15,12 @@ pub mod ladder;
 
 pub mod document;
 
-pub mod project;
-
-pub mod logic;
-
 pub mod check;
 
-pub mod ide;
+pub mod project;
 
-pub mod lsp;
+// pub mod ide;
 
-pub mod cli;
+// pub mod lsp;
+
+// pub mod cli;

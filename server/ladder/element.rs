@@ -1,7 +1,8 @@
 //! What stands on the wires of a rung.
 
-use crate::target::{Form, Operand};
+use crate::target::{Device, Form, Operand, Role};
 use crate::text::{Span, Spanned};
+use std::borrow::Cow;
 
 /// Index of an element in its graph.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -23,6 +24,76 @@ pub struct Element {
     pub operands: Vec<Spanned<Operand>>,
     /// Where the operands stand.
     pub place: OperandPlace,
+    /// The lines of a name that is written over several lines, top to bottom, the last one being the first operand's
+    /// span; empty for a name on one line. [`Element::operand_text`] joins them.
+    pub name_lines: Vec<Span>,
+    /// Further words above or below that are no operands, such as a description over a device.
+    pub notes: Vec<Span>,
+}
+
+impl Element {
+    /// An element without operands.
+    pub fn new(kind: ElementKind, span: Span, row: u32, columns: (u32, u32)) -> Element {
+        Element {
+            kind,
+            span,
+            row,
+            columns,
+            operands: Vec::new(),
+            place: OperandPlace::Above,
+            name_lines: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+
+    /// The device of a contact or coil, the first operand's device of an instruction box.
+    pub fn device(&self) -> Option<Device> {
+        self.operands.first().and_then(|operand| operand.value.device())
+    }
+
+    /// Whether it acts on the program and passes power on unchanged: coils, instruction boxes, jumps, returns and
+    /// outgoing connectors. Function blocks stand between conditions and outputs and are neither.
+    pub fn is_output(&self) -> bool {
+        match &self.kind {
+            ElementKind::Coil(_)
+            | ElementKind::Jump(_)
+            | ElementKind::Return
+            | ElementKind::ConnectorOut(_) => true,
+            ElementKind::Instruction { form, .. } => {
+                form.is_none_or(|form| matches!(form.instruction.role, Role::Output | Role::Standalone))
+            }
+            _ => false,
+        }
+    }
+
+    /// Whether it is a condition: a contact, also a comparing one.
+    pub fn is_contact(&self) -> bool {
+        matches!(self.kind, ElementKind::Contact(_) | ElementKind::Compare(_))
+    }
+
+    /// The function block, if it is one.
+    pub fn block(&self) -> Option<&Block> {
+        match &self.kind {
+            ElementKind::Block(block) => Some(block),
+            _ => None,
+        }
+    }
+
+    /// The words of operand `index` in `chunk`. A name over several lines is joined by `_`,
+    /// so that `START` over `BUTTON` is the variable `START_BUTTON`.
+    pub fn operand_text<'t>(&self, index: usize, chunk: &'t str) -> Cow<'t, str> {
+        if index > 0 || self.name_lines.len() < 2 {
+            return Cow::Borrowed(self.operands.get(index).map_or("", |operand| operand.span.of(chunk)));
+        }
+        let mut name = String::new();
+        for line in &self.name_lines {
+            if !name.is_empty() && !name.ends_with(['_', '.']) {
+                name.push('_');
+            }
+            name.push_str(line.of(chunk));
+        }
+        Cow::Owned(name)
+    }
 }
 
 /// What an element is.

@@ -35,8 +35,12 @@ pub struct Vertex {
     pub kind: VertexKind,
     /// First arc that leaves it.
     pub first_out: Option<ArcId>,
+    /// Last arc that leaves it.
+    pub last_out: Option<ArcId>,
     /// First arc that enters it.
     pub first_in: Option<ArcId>,
+    /// Last arc that enters it.
+    pub last_in: Option<ArcId>,
     /// Number of arcs that leave it.
     pub out_degree: u32,
     /// Number of arcs that enter it.
@@ -100,7 +104,9 @@ impl Graph {
         self.vertices.push(Vertex {
             kind,
             first_out: None,
+            last_out: None,
             first_in: None,
+            last_in: None,
             out_degree: 0,
             in_degree: 0,
             cells,
@@ -119,8 +125,8 @@ impl Graph {
     pub fn add_arc(&mut self, tail: (VertexId, u16), head: (VertexId, u16), cells: &[Span]) -> ArcId {
         let id = ArcId(self.arcs.len() as u32);
         let cells = self.add_cells(cells);
-        let last_out = self.outgoing(tail.0).last();
-        let last_in = self.incoming(head.0).last();
+        let last_out = self.vertices[tail.0.0 as usize].last_out.replace(id);
+        let last_in = self.vertices[head.0.0 as usize].last_in.replace(id);
         self.arcs.push(Arc {
             tail: tail.0,
             tail_pin: tail.1,

@@ -14,4 +14,29 @@ mod graph;
 pub use graph::{Arc, ArcId, Graph, Vertex, VertexId, VertexKind};
 
 mod tree;
-pub use tree::{LadderTree, NetworkHeader, Rung};
+pub use tree::{LadderTree, Mention, NameHabit, NetworkHeader, Rung};
+
+mod contract;
+
+pub mod reduce;
+
+/// (Replaced by the reader.)
+#[derive(PartialEq, Eq, Clone, Copy, Debug)]
+pub enum ChunkKind {
+    #[allow(missing_docs)]
+    Drawing,
+    #[allow(missing_docs)]
+    Declarations,
+}
+/// (Replaced by the reader.)
+pub fn kind_of(_: &str) -> ChunkKind {
+    ChunkKind::Drawing
+}
+/// (Replaced by the reader.)
+pub fn split(text: &str) -> Vec<usize> {
+    if text.is_empty() { vec![] } else { vec![text.len()] }
+}
+/// (Replaced by the reader.)
+pub fn parse(_: &str, _: &crate::target::Target) -> LadderTree {
+    LadderTree::default()
+}

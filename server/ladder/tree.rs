@@ -1,6 +1,7 @@
 //! What a chunk of a ladder document says.
 
-use super::Graph;
+use super::{Element, Graph};
+use crate::target::Operand;
 use crate::text::{Diagnostic, Span, Spanned};
 
 /// One chunk: at most one network header, the comments above, and the rungs of one block of drawing lines.
@@ -15,6 +16,34 @@ pub struct LadderTree {
     pub rungs: Vec<Rung>,
     /// What could not be read, found while reading.
     pub problems: Vec<Diagnostic>,
+    /// What this chunk tells of the document's habit of placing names.
+    pub names: NameHabit,
+}
+
+/// Where a drawing puts its names, counted by the names for which only one place is possible.
+///
+/// A document adds up the habits of its chunks and passes the sum as a hint to [`parse_with`](super::parse_with);
+/// only chunks that are [undecided](NameHabit::decided) themselves read differently for it.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+pub struct NameHabit {
+    /// Names that can only belong to an element below them.
+    pub above: u32,
+    /// Names that can only belong to an element above them.
+    pub below: u32,
+}
+
+impl NameHabit {
+    /// Whether names stand below their elements; nothing if as many speak for the one as for the other.
+    pub fn decided(self) -> Option<bool> {
+        (self.above != self.below).then_some(self.below > self.above)
+    }
+}
+
+impl std::ops::AddAssign for NameHabit {
+    fn add_assign(&mut self, other: NameHabit) {
+        self.above += other.above;
+        self.below += other.below;
+    }
 }
 
 /// The line that starts and names a network.
@@ -43,4 +72,32 @@ pub struct Rung {
     pub lines: (u32, u32),
     /// The displayed column of the right rail in each wire row that has one, with its cell.
     pub right_rail: Vec<Spanned<u32>>,
+}
+
+/// An operand where it stands in a rung.
+#[derive(Clone, Copy, Debug)]
+pub struct Mention<'t> {
+    /// The element that it belongs to.
+    pub element: &'t Element,
+    /// Its place in the element's operands, from 0.
+    pub index: usize,
+    /// The operand and its cells.
+    pub operand: &'t Spanned<Operand>,
+}
+
+impl Rung {
+    /// All operands, element by element in the order in which the elements were drawn: row by row, left to right.
+    pub fn mentions(&self) -> impl Iterator<Item = Mention<'_>> {
+        self.graph.elements.iter().flat_map(|element| {
+            let operands = element.operands.iter().enumerate();
+            operands.map(move |(index, operand)| Mention { element, index, operand })
+        })
+    }
+}
+
+impl LadderTree {
+    /// All operands of all rungs, top to bottom.
+    pub fn mentions(&self) -> impl Iterator<Item = Mention<'_>> {
+        self.rungs.iter().flat_map(Rung::mentions)
+    }
 }
