@@ -279,6 +279,7 @@ fn declared_type(text: &str, tree: &IecTree, id: TypeId) -> DeclaredType {
             values.of(&tree.names).iter().map(|name| folded(name.of(text))).collect(),
         ),
         TypeSpec::Array { element, .. } => DeclaredType::Array(Box::new(declared_type(text, tree, element))),
+        TypeSpec::Reference { .. } => DeclaredType::Unknown,
         TypeSpec::Structure { fields } => {
             let declarations = fields.of(&tree.declarations).iter();
             let fields = declarations.flat_map(|declaration| {

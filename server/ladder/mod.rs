@@ -20,6 +20,17 @@ mod contract;
 
 pub mod reduce;
 
+mod isomorphism;
+
+mod symbol;
+
+mod layout;
+
+mod canvas;
+
+mod printer;
+pub use printer::{Drawing, Style, StyleKind, print};
+
 /// (Replaced by the reader.)
 #[derive(PartialEq, Eq, Clone, Copy, Debug)]
 pub enum ChunkKind {
