@@ -15,14 +15,12 @@ pub mod ladder;
 
 pub mod document;
 
-pub mod project;
-
-pub mod logic;
-
 pub mod check;
+
+pub mod project;
 
 pub mod ide;
 
-pub mod lsp;
+// pub mod lsp;
 
-pub mod cli;
+// pub mod cli;

@@ -55,9 +55,10 @@ impl Element {
     /// outgoing connectors. Function blocks stand between conditions and outputs and are neither.
     pub fn is_output(&self) -> bool {
         match &self.kind {
-            ElementKind::Coil(_) | ElementKind::Jump(_) | ElementKind::Return | ElementKind::ConnectorOut(_) => {
-                true
-            }
+            ElementKind::Coil(_)
+            | ElementKind::Jump(_)
+            | ElementKind::Return
+            | ElementKind::ConnectorOut(_) => true,
             ElementKind::Instruction { form, .. } => {
                 form.is_none_or(|form| matches!(form.instruction.role, Role::Output | Role::Standalone))
             }

@@ -41,3 +41,18 @@ pub use graph::{Arc, ArcId, Graph, Vertex, VertexId, VertexKind};
 
 mod tree;
 pub use tree::{LadderTree, Mention, NameHabit, NetworkHeader, Rung};
+
+mod contract;
+
+pub mod reduce;
+
+mod isomorphism;
+
+mod symbol;
+
+mod layout;
+
+mod canvas;
+
+mod printer;
+pub use printer::{Drawing, Style, StyleKind, print};

@@ -1,6 +1,6 @@
 //! Sets of operand kinds.
 
-use super::{Constant, DeviceKind, Operand};
+use super::{Constant, DeviceKind, Model, Operand};
 
 /// The kinds of operand that a place in an instruction takes.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -68,6 +68,11 @@ impl Accepts {
     /// K H and every word: word sources.
     pub const WORD_SOURCE: Accepts = Self::WORD_DESTINATION.or(Self::KNX).or(Self::K);
 
+    /// X Y M S, and bits of words: bits that applied instructions read.
+    pub const BIT_SOURCE: Accepts = Self::X.or(Self::Y).or(Self::M).or(Self::S).or(Self::WORD_BIT);
+    /// Y M S, and bits of words: bits that applied instructions write.
+    pub const BIT_DESTINATION: Accepts = Self::Y.or(Self::M).or(Self::S).or(Self::WORD_BIT);
+
     /// Both.
     pub const fn or(self, other: Accepts) -> Accepts {
         Accepts(self.0 | other.0)
@@ -76,6 +81,14 @@ impl Accepts {
     /// This without `other`.
     pub const fn without(self, other: Accepts) -> Accepts {
         Accepts(self.0 & !other.0)
+    }
+
+    /// What of it exists on `model`: extension registers, bits of words and real constants came with the FX3U.
+    pub const fn on(self, model: Model) -> Accepts {
+        match model {
+            Model::Fx3u => self,
+            _ => self.without(Self::R.or(Self::WORD_BIT).or(Self::E)),
+        }
     }
 
     /// Whether every kind of `other` is in it.

@@ -1,6 +1,6 @@
 //! Devices of the FX family: kinds, numbers, and what each model has of them.
 
-use super::{Limits, Model, Target};
+use super::Target;
 use std::fmt;
 
 /// A kind of device.
@@ -104,6 +104,12 @@ impl Device {
         target.ranges(self.kind).find(|range| range.first <= self.number && self.number <= range.last)
     }
 
+    /// The device after it, if both lie in one range of `target`.
+    pub fn next_in_range(self, target: &Target) -> Option<Device> {
+        let range = self.range_on(target)?;
+        (self.number < range.last).then(|| Device::new(self.kind, self.number + 1))
+    }
+
     /// The row of the special relays and registers, if it is one with a documented meaning.
     pub fn special_on(self, target: &Target) -> Option<&'static SpecialDevice> {
         let row = target.special.binary_search_by_key(&self, |special| special.device).ok()?;
@@ -115,6 +121,8 @@ impl fmt::Display for Device {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.kind.number_base() {
             8 => write!(f, "{}{:o}", self.kind.letter(), self.number),
+            // Interrupt pointers are always written with three digits, of which each has a meaning.
+            _ if self.kind == DeviceKind::I => write!(f, "I{:03}", self.number),
             _ => write!(f, "{}{}", self.kind.letter(), self.number),
         }
     }
@@ -149,36 +157,3 @@ pub struct SpecialDevice {
     /// Whether a program may write it.
     pub writable: bool,
 }
-
-/// FX1S.
-pub static FX1S: Target =
-    Target { model: Model::Fx1s, name: "fx1s", title: "FX1S", devices: &[], special: &[], limits: FX_LIMITS };
-/// FX1N.
-pub static FX1N: Target =
-    Target { model: Model::Fx1n, name: "fx1n", title: "FX1N", devices: &[], special: &[], limits: FX_LIMITS };
-/// FX2N.
-pub static FX2N: Target =
-    Target { model: Model::Fx2n, name: "fx2n", title: "FX2N", devices: &[], special: &[], limits: FX_LIMITS };
-/// FX3U.
-pub static FX3U: Target =
-    Target { model: Model::Fx3u, name: "fx3u", title: "FX3U", devices: &[], special: &[], limits: FX_LIMITS };
-/// IEC 61131-3.
-pub static IEC: Target = Target {
-    model: Model::Iec,
-    name: "iec",
-    title: "IEC 61131-3",
-    devices: &[],
-    special: &[],
-    limits: FX_LIMITS,
-};
-
-const FX_LIMITS: Limits = Limits {
-    steps: 8000,
-    contacts_in_series: 11,
-    rows: 24,
-    blocks: 8,
-    branches: 11,
-    master_controls: 8,
-    loops: 5,
-    calls: 5,
-};

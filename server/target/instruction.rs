@@ -1,10 +1,10 @@
 //! The shape of a row of the FX instruction table, and the forms in which an instruction is written.
 
-use super::{Accepts, Model, Operand, instructions};
+use super::{Accepts, Constant, DeviceKind, Model, Operand, instructions};
 use std::fmt;
 
 /// One instruction of the FX family: everything that any room needs to know about it.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Instruction {
     /// The plain mnemonic, upper case: `MOV`, `LD=`.
     pub mnemonic: &'static str,
@@ -80,7 +80,7 @@ pub enum Access {
 }
 
 /// One operand of an instruction.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct OperandSpec {
     /// The manual's name: `S`, `S1`, `D`, `m`, `n`.
     pub name: &'static str,
@@ -92,6 +92,8 @@ pub struct OperandSpec {
     pub accepts: Accepts,
     /// The limits of an integer constant here, where they are narrower than the register's.
     pub range: Option<(i64, i64)>,
+    /// The same for the 32-bit form where it differs from `range` (the bits of a rotation).
+    pub wide_range: Option<(i64, i64)>,
     /// How many consecutive devices it covers (`2` for a pair …), where that is fixed and not 1; else 1.
     pub count: u8,
     /// Whether it may be left out (the preset of OUT, which only timers and counters take).
@@ -115,14 +117,14 @@ pub enum Opcode {
     /// A whole word, no operand inside: ANB `FFF8`, END `000F`.
     Word(u16),
     /// The upper four bits of a word whose lower twelve name the bit device: LD `2`.
-    /// `extended` is the two-word form's opcode for devices outside those twelve bits.
+    /// `extended` is the two-word form's opcode for devices outside those twelve bits, 0 where there is none.
     Contact {
         /// Upper four bits.
         class: u8,
         /// Opcode of the two-word form.
         extended: u16,
     },
-    /// Always in the two-word form: LDP `01CA`, PLS `0008`.
+    /// The opcode in a word of its own, then a word `8000h` + bits for each operand: LDP `01CA`, PLS `0008`, MC `000A`.
     Device(u16),
     /// One of several codes, by the device: OUT, SET, RST.
     ByDevice,
@@ -130,6 +132,8 @@ pub enum Opcode {
     Function(u16),
     /// A label, `B000h` + number.
     Label,
+    /// No source tells; a program with it cannot be assembled.
+    Unknown,
 }
 
 /// An instruction in one of its written forms.
@@ -162,6 +166,53 @@ impl Form {
     /// Program steps with these operands, missing ones counted as written.
     pub fn steps(self, operands: &[Operand]) -> u32 {
         instructions::steps(self, operands)
+    }
+
+    /// Whether operand number `place`, from 0, may be `operand` on `model`. Words that could not be read pass, and a
+    /// place that the instruction does not have takes nothing.
+    pub fn takes(self, place: usize, operand: &Operand, model: Model) -> bool {
+        let Some(spec) = self.instruction.operands.get(place) else {
+            return false;
+        };
+        // Applied instructions can be indexed on every model, basic ones only on the FX3U.
+        let indexed = matches!(operand, Operand::Indexed { .. });
+        let may_be_indexed = matches!(self.instruction.opcode, Opcode::Function(_)) || model == Model::Fx3u;
+        spec.accepts.on(model).takes(operand) && (may_be_indexed || !indexed)
+    }
+
+    /// The least and the greatest integer constant that operand number `place` takes; `operands` are all of the
+    /// instruction, since the preset of OUT depends on its device.
+    pub fn constant_limits(self, place: usize, operands: &[Operand]) -> (i64, i64) {
+        const WORD: (i64, i64) = (i16::MIN as i64, i16::MAX as i64);
+        const DOUBLE: (i64, i64) = (i32::MIN as i64, i32::MAX as i64);
+        let Some(spec) = self.instruction.operands.get(place) else {
+            return WORD;
+        };
+        if spec.optional {
+            let driven = operands.first().and_then(Operand::device);
+            let counts_wide = driven.is_some_and(|d| d.kind == DeviceKind::C && d.number >= 200);
+            return if counts_wide { DOUBLE } else { (0, WORD.1) };
+        }
+        let range = if self.wide { spec.wide_range.or(spec.range) } else { spec.range };
+        range.unwrap_or(if self.wide { DOUBLE } else { WORD })
+    }
+
+    /// Whether `constant` lies within the limits at `place`. A hexadecimal one is a pattern of 16 or 32 bits: `HFFFF`
+    /// is -1 in the 16-bit form. Real constants are no matter of limits and fit.
+    pub fn constant_fits(self, place: usize, constant: Constant, operands: &[Operand]) -> bool {
+        let (least, greatest) = self.constant_limits(place, operands);
+        let wide = greatest > i64::from(i16::MAX) || (self.wide && least < 0);
+        let value = match constant {
+            Constant::Decimal(value) => value,
+            Constant::Hexadecimal(bits) => match (u32::try_from(bits), u16::try_from(bits)) {
+                (_, Ok(word)) if !wide && least < 0 => i64::from(word as i16),
+                (Ok(double), _) if wide && least < 0 => i64::from(double as i32),
+                (Ok(double), _) => i64::from(double),
+                _ => return false,
+            },
+            Constant::Real(_) => return true,
+        };
+        (least..=greatest).contains(&value)
     }
 
     /// Whether `model` has it.

@@ -20,4 +20,6 @@ pub use instruction::{Access, Form, Instruction, Opcode, OperandSpec, Role, Step
 
 pub mod instructions;
 
+mod fx;
+
 pub mod iec;

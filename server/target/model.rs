@@ -64,22 +64,17 @@ impl Target {
     /// The target for `model`.
     pub fn of(model: Model) -> &'static Target {
         match model {
-            Model::Fx1s => &super::device::FX1S,
-            Model::Fx1n => &super::device::FX1N,
-            Model::Fx2n => &super::device::FX2N,
-            Model::Fx3u => &super::device::FX3U,
-            Model::Iec => &super::device::IEC,
+            Model::Fx1s => &super::fx::FX1S,
+            Model::Fx1n => &super::fx::FX1N,
+            Model::Fx2n => &super::fx::FX2N,
+            Model::Fx3u => &super::fx::FX3U,
+            Model::Iec => &IEC,
         }
     }
 
     /// All targets.
-    pub const ALL: [&'static Target; 5] = [
-        &super::device::FX1S,
-        &super::device::FX1N,
-        &super::device::FX2N,
-        &super::device::FX3U,
-        &super::device::IEC,
-    ];
+    pub const ALL: [&'static Target; 5] =
+        [&super::fx::FX1S, &super::fx::FX1N, &super::fx::FX2N, &super::fx::FX3U, &IEC];
 
     /// Whether programs use the FX family's devices and instructions.
     pub fn is_fx(&self) -> bool {
@@ -91,3 +86,22 @@ impl Target {
         self.devices.iter().filter(move |range| range.kind == kind)
     }
 }
+
+/// IEC 61131-3: no maker's devices, and no limits but those of a screen.
+static IEC: Target = Target {
+    model: Model::Iec,
+    name: "iec",
+    title: "IEC 61131-3",
+    devices: &[],
+    special: &[],
+    limits: Limits {
+        steps: 0,
+        contacts_in_series: 11,
+        rows: 24,
+        blocks: 8,
+        branches: 11,
+        master_controls: 8,
+        loops: 5,
+        calls: 5,
+    },
+};

@@ -1,6 +1,6 @@
 //! Operands: one word of a program read as a device, a constant, an address or a name.
 
-use super::{Device, Model, iec};
+use super::{Device, Model, fx, iec};
 
 /// What an operand word says. The word itself stays in the text; its span is kept beside this value.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -67,12 +67,17 @@ pub enum OperandProblem {
     UnknownDevice,
     /// An 8 or a 9 in the number of an input or an output.
     OctalDigit,
-    /// A `K`, `H` or `E` whose number cannot be read, or a number too large for any register.
+    /// A `K`, `H` or `E` whose number cannot be read or has more than 64 bits, or a group of bits that is none
+    /// (`K9M0`).
     MalformedConstant,
     /// An IEC literal that cannot be read, with the reason.
     MalformedLiteral(iec::LiteralProblem),
     /// `%` without a readable address.
     MalformedAddress,
+    /// An IEC keyword where a name or a value belongs.
+    Keyword,
+    /// An IEC name that breaks the rules of identifiers, or a path with a broken member, subscript or bit.
+    MalformedName,
     /// Nothing of the above.
     Unreadable,
 }
@@ -123,24 +128,8 @@ impl Operand {
     /// ```
     pub fn read(word: &str, model: Model) -> Operand {
         match model {
-            Model::Iec => Operand::read_iec(word),
-            _ => Operand::read_fx(word),
-        }
-    }
-
-    fn read_iec(word: &str) -> Operand {
-        let _ = word;
-        Operand::Variable
-    }
-
-    fn read_fx(word: &str) -> Operand {
-        let mut letters = word.chars();
-        let Some(kind) = letters.next().and_then(super::DeviceKind::of_letter) else {
-            return Operand::Invalid(OperandProblem::UnknownDevice);
-        };
-        match u32::from_str_radix(letters.as_str(), kind.number_base()) {
-            Ok(number) => Operand::Device(Device::new(kind, number)),
-            Err(_) => Operand::Invalid(OperandProblem::UnknownDevice),
+            Model::Iec => iec::read_operand(word),
+            _ => fx::read(word),
         }
     }
 
