@@ -204,9 +204,9 @@ impl BlockSoFar {
         match inner {
             [] => false,
             [bar] => {
-                // The last bar may be the second one of a double rail.
+                // The bar may be one of a double rail, or of a rail that is not straight.
                 match &mut self.wires {
-                    Some((line, Some(last), condition)) if *last == *bar || *last == *bar + 1 => {
+                    Some((line, Some(last), condition)) if last.abs_diff(*bar) <= 2 => {
                         *condition.get_or_insert_with(|| ends_in_condition(line, text))
                     }
                     _ => *bar < self.right,
