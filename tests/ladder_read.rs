@@ -1,5 +1,7 @@
 //! Reading character ladders: every spelling of every element, wiring, names, problems at their cells.
 
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 use proptest::prelude::*;
 use rungwise::ladder::{
     Block, ChunkKind, CoilKind, CompareOperator, ContactKind, Element, ElementKind, Graph, LadderTree,

@@ -38,7 +38,7 @@ pub fn chunk_ends(text: &str) -> impl Iterator<Item = usize> {
     let mut chunk = Chunk::default();
     let mut finished = text.is_empty();
     std::iter::from_fn(move || {
-        while let Some(line) = lines.next() {
+        for line in lines.by_ref() {
             if !chunk.takes(&line, text) {
                 let end = line.span.start as usize;
                 chunk = Chunk::default();

@@ -217,22 +217,7 @@ impl Naming<'_> {
             word.owner = Some(owner);
             counts[owner] += 1;
         }
-        // The second operand of a comparison may stand on the other side. It can be told from the upper line of a
-        // name only if the element there has a nearer name.
-        let nearest = nearest_words(words, names_below);
-        for number in 0..words.len() {
-            let word = words[number];
-            let other = if names_below { word.below } else { word.above };
-            let Candidate::One(symbol, 1) = other else { continue };
-            let free = word.owner.is_none_or(|owner| owner != symbol && nearest.get(&owner) != Some(&number));
-            if self.tokens.symbols[symbol].wants == Wants::TwoOperands && counts[symbol] == 1 && free {
-                words[number].owner = Some(symbol);
-                counts[symbol] += 1;
-                if let Some(owner) = word.owner {
-                    counts[owner] -= 1;
-                }
-            }
-        }
+        self.second_operands(words, &mut counts, names_below);
         for word in words.iter_mut().filter(|word| word.owner.is_none()) {
             // Against the habit, but there is only one reading.
             let other = if names_below { word.below } else { word.above };
@@ -246,6 +231,23 @@ impl Naming<'_> {
             }
         }
         self.join_phrases(words);
+    }
+
+    /// The second operand of a comparison may stand on the other side. It can be told from the upper line of a name
+    /// only if the element there has a nearer name.
+    fn second_operands(&self, words: &mut [Word], counts: &mut [usize], names_below: bool) {
+        let nearest = nearest_words(words, names_below);
+        for (number, word) in words.iter_mut().enumerate() {
+            let other = if names_below { word.below } else { word.above };
+            let Candidate::One(symbol, 1) = other else { continue };
+            let free = word.owner.is_none_or(|owner| owner != symbol && nearest.get(&owner) != Some(&number));
+            if self.tokens.symbols[symbol].wants == Wants::TwoOperands && counts[symbol] == 1 && free {
+                counts[symbol] += 1;
+                if let Some(owner) = word.owner.replace(symbol) {
+                    counts[owner] -= 1;
+                }
+            }
+        }
     }
 
     /// `T0 K50` over a coil: a word over nothing, one blank away from a name of a coil, belongs to that name.
@@ -525,10 +527,8 @@ fn name_device(
     place: OperandPlace,
     (text, target): (&str, &Target),
 ) -> Vec<Spanned<Operand>> {
-    let addressed = |operand: &Spanned<Operand>| match operand.value {
-        Operand::Invalid(_) | Operand::Variable => false,
-        Operand::Literal(_) => false,
-        _ => true,
+    let addressed = |operand: &Spanned<Operand>| {
+        !matches!(operand.value, Operand::Invalid(_) | Operand::Variable | Operand::Literal(_))
     };
     let lines_differ = words.windows(2).all(|pair| pair[0].row != pair[1].row);
     let all_names = !operands.iter().any(addressed);

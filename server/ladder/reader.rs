@@ -32,8 +32,7 @@ pub fn parse_with(chunk: &str, target: &Target, habit: NameHabit) -> LadderTree 
     let mut drawing: Option<Span> = None;
     let mut too_large = false;
     let mut lines = Lines::new(chunk);
-    let mut number = 0;
-    while let Some(line) = lines.next() {
+    for (number, line) in lines.by_ref().enumerate() {
         add_comments(&mut tree.comments, &line.comments, line.continues);
         if is_drawing {
             match line.kind(chunk) {
@@ -43,11 +42,10 @@ pub fn parse_with(chunk: &str, target: &Target, habit: NameHabit) -> LadderTree 
             }
             too_large |= grid.height() >= MOST_ROWS || line.span.len() > MOST_COLUMNS * 4;
             if drawing.is_some() && !too_large {
-                grid.push(&line, number, chunk);
+                grid.push(&line, number as u32, chunk);
                 too_large |= grid.width(grid.height() - 1) > MOST_COLUMNS;
             }
         }
-        number += 1;
     }
     report_unclosed(lines.open, chunk, &mut tree.problems);
     match drawing {

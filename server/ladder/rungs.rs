@@ -110,18 +110,18 @@ fn row_groups(tokens: &Tokens, uprights: &Uprights) -> Vec<(usize, usize)> {
         |row: usize| tokens.rows[row].iter().any(|token| matches!(token.what, What::Wire | What::Symbol(_)));
     let mut groups: Vec<(usize, usize)> = Vec::new();
     let mut reached = None;
-    for row in 0..tokens.rows.len() {
+    for (row, reaches) in reach.into_iter().enumerate() {
         let joined = reached.is_some_and(|reached| row <= reached);
         if joined {
             if let Some(group) = groups.last_mut() {
                 group.1 = row;
             }
-        } else if live(row) || reach[row] > row {
+        } else if live(row) || reaches > row {
             groups.push((row, row));
         } else {
             continue;
         }
-        reached = reached.max(Some(reach[row]));
+        reached = reached.max(Some(reaches));
     }
     groups
 }

@@ -183,7 +183,7 @@ impl Scanner<'_> {
         let after_wire = column > 0 && Arms::of(at(column - 1)).is_horizontal();
         let named = first == '_' && !after_wire && at(column + 1).is_alphanumeric();
         let address = first != '%' || at(column + 1).is_alphabetic();
-        if !(starts_word(first) && address) && !named {
+        if !(named || starts_word(first) && address) {
             return None;
         }
         if matches!(first, '\'' | '"') {
