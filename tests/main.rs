@@ -1,5 +1,7 @@
 //! Every test of the package that needs no private item, one module for each subject.
 
+mod ladder_generate;
+mod ladder_print;
 mod rules;
 mod target_fx;
 mod target_fx_applied;
