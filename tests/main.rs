@@ -2,6 +2,7 @@
 
 mod document;
 mod il_fx;
+mod il_iec;
 mod ladder_generate;
 mod ladder_print;
 mod rules;
