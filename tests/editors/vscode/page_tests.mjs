@@ -164,9 +164,8 @@ async function target(workbench, workspace) {
 }
 
 async function failureMessage(workbench) {
-  await workbench.command('Preferences: Open Workspace Settings (JSON)');
-  await workbench.page.waitForSelector('.tab.active[data-resource-name="settings.json"]', { timeout: 15_000 });
-  await workbench.page.waitForSelector('.editor-instance .view-line', { timeout: 15_000 });
+  await workbench.page.locator('.explorer-folders-view .monaco-list-row', { hasText: '.vscode' }).first().click();
+  await workbench.openFile('settings.json');
   await workbench.goTo(1, 2);
   await workbench.page.keyboard.insertText('"rungwise.server.path": "/nowhere/rungwise",');
   await workbench.page.keyboard.press('Control+s');
