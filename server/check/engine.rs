@@ -1,0 +1,111 @@
+//! Runs the rules and puts their findings together.
+
+use super::{ChunkContext, ProgramContext, RULES, Rule, Run};
+use crate::document::{Document, LIMIT_BYTES, Page};
+use crate::text::{Diagnostic, Message, Severity, Span};
+use rustc_hash::{FxHashMap, FxHasher};
+use std::hash::{Hash, Hasher};
+use std::sync::LazyLock;
+
+/// What a project makes of the rules' severities: a code maps to its severity here, or to `None` if it is off.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct Severities(pub FxHashMap<String, Option<Severity>>);
+
+impl Severities {
+    /// The severity of `code`; `None` if it is switched off.
+    pub fn of(&self, code: &str) -> Option<Severity> {
+        match self.0.get(code) {
+            Some(severity) => *severity,
+            None => Some(DEFAULTS.get(code).copied().unwrap_or(Severity::Error)),
+        }
+    }
+}
+
+static DEFAULTS: LazyLock<FxHashMap<&'static str, Severity>> =
+    LazyLock::new(|| RULES.iter().map(|rule| (rule.code, rule.severity)).collect());
+
+/// What both tiers find, sorted by place.
+pub fn all(document: &Document, severities: &Severities) -> Vec<Diagnostic> {
+    let mut diagnostics = realtime(document, severities);
+    diagnostics.extend(program(document, severities));
+    sorted(diagnostics)
+}
+
+/// What the real-time tier finds. Chunks that kept their text and surroundings are not judged again.
+pub fn realtime(document: &Document, severities: &Severities) -> Vec<Diagnostic> {
+    if document.len() > LIMIT_BYTES {
+        let message = Message::new("text-too-large.found").with("limit", LIMIT_BYTES >> 20);
+        return with_severities(vec![Diagnostic::new("text-too-large", Span::at(0), message)], severities);
+    }
+    let scopes = document.scopes();
+    let (mut start, mut pou_number) = (0, 0);
+    let mut diagnostics = Vec::new();
+    for page in document.pages() {
+        let found = page.found(hash_of((scopes.key, pou_number)), || judge_page(document, page, pou_number));
+        diagnostics.extend(found.iter().map(|diagnostic| diagnostic.shifted(start)));
+        start += page.bytes();
+        pou_number += page.chunks().iter().map(|chunk| chunk.pou_starts()).sum::<usize>();
+    }
+    with_severities(diagnostics, severities)
+}
+
+/// What the batch tier finds.
+pub fn program(document: &Document, severities: &Severities) -> Vec<Diagnostic> {
+    let mut diagnostics = Vec::new();
+    let context = ProgramContext { document };
+    for rule in RULES.iter() {
+        if let Rule { run: Run::Program(judge), .. } = rule {
+            judge(&context, &mut diagnostics);
+        }
+    }
+    with_severities(diagnostics, severities)
+}
+
+/// By place, then gravity, then code.
+pub fn sorted(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    diagnostics.sort_by_key(|diagnostic| (diagnostic.span, diagnostic.severity, diagnostic.code));
+    diagnostics
+}
+
+/// The findings in a page whose first chunk comes after `pou_number` starts of a POU, from the page's start.
+fn judge_page(document: &Document, page: &Page, mut pou_number: usize) -> Vec<Diagnostic> {
+    let scopes = document.scopes();
+    let mut diagnostics = Vec::new();
+    let mut start = 0;
+    for chunk in page.chunks() {
+        pou_number += chunk.pou_starts();
+        let found = chunk.found(hash_of((scopes.key, pou_number)), || {
+            let mut found = chunk.problems().to_vec();
+            let context = ChunkContext {
+                chunk,
+                notation: document.notation(),
+                target: document.target(),
+                scopes,
+                pou: pou_number.checked_sub(1),
+            };
+            for rule in RULES.iter() {
+                if let Rule { run: Run::Chunk(judge), .. } = rule {
+                    judge(&context, &mut found);
+                }
+            }
+            found
+        });
+        diagnostics.extend(found.iter().map(|diagnostic| diagnostic.shifted(start)));
+        start += chunk.len();
+    }
+    diagnostics
+}
+
+fn with_severities(diagnostics: Vec<Diagnostic>, severities: &Severities) -> Vec<Diagnostic> {
+    let graded = diagnostics.into_iter().filter_map(|mut diagnostic| {
+        diagnostic.severity = severities.of(diagnostic.code)?;
+        Some(diagnostic)
+    });
+    graded.collect()
+}
+
+fn hash_of(value: impl Hash) -> u64 {
+    let mut hasher = FxHasher::default();
+    value.hash(&mut hasher);
+    hasher.finish()
+}

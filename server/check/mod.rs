@@ -1,0 +1,22 @@
+//! The checker: two tiers of rules over a document, one file for each rule.
+//!
+//! The real-time tier judges chunk by chunk and keeps what it found with the chunk, so that an edit costs the touched
+//! chunks only. The batch tier looks at the whole program. Both give plain diagnostics with offsets into the document.
+
+mod rule;
+pub use rule::{Rule, Run};
+
+mod context;
+pub use context::{ChunkContext, ProgramContext};
+
+mod engine;
+pub use engine::{Severities, all, program, realtime, sorted};
+
+mod declarations;
+mod drawing;
+mod order;
+mod words;
+
+/// All rules, in the order of the catalogue.
+pub static RULES: std::sync::LazyLock<Vec<&'static Rule>> =
+    std::sync::LazyLock::new(|| [drawing::RULES, words::RULES, order::RULES, declarations::RULES].concat());

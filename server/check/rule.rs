@@ -1,0 +1,59 @@
+//! What a rule is.
+
+use super::{ChunkContext, ProgramContext};
+use crate::text::{Diagnostic, Severity};
+
+/// One rule: a row of [`RULES`](super::RULES), one file each, whose `//!` text is its page.
+pub struct Rule {
+    /// Kebab-case, equal to the file's name.
+    pub code: &'static str,
+    /// Unless `rungwise.toml` says otherwise.
+    pub severity: Severity,
+    /// How it is found.
+    pub run: Run,
+    /// The source file, of which [`Rule::page`] shows the head.
+    pub(super) source: &'static str,
+}
+
+/// How and when a rule is judged.
+pub enum Run {
+    /// By the reader of the text, which knows best what it could not read. Real-time tier.
+    WhileReading,
+    /// On a chunk, as soon as an edit touched it. Real-time tier.
+    Chunk(fn(&ChunkContext<'_>, &mut Vec<Diagnostic>)),
+    /// On the whole program, when typing stops. Batch tier.
+    Program(fn(&ProgramContext<'_>, &mut Vec<Diagnostic>)),
+}
+
+impl Rule {
+    /// The rule with this code.
+    pub fn named(code: &str) -> Option<&'static Rule> {
+        super::RULES.iter().copied().find(|rule| rule.code == code)
+    }
+
+    /// Its page, Markdown: what it is, why it matters on a machine, a failing and a fixed example.
+    ///
+    /// Fences say their notation: `lad`, `fx` or `iec`, and perhaps a target (`fx fx1n`). `^^^` marks the characters
+    /// in the line above which are reported; a fence without marks is clean. All fences run as tests.
+    pub fn page(&self) -> String {
+        let head = self.source.lines().take_while(|line| line.starts_with("//!"));
+        let mut page = String::new();
+        for line in head {
+            let text = &line[3..];
+            page.push_str(text.strip_prefix(' ').unwrap_or(text));
+            page.push('\n');
+        }
+        page
+    }
+
+    /// The first sentence of its page.
+    pub fn summary(&self) -> String {
+        let page = self.page();
+        let text = page.split_once("\n\n").map_or("", |(_, text)| text);
+        let paragraph = text.split("\n\n").next().unwrap_or("").replace('\n', " ");
+        match paragraph.find(". ") {
+            Some(end) => paragraph[..=end].to_string(),
+            None => paragraph.trim().to_string(),
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! `rungwise check`
+
+use super::input::{Program, complain, programs, say};
+use super::{Format, Outcome, paths_or_here, render};
+use crate::check;
+use crate::ide;
+use crate::target::Target;
+use crate::text::{Diagnostic, Encoding, Fix, Language, Severity, Span};
+use clap::ValueEnum;
+use serde_json::{Value, json};
+use std::path::PathBuf;
+
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    /// Files, folders or projects; the current folder if left out.
+    paths: Vec<PathBuf>,
+    /// Check for this PLC, whatever the project says: fx1s, fx1n, fx2n, fx3u, iec.
+    #[arg(long, value_parser = target_named)]
+    target: Option<&'static Target>,
+    /// The least severity that makes the exit code 1.
+    #[arg(long, value_enum, default_value = "warning")]
+    deny: Deny,
+    /// The shape of the result.
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Deny {
+    Error,
+    Warning,
+    Hint,
+}
+
+/// The numbers under a result.
+#[derive(Default)]
+struct Summary {
+    errors: usize,
+    warnings: usize,
+    hints: usize,
+    rungs: usize,
+    steps: u32,
+    capacity: u32,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Outcome {
+    let Some(programs) = programs(&paths_or_here(&arguments.paths), arguments.target) else {
+        return Outcome::Unusable;
+    };
+    if programs.is_empty() {
+        complain("no-programs", "there are no .lad or .il files here", "give a file, a folder or a project");
+        return Outcome::Unusable;
+    }
+    let checked: Vec<(Program, Vec<Diagnostic>)> = programs
+        .into_iter()
+        .map(|program| {
+            let diagnostics = check::all(&program.document, &program.manifest.severities());
+            (program, diagnostics)
+        })
+        .collect();
+    let summary = Summary::of(&checked);
+    match arguments.format {
+        Format::Text => say_text(&checked, &summary),
+        Format::Json => say(&format!("{:#}\n", as_json(&checked, &summary))),
+    }
+    if summary.denied(arguments.deny) > 0 { Outcome::Findings } else { Outcome::Clean }
+}
+
+impl Summary {
+    fn of(checked: &[(Program, Vec<Diagnostic>)]) -> Summary {
+        let mut summary = Summary::default();
+        for (program, diagnostics) in checked {
+            let count = |severity| diagnostics.iter().filter(|diagnostic| diagnostic.severity == severity).count();
+            summary.errors += count(Severity::Error);
+            summary.warnings += count(Severity::Warning);
+            summary.hints += count(Severity::Hint);
+            let status = ide::status(&program.document);
+            summary.rungs += status.rungs;
+            summary.steps += status.steps.unwrap_or(0);
+            summary.capacity = summary.capacity.max(status.capacity);
+        }
+        summary
+    }
+
+    fn denied(&self, least: Deny) -> usize {
+        match least {
+            Deny::Error => self.errors,
+            Deny::Warning => self.errors + self.warnings,
+            Deny::Hint => self.errors + self.warnings + self.hints,
+        }
+    }
+
+    /// `check passed: 4 rungs, 31 of 8000 steps`, or the numbers of what was found.
+    fn sentence(&self) -> String {
+        let size = match self.capacity {
+            0 => plural(self.rungs, "rung"),
+            capacity => format!("{}, {} of {capacity} steps", plural(self.rungs, "rung"), self.steps),
+        };
+        match (self.errors, self.warnings, self.hints) {
+            (0, 0, 0) => format!("check passed: {size}"),
+            (0, 0, hints) => format!("check passed: {size}; {}", plural(hints, "hint")),
+            (errors, warnings, hints) => {
+                let counts = [plural(errors, "error"), plural(warnings, "warning"), plural(hints, "hint")];
+                format!("check failed: {}; {size}", counts.join(", "))
+            }
+        }
+    }
+}
+
+fn plural(count: usize, word: &str) -> String {
+    if count == 1 { format!("1 {word}") } else { format!("{count} {word}s") }
+}
+
+fn say_text(checked: &[(Program, Vec<Diagnostic>)], summary: &Summary) {
+    let colours = render::Colours::new(super::input::coloured());
+    for (program, diagnostics) in checked {
+        let name = program.path.display().to_string();
+        for diagnostic in diagnostics {
+            say(&render::diagnostic(&name, &program.document, diagnostic, &colours));
+        }
+    }
+    say(&format!("{}\n", summary.sentence()));
+}
+
+fn as_json(checked: &[(Program, Vec<Diagnostic>)], summary: &Summary) -> Value {
+    let files: Vec<Value> = checked
+        .iter()
+        .map(|(program, diagnostics)| {
+            let status = ide::status(&program.document);
+            let diagnostics: Vec<Value> = diagnostics.iter().map(|found| diagnostic_json(program, found)).collect();
+            json!({
+                "path": program.path.display().to_string(),
+                "target": status.target,
+                "dialect": status.dialect,
+                "rungs": status.rungs,
+                "steps": status.steps,
+                "diagnostics": diagnostics,
+            })
+        })
+        .collect();
+    json!({
+        "files": files,
+        "summary": {
+            "errors": summary.errors,
+            "warnings": summary.warnings,
+            "hints": summary.hints,
+            "rungs": summary.rungs,
+            "steps": summary.steps,
+            "capacity": summary.capacity,
+        },
+    })
+}
+
+fn diagnostic_json(program: &Program, diagnostic: &Diagnostic) -> Value {
+    let path = program.path.display().to_string();
+    let range = |span: Span| {
+        let position = |offset: u32| {
+            let position = program.document.position(offset as usize, Encoding::Utf32);
+            json!({"line": position.line + 1, "column": position.column + 1})
+        };
+        json!({"start": position(span.start), "end": position(span.end)})
+    };
+    let related = diagnostic.related.iter().map(|related| {
+        let message = related.message.render(Language::English);
+        json!({"path": path, "range": range(related.span), "message": message})
+    });
+    let fix = |fix: &Fix| {
+        let edits = fix.edits.iter().map(|edit| json!({"path": path, "range": range(edit.span), "text": edit.text}));
+        json!({"title": fix.title.render(Language::English), "edits": edits.collect::<Vec<_>>()})
+    };
+    json!({
+        "code": diagnostic.code,
+        "severity": severity_word(diagnostic.severity),
+        "message": diagnostic.message.render(Language::English),
+        "range": range(diagnostic.span),
+        "related": related.collect::<Vec<_>>(),
+        "fixes": diagnostic.fixes.iter().map(fix).collect::<Vec<_>>(),
+    })
+}
+
+pub(super) fn severity_word(severity: Severity) -> &'static str {
+    match severity {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+        Severity::Hint => "hint",
+    }
+}
+
+fn target_named(name: &str) -> Result<&'static Target, String> {
+    Target::named(name).ok_or_else(|| {
+        let names: Vec<&str> = Target::ALL.iter().map(|target| target.name).collect();
+        format!("no such target; {} are", names.join(", "))
+    })
+}

@@ -1,0 +1,112 @@
+//! Reading programs from files, folders and projects, and telling what cannot be read.
+
+use crate::document::Document;
+use crate::project::{MANIFEST_NAME, Manifest, Project, is_program_file, open_document, program_files};
+use crate::target::Target;
+use crate::text::{Encoding, Language};
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A program file that was read.
+pub(super) struct Program {
+    pub path: PathBuf,
+    pub document: Document,
+    pub manifest: Arc<Manifest>,
+    /// Whether the file was no UTF-8; broken bytes are replaced and `fmt` must not write it.
+    pub damaged: bool,
+}
+
+/// The programs at `paths`, or nothing after complaints about what cannot be read.
+pub(super) fn programs(paths: &[PathBuf], target: Option<&'static Target>) -> Option<Vec<Program>> {
+    let mut programs = Vec::new();
+    let mut failed = false;
+    for path in paths {
+        match files_at(path) {
+            Ok(files) => {
+                for (file, manifest) in files {
+                    match read_program(&file, manifest, target) {
+                        Ok(program) => programs.push(program),
+                        Err(reason) => {
+                            failed = true;
+                            complain("unreadable-input", &format!("{}: {reason}", file.display()), "check the path");
+                        }
+                    }
+                }
+            }
+            Err(reason) => {
+                failed = true;
+                complain("unreadable-input", &reason, "give a .lad or .il file, a folder, or a project");
+            }
+        }
+    }
+    (!failed).then_some(programs)
+}
+
+/// Writes `text` to standard output. A reader that went away, as `head` does, is no failure.
+pub(super) fn say(text: &str) {
+    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+}
+
+/// An error on standard error: `error[code]: reason`, and a sentence that helps.
+pub(super) fn complain(code: &str, reason: &str, help: &str) {
+    let _ = writeln!(std::io::stderr(), "error[{code}]: {reason}\n  help: {help}");
+}
+
+/// Whether standard output takes colours: a terminal, and no `NO_COLOR`.
+pub(super) fn coloured() -> bool {
+    std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+}
+
+/// The files at `path` with the manifest of their project.
+fn files_at(path: &Path) -> Result<Vec<(PathBuf, Arc<Manifest>)>, String> {
+    if !path.exists() {
+        return Err(format!("{}: there is no such file or folder", path.display()));
+    }
+    if path.file_name().is_some_and(|name| name == MANIFEST_NAME) {
+        return files_at(path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")));
+    }
+    if path.is_file() {
+        if !is_program_file(path) {
+            return Err(format!("{}: neither a .lad nor an .il file", path.display()));
+        }
+        let manifest = manifest_for(path)?;
+        return Ok(vec![(path.to_path_buf(), manifest)]);
+    }
+    if path.join(MANIFEST_NAME).is_file() {
+        let project = Project::read(path).map_err(|reason| format!("{}: {reason}", path.display()))?;
+        let manifest = usable(&project)?;
+        let files = project.files().map_err(|reason| format!("{}: {reason}", path.display()))?;
+        return Ok(files.into_iter().map(|file| (file, manifest.clone())).collect());
+    }
+    let files = program_files(path).map_err(|reason| format!("{}: {reason}", path.display()))?;
+    files.into_iter().map(|file| manifest_for(&file).map(|manifest| (file, manifest))).collect()
+}
+
+fn manifest_for(path: &Path) -> Result<Arc<Manifest>, String> {
+    match Project::of(&path.canonicalize().unwrap_or_else(|_| path.to_path_buf())) {
+        Some(project) => usable(&project),
+        None => Ok(Arc::default()),
+    }
+}
+
+/// The manifest, or its mistake with the place.
+fn usable(project: &Project) -> Result<Arc<Manifest>, String> {
+    let Some(error) = &project.error else { return Ok(Arc::new(project.manifest.clone())) };
+    let path = project.root.join(MANIFEST_NAME);
+    let text = std::fs::read_to_string(&path).unwrap_or_default();
+    let before = text.get(..error.span.start as usize).unwrap_or("");
+    let line = before.matches('\n').count() + 1;
+    let column = crate::text::column_of_offset(before.rsplit('\n').next().unwrap_or(""), usize::MAX, Encoding::Utf32) + 1;
+    Err(format!("{}:{line}:{column}: {}", path.display(), error.message.render(Language::English)))
+}
+
+fn read_program(path: &Path, manifest: Arc<Manifest>, target: Option<&'static Target>) -> std::io::Result<Program> {
+    let bytes = std::fs::read(path)?;
+    let (text, damaged) = match String::from_utf8(bytes) {
+        Ok(text) => (text, false),
+        Err(broken) => (String::from_utf8_lossy(broken.as_bytes()).into_owned(), true),
+    };
+    let document = open_document(&path.to_string_lossy(), &text, &manifest, target, None);
+    Ok(Program { path: path.to_path_buf(), document, manifest, damaged })
+}

@@ -1,0 +1,26 @@
+//! The incremental document: a rope, and the chunks (rung, network, statement block, declaration) it is made of.
+//!
+//! An edit reads anew only the chunks that it touches; all others keep their tree, mentions and local diagnostics.
+//! A [`Document`] is a value: cloning it is cheap and gives the immutable snapshot on which requests work.
+//! Property: after any sequence of edits a document equals the one made from its text at once.
+
+mod notation;
+pub use notation::{Notation, detect_ladder_target, detect_notation, dialect_comment};
+
+mod snapshot;
+pub use snapshot::{ChunkRef, Document, Edit, LIMIT_BYTES};
+
+mod chunk;
+pub use chunk::{Chunk, Tree};
+
+mod pages;
+pub use pages::Page;
+
+mod operation;
+pub use operation::Operation;
+
+mod mention;
+pub use mention::{Mention, Symbol, Use};
+
+mod scope;
+pub use scope::{DeclaredType, Pou, Scopes, Variable};

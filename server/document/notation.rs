@@ -1,0 +1,105 @@
+//! Which language a document is written in.
+
+use crate::target::iec::Operator;
+use crate::target::{Form, Model, Operand, Target};
+
+/// The language of a document.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Notation {
+    /// Ladder drawn in characters (`.lad`).
+    Ladder,
+    /// Instruction List of the FX family.
+    FxIl,
+    /// Instruction List of IEC 61131-3.
+    IecIl,
+}
+
+/// The dialect that a first-line comment asks for: `dialect: fx` or `dialect: iec` after any comment sign.
+pub fn dialect_comment(text: &str) -> Option<Notation> {
+    let line = text.lines().next()?.trim_start_matches('\u{feff}').trim_start();
+    let comment = ["//", "(*", ";"].iter().find_map(|sign| line.strip_prefix(sign))?;
+    let (key, value) = comment.split_once(':')?;
+    let value = value.trim_end_matches("*)").trim();
+    match (key.trim().eq_ignore_ascii_case("dialect"), value.to_ascii_lowercase().as_str()) {
+        (true, "fx") => Some(Notation::FxIl),
+        (true, "iec") => Some(Notation::IecIl),
+        _ => None,
+    }
+}
+
+/// The dialect of an `.il` text by its content: POU keywords and IEC-only operators speak for IEC, FX-only mnemonics
+/// and devices for FX. Looks at the first thousand lines; with nothing decisive it is FX, the older habit of `.il`.
+pub fn detect_notation(text: &str) -> Notation {
+    if let Some(language) = dialect_comment(text) {
+        return language;
+    }
+    let mut balance = 0i32;
+    for line in text.lines().take(1000) {
+        let mut words =
+            line.split(|c: char| c.is_whitespace() || c == ',' || c == '(').filter(|word| !word.is_empty());
+        let first = match words.next() {
+            Some(word) if word.bytes().all(|byte| byte.is_ascii_digit()) => words.next().unwrap_or(word),
+            Some(word) => word,
+            None => continue,
+        };
+        if is_declaration_keyword(first) {
+            return Notation::IecIl;
+        }
+        let operand = words.next().map(|word| Operand::read(word, Model::Fx2n));
+        balance += match (Form::named(first).is_some(), Operator::written(first).is_some()) {
+            (true, false) => 1,
+            (false, true) => -1,
+            (true, true) => match operand {
+                Some(Operand::Invalid(_)) => -1,
+                Some(_) => 1,
+                None => 0,
+            },
+            (false, false) => 0,
+        };
+    }
+    if balance < 0 { Notation::IecIl } else { Notation::FxIl }
+}
+
+/// The target of a ladder that stands alone: FX devices only mean an FX2N, other names IEC.
+pub fn detect_ladder_target(text: &str) -> &'static Target {
+    let header = text.lines().any(|line| line.split_whitespace().next().is_some_and(is_declaration_keyword));
+    let named = |word: &str| word.chars().any(|c| c.is_alphabetic());
+    let foreign = || {
+        drawing_words(text).filter(|word| named(word)).any(|word| {
+            Form::named(word).is_none() && matches!(Operand::read(word, Model::Fx3u), Operand::Invalid(_))
+        })
+    };
+    if header || foreign() { Target::of(Model::Iec) } else { Target::of(Model::Fx2n) }
+}
+
+/// The words of a drawing that can be operands: comments, network headers and the letters of symbols left out.
+fn drawing_words(text: &str) -> impl Iterator<Item = &str> {
+    let mut in_comment = false;
+    text.lines()
+        .filter(move |line| {
+            let opens = line.rfind("(*");
+            let closes = line.rfind("*)");
+            let starts_inside = in_comment;
+            in_comment = match (opens, closes) {
+                (Some(open), Some(close)) => open > close,
+                (Some(_), None) => true,
+                (None, Some(_)) => false,
+                (None, None) => in_comment,
+            };
+            let head = line.trim_start();
+            let aside = ["(*", "//", ";", "{", "NETWORK"].iter().any(|sign| head.starts_with(sign));
+            !(starts_inside || opens.is_some() || closes.is_some() || aside || head.trim_end().ends_with(':'))
+        })
+        .take(2000)
+        .flat_map(|line| line.split(|c: char| !(c.is_alphanumeric() || "_.%#".contains(c))))
+        .filter(|word| word.chars().count() > 1 || word.chars().any(|c| !c.is_ascii()))
+}
+
+fn is_declaration_keyword(word: &str) -> bool {
+    let word = word.trim_end_matches(';');
+    ["PROGRAM", "FUNCTION", "FUNCTION_BLOCK", "CONFIGURATION", "TYPE"]
+        .iter()
+        .any(|key| word.eq_ignore_ascii_case(key))
+        || word.get(..3).is_some_and(|head| head.eq_ignore_ascii_case("VAR"))
+            && (word.len() == 3 || word.as_bytes()[3] == b'_')
+}

@@ -1,0 +1,145 @@
+//! The sequence of chunks: pages of some dozens each, so that a snapshot copies one pointer a page and an edit
+//! rebuilds one page.
+
+use super::{Chunk, chunk};
+use crate::text::Diagnostic;
+use std::sync::{Arc, Mutex};
+
+/// A page is split when it would hold more chunks than this.
+const PAGE_LIMIT: usize = 96;
+
+/// A run of chunks with what is found in them.
+#[derive(Debug)]
+pub struct Page {
+    chunks: Vec<Arc<Chunk>>,
+    bytes: usize,
+    found: Mutex<Option<(u64, Arc<[Diagnostic]>)>>,
+}
+
+impl Page {
+    fn new(chunks: Vec<Arc<Chunk>>) -> Arc<Page> {
+        let bytes = chunks.iter().map(|chunk| chunk.len()).sum();
+        Arc::new(Page { chunks, bytes, found: Mutex::new(None) })
+    }
+
+    /// Its chunks.
+    pub fn chunks(&self) -> &[Arc<Chunk>] {
+        &self.chunks
+    }
+
+    /// Length in bytes.
+    pub fn bytes(&self) -> usize {
+        self.bytes
+    }
+
+    /// The diagnostics of all its chunks, offsets from the page's start, kept under `key` as those of a chunk are.
+    pub fn found(&self, key: u64, find: impl FnOnce() -> Vec<Diagnostic>) -> Arc<[Diagnostic]> {
+        chunk::kept(&self.found, key, find)
+    }
+}
+
+/// The chunks of a document, in order.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Pages {
+    pages: Vec<Arc<Page>>,
+}
+
+/// A place in the sequence: page, and chunk in the page.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(super) struct Cursor {
+    page: usize,
+    chunk: usize,
+}
+
+impl Pages {
+    pub(super) fn new(chunks: Vec<Arc<Chunk>>) -> Pages {
+        Pages { pages: paginate(chunks) }
+    }
+
+    pub(super) fn pages(&self) -> &[Arc<Page>] {
+        &self.pages
+    }
+
+    pub(super) fn get(&self, at: Cursor) -> Option<&Arc<Chunk>> {
+        self.pages.get(at.page)?.chunks.get(at.chunk)
+    }
+
+    /// The chunk that contains `offset`, or the last one for the end of the text, with its start.
+    pub(super) fn locate(&self, offset: usize) -> Option<(Cursor, usize)> {
+        let mut start = 0;
+        for (page_number, page) in self.pages.iter().enumerate() {
+            let last_page = page_number + 1 == self.pages.len();
+            if offset >= start + page.bytes && !last_page {
+                start += page.bytes;
+                continue;
+            }
+            for (chunk_number, chunk) in page.chunks.iter().enumerate() {
+                let last = last_page && chunk_number + 1 == page.chunks.len();
+                if offset < start + chunk.len() || last {
+                    return Some((Cursor { page: page_number, chunk: chunk_number }, start));
+                }
+                start += chunk.len();
+            }
+        }
+        None
+    }
+
+    pub(super) fn next(&self, at: Cursor) -> Option<Cursor> {
+        if at.chunk + 1 < self.pages.get(at.page)?.chunks.len() {
+            return Some(Cursor { chunk: at.chunk + 1, ..at });
+        }
+        (at.page + 1 < self.pages.len()).then_some(Cursor { page: at.page + 1, chunk: 0 })
+    }
+
+    pub(super) fn previous(&self, at: Cursor) -> Option<Cursor> {
+        if at.chunk > 0 {
+            return Some(Cursor { chunk: at.chunk - 1, ..at });
+        }
+        let page = at.page.checked_sub(1)?;
+        Some(Cursor { page, chunk: self.pages[page].chunks.len() - 1 })
+    }
+
+    /// The chunks from `first` to `last`, both included.
+    pub(super) fn between(&self, first: Cursor, last: Cursor) -> Vec<Arc<Chunk>> {
+        let mut chunks = Vec::new();
+        let mut at = Some(first);
+        while let Some(cursor) = at.filter(|cursor| *cursor <= last) {
+            chunks.extend(self.get(cursor).cloned());
+            at = self.next(cursor);
+        }
+        chunks
+    }
+
+    /// Puts `new` in the place of the chunks from `first` to `last`, both included.
+    pub(super) fn replace(&mut self, first: Cursor, last: Cursor, new: Vec<Arc<Chunk>>) {
+        let head = &self.pages[first.page].chunks[..first.chunk];
+        let tail = &self.pages[last.page].chunks[last.chunk + 1..];
+        let mut chunks = Vec::with_capacity(head.len() + new.len() + tail.len());
+        chunks.extend_from_slice(head);
+        chunks.extend(new);
+        chunks.extend_from_slice(tail);
+        // A page that shrank to a few chunks joins its neighbour, lest many deletions leave many small pages.
+        let mut pages = first.page..last.page + 1;
+        if chunks.len() < PAGE_LIMIT / 8 && pages.end < self.pages.len() {
+            chunks.extend_from_slice(&self.pages[pages.end].chunks);
+            pages.end += 1;
+        }
+        self.pages.splice(pages, paginate(chunks));
+    }
+}
+
+fn paginate(mut chunks: Vec<Arc<Chunk>>) -> Vec<Arc<Page>> {
+    if chunks.is_empty() {
+        return Vec::new();
+    }
+    if chunks.len() <= PAGE_LIMIT {
+        return vec![Page::new(chunks)];
+    }
+    let mut pages = Vec::with_capacity(chunks.len() / (PAGE_LIMIT / 2) + 1);
+    while chunks.len() > PAGE_LIMIT {
+        let rest = chunks.split_off(PAGE_LIMIT * 2 / 3);
+        pages.push(Page::new(std::mem::replace(&mut chunks, rest)));
+    }
+    pages.push(Page::new(chunks));
+    pages
+}

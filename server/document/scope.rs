@@ -1,0 +1,321 @@
+//! What an IEC document declares: POUs with their variables, global variables, types.
+//!
+//! It holds no place in the text, so it stays valid while other chunks move; places are found through the mentions.
+
+use super::mention::{folded, of_operand};
+use super::{Chunk, Document, Mention, Symbol, Tree, Use};
+use crate::il::iec::{IecTree, ItemKind, MentionRole, PouKind, SectionKind, TypeId, TypeSpec};
+use crate::target::iec::{ElementaryType, FunctionBlock, ParameterType};
+use crate::target::{DirectAddress, Operand};
+use rustc_hash::{FxHashMap, FxHasher};
+use smol_str::SmolStr;
+use std::hash::{Hash, Hasher};
+
+/// Everything that a document declares.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Scopes {
+    /// Differs whenever a declaration differs: the key for what was found with these scopes.
+    pub key: u64,
+    /// The POUs, in the order of the text.
+    pub pous: Vec<Pou>,
+    /// Variables of VAR_GLOBAL, by folded name.
+    pub globals: FxHashMap<SmolStr, Variable>,
+    /// Data types, by folded name.
+    pub types: FxHashMap<SmolStr, DeclaredType>,
+    /// Whether there is a CONFIGURATION.
+    pub has_configuration: bool,
+}
+
+/// A program organisation unit.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Pou {
+    /// Its name as written; empty where it is missing.
+    pub name: SmolStr,
+    /// What it is.
+    pub kind: PouKind,
+    /// The type of a function's result.
+    pub result: Option<DeclaredType>,
+    /// Its variables in the order of the declaration.
+    pub variables: Vec<Variable>,
+    index: FxHashMap<SmolStr, usize>,
+}
+
+/// A declared variable.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Variable {
+    /// Its name as written.
+    pub name: SmolStr,
+    /// The section in which it stands.
+    pub section: SectionKind,
+    /// Declared CONSTANT.
+    pub constant: bool,
+    /// Its type.
+    pub declared: DeclaredType,
+    /// Where it lies, if it is located.
+    pub address: Option<DirectAddress>,
+}
+
+/// A type, resolved as far as the declaration goes.
+#[derive(Clone, PartialEq, Debug)]
+pub enum DeclaredType {
+    /// An elementary type; subranges count as the type they are cut from.
+    Elementary(ElementaryType),
+    /// A data type, function block or program of this folded name.
+    Named(SmolStr),
+    /// An array of these elements.
+    Array(Box<DeclaredType>),
+    /// An enumeration with these folded names.
+    Enumeration(Vec<SmolStr>),
+    /// A structure.
+    Structure(Vec<(SmolStr, DeclaredType)>),
+    /// It could not be read.
+    Unknown,
+}
+
+impl Chunk {
+    /// How many POUs start in it.
+    pub fn pou_starts(&self) -> usize {
+        match self.tree() {
+            Tree::Iec(tree) => {
+                tree.items.iter().filter(|item| matches!(item.kind, ItemKind::Pou { .. })).count()
+            }
+            _ => 0,
+        }
+    }
+
+    /// Whether the scopes of the document depend on it.
+    pub(super) fn declares(&self) -> bool {
+        let declares = |kind: &ItemKind| {
+            matches!(
+                kind,
+                ItemKind::Pou { .. }
+                    | ItemKind::Section { .. }
+                    | ItemKind::Types { .. }
+                    | ItemKind::Configuration { .. }
+                    | ItemKind::End(_)
+                    | ItemKind::PouEnd(_)
+            )
+        };
+        matches!(self.tree(), Tree::Iec(tree) if tree.items.iter().any(|item| declares(&item.kind)))
+    }
+}
+
+impl Scopes {
+    pub(super) fn of(document: &Document) -> Scopes {
+        let mut scopes = Scopes::default();
+        let mut hasher = FxHasher::default();
+        for at in document.chunks().filter(|at| at.chunk.declares()) {
+            at.chunk.text().hash(&mut hasher);
+            if let Tree::Iec(tree) = at.chunk.tree() {
+                scopes.add(at.chunk.text(), tree);
+            }
+        }
+        scopes.key = hasher.finish();
+        scopes
+    }
+
+    /// The POU called `name`, letter case aside.
+    pub fn pou_named(&self, name: &str) -> Option<&Pou> {
+        self.pous.iter().find(|pou| pou.name.eq_ignore_ascii_case(name))
+    }
+
+    /// The variable called `name` in POU number `pou`, or else the global one.
+    pub fn variable(&self, pou: Option<usize>, name: &str) -> Option<&Variable> {
+        let name = folded(name);
+        let local = pou
+            .and_then(|number| self.pous.get(number))
+            .and_then(|pou| pou.index.get(&name).and_then(|position| pou.variables.get(*position)));
+        local.or_else(|| self.globals.get(&name))
+    }
+
+    /// The type of a path such as `a`, `T1.Q`, `matrix[1,2].x`, seen from POU number `pou`.
+    /// `None` where some part of it is not declared.
+    pub fn type_of(&self, pou: Option<usize>, path: &str) -> Option<DeclaredType> {
+        let end = path.find(['.', '[']).unwrap_or(path.len());
+        let (root, mut rest) = path.split_at(end);
+        let mut declared = match self.variable(pou, root) {
+            Some(variable) => variable.declared.clone(),
+            None => {
+                let own = pou.and_then(|number| self.pous.get(number))?;
+                own.result.clone().filter(|_| own.name.eq_ignore_ascii_case(root))?
+            }
+        };
+        while !rest.is_empty() {
+            if let Some(after) = rest.strip_prefix('[') {
+                let close = after.find(']')?;
+                declared = match self.resolved(declared)? {
+                    DeclaredType::Array(element) => *element,
+                    _ => return None,
+                };
+                rest = &after[close + 1..];
+            } else {
+                let after = rest.strip_prefix('.')?;
+                let end = after.find(['.', '[']).unwrap_or(after.len());
+                declared = self.member(declared, &after[..end])?;
+                rest = &after[end..];
+            }
+        }
+        self.resolved(declared)
+    }
+
+    /// The type itself where `declared` is the name of a data type.
+    pub fn resolved(&self, declared: DeclaredType) -> Option<DeclaredType> {
+        let mut declared = declared;
+        // Types that name each other in a circle end here, not in an endless loop.
+        for _ in 0..16 {
+            match &declared {
+                DeclaredType::Named(name) => match self.types.get(name) {
+                    Some(next) => declared = next.clone(),
+                    None => return Some(declared),
+                },
+                _ => return Some(declared),
+            }
+        }
+        None
+    }
+
+    /// The type of a member of a structure, of a function block's parameter, or of a bit.
+    fn member(&self, declared: DeclaredType, name: &str) -> Option<DeclaredType> {
+        match self.resolved(declared)? {
+            DeclaredType::Structure(fields) => {
+                let name = folded(name);
+                fields.into_iter().find(|(field, _)| *field == name).map(|(_, declared)| declared)
+            }
+            DeclaredType::Elementary(kind) if kind.bits().is_some() => {
+                let digits = name.trim_start_matches(['%', 'x', 'X']);
+                digits.parse::<u32>().is_ok().then_some(DeclaredType::Elementary(ElementaryType::Bool))
+            }
+            DeclaredType::Named(block) => match FunctionBlock::named(&block) {
+                Some(row) => {
+                    let pins = row.inputs.iter().chain(row.outputs);
+                    let pin = pins.into_iter().find(|pin| pin.name.eq_ignore_ascii_case(name))?;
+                    match pin.kind {
+                        ParameterType::Elementary(kind) => Some(DeclaredType::Elementary(kind)),
+                        ParameterType::Generic(_) => Some(DeclaredType::Unknown),
+                    }
+                }
+                None => {
+                    let pou = self.pou_named(&block)?;
+                    let name = folded(name);
+                    pou.index
+                        .get(&name)
+                        .and_then(|at| pou.variables.get(*at))
+                        .map(|found| found.declared.clone())
+                }
+            },
+            DeclaredType::Unknown => Some(DeclaredType::Unknown),
+            _ => None,
+        }
+    }
+
+    fn add(&mut self, text: &str, tree: &IecTree) {
+        for item in &tree.items {
+            match item.kind {
+                ItemKind::Pou { kind, name, result } => self.pous.push(Pou {
+                    name: name.map_or(SmolStr::default(), |span| SmolStr::from(span.of(text))),
+                    kind,
+                    result: result.map(|id| declared_type(text, tree, id)),
+                    variables: Vec::new(),
+                    index: FxHashMap::default(),
+                }),
+                ItemKind::Section { kind, constant, declarations, .. } => {
+                    for declaration in declarations.of(&tree.declarations) {
+                        let declared = declaration
+                            .declared
+                            .map_or(DeclaredType::Unknown, |id| declared_type(text, tree, id));
+                        let address = match declaration.address.map(|id| tree.operand(id).value) {
+                            Some(Operand::Direct(address)) => Some(address),
+                            _ => None,
+                        };
+                        for name in declaration.names.of(&tree.names) {
+                            let name = SmolStr::from(name.of(text));
+                            let declared = declared.clone();
+                            self.declare(Variable { name, section: kind, constant, declared, address });
+                        }
+                    }
+                }
+                ItemKind::Types { declarations } => {
+                    for declaration in declarations.of(&tree.declarations) {
+                        let name = declaration.names.of(&tree.names).first();
+                        if let (Some(name), Some(id)) = (name, declaration.declared) {
+                            self.types.insert(folded(name.of(text)), declared_type(text, tree, id));
+                        }
+                    }
+                }
+                ItemKind::Configuration { .. } => self.has_configuration = true,
+                _ => {}
+            }
+        }
+    }
+
+    /// The first declaration of a name holds; a rule reports the others.
+    fn declare(&mut self, variable: Variable) {
+        let name = folded(&variable.name);
+        match self.pous.last_mut() {
+            Some(pou) if variable.section != SectionKind::Global => {
+                if let std::collections::hash_map::Entry::Vacant(free) = pou.index.entry(name) {
+                    free.insert(pou.variables.len());
+                    pou.variables.push(variable);
+                }
+            }
+            _ => {
+                self.globals.entry(name).or_insert(variable);
+            }
+        }
+    }
+}
+
+fn declared_type(text: &str, tree: &IecTree, id: TypeId) -> DeclaredType {
+    let written = tree.type_spec(id);
+    match written.value {
+        TypeSpec::Elementary(kind) => DeclaredType::Elementary(kind),
+        TypeSpec::Named => DeclaredType::Named(folded(written.span.of(text))),
+        TypeSpec::Text { wide: false, .. } => DeclaredType::Elementary(ElementaryType::String),
+        TypeSpec::Text { wide: true, .. } => DeclaredType::Elementary(ElementaryType::Wstring),
+        TypeSpec::Subrange { base, .. } => declared_type(text, tree, base),
+        TypeSpec::Enumeration { values } => DeclaredType::Enumeration(
+            values.of(&tree.names).iter().map(|name| folded(name.of(text))).collect(),
+        ),
+        TypeSpec::Array { element, .. } => DeclaredType::Array(Box::new(declared_type(text, tree, element))),
+        TypeSpec::Structure { fields } => {
+            let declarations = fields.of(&tree.declarations).iter();
+            let fields = declarations.flat_map(|declaration| {
+                let declared =
+                    declaration.declared.map_or(DeclaredType::Unknown, |id| declared_type(text, tree, id));
+                let names = declaration.names.of(&tree.names).iter();
+                names.map(move |name| (folded(name.of(text)), declared.clone()))
+            });
+            DeclaredType::Structure(fields.collect())
+        }
+    }
+}
+
+/// The mentions of an IEC chunk; operands that are direct addresses are among them.
+pub(super) fn mentions(text: &str, tree: &IecTree, mentions: &mut Vec<Mention>) {
+    for operand in tree.operands.iter().filter(|operand| matches!(operand.value, Operand::Direct(_))) {
+        of_operand(text, &operand.value, operand.span, Use::Read, mentions);
+    }
+    for mention in tree.mentions(text) {
+        let name = mention.span.of(text);
+        let (symbol, usage) = match mention.role {
+            MentionRole::DeclaresPou(_) => (Symbol::Pou(folded(name)), Use::Declare),
+            MentionRole::DeclaresVariable => (Symbol::variable(name), Use::Declare),
+            MentionRole::DeclaresType => (Symbol::Type(folded(name)), Use::Declare),
+            MentionRole::DeclaresLabel => (Symbol::Label(folded(name)), Use::Declare),
+            MentionRole::Reads => (Symbol::variable(name), Use::Read),
+            MentionRole::Writes => (Symbol::variable(name), Use::Write),
+            MentionRole::Calls => (Symbol::variable(name), Use::ReadWrite),
+            MentionRole::CallsFunction => (Symbol::Pou(folded(name)), Use::Read),
+            MentionRole::Jumps => (Symbol::Label(folded(name)), Use::Jump),
+            MentionRole::NamesType => (Symbol::Type(folded(name)), Use::Read),
+            // These have meaning only together with what stands before them; nothing asks for them by name.
+            MentionRole::DeclaresField
+            | MentionRole::DeclaresEnumerator
+            | MentionRole::DeclaresRuntime
+            | MentionRole::NamesRuntime
+            | MentionRole::NamesParameter
+            | MentionRole::NamesMember => continue,
+        };
+        mentions.push(Mention { symbol, span: mention.span, usage, count: 1 });
+    }
+}

@@ -1,0 +1,296 @@
+//! The document itself: text, chunks, and how an edit changes both.
+
+use super::pages::{Cursor, Page, Pages};
+use super::{Chunk, Notation, Scopes, chunk};
+use crate::target::Target;
+use crate::text::{Encoding, LineColumn, Span, column_of_offset, offset_of_column};
+use ropey::Rope;
+use std::ops::Range;
+use std::sync::{Arc, OnceLock};
+
+/// Larger texts are kept and edited, but not read; the check says so.
+pub const LIMIT_BYTES: usize = 64 << 20;
+
+/// A document at one moment. Cloning copies a pointer for each page of chunks and shares the text.
+#[derive(Clone, Debug)]
+pub struct Document {
+    rope: Rope,
+    notation: Notation,
+    target: &'static Target,
+    pages: Pages,
+    scopes: OnceLock<Arc<Scopes>>,
+}
+
+/// A replacement of bytes; `None` replaces everything.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Edit {
+    /// The bytes replaced.
+    pub range: Option<Range<usize>>,
+    /// What stands there afterwards.
+    pub text: String,
+}
+
+/// A chunk at its place in a document.
+#[derive(Clone, Copy, Debug)]
+pub struct ChunkRef<'a> {
+    /// Byte offset of its start in the document.
+    pub start: usize,
+    /// The chunk.
+    pub chunk: &'a Arc<Chunk>,
+}
+
+impl Document {
+    /// Reads `text`.
+    pub fn new(text: &str, notation: Notation, target: &'static Target) -> Document {
+        let mut document = Document {
+            rope: Rope::from_str(text),
+            notation,
+            target,
+            pages: Pages::default(),
+            scopes: OnceLock::new(),
+        };
+        document.read_all(text, &[]);
+        document
+    }
+
+    /// Keeps `text` without reading it: the last resort after a failure of a reader.
+    pub fn unread(text: &str, notation: Notation, target: &'static Target) -> Document {
+        let rope = Rope::from_str(text);
+        Document { rope, notation, target, pages: Pages::default(), scopes: OnceLock::new() }
+    }
+
+    /// The bytes of `old` that were replaced and those of `self` that replaced them, to whole chunks;
+    /// `None` if nothing changed.
+    pub fn changed_since(&self, old: &Document) -> Option<(Range<usize>, Range<usize>)> {
+        let same = |(left, right): &(&Arc<Page>, &Arc<Page>)| Arc::ptr_eq(left, right);
+        let (new_pages, old_pages) = (self.pages.pages(), old.pages.pages());
+        let head = new_pages.iter().zip(old_pages).take_while(same).count();
+        if head == new_pages.len() && head == old_pages.len() {
+            return None;
+        }
+        let tail =
+            new_pages[head..].iter().rev().zip(old_pages[head..].iter().rev()).take_while(same).count();
+        let bytes = |pages: &[Arc<Page>]| pages.iter().map(|page| page.bytes()).sum::<usize>();
+        let start = bytes(&new_pages[..head]);
+        let end = bytes(&new_pages[new_pages.len() - tail..]);
+        Some((start..old.len() - end, start..self.len() - end))
+    }
+
+    /// In which language it is written.
+    pub fn notation(&self) -> Notation {
+        self.notation
+    }
+
+    /// What it is written for.
+    pub fn target(&self) -> &'static Target {
+        self.target
+    }
+
+    /// The same text read as another language or for another target.
+    pub fn reread(&self, notation: Notation, target: &'static Target) -> Document {
+        Document::new(&self.text(), notation, target)
+    }
+
+    /// Applies `edits` one after another, each to the result of the one before.
+    /// Ranges that leave the text or cut a character are moved to the nearest place inside.
+    pub fn apply(&mut self, edits: &[Edit]) {
+        for edit in edits {
+            match &edit.range {
+                Some(range) => self.replace(range.clone(), &edit.text),
+                None => {
+                    let old: Vec<Arc<Chunk>> = self.chunks().map(|at| at.chunk.clone()).collect();
+                    self.rope = Rope::from_str(&edit.text);
+                    self.read_all(&edit.text, &old);
+                }
+            }
+        }
+    }
+
+    /// The whole text.
+    pub fn text(&self) -> String {
+        self.rope.to_string()
+    }
+
+    /// Length in bytes.
+    pub fn len(&self) -> usize {
+        self.rope.len_bytes()
+    }
+
+    /// Whether there is no text.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Number of lines; a text that ends with a line feed has an empty last line.
+    pub fn line_count(&self) -> usize {
+        self.rope.len_lines()
+    }
+
+    /// The text of `span`.
+    pub fn slice(&self, span: Span) -> String {
+        let end = (span.end as usize).min(self.len());
+        let start = (span.start as usize).min(end);
+        self.rope.get_byte_slice(start..end).map(|slice| slice.to_string()).unwrap_or_default()
+    }
+
+    /// The pages of chunks, in order.
+    pub fn pages(&self) -> &[Arc<Page>] {
+        self.pages.pages()
+    }
+
+    /// The chunks, in order.
+    pub fn chunks(&self) -> impl Iterator<Item = ChunkRef<'_>> {
+        let mut start = 0;
+        self.pages.pages().iter().flat_map(|page| page.chunks()).map(move |chunk| {
+            let at = ChunkRef { start, chunk };
+            start += chunk.len();
+            at
+        })
+    }
+
+    /// The chunk in which `offset` lies; at the very end the last one. `None` if there is no text.
+    pub fn chunk_at(&self, offset: usize) -> Option<ChunkRef<'_>> {
+        let (cursor, start) = self.pages.locate(offset)?;
+        Some(ChunkRef { start, chunk: self.pages.get(cursor)? })
+    }
+
+    /// The chunk that ends where the one containing `offset` starts.
+    pub fn chunk_before(&self, offset: usize) -> Option<ChunkRef<'_>> {
+        let (cursor, start) = self.pages.locate(offset)?;
+        let chunk = self.pages.get(self.pages.previous(cursor)?)?;
+        Some(ChunkRef { start: start - chunk.len(), chunk })
+    }
+
+    /// The POUs and variables declared in it.
+    pub fn scopes(&self) -> &Arc<Scopes> {
+        self.scopes.get_or_init(|| Arc::new(Scopes::of(self)))
+    }
+
+    /// The position of byte `offset`.
+    pub fn position(&self, offset: usize, encoding: Encoding) -> LineColumn {
+        let offset = offset.min(self.len());
+        let line = self.rope.byte_to_line(offset);
+        let start = self.rope.line_to_byte(line);
+        let column = self.with_line(line, |text| column_of_offset(text, offset - start, encoding));
+        LineColumn { line: line as u32, column }
+    }
+
+    /// The byte offset of a position; positions past the end of a line or of the text are moved there.
+    pub fn offset(&self, position: LineColumn, encoding: Encoding) -> usize {
+        let line = position.line as usize;
+        if line >= self.rope.len_lines() {
+            return self.len();
+        }
+        self.rope.line_to_byte(line)
+            + self.with_line(line, |text| {
+                let text = text.trim_end_matches('\n').trim_end_matches('\r');
+                offset_of_column(text, position.column, encoding)
+            })
+    }
+
+    fn with_line<T>(&self, line: usize, read: impl FnOnce(&str) -> T) -> T {
+        let slice = self.rope.line(line);
+        match slice.as_str() {
+            Some(text) => read(text),
+            None => read(&slice.to_string()),
+        }
+    }
+
+    fn read_all(&mut self, text: &str, old: &[Arc<Chunk>]) {
+        let chunks = if text.len() > LIMIT_BYTES { Vec::new() } else { self.read_pieces(text, old) };
+        self.pages = Pages::new(chunks);
+        self.scopes = OnceLock::new();
+    }
+
+    fn replace(&mut self, range: Range<usize>, text: &str) {
+        let start = self.rope.byte_to_char(range.start.min(self.len()));
+        let end = self.rope.byte_to_char(range.end.min(self.len())).max(start);
+        let range = self.rope.char_to_byte(start)..self.rope.char_to_byte(end);
+        self.rope.remove(start..end);
+        self.rope.insert(start, text);
+        let too_large = self.len() > LIMIT_BYTES || self.pages.pages().is_empty();
+        match self.pages.locate(range.start) {
+            Some((first, start)) if !too_large => self.read_window(first, start, range, text.len()),
+            _ => {
+                let text = self.text();
+                self.read_all(&text, &[]);
+            }
+        }
+    }
+
+    /// Splits and reads anew the chunks around an edit that put `inserted` bytes in the place of `range`.
+    ///
+    /// A boundary depends on the text from the boundary before it to the end of the chunk after it. So the window
+    /// starts one chunk before the first touched one and ends with one untouched chunk; it grows until it starts with
+    /// a chunk that kept its extent and ends with the two boundaries of the untouched chunk.
+    fn read_window(&mut self, first: Cursor, first_start: usize, range: Range<usize>, inserted: usize) {
+        let (mut first, mut window_start) = (first, first_start);
+        let (mut last, _) = self.pages.locate(range.end).unwrap_or((first, first_start));
+        let touches_start = range.start == first_start;
+        for _ in 0..if touches_start { 2 } else { 1 } {
+            self.step_back(&mut first, &mut window_start);
+        }
+        let mut reach = 1;
+        loop {
+            for _ in 0..reach {
+                last = self.pages.next(last).unwrap_or(last);
+            }
+            let old = self.pages.between(first, last);
+            let old_length: usize = old.iter().map(|chunk| chunk.len()).sum();
+            let window_end = window_start + old_length + inserted - range.len();
+            let text = self.slice(Span::new(window_start, window_end));
+            let ends = chunk::split(&text, self.notation);
+            let at_text_end = self.pages.next(last).is_none();
+            let sentinel = old.last().map_or(0, |chunk| chunk.len());
+            let head = old.first().map_or(0, |chunk| chunk.len());
+            let end_holds = at_text_end || (old.len() > 1 && ends_with(&ends, text.len(), sentinel));
+            let start_holds =
+                window_start == 0 || (ends.first() == Some(&head) && window_start + head <= range.start);
+            if end_holds && start_holds {
+                let new = self.read_pieces(&text, &old);
+                let declares = |chunks: &[Arc<Chunk>]| chunks.iter().any(|chunk| chunk.declares());
+                if declares(&old) || declares(&new) {
+                    self.scopes = OnceLock::new();
+                }
+                self.pages.replace(first, last, new);
+                return;
+            }
+            if !start_holds {
+                for _ in 0..reach {
+                    self.step_back(&mut first, &mut window_start);
+                }
+            }
+            reach *= 2;
+        }
+    }
+
+    fn step_back(&self, first: &mut Cursor, start: &mut usize) {
+        if let Some(previous) = self.pages.previous(*first) {
+            *start -= self.pages.get(previous).map_or(0, |chunk| chunk.len());
+            *first = previous;
+        }
+    }
+
+    /// Splits and reads `text`; pieces that stood among `old` are taken over with all that is known of them.
+    fn read_pieces(&self, text: &str, old: &[Arc<Chunk>]) -> Vec<Arc<Chunk>> {
+        let known: rustc_hash::FxHashMap<&str, &Arc<Chunk>> =
+            old.iter().map(|chunk| (chunk.text(), chunk)).collect();
+        let ends = chunk::split(text, self.notation);
+        let mut start = 0;
+        ends.into_iter()
+            .map(|end| {
+                let piece = &text[start..end];
+                start = end;
+                match known.get(piece) {
+                    Some(chunk) => Arc::clone(chunk),
+                    None => Arc::new(Chunk::read(piece, self.notation, self.target)),
+                }
+            })
+            .collect()
+    }
+}
+
+/// Whether the last chunk of a text of `length` bytes starts `sentinel` bytes before its end.
+fn ends_with(ends: &[usize], length: usize, sentinel: usize) -> bool {
+    ends.last() == Some(&length) && ends.len() >= 2 && ends[ends.len() - 2] == length - sentinel
+}

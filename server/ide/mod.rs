@@ -1,0 +1,99 @@
+//! Editor features, one file each: offsets of a document in, plain structs out. No protocol, no files, no threads.
+
+use crate::document::Document;
+use crate::text::{Fix, Language, Message, Span, TextEdit};
+
+mod answer;
+pub use answer::{
+    Completion, CompletionKind, Fold, FoldKind, Hover, InlayHint, Status, SymbolKind, SymbolNode, Token, TokenKind,
+};
+
+mod names;
+mod words;
+
+mod completion;
+mod definition;
+mod fixes;
+mod folding;
+mod format;
+mod hover;
+mod inlay_hints;
+mod references;
+mod rename;
+mod semantic_tokens;
+mod status;
+mod symbols;
+
+pub use fixes::FixOf;
+pub use format::Style;
+
+/// What stands at `offset`: the page of an instruction, the meaning and range of a device, where it is used.
+pub fn hover(document: &Document, offset: usize, language: Language) -> Option<Hover> {
+    hover::at(document, offset, language)
+}
+
+/// What could be written at `offset`.
+pub fn completions(document: &Document, offset: usize, language: Language) -> Vec<Completion> {
+    completion::at(document, offset, language)
+}
+
+/// Where the name at `offset` is declared or, for a device, driven.
+pub fn definition(document: &Document, offset: usize) -> Vec<Span> {
+    definition::of(document, offset)
+}
+
+/// Every place of the name at `offset`.
+pub fn references(document: &Document, offset: usize, with_declaration: bool) -> Vec<Span> {
+    references::of(document, offset, with_declaration)
+}
+
+/// The name at `offset`, if it can be renamed.
+pub fn renamable(document: &Document, offset: usize) -> Option<Span> {
+    rename::renamable(document, offset)
+}
+
+/// The edits that give the name at `offset` the name `new`.
+///
+/// # Errors
+/// Where there is no name, where `new` is none of its kind, or where it is taken.
+pub fn rename(document: &Document, offset: usize, new: &str) -> Result<Vec<TextEdit>, Message> {
+    rename::rename(document, offset, new)
+}
+
+/// The outline.
+pub fn symbols(document: &Document) -> Vec<SymbolNode> {
+    symbols::of(document)
+}
+
+/// What can be folded.
+pub fn folds(document: &Document) -> Vec<Fold> {
+    folding::of(document)
+}
+
+/// All tokens that mean something, in order, none overlapping, none over more than one line.
+pub fn semantic_tokens(document: &Document) -> Vec<Token> {
+    semantic_tokens::of(document)
+}
+
+/// What the editor may show between the words of `span`.
+pub fn inlay_hints(document: &Document, span: Span) -> Vec<InlayHint> {
+    inlay_hints::within(document, span)
+}
+
+/// The edits that make the document canonical; none if it is.
+pub fn format(document: &Document, style: Style) -> Vec<TextEdit> {
+    format::edits(document, style)
+}
+
+/// The fixes of `diagnostics` that touch `span`.
+pub fn fixes(diagnostics: &[crate::text::Diagnostic], span: Span) -> Vec<FixOf<'_>> {
+    fixes::within(diagnostics, span)
+}
+
+/// What the status bar shows.
+pub fn status(document: &Document) -> Status {
+    status::of(document)
+}
+
+#[allow(unused_imports, reason = "named in the documentation of FixOf")]
+use Fix as _;

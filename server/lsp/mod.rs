@@ -1,0 +1,39 @@
+//! The language server: the protocol around `ide` and `check`, and nothing about languages.
+//!
+//! A message goes through [`service`], which applies changes of state in the order of arrival and gives every request
+//! the snapshot of that moment; [`backend`] answers from the snapshot; [`publisher`] sends diagnostics.
+
+mod backend;
+mod capabilities;
+mod publisher;
+mod service;
+mod settings;
+mod status;
+mod to_proto;
+mod workspace;
+
+use service::Ordered;
+use std::sync::Arc;
+use tower_lsp::{LspService, Server};
+use workspace::Workspace;
+
+/// How many requests may be under way at once. Each is a task of its own, so this bounds memory, not speed.
+const CONCURRENCY: usize = 4096;
+
+/// Serves one client on standard input and output until it says `exit` or goes away.
+/// Returns the process's exit code: 0 after a `shutdown`, else 1, as the protocol wants.
+pub async fn serve() -> u8 {
+    let mut workspace = None;
+    let (service, socket) = LspService::new(|client| {
+        let shared = Arc::new(Workspace::new(client));
+        workspace = Some(shared.clone());
+        backend::Backend::new(shared)
+    });
+    let Some(workspace) = workspace else { return 1 };
+    let ordered = Ordered::new(service, workspace.clone());
+    Server::new(tokio::io::stdin(), tokio::io::stdout(), socket)
+        .concurrency_level(CONCURRENCY)
+        .serve(ordered)
+        .await;
+    u8::from(!workspace.was_shut_down())
+}

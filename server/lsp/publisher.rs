@@ -1,0 +1,148 @@
+//! One publisher for each open document: diagnostics of the newest version, never of an older one after it.
+//!
+//! Edits that come while one is worked on are taken together; nothing waits for a pause, except the batch tier,
+//! whose findings follow when typing stops and until then move along with the text.
+
+use super::settings::Settings;
+use super::status::StatusNotification;
+use super::to_proto;
+use super::workspace::Open;
+use crate::check;
+use crate::text::{Diagnostic, Encoding};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use tokio::sync::watch;
+use tower_lsp::Client;
+use tower_lsp::ls_types::Uri;
+
+/// A batch run that takes longer than this waits for a pause in typing.
+const AT_ONCE: Duration = Duration::from_micros(500);
+
+/// A pause in typing.
+const PAUSE: Duration = Duration::from_millis(120);
+
+/// Sends what it is given to a task, which sees the newest only.
+pub(super) struct Publisher {
+    sender: watch::Sender<Order>,
+}
+
+#[derive(Clone, Default)]
+enum Order {
+    #[default]
+    Nothing,
+    Publish(Arc<Open>),
+    Close(Uri),
+}
+
+/// What the task remembers.
+struct Task {
+    client: Client,
+    encoding: Encoding,
+    pushes: bool,
+    /// The newest batch findings, and the document that they belong to.
+    batch: Option<(Arc<Open>, Vec<Diagnostic>)>,
+    batch_took: Duration,
+    status: Option<StatusNotification>,
+}
+
+impl Publisher {
+    pub(super) fn start(client: Client, encoding: Encoding, settings: &Settings) -> Publisher {
+        let (sender, receiver) = watch::channel(Order::Nothing);
+        let pushes = !settings.pulls();
+        let task =
+            Task { client, encoding, pushes, batch: None, batch_took: Duration::ZERO, status: None };
+        tokio::spawn(task.run(receiver));
+        Publisher { sender }
+    }
+
+    pub(super) fn publish(&self, open: Arc<Open>) {
+        self.sender.send_replace(Order::Publish(open));
+    }
+
+    pub(super) fn close(self, uri: Uri) {
+        self.sender.send_replace(Order::Close(uri));
+    }
+}
+
+impl Task {
+    async fn run(mut self, mut receiver: watch::Receiver<Order>) {
+        while receiver.changed().await.is_ok() {
+            let order = receiver.borrow_and_update().clone();
+            match order {
+                Order::Nothing => {}
+                Order::Publish(open) => self.publish(open, &mut receiver).await,
+                Order::Close(uri) => {
+                    self.client.publish_diagnostics(uri, Vec::new(), None).await;
+                    return;
+                }
+            }
+        }
+    }
+
+    async fn publish(&mut self, open: Arc<Open>, receiver: &mut watch::Receiver<Order>) {
+        let at_once = self.batch_took < AT_ONCE;
+        if !at_once {
+            let realtime = self.find(&open, check::realtime).await;
+            let mut diagnostics = self.carried(&open);
+            diagnostics.extend(realtime);
+            self.push(&open, diagnostics).await;
+            if tokio::time::timeout(PAUSE, receiver.changed()).await.is_ok() {
+                receiver.mark_changed();
+                return;
+            }
+        }
+        let started = Instant::now();
+        let batch = self.find(&open, check::program).await;
+        self.batch_took = started.elapsed();
+        let mut diagnostics = self.find(&open, check::realtime).await;
+        diagnostics.extend(batch.iter().cloned());
+        self.batch = Some((open.clone(), batch));
+        self.push(&open, diagnostics).await;
+        self.tell_status(&open).await;
+    }
+
+    /// Runs `find` beside the other tasks; if it fails the log has it and nothing is found.
+    async fn find(
+        &self,
+        open: &Arc<Open>,
+        find: fn(&crate::document::Document, &check::Severities) -> Vec<Diagnostic>,
+    ) -> Vec<Diagnostic> {
+        let open = open.clone();
+        let found = tokio::task::spawn_blocking(move || find(&open.document, &open.severities)).await;
+        found.unwrap_or_else(|failure| {
+            tracing::error!("a check failed: {failure}");
+            Vec::new()
+        })
+    }
+
+    /// The last batch findings, moved along with the text; those in changed text are dropped.
+    fn carried(&self, open: &Open) -> Vec<Diagnostic> {
+        let Some((old, batch)) = &self.batch else { return Vec::new() };
+        let Some((before, after)) = open.document.changed_since(&old.document) else { return batch.clone() };
+        let moved = batch.iter().filter_map(|diagnostic| {
+            if diagnostic.span.end as usize <= before.start {
+                Some(diagnostic.clone())
+            } else if diagnostic.span.start as usize >= before.end {
+                Some(diagnostic.moved(before.end, after.end))
+            } else {
+                None
+            }
+        });
+        moved.collect()
+    }
+
+    async fn push(&self, open: &Open, diagnostics: Vec<Diagnostic>) {
+        if self.pushes {
+            let diagnostics = to_proto::diagnostics(open, check::sorted(diagnostics), self.encoding);
+            self.client.publish_diagnostics(open.uri.clone(), diagnostics, Some(open.version)).await;
+        }
+    }
+
+    async fn tell_status(&mut self, open: &Open) {
+        let status = StatusNotification::of(open);
+        if self.status.as_ref() != Some(&status) {
+            self.client.send_notification::<super::status::StatusMethod>(status.clone()).await;
+            self.status = Some(status);
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Finding projects and their files, and opening a file the way its project wants it.
+
+use super::{Manifest, ManifestError};
+use crate::document::{Document, Notation, detect_ladder_target, detect_notation};
+use crate::target::{Model, Target};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// The manifest's file name.
+pub const MANIFEST_NAME: &str = "rungwise.toml";
+
+/// A folder of programs with its settings.
+#[derive(Clone, Debug)]
+pub struct Project {
+    /// The folder in which the manifest stands.
+    pub root: PathBuf,
+    /// Its settings; the defaults where it could not be read.
+    pub manifest: Manifest,
+    /// Why it could not be read.
+    pub error: Option<ManifestError>,
+}
+
+impl Project {
+    /// The project whose manifest stands in `folder`.
+    ///
+    /// # Errors
+    /// Where the manifest is missing or no UTF-8 text. A manifest with mistakes gives a project with `error`.
+    pub fn read(folder: &Path) -> io::Result<Project> {
+        let text = std::fs::read_to_string(folder.join(MANIFEST_NAME))?;
+        let (manifest, error) = match Manifest::read(&text) {
+            Ok(manifest) => (manifest, None),
+            Err(error) => (Manifest::default(), Some(error)),
+        };
+        Ok(Project { root: folder.to_path_buf(), manifest, error })
+    }
+
+    /// The project to which `path` belongs: the nearest manifest in its folder or above.
+    pub fn of(path: &Path) -> Option<Project> {
+        let start = if path.is_dir() { path } else { path.parent()? };
+        start
+            .ancestors()
+            .find(|folder| folder.join(MANIFEST_NAME).is_file())
+            .and_then(|root| Project::read(root).ok())
+    }
+
+    /// The program files in order of execution: those that the manifest lists, else all in the folder, by name.
+    ///
+    /// # Errors
+    /// Where a folder cannot be read.
+    pub fn files(&self) -> io::Result<Vec<PathBuf>> {
+        match &self.manifest.files {
+            Some(names) => Ok(names.iter().map(|name| self.root.join(name)).collect()),
+            None => program_files(&self.root),
+        }
+    }
+}
+
+/// Whether the name ends in `.lad` or `.il`.
+pub fn is_program_file(path: &Path) -> bool {
+    path.extension().is_some_and(|end| end.eq_ignore_ascii_case("lad") || end.eq_ignore_ascii_case("il"))
+}
+
+/// The program files below `folder`, by name; hidden folders and links to folders are passed over.
+pub fn program_files(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut entries: Vec<_> = std::fs::read_dir(folder)?.collect::<Result<_, _>>()?;
+    entries.sort_by_key(|entry| entry.file_name());
+    let mut files = Vec::new();
+    for entry in entries {
+        let path = entry.path();
+        let hidden = entry.file_name().to_string_lossy().starts_with('.');
+        if entry.file_type()?.is_dir() && !hidden {
+            files.extend(program_files(&path)?);
+        } else if is_program_file(&path) {
+            files.push(path);
+        }
+    }
+    Ok(files)
+}
+
+/// Reads `text` as the document called `name`, with what the user and then the project want; without either, by the
+/// name's ending and the content.
+pub fn open_document(
+    name: &str,
+    text: &str,
+    manifest: &Manifest,
+    target: Option<&'static Target>,
+    notation: Option<Notation>,
+) -> Document {
+    let (notation, target) = decide(name, text, manifest, target, notation);
+    Document::new(text, notation, target)
+}
+
+/// The language and target of a document, as [`open_document`] decides.
+pub fn decide(
+    name: &str,
+    text: &str,
+    manifest: &Manifest,
+    target: Option<&'static Target>,
+    notation: Option<Notation>,
+) -> (Notation, &'static Target) {
+    let target = target.or_else(|| manifest.target());
+    if name.to_ascii_lowercase().ends_with(".lad") || notation == Some(Notation::Ladder) {
+        return (Notation::Ladder, target.unwrap_or_else(|| detect_ladder_target(text)));
+    }
+    match notation.or_else(|| manifest.notation()).unwrap_or_else(|| detect_notation(text)) {
+        Notation::IecIl => (Notation::IecIl, Target::of(Model::Iec)),
+        notation => (notation, target.filter(|target| target.is_fx()).unwrap_or(Target::of(Model::Fx2n))),
+    }
+}

@@ -1,0 +1,161 @@
+//! The manifest `rungwise.toml`.
+
+use crate::check::Severities;
+use crate::document::Notation;
+use crate::target::Target;
+use crate::text::{Message, Severity, Span};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// A project's settings. Every one has a default, so an empty manifest is one.
+#[derive(Clone, PartialEq, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Manifest {
+    /// Shown to people; the folder's name where it is left out.
+    pub name: Option<String>,
+    /// `fx1s`, `fx1n`, `fx2n`, `fx3u`, `iec`.
+    pub target: Option<String>,
+    /// `fx` or `iec`, for `.il` files.
+    pub dialect: Option<String>,
+    /// The program files in order of execution, relative to the manifest; all files of the folder where left out.
+    pub files: Option<Vec<String>>,
+    /// The device comments file.
+    pub comments: Option<String>,
+    /// Severity of rules: a code maps to `error`, `warning`, `hint` or `off`.
+    pub rules: BTreeMap<String, String>,
+    /// What the formatter writes.
+    pub format: FormatSettings,
+    /// Tasks of the program.
+    #[serde(rename = "task")]
+    pub tasks: Vec<TaskSettings>,
+    /// The serial port of the PLC.
+    pub port: Option<String>,
+}
+
+/// What the formatter writes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FormatSettings {
+    /// The look of ladder.
+    pub style: FormatStyle,
+    /// The least width of ladder, in cells.
+    pub width: u32,
+}
+
+impl Default for FormatSettings {
+    fn default() -> FormatSettings {
+        FormatSettings { style: FormatStyle::Iec, width: 48 }
+    }
+}
+
+/// The look of ladder.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FormatStyle {
+    /// `| |`, names above.
+    #[default]
+    Iec,
+    /// `[X0]`, names inside.
+    Brackets,
+    /// `┤ ├`, box drawing.
+    Unicode,
+}
+
+/// A task.
+#[derive(Clone, PartialEq, Eq, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TaskSettings {
+    /// Its name.
+    pub name: String,
+    /// Its interval, `10ms`; left out it runs in every scan.
+    pub interval: Option<String>,
+    /// Its priority, 0 is the highest.
+    #[serde(default)]
+    pub priority: u32,
+    /// The program files that it runs, in order.
+    pub programs: Vec<String>,
+}
+
+/// Why a manifest cannot be used, with the place in it.
+#[derive(Clone, PartialEq, Eq, Debug, thiserror::Error)]
+#[error("{}", message.render(crate::text::Language::English))]
+pub struct ManifestError {
+    /// What is wrong.
+    pub message: Message,
+    /// Where.
+    pub span: Span,
+}
+
+impl Manifest {
+    /// Reads a manifest.
+    ///
+    /// # Errors
+    /// With the place, where it is not TOML, has an unknown key or a value that a key does not take.
+    pub fn read(text: &str) -> Result<Manifest, ManifestError> {
+        let manifest: Manifest = toml::from_str(text).map_err(|error| {
+            let span = error.span().map_or(Span::default(), |range| Span::new(range.start, range.end));
+            ManifestError { message: Message::new("manifest.toml").with("reason", error.message()), span }
+        })?;
+        manifest.validated(text)
+    }
+
+    /// The target, if the manifest names one.
+    pub fn target(&self) -> Option<&'static Target> {
+        self.target.as_deref().and_then(Target::named)
+    }
+
+    /// The language of `.il` files, if the manifest names one.
+    pub fn notation(&self) -> Option<Notation> {
+        self.dialect.as_deref().and_then(dialect_named)
+    }
+
+    /// The rules' severities.
+    pub fn severities(&self) -> Severities {
+        let pairs = self.rules.iter().filter_map(|(code, word)| Some((code.clone(), severity_named(word)?)));
+        Severities(pairs.collect())
+    }
+
+    fn validated(self, text: &str) -> Result<Manifest, ManifestError> {
+        let fail = |key: &'static str, word: &str| {
+            let start = text.find(word).unwrap_or(0);
+            Err(ManifestError {
+                message: Message::new(key).with("word", word),
+                span: Span::new(start, (start + word.len()).min(text.len())),
+            })
+        };
+        if let Some(word) = self.target.as_deref().filter(|word| Target::named(word).is_none()) {
+            return fail("manifest.target", word);
+        }
+        if let Some(word) = self.dialect.as_deref().filter(|word| dialect_named(word).is_none()) {
+            return fail("manifest.dialect", word);
+        }
+        for (code, word) in &self.rules {
+            if crate::check::Rule::named(code).is_none() {
+                return fail("manifest.rule", code);
+            }
+            if severity_named(word).is_none() {
+                return fail("manifest.severity", word);
+            }
+        }
+        Ok(self)
+    }
+}
+
+fn dialect_named(word: &str) -> Option<Notation> {
+    match word {
+        "fx" => Some(Notation::FxIl),
+        "iec" => Some(Notation::IecIl),
+        _ => None,
+    }
+}
+
+/// `Some(None)` is `off`.
+fn severity_named(word: &str) -> Option<Option<Severity>> {
+    match word {
+        "error" => Some(Some(Severity::Error)),
+        "warning" => Some(Some(Severity::Warning)),
+        "hint" => Some(Some(Severity::Hint)),
+        "off" => Some(None),
+        _ => None,
+    }
+}

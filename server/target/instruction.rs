@@ -1,0 +1,236 @@
+//! The shape of a row of the FX instruction table, and the forms in which an instruction is written.
+
+use super::{Accepts, Constant, DeviceKind, Model, Operand, instructions};
+use std::fmt;
+
+/// One instruction of the FX family: everything that any room needs to know about it.
+#[derive(Clone, Copy, Debug)]
+pub struct Instruction {
+    /// The plain mnemonic, upper case: `MOV`, `LD=`.
+    pub mnemonic: &'static str,
+    /// A few words: `move`, `load compare equal`.
+    pub title: &'static str,
+    /// What it does to the current result and the stacks.
+    pub role: Role,
+    /// Whether there is a 32-bit form (`DMOV`, `LDD=`).
+    pub wide: Wide,
+    /// Whether there is a pulse form (`MOVP`), executed only when power arrives.
+    pub pulse: bool,
+    /// The operands in order.
+    pub operands: &'static [OperandSpec],
+    /// How many program steps it takes.
+    pub steps: Steps,
+    /// How it is coded.
+    pub opcode: Opcode,
+    /// The models that have it.
+    pub models: &'static [Model],
+    /// The page: Markdown, one paragraph and a fenced `il` example that checks clean on each of `models`.
+    pub page: &'static str,
+}
+
+/// What an instruction does to the current result, the block stack and the branch stack.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Role {
+    /// LD family: pushes a new block.
+    Load,
+    /// AND family: contact in series.
+    Series,
+    /// OR family: contact in parallel.
+    Parallel,
+    /// ANB: joins the two upper blocks in series.
+    BlockSeries,
+    /// ORB: joins the two upper blocks in parallel.
+    BlockParallel,
+    /// MPS: remembers the current result.
+    BranchPush,
+    /// MRD: recalls it.
+    BranchRead,
+    /// MPP: recalls and forgets it.
+    BranchPop,
+    /// INV, MEP, MEF: changes the current result.
+    Modify,
+    /// STL: a step contact, which also ends the step before it.
+    StepLoad,
+    /// Uses the current result and keeps it: OUT, SET, MC, every applied instruction that is driven by contacts.
+    Output,
+    /// Stands without a current result: END, FEND, NEXT, MCR, RET, EI, NOP …
+    Standalone,
+}
+
+/// Whether an instruction has a 32-bit form.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Wide {
+    /// 16 bit only.
+    No,
+    /// 16 bit, and 32 bit with `D`.
+    Yes,
+    /// 32 bit only: the `D` must be written (`DEADD`, `DHSCS`).
+    Only,
+}
+
+/// How an operand is used.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Access {
+    /// Read.
+    Read,
+    /// Written.
+    Write,
+    /// Read and written (INC, XCH).
+    ReadWrite,
+}
+
+/// One operand of an instruction.
+#[derive(Clone, Copy, Debug)]
+pub struct OperandSpec {
+    /// The manual's name: `S`, `S1`, `D`, `m`, `n`.
+    pub name: &'static str,
+    /// A few words for signature help: `source`, `number of points`.
+    pub meaning: &'static str,
+    /// How it is used.
+    pub access: Access,
+    /// What it takes.
+    pub accepts: Accepts,
+    /// The limits of an integer constant here, where they are narrower than the register's.
+    pub range: Option<(i64, i64)>,
+    /// The same for the 32-bit form where it differs from `range` (the bits of a rotation).
+    pub wide_range: Option<(i64, i64)>,
+    /// How many consecutive devices it covers (`2` for a pair …), where that is fixed and not 1; else 1.
+    pub count: u8,
+    /// Whether it may be left out (the preset of OUT, which only timers and counters take).
+    pub optional: bool,
+}
+
+/// How many steps an instruction takes in program memory; a step is one 16-bit word.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Steps {
+    /// Always the same.
+    Fixed(u8),
+    /// One for the opcode, and for each operand 2 in the 16-bit form and 4 in the 32-bit form.
+    ByOperands,
+    /// Depends on the device: OUT, SET, RST, contacts of extended relays.
+    ByDevice,
+}
+
+/// How an instruction is coded; the words are built by the assembler.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Opcode {
+    /// A whole word, no operand inside: ANB `FFF8`, END `000F`.
+    Word(u16),
+    /// The upper four bits of a word whose lower twelve name the bit device: LD `2`.
+    /// `extended` is the two-word form's opcode for devices outside those twelve bits, 0 where there is none.
+    Contact {
+        /// Upper four bits.
+        class: u8,
+        /// Opcode of the two-word form.
+        extended: u16,
+    },
+    /// The opcode in a word of its own, then a word `8000h` + bits for each operand: LDP `01CA`, PLS `0008`, MC `000A`.
+    Device(u16),
+    /// One of several codes, by the device: OUT, SET, RST.
+    ByDevice,
+    /// Applied instruction by its function number: `(number + 8) * 2`, +1 for 32 bit, +1000h for pulse.
+    Function(u16),
+    /// A label, `B000h` + number.
+    Label,
+    /// No source tells; a program with it cannot be assembled.
+    Unknown,
+}
+
+/// An instruction in one of its written forms.
+#[derive(Clone, Copy)]
+pub struct Form {
+    /// The row.
+    pub instruction: &'static Instruction,
+    /// The 32-bit form.
+    pub wide: bool,
+    /// The pulse form.
+    pub pulse: bool,
+}
+
+impl Form {
+    /// The form written as `mnemonic`, letter case aside. Linear work is done once; a look-up is a hash.
+    ///
+    /// ```
+    /// # use rungwise::target::Form;
+    /// assert_eq!(Form::named("ldi").map(|form| form.instruction.mnemonic), Some("LDI"));
+    /// ```
+    pub fn named(mnemonic: &str) -> Option<Form> {
+        instructions::form_named(mnemonic)
+    }
+
+    /// As it is written: `DMOVP`, `LDD=`.
+    pub fn mnemonic(self) -> String {
+        instructions::spelling(self.instruction, self.wide, self.pulse)
+    }
+
+    /// Program steps with these operands, missing ones counted as written.
+    pub fn steps(self, operands: &[Operand]) -> u32 {
+        instructions::steps(self, operands)
+    }
+
+    /// Whether operand number `place`, from 0, may be `operand` on `model`. Words that could not be read pass, and a
+    /// place that the instruction does not have takes nothing.
+    pub fn takes(self, place: usize, operand: &Operand, model: Model) -> bool {
+        let Some(spec) = self.instruction.operands.get(place) else {
+            return false;
+        };
+        // Applied instructions can be indexed on every model, basic ones only on the FX3U.
+        let indexed = matches!(operand, Operand::Indexed { .. });
+        let may_be_indexed = matches!(self.instruction.opcode, Opcode::Function(_)) || model == Model::Fx3u;
+        spec.accepts.on(model).takes(operand) && (may_be_indexed || !indexed)
+    }
+
+    /// The least and the greatest integer constant that operand number `place` takes; `operands` are all of the
+    /// instruction, since the preset of OUT depends on its device.
+    pub fn constant_limits(self, place: usize, operands: &[Operand]) -> (i64, i64) {
+        const WORD: (i64, i64) = (i16::MIN as i64, i16::MAX as i64);
+        const DOUBLE: (i64, i64) = (i32::MIN as i64, i32::MAX as i64);
+        let Some(spec) = self.instruction.operands.get(place) else {
+            return WORD;
+        };
+        if spec.optional {
+            let driven = operands.first().and_then(Operand::device);
+            let counts_wide = driven.is_some_and(|d| d.kind == DeviceKind::C && d.number >= 200);
+            return if counts_wide { DOUBLE } else { (0, WORD.1) };
+        }
+        let range = if self.wide { spec.wide_range.or(spec.range) } else { spec.range };
+        range.unwrap_or(if self.wide { DOUBLE } else { WORD })
+    }
+
+    /// Whether `constant` lies within the limits at `place`. A hexadecimal one is a pattern of 16 or 32 bits: `HFFFF`
+    /// is -1 in the 16-bit form. Real constants are no matter of limits and fit.
+    pub fn constant_fits(self, place: usize, constant: Constant, operands: &[Operand]) -> bool {
+        let (least, greatest) = self.constant_limits(place, operands);
+        let wide = greatest > i64::from(i16::MAX) || (self.wide && least < 0);
+        let value = match constant {
+            Constant::Decimal(value) => value,
+            Constant::Hexadecimal(bits) => match (u32::try_from(bits), u16::try_from(bits)) {
+                (_, Ok(word)) if !wide && least < 0 => i64::from(word as i16),
+                (Ok(double), _) if wide && least < 0 => i64::from(double as i32),
+                (Ok(double), _) => i64::from(double),
+                _ => return false,
+            },
+            Constant::Real(_) => return true,
+        };
+        (least..=greatest).contains(&value)
+    }
+
+    /// Whether `model` has it.
+    pub fn is_on(self, model: Model) -> bool {
+        self.instruction.models.contains(&model)
+    }
+}
+
+impl PartialEq for Form {
+    fn eq(&self, other: &Form) -> bool {
+        self.instruction.mnemonic == other.instruction.mnemonic
+            && self.wide == other.wide
+            && self.pulse == other.pulse
+    }
+}
+
+impl fmt::Debug for Form {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.mnemonic())
+    }
+}

@@ -1,0 +1,105 @@
+//! FNC 170–177: Gray code, and the small analog modules that have an instruction of their own.
+
+use super::specs::{FX1N_UP, FX2N_UP, applied, destination, source};
+use crate::target::Instruction;
+
+/// GRY GBIN RD3A WR3A.
+pub const ROWS: &[Instruction] = &[
+    applied(
+        170,
+        "GRY",
+        "binary to Gray code",
+        &[
+            source("S", "number").within(0, 32_767).within_wide(0, 2_147_483_647),
+            destination("D", "Gray code"),
+        ],
+        "Turns a number into Gray code, in which neighbours differ in one bit only. It takes 0 to \
+         32,767 (`DGRY` to 2,147,483,647); a negative number is an operation error. It works in every \
+         scan in which it is driven. Outputs of a word such as `K2Y0` switch together at the end of the \
+         scan, but relay contacts do not close at exactly the same time: the receiver sees a clean code \
+         only from transistors.\n\n\
+         ```il\n\
+         LD M8000\n\
+         GRY D0 K2Y0\n\
+         LD X0\n\
+         INCP D0\n\
+         END\n\
+         ```\n",
+    )
+    .wide()
+    .pulse()
+    .on(FX2N_UP),
+    applied(
+        171,
+        "GBIN",
+        "Gray code to binary",
+        &[
+            source("S", "Gray code").within(0, 32_767).within_wide(0, 2_147_483_647),
+            destination("D", "number"),
+        ],
+        "Turns Gray code into a number, mostly that of an absolute encoder at the inputs: `K3X0` for \
+         twelve tracks. It takes 0 to 32,767 (`DGBIN` to 2,147,483,647). The position is as old as a \
+         scan and the input filter (about 10 ms) together: at speed that is several divisions. Refresh \
+         the inputs with a short filter by `REFF` just before if that is too much.\n\n\
+         ```il\n\
+         LD M8000\n\
+         GBIN K3X0 D0\n\
+         LD>= D0 K1000\n\
+         OUT Y0\n\
+         END\n\
+         ```\n",
+    )
+    .wide()
+    .pulse()
+    .on(FX2N_UP),
+    applied(
+        176,
+        "RD3A",
+        "read an analog module",
+        &[
+            source("m1", "module number from the CPU on").within(0, 7),
+            source("m2", "channel"),
+            destination("D", "measured value"),
+        ],
+        "Starts a conversion in a small analog module (FX0N-3A, FX2N-2AD), waits for it and stores the \
+         value, which would take several `FROM` and `TO` otherwise. `m1` counts the special modules \
+         from the CPU on beginning with 0. The channel is 1 or 2 for the FX0N-3A, 21 or 22 for the \
+         FX2N-2AD; some compatible controllers number their own channels from 0. It converts in every \
+         scan in which it is driven and makes the scan longer: drive it by a clock such as `M8012` if \
+         the value changes slowly. FX2N has it from version 3.00 on.\n\n\
+         ```il\n\
+         LD M8000\n\
+         RD3A K0 K1 D0\n\
+         LD> D0 K200\n\
+         OUT Y0\n\
+         END\n\
+         ```\n",
+    )
+    .pulse()
+    .on(FX1N_UP),
+    applied(
+        177,
+        "WR3A",
+        "write to an analog module",
+        &[
+            source("m1", "module number from the CPU on").within(0, 7),
+            source("m2", "channel"),
+            source("S", "value to put out"),
+        ],
+        "Sends a value to a small analog module (FX0N-3A, FX2N-2DA), which puts it out as voltage or \
+         current. `m1` counts the special modules from the CPU on beginning with 0. The channel is 1 \
+         for the FX0N-3A, 21 or 22 for the FX2N-2DA. The module takes 8 or 12 bits: limit the value, \
+         because higher bits are lost and a little too much becomes a little more than nothing. The \
+         output keeps its value when the drive goes off: write 0 to stop. FX2N has it from version 3.00 \
+         on.\n\n\
+         ```il\n\
+         LD X0\n\
+         WR3A K0 K1 D0\n\
+         LDI X0\n\
+         WR3A K0 K1 K0\n\
+         END\n\
+         ```\n",
+    )
+    .pulse()
+    .on(FX1N_UP),
+];

@@ -1,0 +1,63 @@
+//! The end of the program, empty steps, and labels.
+
+use super::specs::{operand, plain};
+use crate::target::{Accepts, Access, Instruction, Opcode, Role};
+
+/// NOP END.
+pub const ROWS: &[Instruction] = &[
+    plain(
+        0xFFFF,
+        "NOP",
+        "no operation",
+        Role::Standalone,
+        "Does nothing and takes one step. It keeps room for an instruction to be put in later; a \
+         cleared program memory consists of it.\n\n\
+         ```il\n\
+         LD X0\n\
+         NOP\n\
+         AND X1\n\
+         OUT Y0\n\
+         END\n\
+         ```\n",
+    ),
+    plain(
+        0x000F,
+        "END",
+        "end of program",
+        Role::Standalone,
+        "Ends the program: the outputs are refreshed, the watchdog is restarted, and the next scan \
+         begins at step 0. Every program needs it once, and nothing after it is executed.\n\n\
+         ```il\n\
+         LD X0\n\
+         OUT Y0\n\
+         END\n\
+         ```\n",
+    ),
+];
+
+/// The row of a label, a word such as `P0` or `I001` that stands alone on its line. A label has no mnemonic, so it is
+/// not among the instructions that a word can name; it has steps, a code and a page like them.
+pub static LABEL: Instruction = Instruction {
+    operands: &[operand("P", "pointer", Access::Read, Accepts::P.or(Accepts::I))],
+    opcode: Opcode::Label,
+    ..plain(
+        0xB000,
+        "label",
+        "label",
+        Role::Standalone,
+        "Marks the place to which CJ jumps, or at which a subroutine (P) or an interrupt routine (I) \
+         begins. It stands alone on its line before the LD of a rung. Each label is used once in a \
+         program; P63 always means END and is not written. Labels of subroutines and interrupts stand \
+         behind FEND.\n\n\
+         ```il\n\
+         LD X0\n\
+         CJ P0\n\
+         LD X1\n\
+         OUT Y0\n\
+         P0\n\
+         LD X2\n\
+         OUT Y1\n\
+         END\n\
+         ```\n",
+    )
+};

@@ -1,0 +1,222 @@
+//! Rotating and shifting: FNC 30 to 39.
+
+use super::specs::{FX2N_UP, applied, bits, bits_out, changed, count, destination, source};
+use crate::target::{Accepts, Instruction, OperandSpec};
+
+const ROTATED: OperandSpec = changed("D", "word that is rotated");
+const BY: OperandSpec = count("n", "number of bits", (1, 16)).within_wide(1, 32).or_register();
+
+/// Words that stand in rows.
+const ROW: Accepts = Accepts::WORD_DESTINATION.without(Accepts::V.or(Accepts::Z));
+
+const BITS_IN: OperandSpec = bits("S", "first bit that is shifted in");
+const BITS_MOVED: OperandSpec =
+    bits_out("D", "first bit of the row").except(Accepts::WORD_BIT).read_and_written();
+const WORDS_IN: OperandSpec = source("S", "first word that is shifted in").accepting(ROW.or(Accepts::KNX));
+const WORDS_MOVED: OperandSpec = destination("D", "first word of the row").accepting(ROW).read_and_written();
+
+/// ROR ROL RCR RCL SFTR SFTL WSFR WSFL SFWR SFRD.
+pub const ROWS: &[Instruction] = &[
+    applied(
+        30,
+        "ROR",
+        "rotate right",
+        &[ROTATED, BY],
+        "Rotates the bits of a word by n places to the right; what leaves at the lower end comes in \
+         at the upper end, and the last bit to leave is also in the carry flag M8022. Use RORP, since \
+         the plain form rotates in every scan. A group of bits must be a whole word, K4 or in the \
+         32-bit form K8.\n\n\
+         ```il\n\
+         LD X0\n\
+         RORP D0 K4\n\
+         END\n\
+         ```\n",
+    )
+    .wide()
+    .pulse()
+    .on(FX2N_UP),
+    applied(
+        31,
+        "ROL",
+        "rotate left",
+        &[ROTATED, BY],
+        "Rotates the bits of a word by n places to the left; what leaves at the upper end comes in at \
+         the lower end, and the last bit to leave is also in the carry flag M8022. Use ROLP, since \
+         the plain form rotates in every scan. A group of bits must be a whole word, K4 or in the \
+         32-bit form K8.\n\n\
+         ```il\n\
+         LD X0\n\
+         ROLP D0 K4\n\
+         END\n\
+         ```\n",
+    )
+    .wide()
+    .pulse()
+    .on(FX2N_UP),
+    applied(
+        32,
+        "RCR",
+        "rotate right with carry",
+        &[ROTATED, BY],
+        "Rotates the bits of a word together with the carry flag M8022 by n places to the right, as a \
+         ring of 17 bits (33 in the 32-bit form): the carry flag comes in at the upper end and the \
+         lowest bit goes to the carry flag. Set or reset M8022 before it to choose what comes in.\n\n\
+         ```il\n\
+         LD X0\n\
+         RCRP D0 K1\n\
+         END\n\
+         ```\n",
+    )
+    .wide()
+    .pulse()
+    .on(FX2N_UP),
+    applied(
+        33,
+        "RCL",
+        "rotate left with carry",
+        &[ROTATED, BY],
+        "Rotates the bits of a word together with the carry flag M8022 by n places to the left, as a \
+         ring of 17 bits (33 in the 32-bit form): the carry flag comes in at the lower end and the \
+         highest bit goes to the carry flag. Set or reset M8022 before it to choose what comes in.\n\n\
+         ```il\n\
+         LD X0\n\
+         RCLP D0 K1\n\
+         END\n\
+         ```\n",
+    )
+    .wide()
+    .pulse()
+    .on(FX2N_UP),
+    applied(
+        34,
+        "SFTR",
+        "shift bits right",
+        &[
+            BITS_IN,
+            BITS_MOVED,
+            count("n1", "length of the row", (1, 1024)),
+            count("n2", "number of places", (1, 1024)).or_register(),
+        ],
+        "Shifts a row of n1 relays from D on by n2 places towards the lower numbers; n2 devices from \
+         S on come in at the upper end, and what leaves at the lower end is lost. n2 must not be \
+         greater than n1. Use SFTRP, since the plain form shifts in every scan.\n\n\
+         ```il\n\
+         LD X0\n\
+         SFTRP X1 M0 K16 K1\n\
+         END\n\
+         ```\n",
+    )
+    .pulse(),
+    applied(
+        35,
+        "SFTL",
+        "shift bits left",
+        &[
+            BITS_IN,
+            BITS_MOVED,
+            count("n1", "length of the row", (1, 1024)),
+            count("n2", "number of places", (1, 1024)).or_register(),
+        ],
+        "Shifts a row of n1 relays from D on by n2 places towards the higher numbers; n2 devices from \
+         S on come in at the lower end, and what leaves at the upper end is lost. n2 must not be \
+         greater than n1. With a sensor at S and one pulse for each piece it follows pieces along a \
+         conveyor; use SFTLP, since the plain form shifts in every scan.\n\n\
+         ```il\n\
+         LD X0\n\
+         SFTLP X1 M0 K8 K1\n\
+         LD M7\n\
+         OUT Y0\n\
+         END\n\
+         ```\n",
+    )
+    .pulse(),
+    applied(
+        36,
+        "WSFR",
+        "shift words right",
+        &[
+            WORDS_IN,
+            WORDS_MOVED,
+            count("n1", "length of the row", (1, 512)),
+            count("n2", "number of places", (1, 512)).or_register(),
+        ],
+        "Shifts a row of n1 words from D on by n2 places towards the lower numbers; n2 words from S \
+         on come in at the upper end. n2 must not be greater than n1. Use WSFRP, since the plain form \
+         shifts in every scan.\n\n\
+         ```il\n\
+         LD X0\n\
+         WSFRP D0 D10 K8 K1\n\
+         END\n\
+         ```\n",
+    )
+    .pulse()
+    .on(FX2N_UP),
+    applied(
+        37,
+        "WSFL",
+        "shift words left",
+        &[
+            WORDS_IN,
+            WORDS_MOVED,
+            count("n1", "length of the row", (1, 512)),
+            count("n2", "number of places", (1, 512)).or_register(),
+        ],
+        "Shifts a row of n1 words from D on by n2 places towards the higher numbers; n2 words from S \
+         on come in at the lower end, so D always holds the newest value. n2 must not be greater than \
+         n1. Use WSFLP, since the plain form shifts in every scan.\n\n\
+         ```il\n\
+         LD X0\n\
+         WSFLP D0 D10 K8 K1\n\
+         END\n\
+         ```\n",
+    )
+    .pulse()
+    .on(FX2N_UP),
+    applied(
+        38,
+        "SFWR",
+        "write to a queue",
+        &[
+            source("S", "value that is put in"),
+            destination("D", "counter of the queue, its values follow").accepting(ROW).read_and_written(),
+            count("n", "length with the counter", (2, 512)),
+        ],
+        "Puts a value into a queue: D counts the values, the n-1 words after it hold them in the \
+         order in which they came. While the queue is full, the carry flag M8022 is on and nothing is \
+         written. Clear D before the first use, use SFWRP to write once, and take values out with \
+         SFRD.\n\n\
+         ```il\n\
+         LD M8002\n\
+         RST D10\n\
+         LD X0\n\
+         SFWRP D0 D10 K8\n\
+         LD X1\n\
+         SFRDP D10 D1 K8\n\
+         END\n\
+         ```\n",
+    )
+    .pulse(),
+    applied(
+        39,
+        "SFRD",
+        "read from a queue",
+        &[
+            source("S", "counter of the queue, its values follow").accepting(ROW).read_and_written(),
+            destination("D", "value that is taken out"),
+            count("n", "length with the counter", (2, 512)),
+        ],
+        "Takes the oldest value out of a queue that SFWR fills: it goes to D, the others move up, and \
+         the counter S falls by 1. While the queue is empty, the zero flag M8020 is on and D keeps \
+         its value. Use SFRDP to read once.\n\n\
+         ```il\n\
+         LD M8002\n\
+         RST D10\n\
+         LD X0\n\
+         SFWRP D0 D10 K8\n\
+         LD X1\n\
+         SFRDP D10 D1 K8\n\
+         END\n\
+         ```\n",
+    )
+    .pulse(),
+];

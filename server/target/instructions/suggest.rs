@@ -1,0 +1,117 @@
+//! The mnemonics that an unknown word may have meant.
+
+use super::FORMS;
+use crate::target::Model;
+use std::cmp::Reverse;
+
+/// What other makers and IEC 61131-3 call the basic instructions.
+const ELSEWHERE: &[(&str, &str)] = &[
+    ("LDN", "LDI"),
+    ("LDNOT", "LDI"),
+    ("ANDN", "ANI"),
+    ("ANDI", "ANI"),
+    ("ANDNOT", "ANI"),
+    ("ORN", "ORI"),
+    ("ORNOT", "ORI"),
+    ("ANDLD", "ANB"),
+    ("ANDB", "ANB"),
+    ("ORLD", "ORB"),
+    ("NOT", "INV"),
+    ("ST", "OUT"),
+    ("S", "SET"),
+    ("R", "RST"),
+    ("RESET", "RST"),
+    ("JMP", "CJ"),
+    ("CAL", "CALL"),
+];
+
+/// No mnemonic is longer.
+const LONGEST: usize = 12;
+
+/// At most three mnemonics that `model` has and that are near to `word`, best first; none if nothing is near.
+///
+/// ```
+/// use rungwise::target::{Model, instructions::suggestions};
+/// assert_eq!(suggestions("mvo", Model::Fx2n).first().map(String::as_str), Some("MOV"));
+/// assert_eq!(suggestions("ANDN", Model::Fx2n).first().map(String::as_str), Some("ANI"));
+/// ```
+pub fn suggestions(word: &str, model: Model) -> Vec<String> {
+    if word.is_empty() || word.len() > LONGEST || !word.is_ascii() {
+        return Vec::new();
+    }
+    let word = word.to_ascii_uppercase();
+    let allowed = if word.len() <= 3 { 1 } else { 2 };
+    let mut near: Vec<(usize, Reverse<usize>, String)> = FORMS
+        .iter()
+        .filter(|(_, form)| form.is_on(model))
+        .filter_map(|(name, form)| {
+            let distance = distance(word.as_bytes(), name);
+            let alike = word.bytes().zip(name.iter()).take_while(|(left, right)| left == *right).count();
+            (distance <= allowed).then(|| (distance, Reverse(alike), form.mnemonic()))
+        })
+        .collect();
+    near.sort();
+    let elsewhere = ELSEWHERE.iter().filter(|(other, _)| *other == word).map(|(_, ours)| ours.to_string());
+    let mut found: Vec<String> = elsewhere.collect();
+    for (_, _, mnemonic) in near {
+        if !found.contains(&mnemonic) {
+            found.push(mnemonic);
+        }
+    }
+    found.truncate(3);
+    found
+}
+
+/// How many letters must be inserted, left out, replaced or swapped with their neighbour to get from one word to the
+/// other (optimal string alignment).
+fn distance(left: &[u8], right: &[u8]) -> usize {
+    let mut before_last: Vec<usize> = Vec::new();
+    let mut last: Vec<usize> = (0..=right.len()).collect();
+    for (row, &letter) in left.iter().enumerate() {
+        let mut line = vec![row + 1];
+        for (column, &other) in right.iter().enumerate() {
+            let replaced = last[column] + usize::from(letter != other);
+            let mut best = replaced.min(last[column + 1] + 1).min(line[column] + 1);
+            let swapped = row > 0 && column > 0 && left[row - 1] == other && letter == right[column - 1];
+            if swapped {
+                best = best.min(before_last[column - 1] + 1);
+            }
+            line.push(best);
+        }
+        before_last = std::mem::replace(&mut last, line);
+    }
+    last.last().copied().unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances() {
+        for (left, right, expected) in [
+            ("", "", 0),
+            ("", "MOV", 3),
+            ("MOV", "MOV", 0),
+            ("MVO", "MOV", 1),
+            ("MOVE", "MOV", 1),
+            ("LD", "OUT", 3),
+        ] {
+            assert_eq!(distance(left.as_bytes(), right.as_bytes()), expected, "{left} {right}");
+            assert_eq!(distance(right.as_bytes(), left.as_bytes()), expected, "{right} {left}");
+        }
+    }
+
+    #[test]
+    fn nearest_first_and_only_of_the_model() {
+        assert_eq!(suggestions("MOVE", Model::Fx2n)[0], "MOV");
+        assert_eq!(suggestions("otu", Model::Fx1s), ["OUT"]);
+        assert!(suggestions("MEPP", Model::Fx3u).contains(&"MEP".to_string()));
+        assert!(!suggestions("MEPP", Model::Fx2n).contains(&"MEP".to_string()));
+        assert_eq!(suggestions("ANDN", Model::Fx2n)[0], "ANI");
+        for nothing in ["", "qqqqqq", "ÄÖ", "AVERYLONGWORDINDEED"] {
+            assert_eq!(suggestions(nothing, Model::Fx2n), Vec::<String>::new(), "{nothing}");
+        }
+        assert!(suggestions("D", Model::Fx3u).len() <= 3);
+    }
+}

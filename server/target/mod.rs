@@ -1,0 +1,25 @@
+//! The PLC as data: models, devices and their ranges, and one table row for every instruction.
+//!
+//! Everything that depends on what a PLC can do reads these tables; no other place matches on mnemonics.
+//! The text of programs never enters, only single words: a mnemonic, an operand.
+
+mod model;
+pub use model::{Limits, Model, Target};
+
+mod device;
+pub use device::{Device, DeviceKind, DeviceRange, SpecialDevice};
+
+mod operand;
+pub use operand::{Constant, DirectAddress, Location, Operand, OperandProblem, Width};
+
+mod accepts;
+pub use accepts::Accepts;
+
+mod instruction;
+pub use instruction::{Access, Form, Instruction, Opcode, OperandSpec, Role, Steps, Wide};
+
+pub mod instructions;
+
+mod fx;
+
+pub mod iec;

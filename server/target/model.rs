@@ -1,0 +1,107 @@
+//! The PLC models, with their device ranges and limits.
+
+use super::{DeviceKind, DeviceRange, SpecialDevice};
+
+/// A PLC model, or the vendor-neutral language of IEC 61131-3.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub enum Model {
+    /// FX1S: 2,000 steps.
+    Fx1s,
+    /// FX1N: 8,000 steps.
+    Fx1n,
+    /// FX2N and FX2NC: 8,000 steps, 16,000 with a cassette.
+    Fx2n,
+    /// FX3U and FX3UC: 64,000 steps.
+    Fx3u,
+    /// IEC 61131-3 without a maker's devices.
+    Iec,
+}
+
+/// What a program is written for: one of the rows of [`Target::ALL`].
+#[derive(Debug)]
+pub struct Target {
+    /// The model.
+    pub model: Model,
+    /// The name in `rungwise.toml` and on the command line: `fx2n`, `iec`.
+    pub name: &'static str,
+    /// The name that people use: `FX2N`.
+    pub title: &'static str,
+    /// The ranges of each device kind, in reading order; empty for `iec`.
+    pub devices: &'static [DeviceRange],
+    /// The special relays and registers (M8000…, D8000…), sorted by device.
+    pub special: &'static [SpecialDevice],
+    /// The limits of programs.
+    pub limits: Limits,
+}
+
+/// The limits of programs for a model.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Limits {
+    /// Program steps that fit; 0 where the notion has no meaning.
+    pub steps: u32,
+    /// Contacts in series that the maker's tool can show in one line, without the output.
+    pub contacts_in_series: u32,
+    /// Rows of a rung that the maker's tool can show.
+    pub rows: u32,
+    /// LD blocks that may wait for ANB or ORB.
+    pub blocks: u32,
+    /// MPS levels.
+    pub branches: u32,
+    /// Master control levels.
+    pub master_controls: u32,
+    /// FOR levels.
+    pub loops: u32,
+    /// CALL levels.
+    pub calls: u32,
+}
+
+impl Target {
+    /// The target called `name`, letter case aside.
+    pub fn named(name: &str) -> Option<&'static Target> {
+        Target::ALL.iter().copied().find(|target| target.name.eq_ignore_ascii_case(name))
+    }
+
+    /// The target for `model`.
+    pub fn of(model: Model) -> &'static Target {
+        match model {
+            Model::Fx1s => &super::fx::FX1S,
+            Model::Fx1n => &super::fx::FX1N,
+            Model::Fx2n => &super::fx::FX2N,
+            Model::Fx3u => &super::fx::FX3U,
+            Model::Iec => &IEC,
+        }
+    }
+
+    /// All targets.
+    pub const ALL: [&'static Target; 5] =
+        [&super::fx::FX1S, &super::fx::FX1N, &super::fx::FX2N, &super::fx::FX3U, &IEC];
+
+    /// Whether programs use the FX family's devices and instructions.
+    pub fn is_fx(&self) -> bool {
+        self.model != Model::Iec
+    }
+
+    /// The ranges of `kind` on this target; empty if it has no such device.
+    pub fn ranges(&self, kind: DeviceKind) -> impl Iterator<Item = &'static DeviceRange> {
+        self.devices.iter().filter(move |range| range.kind == kind)
+    }
+}
+
+/// IEC 61131-3: no maker's devices, and no limits but those of a screen.
+static IEC: Target = Target {
+    model: Model::Iec,
+    name: "iec",
+    title: "IEC 61131-3",
+    devices: &[],
+    special: &[],
+    limits: Limits {
+        steps: 0,
+        contacts_in_series: 11,
+        rows: 24,
+        blocks: 8,
+        branches: 11,
+        master_controls: 8,
+        loops: 5,
+        calls: 5,
+    },
+};

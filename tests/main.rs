@@ -1,0 +1,8 @@
+//! Every test of the package that needs no private item, one module for each subject.
+
+mod il_fx;
+mod rules;
+mod target_fx;
+mod target_fx_applied;
+mod target_iec;
+mod tidy;
