@@ -1,7 +1,7 @@
-// Packs the extension with the server inside: rungwise-TARGET.vsix.
+// Packs the extension with the server inside: rungwise.vsix, for the kind of computer on which this runs.
 //
 // Usage: node scripts/package.mjs [--server FILE] [--out FILE]
-// The server is FILE, else $RUNGWISE_SERVER, else the newer of target/release/rungwise and target/debug/rungwise.
+// The server is FILE, else $RUNGWISE_SERVER, else target/release/rungwise, else target/debug/rungwise.
 
 import { chmodSync, copyFileSync, existsSync, mkdirSync, rmSync, statSync } from 'node:fs';
 import { basename, dirname, join, resolve } from 'node:path';
@@ -15,7 +15,7 @@ const program = process.platform === 'win32' ? 'rungwise.exe' : 'rungwise';
 
 const server = findServer();
 const target = vsceTarget();
-const out = resolve(values.out ?? join(root, `rungwise-${target}.vsix`));
+const out = resolve(values.out ?? join(root, 'rungwise.vsix'));
 
 const bin = join(root, 'bin');
 rmSync(bin, { recursive: true, force: true });
@@ -26,7 +26,7 @@ chmodSync(join(bin, program), 0o755);
 const vsce = join(root, 'node_modules', '@vscode', 'vsce', 'vsce');
 const args = ['package', '--no-dependencies', '--allow-missing-repository', '--target', target, '--out', out];
 execFileSync(process.execPath, [vsce, ...args], { cwd: root, stdio: 'inherit' });
-console.log(`${basename(out)}: ${(statSync(out).size / 1e6).toFixed(1)} MB, server ${server}`);
+console.log(`${basename(out)} for ${target}: ${(statSync(out).size / 1e6).toFixed(1)} MB, server ${server}`);
 
 function findServer() {
   const named = values.server ?? process.env.RUNGWISE_SERVER;
@@ -38,8 +38,7 @@ function findServer() {
   }
   const built = ['release', 'debug']
     .map((profile) => resolve(root, '..', 'target', profile, program))
-    .filter((file) => existsSync(file))
-    .sort((a, b) => statSync(b).mtimeMs - statSync(a).mtimeMs);
+    .filter((file) => existsSync(file));
   return built[0] ?? fail('no server is built: run "cargo build --release" first, or give --server FILE');
 }
 
