@@ -5,10 +5,17 @@ import { readServerSettings, serverArguments, type ServerSettings } from './sett
 
 const SECTION = 'rungwise';
 
-/** The settings of the window as the server gets them. */
+/**
+ * The settings of the window as the server gets them.
+ *
+ * Only what the user set is sent: a default of package.json would override what `rungwise.toml` says.
+ */
 export function currentSettings(): ServerSettings {
   const section = vscode.workspace.getConfiguration(SECTION);
-  return readServerSettings((name) => section.get(name));
+  return readServerSettings((name) => {
+    const places = section.inspect(name);
+    return places?.workspaceFolderValue ?? places?.workspaceValue ?? places?.globalValue;
+  });
 }
 
 /** Path of the server as the user wrote it; blank when unset. */

@@ -14,30 +14,28 @@ export interface ServerSettings {
   /** Dialect of `.il` files (`fx` or `iec`). */
   readonly dialect: string | null;
   readonly format: {
-    readonly style: FormatStyle;
+    readonly style: FormatStyle | null;
     /** Least width of a rung in cells, rails included. */
-    readonly width: number;
+    readonly width: number | null;
   };
   readonly inlayHints: { readonly enabled: boolean };
 }
 
-/** Reads one setting below `rungwise.` by its name; `undefined` when there is none. */
+/** Reads one setting below `rungwise.` by its name; `undefined` when the user did not set it. */
 export type ReadSetting = (name: string) => unknown;
 
 export const TARGETS = ['fx1s', 'fx1n', 'fx2n', 'fx3u', 'iec'] as const;
 const DIALECTS: readonly string[] = ['fx', 'iec'];
-const STYLES: readonly string[] = ['iec', 'brackets', 'unicode'];
-const DEFAULT_WIDTH_CELLS = 48;
+const STYLES: readonly FormatStyle[] = ['iec', 'brackets', 'unicode'];
 const MIN_WIDTH_CELLS = 24;
 const MAX_WIDTH_CELLS = 400;
 
 /** Collects the settings. A value of the wrong type counts as unset: the settings editor already underlines it. */
 export function readServerSettings(read: ReadSetting): ServerSettings {
-  const style = oneOf(read('format.style'), STYLES) as FormatStyle | null;
   return {
     target: oneOf(read('target'), TARGETS),
     dialect: oneOf(read('dialect'), DIALECTS),
-    format: { style: style ?? 'iec', width: width(read('format.width')) },
+    format: { style: oneOf(read('format.style'), STYLES), width: width(read('format.width')) },
     inlayHints: { enabled: read('inlayHints.enabled') !== false },
   };
 }
@@ -53,17 +51,17 @@ export function serverArguments(extraArguments: unknown): string[] {
   return ['lsp', ...extra];
 }
 
-function oneOf(value: unknown, allowed: readonly string[]): string | null {
+function oneOf<Word extends string>(value: unknown, allowed: readonly Word[]): Word | null {
   if (typeof value !== 'string') {
     return null;
   }
   const word = value.trim().toLowerCase();
-  return allowed.includes(word) ? word : null;
+  return allowed.find((candidate) => candidate === word) ?? null;
 }
 
-function width(value: unknown): number {
+function width(value: unknown): number | null {
   if (typeof value !== 'number' || !Number.isFinite(value)) {
-    return DEFAULT_WIDTH_CELLS;
+    return null;
   }
   return Math.min(MAX_WIDTH_CELLS, Math.max(MIN_WIDTH_CELLS, Math.round(value)));
 }

@@ -11,6 +11,7 @@ export interface ProgramStatus {
   readonly steps: number | undefined;
   /** Program steps that the model has; absent as above. */
   readonly capacity: number | undefined;
+  readonly rungs: number | undefined;
 }
 
 export type ServerState = 'starting' | 'running' | 'stopped' | 'failed';
@@ -38,7 +39,8 @@ export function parseStatus(value: unknown): ProgramStatus | undefined {
     target: text(fields['target']),
     dialect: text(fields['dialect']),
     steps: count(fields['steps']),
-    capacity: count(fields['capacity']),
+    capacity: count(fields['capacity']) || undefined,
+    rungs: count(fields['rungs']),
   };
 }
 
@@ -94,7 +96,7 @@ function stepsText(status: ProgramStatus): string | undefined {
   if (status.steps === undefined) {
     return undefined;
   }
-  if (status.capacity === undefined || status.capacity === 0) {
+  if (status.capacity === undefined) {
     return `${grouped(status.steps)} steps`;
   }
   return `${grouped(status.steps)}/${grouped(status.capacity)} steps`;
@@ -108,6 +110,9 @@ function tooltip(status: ProgramStatus): string {
   if (status.steps !== undefined && status.capacity) {
     const percent = ((100 * status.steps) / status.capacity).toFixed(1);
     lines.push(`Program: ${grouped(status.steps)} of ${grouped(status.capacity)} steps (${percent} %)`);
+  }
+  if (status.rungs !== undefined) {
+    lines.push(`Rungs: ${grouped(status.rungs)}`);
   }
   lines.push('Click to select the target PLC.');
   return lines.join('\n');

@@ -15,7 +15,16 @@ const manifest = JSON.parse(readFileSync('package.json', 'utf8')) as {
 };
 const properties = manifest.contributes.configuration.properties;
 
-test('the defaults of package.json give the settings that the server documents', () => {
+test('what the user did not set is left to rungwise.toml', () => {
+  assert.deepEqual(readServerSettings(() => undefined), {
+    target: null,
+    dialect: null,
+    format: { style: null, width: null },
+    inlayHints: { enabled: true },
+  });
+});
+
+test('a default of package.json, set by hand, means what it says', () => {
   const settings = readServerSettings((name) => properties[`rungwise.${name}`]?.default);
   assert.deepEqual(settings, {
     target: null,
@@ -46,10 +55,10 @@ test('wrong values count as unset, widths are kept in range', () => {
   assert.equal(read({ target: 'S7' }).target, null);
   assert.equal(read({ target: 7 }).target, null);
   assert.equal(read({ target: 'FX2N' }).target, 'fx2n');
-  assert.equal(read({ 'format.style': 'ascii' }).format.style, 'iec');
+  assert.equal(read({ 'format.style': 'ascii' }).format.style, null);
   assert.equal(read({ 'format.width': 3 }).format.width, 24);
   assert.equal(read({ 'format.width': 1e9 }).format.width, 400);
-  assert.equal(read({ 'format.width': Number.NaN }).format.width, 48);
+  assert.equal(read({ 'format.width': Number.NaN }).format.width, null);
 });
 
 test('the choices and bounds of package.json are those of the code', () => {

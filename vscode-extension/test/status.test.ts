@@ -2,18 +2,18 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { parseStatus, statusItem } from '../src/status';
 
-const FX = { uri: 'file:///a.il', target: 'fx2n', dialect: 'fx', steps: 42, capacity: 8000 };
+const FX = { uri: 'file:///a.il', target: 'fx2n', dialect: 'fx', steps: 42, capacity: 8000, rungs: 7 };
 
 test('a program on a PLC shows target, dialect and steps', () => {
   const item = statusItem('running', parseStatus(FX));
   assert.equal(item.text, '$(circuit-board) FX2N · FX · 42/8,000 steps');
   assert.equal(item.severity, 'normal');
   assert.equal(item.command, 'rungwise.selectTarget');
-  assert.match(item.tooltip, /42 of 8,000 steps \(0\.5 %\)/);
+  assert.match(item.tooltip, /42 of 8,000 steps \(0\.5 %\)\nRungs: 7\n/);
 });
 
 test('what says nothing new is left out', () => {
-  const iec = parseStatus({ uri: 'file:///a.il', target: 'iec', dialect: 'iec', steps: null, capacity: null });
+  const iec = parseStatus({ uri: 'file:///a.il', target: 'iec', dialect: 'iec', steps: null, capacity: 0 });
   assert.equal(statusItem('running', iec).text, '$(circuit-board) IEC');
   const ladder = parseStatus({ ...FX, dialect: 'ladder', capacity: null });
   assert.equal(statusItem('running', ladder).text, '$(circuit-board) FX2N · 42 steps');
@@ -44,5 +44,6 @@ test('what is no status is refused', () => {
     dialect: '',
     steps: undefined,
     capacity: undefined,
+    rungs: undefined,
   });
 });

@@ -40,7 +40,7 @@ function M.server()
   return 'rungwise'
 end
 
---- The settings that the server gets, the same as in every other editor.
+--- The settings that the server gets, the same as in every other editor. What is null is left to rungwise.toml.
 function M.settings()
   local options = M.options()
   local format = options.format or {}
@@ -48,7 +48,7 @@ function M.settings()
   return {
     target = options.target or vim.NIL,
     dialect = options.dialect or vim.NIL,
-    format = { style = format.style or 'iec', width = format.width or 48 },
+    format = { style = format.style or vim.NIL, width = format.width or vim.NIL },
     inlayHints = { enabled = hints.enabled ~= false },
   }
 end
