@@ -1,5 +1,6 @@
 //! Every test of the package that needs no private item, one module for each subject.
 
+mod document;
 mod il_fx;
 mod rules;
 mod target_fx;

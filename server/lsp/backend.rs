@@ -74,7 +74,10 @@ impl LanguageServer for Backend {
         }))
     }
 
-    async fn prepare_rename(&self, params: TextDocumentPositionParams) -> Result<Option<PrepareRenameResponse>> {
+    async fn prepare_rename(
+        &self,
+        params: TextDocumentPositionParams,
+    ) -> Result<Option<PrepareRenameResponse>> {
         Ok(with_open(&params.text_document.uri, |_, place| {
             let span = ide::renamable(place.document, place.offset(params.position))?;
             Some(PrepareRenameResponse::Range(place.range(span)))
@@ -105,7 +108,10 @@ impl LanguageServer for Backend {
         .await
     }
 
-    async fn semantic_tokens_full(&self, params: SemanticTokensParams) -> Result<Option<SemanticTokensResult>> {
+    async fn semantic_tokens_full(
+        &self,
+        params: SemanticTokensParams,
+    ) -> Result<Option<SemanticTokensResult>> {
         whole(params.text_document.uri, |_, place| {
             to_proto::semantic_tokens(place, &ide::semantic_tokens(place.document)).into()
         })
@@ -150,9 +156,13 @@ impl LanguageServer for Backend {
     }
 
     async fn execute_command(&self, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
-        let Some(uri) = params.arguments.first().and_then(|value| value.as_str()).and_then(|text| text.parse().ok())
+        let Some(uri) =
+            params.arguments.first().and_then(|value| value.as_str()).and_then(|text| text.parse().ok())
         else {
-            return Err(Error::invalid_params(format!("{}: the first argument is a document's URI", params.command)));
+            return Err(Error::invalid_params(format!(
+                "{}: the first argument is a document's URI",
+                params.command
+            )));
         };
         match params.command.as_str() {
             "rungwise.check" => whole(uri, |open, _| check_summary(open)).await,
@@ -232,7 +242,8 @@ fn check_summary(open: &Open) -> Value {
     let found: Vec<Diagnostic> = check::all(&open.document, &open.severities);
     let count = |severity| found.iter().filter(|diagnostic| diagnostic.severity == severity).count();
     let [errors, warnings, hints] =
-        [crate::text::Severity::Error, crate::text::Severity::Warning, crate::text::Severity::Hint].map(count);
+        [crate::text::Severity::Error, crate::text::Severity::Warning, crate::text::Severity::Hint]
+            .map(count);
     let status = ide::status(&open.document);
     let key = match (errors + warnings, status.steps) {
         (0, Some(_)) => "summary.passed-steps",
@@ -258,7 +269,10 @@ fn check_summary(open: &Open) -> Value {
 }
 
 /// The pulled report; its `resultId` stands for the content, so that nothing is sent twice.
-fn report(items: Vec<tower_lsp::ls_types::Diagnostic>, previous: Option<String>) -> DocumentDiagnosticReportResult {
+fn report(
+    items: Vec<tower_lsp::ls_types::Diagnostic>,
+    previous: Option<String>,
+) -> DocumentDiagnosticReportResult {
     let mut hasher = rustc_hash::FxBuildHasher.build_hasher();
     serde_json::to_string(&items).unwrap_or_default().hash(&mut hasher);
     let result_id = format!("{:016x}", hasher.finish());
@@ -270,7 +284,10 @@ fn report(items: Vec<tower_lsp::ls_types::Diagnostic>, previous: Option<String>)
     } else {
         DocumentDiagnosticReport::Full(RelatedFullDocumentDiagnosticReport {
             related_documents: None,
-            full_document_diagnostic_report: FullDocumentDiagnosticReport { result_id: Some(result_id), items },
+            full_document_diagnostic_report: FullDocumentDiagnosticReport {
+                result_id: Some(result_id),
+                items,
+            },
         })
     };
     DocumentDiagnosticReportResult::Report(report)

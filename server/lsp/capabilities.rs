@@ -9,10 +9,13 @@ pub(super) const COMMANDS: &[&str] = &["rungwise.check", "rungwise.format"];
 
 /// The best encoding that the client offers: bytes cost nothing, UTF-16 is what every client knows.
 pub(super) fn encoding_for(client: &ClientCapabilities) -> Encoding {
-    let offered = client.general.as_ref().and_then(|general| general.position_encodings.as_deref()).unwrap_or(&[]);
+    let offered =
+        client.general.as_ref().and_then(|general| general.position_encodings.as_deref()).unwrap_or(&[]);
     if offered.contains(&PositionEncodingKind::UTF8) {
         Encoding::Utf8
-    } else if offered.contains(&PositionEncodingKind::UTF32) && !offered.contains(&PositionEncodingKind::UTF16) {
+    } else if offered.contains(&PositionEncodingKind::UTF32)
+        && !offered.contains(&PositionEncodingKind::UTF16)
+    {
         Encoding::Utf32
     } else {
         Encoding::Utf16

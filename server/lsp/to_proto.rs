@@ -57,7 +57,8 @@ pub(super) fn diagnostics(open: &Open, found: Vec<Diagnostic>, encoding: Encodin
     let mut shown: Vec<_> =
         found.iter().take(DIAGNOSTICS_LIMIT).map(|found| diagnostic(open, found, encoding)).collect();
     if let Some(last) = shown.last_mut().filter(|_| total > DIAGNOSTICS_LIMIT) {
-        let message = crate::text::Message::new("limits.more-diagnostics").with("count", total - DIAGNOSTICS_LIMIT + 1);
+        let message =
+            crate::text::Message::new("limits.more-diagnostics").with("count", total - DIAGNOSTICS_LIMIT + 1);
         *last = lsp::Diagnostic {
             range: last.range,
             severity: Some(lsp::DiagnosticSeverity::INFORMATION),
@@ -100,7 +101,8 @@ pub(super) fn completion(place: Place<'_>, proposal: ide::Completion) -> lsp::Co
     lsp::CompletionItem {
         kind: Some(completion_kind(proposal.kind)),
         detail: (!proposal.detail.is_empty()).then_some(proposal.detail),
-        documentation: (!documentation.value.is_empty()).then_some(lsp::Documentation::MarkupContent(documentation)),
+        documentation: (!documentation.value.is_empty())
+            .then_some(lsp::Documentation::MarkupContent(documentation)),
         sort_text: Some(format!("{:05}{}", proposal.rank, proposal.label)),
         insert_text_format: proposal.is_snippet.then_some(lsp::InsertTextFormat::SNIPPET),
         text_edit: Some(lsp::CompletionTextEdit::Edit(place.edit(&proposal.edit))),
@@ -181,8 +183,8 @@ pub(super) fn inlay_hint(place: Place<'_>, hint: ide::InlayHint) -> lsp::InlayHi
 /// The token types in the order of [`ide::TokenKind`], by the names that themes know.
 pub(super) fn legend() -> lsp::SemanticTokensLegend {
     let types = [
-        "comment", "keyword", "operator", "variable", "variable", "label", "number", "string", "function", "class",
-        "type", "wire", "contact",
+        "comment", "keyword", "operator", "variable", "variable", "label", "number", "string", "function",
+        "class", "type", "wire", "contact",
     ];
     lsp::SemanticTokensLegend {
         token_types: types.into_iter().map(lsp::SemanticTokenType::new).collect(),
