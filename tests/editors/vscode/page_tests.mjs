@@ -174,6 +174,7 @@ async function failureMessage(workbench) {
   for (const button of ['Open Settings', 'Show Log', 'Try Again']) {
     await toast.locator('.monaco-button', { hasText: button }).waitFor({ timeout: 5_000 });
   }
+  await workbench.page.waitForTimeout(500); // The message slides in.
   await workbench.screenshot('9-server-missing');
   await toast.locator('.monaco-button', { hasText: 'Show Log' }).click();
   await workbench.page.locator('.output-view, .panel .view-lines').first().waitFor({ timeout: 10_000 });
