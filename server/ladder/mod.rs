@@ -31,6 +31,9 @@ mod canvas;
 mod printer;
 pub use printer::{Drawing, Style, StyleKind, print};
 
+mod format;
+pub use format::{Page, format, format_chunk};
+
 /// (Replaced by the reader.)
 #[derive(PartialEq, Eq, Clone, Copy, Debug)]
 pub enum ChunkKind {
