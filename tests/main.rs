@@ -5,6 +5,8 @@ mod il_fx;
 mod il_iec;
 mod ladder_generate;
 mod ladder_print;
+mod lsp;
+mod lsp_client;
 mod rules;
 mod target_fx;
 mod target_fx_applied;
