@@ -193,7 +193,8 @@ fn closing_a_document_clears_its_diagnostics() {
     assert_eq!(client.diagnostics(URI, 1).len(), 1);
     client.notify("textDocument/didClose", json!({"textDocument": {"uri": URI}}));
     let message = client.wait_for("the clearing", |message| {
-        message["method"] == json!("textDocument/publishDiagnostics") && message["params"]["diagnostics"] == json!([])
+        message["method"] == json!("textDocument/publishDiagnostics")
+            && message["params"]["diagnostics"] == json!([])
     });
     assert_eq!(message["params"]["uri"], json!(URI));
     assert_eq!(client.request("textDocument/hover", at(URI, 0, 0))["result"], Value::Null);
@@ -225,7 +226,11 @@ fn a_client_that_pulls_gets_nothing_pushed() {
     let pushed = |message: &Value| message["method"] == json!("textDocument/publishDiagnostics");
     assert!(client.stays_silent(Duration::from_millis(300), pushed));
     let pushing = Client::start_with(capabilities, Value::Null);
-    assert_eq!(pushing.initialised["capabilities"]["diagnosticProvider"], Value::Null, "nothing is shown twice");
+    assert_eq!(
+        pushing.initialised["capabilities"]["diagnosticProvider"],
+        Value::Null,
+        "nothing is shown twice"
+    );
 }
 
 #[test]
@@ -248,7 +253,8 @@ fn hover_completion_and_navigation_answer() {
     assert!(hover["result"]["contents"]["value"].as_str().expect("Markdown").contains("100 ms"), "{hover}");
 
     let items = client.request("textDocument/completion", at(URI, 3, 1))["result"].clone();
-    let labels: Vec<&str> = items.as_array().expect("items").iter().filter_map(|item| item["label"].as_str()).collect();
+    let labels: Vec<&str> =
+        items.as_array().expect("items").iter().filter_map(|item| item["label"].as_str()).collect();
     assert!(labels.contains(&"OUT") && labels.contains(&"MOV"), "{labels:?}");
 
     let found = client.request("textDocument/definition", at(URI, 1, 3))["result"].clone();
@@ -281,7 +287,8 @@ fn outline_folding_tokens_and_hints_answer() {
         let answer = client.request(method, document.clone())["result"].clone();
         assert!(!answer.as_array().expect("an array").is_empty(), "{method}");
     }
-    let tokens = client.request("textDocument/semanticTokens/full", document.clone())["result"]["data"].clone();
+    let tokens =
+        client.request("textDocument/semanticTokens/full", document.clone())["result"]["data"].clone();
     assert_eq!(tokens.as_array().expect("numbers").len() % 5, 0);
     assert!(tokens.as_array().expect("numbers").len() >= 5 * 13, "{tokens}");
     let mut params = document;
@@ -296,7 +303,8 @@ fn formatting_by_request_and_by_command() {
     let params = json!({"textDocument": {"uri": URI}, "options": {"tabSize": 4, "insertSpaces": true}});
     let edits = client.request("textDocument/formatting", params)["result"].clone();
     assert!(!edits.as_array().expect("edits").is_empty());
-    let id = client.ask("workspace/executeCommand", json!({"command": "rungwise.format", "arguments": [URI]}));
+    let id =
+        client.ask("workspace/executeCommand", json!({"command": "rungwise.format", "arguments": [URI]}));
     let apply = client.wait_for_method("workspace/applyEdit");
     assert_eq!(apply["params"]["edit"]["documentChanges"][0]["edits"], edits);
     client.send(json!({"jsonrpc": "2.0", "id": apply["id"], "result": {"applied": true}}));

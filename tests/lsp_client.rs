@@ -151,7 +151,8 @@ impl Client {
 
     /// Replaces the characters between two places.
     pub fn change(&mut self, uri: &str, version: i64, from: (u32, u32), to: (u32, u32), text: &str) {
-        let range = json!({"start": {"line": from.0, "character": from.1}, "end": {"line": to.0, "character": to.1}});
+        let range =
+            json!({"start": {"line": from.0, "character": from.1}, "end": {"line": to.0, "character": to.1}});
         self.notify(
             "textDocument/didChange",
             json!({"textDocument": {"uri": uri, "version": version}, "contentChanges": [{"range": range, "text": text}]}),
