@@ -5,6 +5,7 @@ mod il_fx;
 mod il_iec;
 mod ladder_generate;
 mod ladder_print;
+mod ladder_read;
 mod lsp;
 mod lsp_client;
 mod rules;
