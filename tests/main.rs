@@ -2,6 +2,7 @@
 
 mod ladder_generate;
 mod ladder_print;
+mod ladder_read;
 mod rules;
 mod target_fx;
 mod target_fx_applied;
