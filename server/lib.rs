@@ -19,7 +19,7 @@ pub mod check;
 
 pub mod project;
 
-// pub mod ide;
+pub mod ide;
 
 // pub mod lsp;
 

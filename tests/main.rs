@@ -1,9 +1,12 @@
 //! Every test of the package that needs no private item, one module for each subject.
 
+mod document;
+mod il_fx;
 mod ladder_generate;
 mod ladder_print;
 mod ladder_read;
 mod rules;
 mod target_fx;
 mod target_fx_applied;
+mod target_iec;
 mod tidy;

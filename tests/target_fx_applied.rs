@@ -235,6 +235,8 @@ fn limits_of_constants_hold() {
         ("DRVI", 1, 10, 32_767),
         ("DDRVI", 1, 10, 200_000),
         ("REF", 1, 8, 256),
+        ("GRY", 0, 0, 32_767),
+        ("DGRY", 0, 0, 2_147_483_647),
     ] {
         assert!(fits(name, place, least) && fits(name, place, most), "{name} {place}");
         assert!(!fits(name, place, least - 1) && !fits(name, place, most + 1), "{name} {place}");
