@@ -16,6 +16,10 @@ pub use pages::{block_page, function_page, instruction_page, operator_page};
 
 mod devices;
 
+mod declared;
+
+mod uses;
+
 mod hover;
 
 mod completion;
