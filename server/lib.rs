@@ -19,8 +19,8 @@ pub mod check;
 
 pub mod project;
 
-// pub mod ide;
+pub mod ide;
 
-// pub mod lsp;
+pub mod lsp;
 
-// pub mod cli;
+pub mod cli;

@@ -188,7 +188,7 @@ fn the_small_models_have_what_their_manual_lists() {
         rows().filter(|row| !row.models.contains(&model)).filter_map(function).collect()
     };
     let full = vec![155, 156, 157, 158, 159];
-    assert_eq!(missing(Model::Fx3u), []);
+    assert_eq!(missing(Model::Fx3u), Vec::<u16>::new());
     assert_eq!(missing(Model::Fx2n), full);
     let floats = [110, 111, 118, 119, 120, 121, 122, 123, 127, 129, 130, 131, 132];
     let small: Vec<u16> = [51, 55, 61, 64, 65, 68, 69, 70, 71, 73, 75, 76, 77]
@@ -235,6 +235,8 @@ fn limits_of_constants_hold() {
         ("DRVI", 1, 10, 32_767),
         ("DDRVI", 1, 10, 200_000),
         ("REF", 1, 8, 256),
+        ("GRY", 0, 0, 32_767),
+        ("DGRY", 0, 0, 2_147_483_647),
     ] {
         assert!(fits(name, place, least) && fits(name, place, most), "{name} {place}");
         assert!(!fits(name, place, least - 1) && !fits(name, place, most + 1), "{name} {place}");

@@ -70,7 +70,8 @@ impl Summary {
     fn of(checked: &[(Program, Vec<Diagnostic>)]) -> Summary {
         let mut summary = Summary::default();
         for (program, diagnostics) in checked {
-            let count = |severity| diagnostics.iter().filter(|diagnostic| diagnostic.severity == severity).count();
+            let count =
+                |severity| diagnostics.iter().filter(|diagnostic| diagnostic.severity == severity).count();
             summary.errors += count(Severity::Error);
             summary.warnings += count(Severity::Warning);
             summary.hints += count(Severity::Hint);
@@ -127,7 +128,8 @@ fn as_json(checked: &[(Program, Vec<Diagnostic>)], summary: &Summary) -> Value {
         .iter()
         .map(|(program, diagnostics)| {
             let status = ide::status(&program.document);
-            let diagnostics: Vec<Value> = diagnostics.iter().map(|found| diagnostic_json(program, found)).collect();
+            let diagnostics: Vec<Value> =
+                diagnostics.iter().map(|found| diagnostic_json(program, found)).collect();
             json!({
                 "path": program.path.display().to_string(),
                 "target": status.target,
@@ -165,7 +167,8 @@ fn diagnostic_json(program: &Program, diagnostic: &Diagnostic) -> Value {
         json!({"path": path, "range": range(related.span), "message": message})
     });
     let fix = |fix: &Fix| {
-        let edits = fix.edits.iter().map(|edit| json!({"path": path, "range": range(edit.span), "text": edit.text}));
+        let edits =
+            fix.edits.iter().map(|edit| json!({"path": path, "range": range(edit.span), "text": edit.text}));
         json!({"title": fix.title.render(Language::English), "edits": edits.collect::<Vec<_>>()})
     };
     json!({

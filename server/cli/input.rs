@@ -29,7 +29,11 @@ pub(super) fn programs(paths: &[PathBuf], target: Option<&'static Target>) -> Op
                         Ok(program) => programs.push(program),
                         Err(reason) => {
                             failed = true;
-                            complain("unreadable-input", &format!("{}: {reason}", file.display()), "check the path");
+                            complain(
+                                "unreadable-input",
+                                &format!("{}: {reason}", file.display()),
+                                "check the path",
+                            );
                         }
                     }
                 }
@@ -64,7 +68,9 @@ fn files_at(path: &Path) -> Result<Vec<(PathBuf, Arc<Manifest>)>, String> {
         return Err(format!("{}: there is no such file or folder", path.display()));
     }
     if path.file_name().is_some_and(|name| name == MANIFEST_NAME) {
-        return files_at(path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")));
+        return files_at(
+            path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")),
+        );
     }
     if path.is_file() {
         if !is_program_file(path) {
@@ -97,11 +103,17 @@ fn usable(project: &Project) -> Result<Arc<Manifest>, String> {
     let text = std::fs::read_to_string(&path).unwrap_or_default();
     let before = text.get(..error.span.start as usize).unwrap_or("");
     let line = before.matches('\n').count() + 1;
-    let column = crate::text::column_of_offset(before.rsplit('\n').next().unwrap_or(""), usize::MAX, Encoding::Utf32) + 1;
+    let column =
+        crate::text::column_of_offset(before.rsplit('\n').next().unwrap_or(""), usize::MAX, Encoding::Utf32)
+            + 1;
     Err(format!("{}:{line}:{column}: {}", path.display(), error.message.render(Language::English)))
 }
 
-fn read_program(path: &Path, manifest: Arc<Manifest>, target: Option<&'static Target>) -> std::io::Result<Program> {
+fn read_program(
+    path: &Path,
+    manifest: Arc<Manifest>,
+    target: Option<&'static Target>,
+) -> std::io::Result<Program> {
     let bytes = std::fs::read(path)?;
     let (text, damaged) = match String::from_utf8(bytes) {
         Ok(text) => (text, false),

@@ -85,7 +85,11 @@ fn serve() -> ExitCode {
             std::process::exit(i32::from(code))
         }
         Err(reason) => {
-            input::complain("no-runtime", &reason.to_string(), "the system refuses threads; close other programs");
+            input::complain(
+                "no-runtime",
+                &reason.to_string(),
+                "the system refuses threads; close other programs",
+            );
             Outcome::Unusable.into()
         }
     }

@@ -22,7 +22,13 @@ pub(super) struct Colours {
 impl Colours {
     pub(super) fn new(on: bool) -> Colours {
         if on {
-            Colours { error: "\x1b[1;31m", warning: "\x1b[1;33m", hint: "\x1b[1;36m", dim: "\x1b[2m", off: "\x1b[0m" }
+            Colours {
+                error: "\x1b[1;31m",
+                warning: "\x1b[1;33m",
+                hint: "\x1b[1;36m",
+                dim: "\x1b[2m",
+                off: "\x1b[0m",
+            }
         } else {
             Colours { error: "", warning: "", hint: "", dim: "", off: "" }
         }
@@ -80,7 +86,8 @@ fn shown_lines(document: &Document, span: Span) -> (u32, u32) {
     let line_of = |offset: usize| document.position(offset, Encoding::Utf8).line;
     let (first, last) = (line_of(span.start as usize), line_of(span.end as usize));
     let end = document.line_count().saturating_sub(1) as u32;
-    let around = (first.saturating_sub(CONTEXT_LINES), (last.min(first + CONTEXT_LINES) + CONTEXT_LINES).min(end));
+    let around =
+        (first.saturating_sub(CONTEXT_LINES), (last.min(first + CONTEXT_LINES) + CONTEXT_LINES).min(end));
     let Some(at) = document.chunk_at(span.start as usize) else { return around };
     let chunk = (line_of(at.start), line_of((at.start + at.chunk.len()).saturating_sub(1)));
     let blank = |line: u32| document.slice(line_span(document, line)).trim().is_empty();
@@ -94,13 +101,19 @@ fn shown_lines(document: &Document, span: Span) -> (u32, u32) {
 
 fn line_span(document: &Document, line: u32) -> Span {
     let offset = |line: u32| document.offset(LineColumn { line, column: 0 }, Encoding::Utf8);
-    Span::new(offset(line), if line as usize + 1 >= document.line_count() { document.len() } else { offset(line + 1) })
+    Span::new(
+        offset(line),
+        if line as usize + 1 >= document.line_count() { document.len() } else { offset(line + 1) },
+    )
 }
 
 /// The marks under one line, or nothing if `mark` does not touch it. An empty mark gets one sign.
 fn carets(line: Span, content: &str, mark: Span, sign: char) -> Option<String> {
     let content_end = line.start + content.len() as u32;
-    if mark.end < line.start || mark.start > content_end || (mark.start < line.start && mark.end == line.start) {
+    if mark.end < line.start
+        || mark.start > content_end
+        || (mark.start < line.start && mark.end == line.start)
+    {
         return None;
     }
     let from = mark.start.max(line.start) - line.start;
@@ -121,7 +134,8 @@ fn visible(content: &str) -> String {
             shown.extend(std::iter::repeat_n(' ', blanks));
             column += blanks;
         } else {
-            let character = if character.is_control() || character == '\u{feff}' { '\u{fffd}' } else { character };
+            let character =
+                if character.is_control() || character == '\u{feff}' { '\u{fffd}' } else { character };
             shown.push(character);
             column += cell_width(character);
         }

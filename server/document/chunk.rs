@@ -1,6 +1,6 @@
 //! A chunk: a piece of text with what it says, shared by all snapshots that contain it.
 
-use super::{Mention, Notation, mention};
+use super::{Mention, Notation, Size, mention};
 use crate::il::{fx, iec};
 use crate::ladder::{self, LadderTree};
 use crate::target::Target;
@@ -14,6 +14,7 @@ pub struct Chunk {
     tree: Tree,
     line_breaks: u32,
     mentions: OnceLock<Box<[Mention]>>,
+    size: OnceLock<Size>,
     found: Mutex<Option<(u64, Arc<[Diagnostic]>)>>,
 }
 
@@ -44,6 +45,7 @@ impl Chunk {
             tree,
             line_breaks: text.bytes().filter(|&byte| byte == b'\n').count() as u32,
             mentions: OnceLock::new(),
+            size: OnceLock::new(),
             found: Mutex::new(None),
         }
     }
@@ -85,6 +87,11 @@ impl Chunk {
     /// Every device, variable and label that it names, in the order of the text.
     pub fn mentions(&self) -> &[Mention] {
         self.mentions.get_or_init(|| mention::of_chunk(self).into_boxed_slice())
+    }
+
+    /// How much program it is.
+    pub fn size(&self) -> Size {
+        *self.size.get_or_init(|| Size::of(self))
     }
 
     /// The local diagnostics under `key`, which stands for everything outside of the chunk that they depend on;

@@ -141,20 +141,20 @@ pub(super) fn of_operand(text: &str, operand: &Operand, span: Span, usage: Use, 
         DeviceKind::P | DeviceKind::I => Use::Jump,
         _ => usage,
     };
-    let index_read =
-        |index: Device| one(Symbol::Device(index), Span { start: span.end, end: span.end }, Use::Read);
+    let (base, index_span) = device_spans(text, operand, span);
+    let index_read = |index: Device| one(Symbol::Device(index), index_span, Use::Read);
     match *operand {
-        Operand::Device(device) => mentions.push(one(Symbol::Device(device), span, usage_of(device))),
+        Operand::Device(device) => mentions.push(one(Symbol::Device(device), base, usage_of(device))),
         Operand::Indexed { device, index } => {
             mentions.push(index_read(index));
-            mentions.push(one(Symbol::Device(device), span, usage_of(device)));
+            mentions.push(one(Symbol::Device(device), base, usage_of(device)));
         }
         Operand::Nibbles { digits, first, index } => {
             mentions.extend(index.map(index_read));
             mentions
-                .push(Mention { count: u16::from(digits) * 4, ..one(Symbol::Device(first), span, usage) });
+                .push(Mention { count: u16::from(digits) * 4, ..one(Symbol::Device(first), base, usage) });
         }
-        Operand::WordBit { word, .. } => mentions.push(one(Symbol::Device(word), span, usage)),
+        Operand::WordBit { word, .. } => mentions.push(one(Symbol::Device(word), base, usage)),
         Operand::Direct(address) => mentions.push(one(Symbol::Direct(address), span, usage)),
         Operand::Variable => {
             let root = root_of(text, span);
@@ -163,6 +163,25 @@ pub(super) fn of_operand(text: &str, operand: &Operand, span: Span, usage: Use, 
         Operand::Constant { index, .. } => mentions.extend(index.map(index_read)),
         Operand::Literal(_) | Operand::Text | Operand::Invalid(_) => {}
     }
+}
+
+/// The cells of the device itself (`M0` in `K4M0Z1`, `D0` in `D0.3`), and those of its index register.
+fn device_spans(text: &str, operand: &Operand, span: Span) -> (Span, Span) {
+    let word = span.of(text);
+    let at = |start: usize, end: usize| Span::new(span.start as usize + start, span.start as usize + end);
+    let index = match operand {
+        Operand::Indexed { .. }
+        | Operand::Nibbles { index: Some(_), .. }
+        | Operand::Constant { index: Some(_), .. } => word.rfind(['V', 'v', 'Z', 'z']),
+        Operand::WordBit { .. } => word.find('.'),
+        _ => None,
+    };
+    let end = index.unwrap_or(word.len());
+    let start = match operand {
+        Operand::Nibbles { .. } => word.find(['X', 'x', 'Y', 'y', 'M', 'm', 'S', 's']).unwrap_or(0).min(end),
+        _ => 0,
+    };
+    (at(start, end), at(end, word.len()))
 }
 
 /// The first identifier of a path such as `T1.Q` or `a[3].b`.

@@ -16,6 +16,12 @@ pub use chunk::{Chunk, Tree};
 mod pages;
 pub use pages::Page;
 
+mod size;
+pub use size::Size;
+
+mod names;
+pub use names::Names;
+
 mod operation;
 pub use operation::Operation;
 

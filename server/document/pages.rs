@@ -1,9 +1,9 @@
 //! The sequence of chunks: pages of some dozens each, so that a snapshot copies one pointer a page and an edit
 //! rebuilds one page.
 
-use super::{Chunk, chunk};
+use super::{Chunk, Names, Size, chunk};
 use crate::text::Diagnostic;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// A page is split when it would hold more chunks than this.
 const PAGE_LIMIT: usize = 96;
@@ -13,13 +13,21 @@ const PAGE_LIMIT: usize = 96;
 pub struct Page {
     chunks: Vec<Arc<Chunk>>,
     bytes: usize,
+    size: OnceLock<Size>,
+    names: OnceLock<Names>,
     found: Mutex<Option<(u64, Arc<[Diagnostic]>)>>,
 }
 
 impl Page {
     fn new(chunks: Vec<Arc<Chunk>>) -> Arc<Page> {
         let bytes = chunks.iter().map(|chunk| chunk.len()).sum();
-        Arc::new(Page { chunks, bytes, found: Mutex::new(None) })
+        Arc::new(Page {
+            chunks,
+            bytes,
+            size: OnceLock::new(),
+            names: OnceLock::new(),
+            found: Mutex::new(None),
+        })
     }
 
     /// Its chunks.
@@ -30,6 +38,16 @@ impl Page {
     /// Length in bytes.
     pub fn bytes(&self) -> usize {
         self.bytes
+    }
+
+    /// How much program it is.
+    pub fn size(&self) -> Size {
+        *self.size.get_or_init(|| self.chunks.iter().map(|chunk| chunk.size()).sum())
+    }
+
+    /// What its chunks name.
+    pub fn names(&self) -> &Names {
+        self.names.get_or_init(|| Names::of(&self.chunks))
     }
 
     /// The diagnostics of all its chunks, offsets from the page's start, kept under `key` as those of a chunk are.

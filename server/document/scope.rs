@@ -4,8 +4,11 @@
 
 use super::mention::{folded, of_operand};
 use super::{Chunk, Document, Mention, Symbol, Tree, Use};
-use crate::il::iec::{IecTree, ItemKind, MentionRole, PouKind, SectionKind, TypeId, TypeSpec};
-use crate::target::iec::{ElementaryType, FunctionBlock, ParameterType};
+use crate::il::iec::{
+    Direction, IecTree, ItemKind, MentionRole, OperandId, ParameterValue, PouKind, SectionKind, TypeId,
+    TypeSpec,
+};
+use crate::target::iec::{ElementaryType, FunctionBlock, OperatorRole, ParameterType};
 use crate::target::{DirectAddress, Operand};
 use rustc_hash::{FxHashMap, FxHasher};
 use smol_str::SmolStr;
@@ -277,6 +280,7 @@ fn declared_type(text: &str, tree: &IecTree, id: TypeId) -> DeclaredType {
             values.of(&tree.names).iter().map(|name| folded(name.of(text))).collect(),
         ),
         TypeSpec::Array { element, .. } => DeclaredType::Array(Box::new(declared_type(text, tree, element))),
+        TypeSpec::Reference { .. } => DeclaredType::Unknown,
         TypeSpec::Structure { fields } => {
             let declarations = fields.of(&tree.declarations).iter();
             let fields = declarations.flat_map(|declaration| {
@@ -287,13 +291,43 @@ fn declared_type(text: &str, tree: &IecTree, id: TypeId) -> DeclaredType {
             });
             DeclaredType::Structure(fields.collect())
         }
+        TypeSpec::Reference { .. } => DeclaredType::Unknown,
     }
+}
+
+/// What is done with each operand, as far as direct addresses can stand there.
+fn direct_uses(tree: &IecTree) -> Vec<Use> {
+    let mut uses = vec![Use::Read; tree.operands.len()];
+    let mut set = |id: OperandId, usage: Use| {
+        if let Some(slot) = uses.get_mut(id.0 as usize) {
+            *slot = usage;
+        }
+    };
+    for item in &tree.items {
+        if let ItemKind::Operation { operation, operand: Some(id) } = item.kind
+            && matches!(operation.operator.role, OperatorRole::Store | OperatorRole::Latch)
+        {
+            set(id, Use::Write);
+        }
+    }
+    for parameter in &tree.parameters {
+        if let (Direction::Out { .. }, ParameterValue::Operand(id)) = (parameter.direction, parameter.value) {
+            set(id, Use::Write);
+        }
+    }
+    for id in tree.declarations.iter().filter_map(|declaration| declaration.address) {
+        set(id, Use::Declare);
+    }
+    uses
 }
 
 /// The mentions of an IEC chunk; operands that are direct addresses are among them.
 pub(super) fn mentions(text: &str, tree: &IecTree, mentions: &mut Vec<Mention>) {
-    for operand in tree.operands.iter().filter(|operand| matches!(operand.value, Operand::Direct(_))) {
-        of_operand(text, &operand.value, operand.span, Use::Read, mentions);
+    let uses = direct_uses(tree);
+    for (operand, usage) in tree.operands.iter().zip(uses) {
+        if matches!(operand.value, Operand::Direct(_)) {
+            of_operand(text, &operand.value, operand.span, usage, mentions);
+        }
     }
     for mention in tree.mentions(text) {
         let name = mention.span.of(text);

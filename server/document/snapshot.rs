@@ -1,7 +1,7 @@
 //! The document itself: text, chunks, and how an edit changes both.
 
 use super::pages::{Cursor, Page, Pages};
-use super::{Chunk, Notation, Scopes, chunk};
+use super::{Chunk, Notation, Scopes, Size, chunk};
 use crate::target::Target;
 use crate::text::{Encoding, LineColumn, Span, column_of_offset, offset_of_column};
 use ropey::Rope;
@@ -146,6 +146,11 @@ impl Document {
             start += chunk.len();
             at
         })
+    }
+
+    /// How much program it is. Only pages that an edit touched are counted anew.
+    pub fn size(&self) -> Size {
+        self.pages.pages().iter().map(|page| page.size()).sum()
     }
 
     /// The chunk in which `offset` lies; at the very end the last one. `None` if there is no text.

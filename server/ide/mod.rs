@@ -1,31 +1,46 @@
 //! Editor features, one file each: offsets of a document in, plain structs out. No protocol, no files, no threads.
 
 use crate::document::Document;
-use crate::text::{Fix, Language, Message, Span, TextEdit};
+use crate::text::{Diagnostic, Language, Message, Span, TextEdit};
 
 mod answer;
 pub use answer::{
-    Completion, CompletionKind, Fold, FoldKind, Hover, InlayHint, Status, SymbolKind, SymbolNode, Token, TokenKind,
+    Completion, CompletionKind, Fold, FoldKind, Hover, InlayHint, Status, SymbolKind, SymbolNode, Token,
+    TokenKind,
 };
 
 mod names;
-mod words;
+
+mod pages;
+pub use pages::{block_page, function_page, instruction_page, operator_page};
+
+mod devices;
+
+mod hover;
 
 mod completion;
+
 mod definition;
-mod fixes;
-mod folding;
-mod format;
-mod hover;
-mod inlay_hints;
+
 mod references;
+
 mod rename;
-mod semantic_tokens;
-mod status;
+
 mod symbols;
 
-pub use fixes::FixOf;
+mod folding;
+
+mod semantic_tokens;
+
+mod inlay_hints;
+
+mod format;
 pub use format::Style;
+
+mod fixes;
+pub use fixes::FixOf;
+
+mod status;
 
 /// What stands at `offset`: the page of an instruction, the meaning and range of a device, where it is used.
 pub fn hover(document: &Document, offset: usize, language: Language) -> Option<Hover> {
@@ -42,7 +57,7 @@ pub fn definition(document: &Document, offset: usize) -> Vec<Span> {
     definition::of(document, offset)
 }
 
-/// Every place of the name at `offset`.
+/// Every place of the name at `offset`, in order.
 pub fn references(document: &Document, offset: usize, with_declaration: bool) -> Vec<Span> {
     references::of(document, offset, with_declaration)
 }
@@ -61,8 +76,8 @@ pub fn rename(document: &Document, offset: usize, new: &str) -> Result<Vec<TextE
 }
 
 /// The outline.
-pub fn symbols(document: &Document) -> Vec<SymbolNode> {
-    symbols::of(document)
+pub fn symbols(document: &Document, language: Language) -> Vec<SymbolNode> {
+    symbols::of(document, language)
 }
 
 /// What can be folded.
@@ -76,8 +91,8 @@ pub fn semantic_tokens(document: &Document) -> Vec<Token> {
 }
 
 /// What the editor may show between the words of `span`.
-pub fn inlay_hints(document: &Document, span: Span) -> Vec<InlayHint> {
-    inlay_hints::within(document, span)
+pub fn inlay_hints(document: &Document, span: Span, language: Language) -> Vec<InlayHint> {
+    inlay_hints::within(document, span, language)
 }
 
 /// The edits that make the document canonical; none if it is.
@@ -86,7 +101,7 @@ pub fn format(document: &Document, style: Style) -> Vec<TextEdit> {
 }
 
 /// The fixes of `diagnostics` that touch `span`.
-pub fn fixes(diagnostics: &[crate::text::Diagnostic], span: Span) -> Vec<FixOf<'_>> {
+pub fn fixes(diagnostics: &[Diagnostic], span: Span) -> Vec<FixOf<'_>> {
     fixes::within(diagnostics, span)
 }
 
@@ -94,6 +109,3 @@ pub fn fixes(diagnostics: &[crate::text::Diagnostic], span: Span) -> Vec<FixOf<'
 pub fn status(document: &Document) -> Status {
     status::of(document)
 }
-
-#[allow(unused_imports, reason = "named in the documentation of FixOf")]
-use Fix as _;

@@ -49,8 +49,7 @@ impl Publisher {
     pub(super) fn start(client: Client, encoding: Encoding, settings: &Settings) -> Publisher {
         let (sender, receiver) = watch::channel(Order::Nothing);
         let pushes = !settings.pulls();
-        let task =
-            Task { client, encoding, pushes, batch: None, batch_took: Duration::ZERO, status: None };
+        let task = Task { client, encoding, pushes, batch: None, batch_took: Duration::ZERO, status: None };
         tokio::spawn(task.run(receiver));
         Publisher { sender }
     }

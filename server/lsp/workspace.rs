@@ -14,8 +14,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tower_lsp::Client;
 use tower_lsp::ls_types::{
-    DidChangeConfigurationParams, DidChangeTextDocumentParams, DidCloseTextDocumentParams, DidOpenTextDocumentParams,
-    DidSaveTextDocumentParams, LSPAny, TextDocumentContentChangeEvent, Uri,
+    DidChangeConfigurationParams, DidChangeTextDocumentParams, DidCloseTextDocumentParams,
+    DidOpenTextDocumentParams, DidSaveTextDocumentParams, LSPAny, TextDocumentContentChangeEvent, Uri,
 };
 
 tokio::task_local! {
@@ -117,7 +117,8 @@ impl Workspace {
         let document = read(&item.uri, &item.text, &manifest, &state.snapshot.settings);
         let severities = Arc::new(manifest.severities());
         let open = Open { uri: item.uri.clone(), version: item.version, document, manifest, severities };
-        let publisher = Publisher::start(self.client.clone(), state.snapshot.encoding, &state.snapshot.settings);
+        let publisher =
+            Publisher::start(self.client.clone(), state.snapshot.encoding, &state.snapshot.settings);
         state.publishers.insert(item.uri, publisher);
         state.put(open);
     }
@@ -206,9 +207,10 @@ fn manifest_of(uri: &Uri) -> Manifest {
 fn read(uri: &Uri, text: &str, manifest: &Manifest, settings: &Settings) -> Document {
     let name = uri.path().as_str();
     let decided = guarded(|| decide(name, text, manifest, settings.target(), settings.notation()));
-    let (notation, target) =
-        decided.unwrap_or((crate::document::Notation::FxIl, crate::target::Target::of(crate::target::Model::Fx2n)));
-    guarded(|| Document::new(text, notation, target)).unwrap_or_else(|| Document::unread(text, notation, target))
+    let (notation, target) = decided
+        .unwrap_or((crate::document::Notation::FxIl, crate::target::Target::of(crate::target::Model::Fx2n)));
+    guarded(|| Document::new(text, notation, target))
+        .unwrap_or_else(|| Document::unread(text, notation, target))
 }
 
 /// The value, or nothing and a line in the log if making it panics.

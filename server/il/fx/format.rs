@@ -137,9 +137,9 @@ fn chunk_edits(chunk: &str, tree: &FxTree, options: &FormatOptions) -> Vec<TextE
         was_blank = segment.print == Print::Blank;
         // A byte order mark is the first character of a file and stays there.
         let whole = segment.content.to(segment.newline);
-        let mark = if whole.of(chunk).starts_with('\u{feff}') && place == 0 { "\u{feff}".len() } else { 0 };
-        let body = Span::new(whole.start as usize + mark, whole.end as usize);
-        let printed = printed.strip_prefix('\u{feff}').unwrap_or(&printed);
+        let mark = if place == 0 && whole.of(chunk).starts_with('\u{feff}') { "\u{feff}" } else { "" };
+        let body = Span::new(whole.start as usize + mark.len(), whole.end as usize);
+        let printed = printed.strip_prefix(mark).unwrap_or(&printed);
         if printed != body.of(chunk) {
             edits.push(TextEdit::new(body, printed));
         }

@@ -4,8 +4,8 @@
 //! prints it canonically, [`steps`] counts its program steps.
 //!
 //! The language is a list of lines, a mnemonic and its words each, without nesting. So the lexer is generated, and
-//! the parser behind it is a loop over tokens by hand: measured on the same texts it is several times faster than
-//! parser combinators, and each recovery is a line of it that can be read.
+//! the parser behind it is a loop over tokens by hand: measured on the same texts it is much faster than parser
+//! combinators, and each recovery is a line of it that can be read.
 
 mod lexer;
 

@@ -17,7 +17,14 @@ const UNCLOSED_COMMENT: &str = "unclosed-comment";
 /// instruction, a colon after a label, blanks before the sign of a comparing contact.
 pub fn parse(chunk: &str, target: &Target) -> FxTree {
     let mut parser = Parser::new(chunk, target);
-    for (token, range) in Token::lexer(chunk).spanned() {
+    let mut tokens = Token::lexer(chunk).spanned().peekable();
+    while let Some((token, mut range)) = tokens.next() {
+        // The lexer stops at each character that it does not know; a run of them is one finding.
+        while let Some((_, next)) =
+            tokens.next_if(|(next, at)| next.is_err() && token.is_err() && at.start == range.end)
+        {
+            range.end = next.end;
+        }
         let span = Span::new(range.start, range.end);
         match token {
             Ok(Token::Newline) => parser.end_line(),
@@ -68,7 +75,10 @@ impl<'a> Parser<'a> {
     fn new(chunk: &'a str, target: &Target) -> Parser<'a> {
         // An FX program in a project for another target is still read with the FX spelling of devices.
         let model = if target.is_fx() { target.model } else { Model::Fx2n };
-        let tree = FxTree::default();
+        // Programs have about a record and an operand a line, so the vectors seldom grow.
+        let lines = chunk.bytes().filter(|byte| *byte == b'\n').count() + 1;
+        let (lines, operands) = (Vec::with_capacity(lines), Vec::with_capacity(lines));
+        let tree = FxTree { lines, operands, ..FxTree::default() };
         Parser { chunk, model, tree, place: Place::Start, step: None, comma: None, glue: 0 }
     }
 
@@ -165,7 +175,8 @@ impl<'a> Parser<'a> {
     fn second_instruction(&mut self, span: Span) {
         self.comma = None;
         let message = Message::new("fx-syntax.second-instruction").with("word", span.of(self.chunk));
-        let newline = if self.chunk.contains("\r\n") { "\r\n" } else { "\n" };
+        let first_line = self.chunk.split_inclusive('\n').next().unwrap_or("");
+        let newline = if first_line.ends_with("\r\n") { "\r\n" } else { "\n" };
         let gap = self.tree.lines.last().map_or(span.start, |line| line.span.end);
         let is_blank = Span { start: gap, end: span.start }.of(self.chunk).trim().is_empty();
         let gap = Span { start: if is_blank { gap } else { span.start }, end: span.start };
@@ -249,19 +260,11 @@ impl<'a> Parser<'a> {
 
 /// Characters that no token contains.
 impl Parser<'_> {
+    /// A run of them, which is one problem or belongs to the word before.
     fn stray(&mut self, span: Span) {
-        let mut problem = stray_problem(span, self.chunk);
+        let problem = stray_problem(span, self.chunk);
         if problem.message.key() == STRAY && self.place == Place::Operands && span.start == self.glue {
             return self.extend(span);
-        }
-        // A run of them is one problem.
-        let last = self.tree.problems.last();
-        if let Some(last) = last.filter(|last| last.span.end == span.start && last.code == SYNTAX_ERROR) {
-            let run = stray_problem(last.span.to(span), self.chunk);
-            if run.message.key() == problem.message.key() && problem.message.key() == last.message.key() {
-                problem = run;
-                self.tree.problems.pop();
-            }
         }
         self.tree.problems.push(problem);
     }
@@ -337,7 +340,19 @@ fn plain_form(character: char) -> Option<char> {
     }
 }
 
-/// Control characters by their number, the rest as it is.
+/// The first characters, control characters by their number.
 fn visible(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { format!("U+{:04X}", c as u32) } else { c.to_string() }).collect()
+    const SHOWN: usize = 20;
+    let mut visible = String::new();
+    for (place, character) in text.chars().enumerate() {
+        match character {
+            _ if place == SHOWN => {
+                visible.push('…');
+                break;
+            }
+            _ if character.is_control() => visible += &format!("U+{:04X}", character as u32),
+            _ => visible.push(character),
+        }
+    }
+    visible
 }

@@ -84,10 +84,11 @@ impl FxTree {
         self.line_before(offset).filter(|line| line.span.touches(offset))
     }
 
-    /// The operand that a cursor at `offset` touches, as an index into [`FxTree::operands`], and its line.
+    /// The operand that a cursor at `offset` touches, as an index into [`FxTree::operands`], and its line; the later
+    /// one where two meet.
     pub fn operand_at(&self, offset: usize) -> Option<(&FxLine, usize)> {
         let line = self.line_at(offset)?;
-        let place = self.operands(line).iter().position(|operand| operand.span.touches(offset))?;
+        let place = self.operands(line).iter().rposition(|operand| operand.span.touches(offset))?;
         Some((line, line.operands.0 as usize + place))
     }
 

@@ -14,6 +14,22 @@ pub use tree::{
 mod mention;
 pub use mention::{Mention, MentionRole, fold_case, same_name};
 
+mod token;
+
+mod grammar;
+
+mod reader;
+
+mod lower;
+
+mod declare;
+
+mod configure;
+
+mod instruct;
+
+mod call;
+
 mod split;
 pub use split::split;
 

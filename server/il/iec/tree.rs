@@ -384,6 +384,11 @@ pub enum TypeSpec {
         /// In [`IecTree::declarations`].
         fields: Run,
     },
+    /// `REF_TO INT`, of the third edition.
+    Reference {
+        /// The type referred to.
+        target: TypeId,
+    },
 }
 
 /// An initial value; the records of what is inside it follow it directly.

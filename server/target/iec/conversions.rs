@@ -50,6 +50,8 @@ pub fn named(name: &str) -> Option<&'static Function> {
 
 /// What `name` would convert; whether there is such a conversion is for the table to say.
 fn parse(name: &str) -> Option<Conversion> {
+    type Short = fn(ElementaryType) -> Conversion;
+    type Long = fn(ElementaryType, ElementaryType) -> Conversion;
     let kind = ElementaryType::named;
     // The longest name of a conversion has 34 bytes, so `folded` has no room for it.
     let mut buffer = [0u8; 48];
@@ -60,7 +62,7 @@ fn parse(name: &str) -> Option<Conversion> {
     if name == "TRUNC" {
         return Some(AnyTruncate);
     }
-    let forms: [(&str, fn(ElementaryType) -> Conversion); 4] =
+    let forms: [(&str, Short); 4] =
         [("TO_BCD_", AnyToBcd), ("TRUNC_", ToTruncated), ("BCD_TO_", FromAnyBcd), ("TO_", ToValue)];
     for (prefix, form) in forms {
         if let Some(rest) = name.strip_prefix(prefix) {
@@ -70,7 +72,7 @@ fn parse(name: &str) -> Option<Conversion> {
     if let Some(from) = name.strip_suffix("_TO_BCD") {
         return kind(from).map(ToAnyBcd);
     }
-    let forms: [(&str, fn(ElementaryType, ElementaryType) -> Conversion); 4] =
+    let forms: [(&str, Long); 4] =
         [("_TO_BCD_", ToBcd), ("_BCD_TO_", FromBcd), ("_TRUNC_", Truncate), ("_TO_", Value)];
     for (middle, form) in forms {
         if let Some((from, to)) = name.split_once(middle) {

@@ -50,6 +50,13 @@ pub struct Parameter {
     pub meaning: &'static str,
 }
 
+/// The input that every function and block has besides its own: while it is 0 the call does nothing. In Instruction
+/// List it stands in lists of named parameters only.
+pub const EN: Parameter = Parameter::of("EN", ElementaryType::Bool, "enable");
+
+/// The output that every function and block has besides its own: 1 if the call was made and went well.
+pub const ENO: Parameter = Parameter::of("ENO", ElementaryType::Bool, "enabled and without error");
+
 /// The type of a parameter.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum ParameterType {
@@ -102,10 +109,10 @@ impl Function {
         let last = self.inputs.last()?;
         let stem = last.name.trim_end_matches(|c: char| c.is_ascii_digit());
         let (head, number) = name.split_at_checked(stem.len())?;
-        let plain = !number.starts_with('0') && number.bytes().all(|digit| digit.is_ascii_digit());
-        let position: u32 = number.parse().ok().filter(|_| plain)?;
-        let declared: u32 = last.name.get(stem.len()..)?.parse().ok()?;
-        (head.eq_ignore_ascii_case(stem) && position > declared).then_some(last)
+        // Every number below those declared is declared itself, but for 0 where the count starts at 1.
+        let counts =
+            !number.is_empty() && !number.starts_with('0') && number.bytes().all(|b| b.is_ascii_digit());
+        (counts && head.eq_ignore_ascii_case(stem)).then_some(last)
     }
 
     /// The page: Markdown, one paragraph and a complete `il` program.

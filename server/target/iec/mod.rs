@@ -18,7 +18,7 @@ mod operators;
 pub use operators::{Modifiers, Operator, OperatorRole, Written};
 
 mod functions;
-pub use functions::{Function, Parameter, ParameterType};
+pub use functions::{EN, ENO, Function, Parameter, ParameterType};
 
 mod conversions;
 

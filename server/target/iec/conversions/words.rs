@@ -21,13 +21,14 @@ pub fn about(conversion: Conversion) -> String {
              prefers the forms that name the type, such as `TRUNC_INT`.",
             truncates("an integer"),
         ),
+        FromBcd(from, to) if digits_fit(from, to) => format!("{} {what}", from_bcd(&noun(from), to)),
         FromBcd(from, to) => format!("{} {what} {}", from_bcd(&noun(from), to), range(to)),
         FromAnyBcd(to) => format!("{} {what} {}", from_bcd("a bit string", to), range(to)),
         ToBcd(from, to) => format!("{} {what}", to_bcd(&noun(from), to)),
         AnyToBcd(to) => format!("{} {what}", to_bcd("an integer", to)),
         ToAnyBcd(from) => format!(
-            "Writes {} as decimal digits, four bits each, into the bit string that the result is stored to: 1234 \
-             gives 16#1234. {what} A negative number, or one with more digits than there is room for, is an error.",
+            "Writes {} as decimal digits, four bits each, into the bit string that the result is stored to: 12 \
+             gives 16#12. {what} A negative number, or one with more digits than there is room for, is an error.",
             noun(from),
         ),
     }
@@ -49,7 +50,7 @@ fn truncates(to: &str) -> String {
 
 fn from_bcd(from: &str, to: ElementaryType) -> String {
     format!(
-        "Reads {from} as decimal digits, four bits each, and gives the number as {}: 16#1234 gives 1234. Thumbwheel \
+        "Reads {from} as decimal digits, four bits each, and gives the number as {}: 16#12 gives 12. Thumbwheel \
          switches deliver such digits. A group of four bits above 9 is an error.",
         noun(to)
     )
@@ -64,29 +65,42 @@ fn to_bcd(from: &str, to: ElementaryType) -> String {
     )
 }
 
+/// Whether `number` holds as many nines as there is room for in `digits`.
+fn digits_fit(digits: ElementaryType, number: ElementaryType) -> bool {
+    let largest = 10i128.pow(digits.bits().unwrap_or(0) / 4) - 1;
+    number.integers().is_some_and(|range| range.contains(&largest))
+}
+
 /// What to mind when `from` becomes `to`.
 fn trap(from: ElementaryType, to: ElementaryType) -> String {
     let is = |kind: ElementaryType, group| kind.belongs_to(group);
     let text = |kind| is(kind, GenericType::AnyString);
     match () {
         () if text(from) && text(to) => {
-            "A character that the other kind of text does not have becomes what the \
-                                         maker chose, or an error."
+            "A character that the other kind of text does not have becomes what the maker chose, or an error."
                 .to_string()
+        }
+        () if text(to) && is(from, GenericType::AnyChar) => "The text has this one character.".to_string(),
+        () if text(from) && is(to, GenericType::AnyChar) => {
+            "The first character of the text is taken; an empty text is an error.".to_string()
         }
         () if text(to) => format!(
             "The text is written in the way of a literal; the standard leaves the number of digits and the prefix \
-             to the maker, so test what your controller writes for {}.",
+             to the maker, so test what your controller writes for `{}`.",
             sample(from)
         ),
         () if text(from) => format!(
-            "The text must read as a literal of the type, such as {}; any other text is an error, on some \
+            "The text must read as a literal of the type, such as `{}`; any other text is an error, on some \
              controllers 0.",
             sample(to)
         ),
-        () if is(from, GenericType::AnyChar) || is(to, GenericType::AnyChar) => {
-            "The code of the character is kept; one too large for the result is an error.".to_string()
-        }
+        () if is(from, GenericType::AnyChar) || is(to, GenericType::AnyChar) => match from.bits() > to.bits()
+        {
+            true => {
+                "The code of the character is kept; one too large for the result is an error.".to_string()
+            }
+            false => "The code of the character is kept.".to_string(),
+        },
         () if is_time(from) && is_time(to) => between_times(from, to),
         () if is_time(from) || is_time(to) => time_and_number(from, to),
         () if is(from, GenericType::AnyReal) && is(to, GenericType::AnyInt) => format!(
@@ -107,10 +121,13 @@ fn is_time(kind: ElementaryType) -> bool {
 fn between_times(from: ElementaryType, to: ElementaryType) -> String {
     use ElementaryType::*;
     match (from, to) {
-        (_, Date | Ldate) => "The day is kept and the time of day dropped.".to_string(),
+        (DateAndTime | LdateAndTime, Date | Ldate) => {
+            "The day is kept and the time of day dropped.".to_string()
+        }
         (DateAndTime | LdateAndTime, TimeOfDay | LtimeOfDay) => {
             "The time of day is kept and the day dropped.".to_string()
         }
+        (Date, _) => "The day stays the same; the third edition does this by itself.".to_string(),
         (Time | TimeOfDay | DateAndTime, _) => {
             "The value stays the same, counted in nanoseconds; the third edition does this by itself."
                 .to_string()
@@ -131,6 +148,11 @@ fn time_and_number(from: ElementaryType, to: ElementaryType) -> String {
     if time.belongs_to(GenericType::AnyDuration) {
         return "The standard does not give the unit of the number: most controllers count milliseconds, some whole \
                 seconds. Multiplying or dividing a time by a number is the same everywhere."
+            .to_string();
+    }
+    if matches!(time, ElementaryType::TimeOfDay | ElementaryType::LtimeOfDay) {
+        return "The number counts from midnight; the standard does not give its unit, which most makers take as \
+                milliseconds."
             .to_string();
     }
     format!(
@@ -175,9 +197,11 @@ fn range(to: ElementaryType) -> String {
 /// Bit strings on either side, numbers perhaps on the other.
 fn bits(from: ElementaryType, to: ElementaryType) -> String {
     use ElementaryType::*;
-    let real = from.belongs_to(GenericType::AnyReal) || to.belongs_to(GenericType::AnyReal);
     match (from, to) {
         (Bool, _) => "FALSE gives 0 and TRUE gives 1.".to_string(),
+        (Real | Lreal, Bool) => "0.0 gives FALSE; what other numbers give is up to the maker, so a comparison with \
+                                 `NE` says it better."
+            .to_string(),
         (_, Bool) => "0 gives FALSE. By the standard the lowest bit counts, on many controllers every value but 0 \
                       gives TRUE: a comparison with `NE` says what is meant."
             .to_string(),
@@ -186,7 +210,16 @@ fn bits(from: ElementaryType, to: ElementaryType) -> String {
              convert the number instead, so that 1.0 and 16#1 correspond."
                 .to_string()
         }
-        _ if real => "The bits count as an unsigned number; one that does not fit is an error.".to_string(),
+        (_, Real | Lreal) => {
+            let digits = if to == Real { 7 } else { 15 };
+            match from.bits() > Some(if to == Real { 16 } else { 32 }) {
+                true => format!("The bits count as an unsigned number, of which about {digits} digits remain."),
+                false => "The bits count as an unsigned number.".to_string(),
+            }
+        }
+        (Real | Lreal, _) => "The number is rounded to the nearest integer, which must fit as an unsigned one; \
+                              anything else is an error."
+            .to_string(),
         _ if from.bits() < to.bits() && from.belongs_to(GenericType::AnySigned) => {
             "The bits are kept; controllers differ in whether a negative number fills the upper ones with 0 or 1."
                 .to_string()

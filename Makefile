@@ -1,0 +1,69 @@
+# Rungwise. `make help` lists what can be made.
+# Everything that a target needs beyond Rust, Node and make it installs by itself.
+
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := help
+RUNGWISE := target/release/rungwise
+
+.PHONY: help demo test test-rust test-editors lint bench vscode neovim clean linker
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+demo: $(RUNGWISE) ## build, check the example project, and show what mistakes look like
+	@echo
+	@echo "== rungwise check examples/motor"
+	@$(RUNGWISE) check examples/motor
+	@echo
+	@echo "== rungwise check examples/mistakes/short-circuit.lad (a mistake, on purpose)"
+	@$(RUNGWISE) check examples/mistakes/short-circuit.lad || [ $$? -eq 1 ]
+	@echo "== rungwise check examples/mistakes/mixed-connection.lad (a mistake, on purpose)"
+	@$(RUNGWISE) check examples/mistakes/mixed-connection.lad || [ $$? -eq 1 ]
+	@echo "== rungwise fmt --stdout --style unicode examples/motor/motor.lad"
+	@$(RUNGWISE) fmt --stdout --style unicode examples/motor/motor.lad
+	@echo "Next: make vscode, then open the folder examples/ in VS Code."
+
+test: lint test-rust test-editors ## everything that has to pass before a change lands
+
+lint: linker ## format and lint
+	cargo fmt --check
+	cargo clippy --all-targets -- -D warnings
+
+test-rust: linker ## tests of the server
+	cargo test
+	cargo build --release
+
+test-editors: $(RUNGWISE) ## extension, grammars, real Neovim, real VS Code
+	RUNGWISE_SERVER=$(abspath $(RUNGWISE)) tests/editors/run.sh all
+
+bench: linker ## measure; the figures of BENCHMARKS.md
+	cargo bench --bench bench
+
+vscode: $(RUNGWISE) ## build the VS Code extension with the server inside and install it
+	cd vscode-extension && npm ci --no-audit --no-fund && npm run package
+	@if command -v code >/dev/null; then code --install-extension vscode-extension/rungwise.vsix --force; \
+	else echo "VS Code's command 'code' is not on the PATH; install vscode-extension/rungwise.vsix from the Extensions view."; fi
+
+neovim: $(RUNGWISE) ## say how to use the Neovim plugin from this folder
+	@echo "Add to your init.lua:"
+	@echo "  vim.opt.runtimepath:prepend('$(abspath neovim)')"
+	@echo "  vim.env.PATH = '$(abspath target/release):' .. vim.env.PATH"
+	@echo "  vim.lsp.enable('rungwise')"
+
+clean: ## remove what was built; installed editors stay in .cache
+	cargo clean
+	rm -rf vscode-extension/node_modules vscode-extension/dist vscode-extension/bin
+
+$(RUNGWISE): linker FORCE
+	cargo build --release
+
+.PHONY: FORCE
+FORCE:
+
+# Rust links with the system's C compiler, which a fresh Debian has not.
+linker:
+	@command -v cc >/dev/null || { \
+	  echo "installing build-essential for the linker"; \
+	  sudo=$$([ "$$(id -u)" = 0 ] || echo sudo); \
+	  $$sudo apt-get update -qq && $$sudo apt-get install -y -qq build-essential; }

@@ -1,0 +1,63 @@
+//! Formatting: small edits that make the document canonical, none where it is so already.
+
+use crate::document::{Document, Tree};
+use crate::il::{fx, iec};
+use crate::project::FormatStyle;
+use crate::text::{Span, TextEdit};
+
+/// How to format.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Style {
+    /// The look of ladder.
+    pub kind: FormatStyle,
+    /// The least width of ladder, in cells.
+    pub width: u32,
+}
+
+pub(super) fn edits(document: &Document, style: Style) -> Vec<TextEdit> {
+    let _ = style;
+    let mut edits = Vec::new();
+    let mut instructions = Vec::new();
+    for at in document.chunks() {
+        let text = at.chunk.text();
+        match at.chunk.tree() {
+            Tree::Fx(tree) => instructions.push((text, tree)),
+            Tree::Iec(tree) => {
+                let formatted = iec::format_chunk(text, tree, &iec::FormatOptions::default());
+                edits.extend(line_edits(text, &formatted).iter().map(|edit| edit.shifted(at.start)));
+            }
+            Tree::Ladder(_) => {}
+        }
+    }
+    edits.extend(fx::format_chunks(&instructions));
+    edits
+}
+
+/// The edits that turn `old` into `new`: common lines at both ends stay, and where the rest has as many lines, only
+/// those that differ are replaced, so that the editor keeps its cursor and marks.
+pub(super) fn line_edits(old: &str, new: &str) -> Vec<TextEdit> {
+    if old == new {
+        return Vec::new();
+    }
+    let old_lines: Vec<&str> = old.split_inclusive('\n').collect();
+    let new_lines: Vec<&str> = new.split_inclusive('\n').collect();
+    let same = |(left, right): &(&&str, &&str)| left == right;
+    let head = old_lines.iter().zip(&new_lines).take_while(same).count();
+    let rest = old_lines.len().min(new_lines.len()) - head;
+    let tail = old_lines.iter().rev().zip(new_lines.iter().rev()).take(rest).take_while(same).count();
+    let (old_middle, new_middle) =
+        (&old_lines[head..old_lines.len() - tail], &new_lines[head..new_lines.len() - tail]);
+    let mut start: usize = old_lines[..head].iter().map(|line| line.len()).sum();
+    if old_middle.len() != new_middle.len() {
+        let length: usize = old_middle.iter().map(|line| line.len()).sum();
+        return vec![TextEdit::new(Span::new(start, start + length), new_middle.concat())];
+    }
+    let mut edits = Vec::new();
+    for (old_line, new_line) in old_middle.iter().zip(new_middle) {
+        if old_line != new_line {
+            edits.push(TextEdit::new(Span::new(start, start + old_line.len()), *new_line));
+        }
+        start += old_line.len();
+    }
+    edits
+}

@@ -1,0 +1,210 @@
+//! What a name stands for, and every place where it stands: the ground of hover, definition, references and rename.
+
+use crate::document::{Chunk, Document, Mention, Names, Scopes, Symbol, Use};
+use crate::il::iec::SectionKind;
+use crate::target::iec::FunctionBlock;
+use crate::target::{Device, DeviceKind, DirectAddress};
+use crate::text::Span;
+use smol_str::SmolStr;
+use std::sync::Arc;
+
+/// What a name stands for, with the POU in which it is known; names are folded.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub(super) enum Thing {
+    /// So many devices from this one on.
+    Devices(Device, u16),
+    /// `%IX0.0`
+    Direct(DirectAddress),
+    /// A variable; outside of any POU if it is global.
+    Variable { pou: Option<usize>, name: SmolStr },
+    /// A label that is no pointer of the PLC.
+    Label { pou: Option<usize>, name: SmolStr },
+    /// A connector between rungs.
+    Connector { pou: Option<usize>, name: SmolStr },
+    /// A program, function block or function, declared or standard.
+    Pou(SmolStr),
+    /// A data type.
+    Type(SmolStr),
+}
+
+/// A place of a thing.
+#[derive(Clone, Debug)]
+pub(super) struct Named<'d> {
+    pub thing: Thing,
+    /// In the document.
+    pub span: Span,
+    pub usage: Use,
+    /// The chunk in which it stands, and where that starts.
+    pub chunk: &'d Arc<Chunk>,
+    pub chunk_start: usize,
+}
+
+impl Thing {
+    /// What `mention` means in POU number `pou`.
+    pub(super) fn of(mention: &Mention, pou: Option<usize>, scopes: &Scopes) -> Thing {
+        let is_pou = |name: &SmolStr| scopes.pou_named(name).is_some();
+        match &mention.symbol {
+            Symbol::Device(device) => Thing::Devices(*device, mention.count),
+            Symbol::Direct(address) => Thing::Direct(*address),
+            Symbol::Label(name) => Thing::Label { pou, name: name.clone() },
+            Symbol::Connector(name) => Thing::Connector { pou, name: name.clone() },
+            Symbol::Pou(name) => Thing::Pou(name.clone()),
+            Symbol::Type(name) if is_pou(name) || FunctionBlock::named(name).is_some() => {
+                Thing::Pou(name.clone())
+            }
+            Symbol::Type(name) => Thing::Type(name.clone()),
+            Symbol::Variable(name) => {
+                let is_global = |section| matches!(section, SectionKind::Global | SectionKind::External);
+                let pou = match scopes.variable(pou, name) {
+                    Some(variable) if is_global(variable.section) => None,
+                    Some(_) => pou,
+                    // The result of a function has the function's name.
+                    None if is_pou(name) => return Thing::Pou(name.clone()),
+                    None => pou,
+                };
+                Thing::Variable { pou, name: name.clone() }
+            }
+        }
+    }
+
+    /// Whether both are the same thing, or have a device in common.
+    pub(super) fn meets(&self, other: &Thing) -> bool {
+        match (self, other) {
+            (Thing::Devices(left, left_count), Thing::Devices(right, right_count)) => {
+                let end = |device: &Device, count: u16| device.number.saturating_add(u32::from(count));
+                left.kind == right.kind
+                    && left.number < end(right, *right_count)
+                    && right.number < end(left, *left_count)
+            }
+            _ => self == other,
+        }
+    }
+
+    /// Whether a page with these names may name it.
+    fn may_be_in(&self, names: &Names) -> bool {
+        match self {
+            Thing::Devices(device, count) => names.touches(*device, *count),
+            Thing::Direct(address) => names.contains(&Symbol::Direct(*address)),
+            Thing::Variable { name, .. } => names.contains(&Symbol::Variable(name.clone())),
+            Thing::Label { name, .. } => names.contains(&Symbol::Label(name.clone())),
+            Thing::Connector { name, .. } => names.contains(&Symbol::Connector(name.clone())),
+            Thing::Type(name) => names.contains(&Symbol::Type(name.clone())),
+            Thing::Pou(name) => [Symbol::Pou, Symbol::Type, Symbol::Variable]
+                .into_iter()
+                .any(|symbol| names.contains(&symbol(name.clone()))),
+        }
+    }
+
+    /// Whether `symbol` can mean it, wherever it stands.
+    fn may_be(&self, symbol: &Symbol) -> bool {
+        match (self, symbol) {
+            (Thing::Devices(device, _), Symbol::Device(other)) => device.kind == other.kind,
+            (Thing::Direct(address), Symbol::Direct(other)) => address == other,
+            (Thing::Variable { name, .. }, Symbol::Variable(other))
+            | (Thing::Label { name, .. }, Symbol::Label(other))
+            | (Thing::Connector { name, .. }, Symbol::Connector(other))
+            | (Thing::Type(name), Symbol::Type(other))
+            | (Thing::Pou(name), Symbol::Pou(other) | Symbol::Type(other) | Symbol::Variable(other)) => {
+                name == other
+            }
+            _ => false,
+        }
+    }
+
+    /// Whether it is a place in the program: a pointer or a label.
+    pub(super) fn is_label(&self) -> bool {
+        match self {
+            Thing::Devices(device, _) => matches!(device.kind, DeviceKind::P | DeviceKind::I),
+            Thing::Label { .. } => true,
+            _ => false,
+        }
+    }
+}
+
+/// The thing named at `offset`. Where two names touch, it is the one that begins there.
+pub(super) fn at(document: &Document, offset: usize) -> Option<Named<'_>> {
+    let found = document.chunk_at(offset)?;
+    let inside = offset.checked_sub(found.start)?;
+    let touched = found.chunk.mentions().iter().filter(|mention| mention.span.touches(inside));
+    let mention =
+        touched.filter(|mention| !mention.span.is_empty()).max_by_key(|mention| mention.span.start)?;
+    let pou = pou_at(document, found.start);
+    Some(Named {
+        thing: Thing::of(mention, pou, document.scopes()),
+        span: mention.span.shifted(found.start),
+        usage: mention.usage,
+        chunk: found.chunk,
+        chunk_start: found.start,
+    })
+}
+
+/// Calls `see` for every place of `thing`, in the order of the text. Pages that do not name it cost one look-up.
+pub(super) fn visit<'d>(document: &'d Document, thing: &Thing, mut see: impl FnMut(Named<'d>)) {
+    let scopes = document.scopes();
+    let mut walk = PouWalk::default();
+    let mut page_start = 0;
+    for page in document.pages() {
+        let names = page.names();
+        if thing.may_be_in(names) {
+            let (mut walk, mut start) = (walk, page_start);
+            for chunk in page.chunks() {
+                let pou = walk.enter(chunk);
+                for mention in chunk.mentions().iter().filter(|mention| thing.may_be(&mention.symbol)) {
+                    let found = Thing::of(mention, pou, scopes);
+                    if found.meets(thing) {
+                        let (span, usage) = (mention.span.shifted(start), mention.usage);
+                        see(Named { thing: found, span, usage, chunk, chunk_start: start });
+                    }
+                }
+                start += chunk.len();
+            }
+        }
+        walk.pass(names);
+        page_start += page.bytes();
+    }
+}
+
+/// The number of the POU to which the chunk that starts at `start` belongs.
+pub(super) fn pou_at(document: &Document, start: usize) -> Option<usize> {
+    let mut walk = PouWalk::default();
+    let mut at = 0;
+    for page in document.pages() {
+        if at + page.bytes() <= start {
+            walk.pass(page.names());
+            at += page.bytes();
+            continue;
+        }
+        for chunk in page.chunks() {
+            let pou = walk.enter(chunk);
+            if at == start {
+                return pou;
+            }
+            at += chunk.len();
+        }
+    }
+    None
+}
+
+/// Counts the POUs on the way through a document.
+#[derive(Clone, Copy, Default)]
+pub(super) struct PouWalk {
+    started: usize,
+    inside: bool,
+}
+
+impl PouWalk {
+    /// The number of the POU to which the next chunk belongs.
+    pub(super) fn enter(&mut self, chunk: &Chunk) -> Option<usize> {
+        let starts = chunk.pou_starts();
+        self.started += starts;
+        let pou = if self.inside || starts > 0 { self.started.checked_sub(1) } else { None };
+        self.inside = chunk.ends_inside_pou().unwrap_or(self.inside);
+        pou
+    }
+
+    /// Passes over a whole page.
+    fn pass(&mut self, names: &Names) {
+        self.started += names.pou_starts();
+        self.inside = names.inside_at_end().unwrap_or(self.inside);
+    }
+}

@@ -1,0 +1,81 @@
+//! What the server offers, and what the client can do.
+
+use super::to_proto;
+use crate::text::Encoding;
+use tower_lsp::ls_types::*;
+
+/// The commands of `workspace/executeCommand`.
+pub(super) const COMMANDS: &[&str] = &["rungwise.check", "rungwise.format"];
+
+/// The best encoding that the client offers: bytes cost nothing, UTF-16 is what every client knows.
+pub(super) fn encoding_for(client: &ClientCapabilities) -> Encoding {
+    let offered =
+        client.general.as_ref().and_then(|general| general.position_encodings.as_deref()).unwrap_or(&[]);
+    if offered.contains(&PositionEncodingKind::UTF8) {
+        Encoding::Utf8
+    } else if offered.contains(&PositionEncodingKind::UTF32)
+        && !offered.contains(&PositionEncodingKind::UTF16)
+    {
+        Encoding::Utf32
+    } else {
+        Encoding::Utf16
+    }
+}
+
+/// The answer to `initialize`. `pulls` is the setting that turns pushed diagnostics off.
+pub(super) fn offered(client: &ClientCapabilities, encoding: Encoding, pulls: bool) -> InitializeResult {
+    let can_pull = client.text_document.as_ref().is_some_and(|document| document.diagnostic.is_some());
+    // A client that pulls as well would show what is pushed twice. One that cannot pull ignores the offer.
+    let diagnostic_provider = (pulls || !can_pull).then(|| {
+        DiagnosticServerCapabilities::Options(DiagnosticOptions {
+            identifier: Some("rungwise".to_string()),
+            inter_file_dependencies: false,
+            workspace_diagnostics: false,
+            ..DiagnosticOptions::default()
+        })
+    });
+    let capabilities = ServerCapabilities {
+        position_encoding: Some(to_proto::encoding(encoding)),
+        text_document_sync: Some(TextDocumentSyncCapability::Options(TextDocumentSyncOptions {
+            open_close: Some(true),
+            change: Some(TextDocumentSyncKind::INCREMENTAL),
+            save: Some(TextDocumentSyncSaveOptions::Supported(true)),
+            ..TextDocumentSyncOptions::default()
+        })),
+        hover_provider: Some(HoverProviderCapability::Simple(true)),
+        completion_provider: Some(CompletionOptions {
+            trigger_characters: Some([".", "%", "[", "("].map(str::to_string).to_vec()),
+            ..CompletionOptions::default()
+        }),
+        definition_provider: Some(OneOf::Left(true)),
+        references_provider: Some(OneOf::Left(true)),
+        document_symbol_provider: Some(OneOf::Left(true)),
+        folding_range_provider: Some(FoldingRangeProviderCapability::Simple(true)),
+        document_formatting_provider: Some(OneOf::Left(true)),
+        rename_provider: Some(OneOf::Right(RenameOptions {
+            prepare_provider: Some(true),
+            work_done_progress_options: WorkDoneProgressOptions::default(),
+        })),
+        code_action_provider: Some(CodeActionProviderCapability::Options(CodeActionOptions {
+            code_action_kinds: Some(vec![CodeActionKind::QUICKFIX]),
+            ..CodeActionOptions::default()
+        })),
+        inlay_hint_provider: Some(OneOf::Left(true)),
+        semantic_tokens_provider: Some(SemanticTokensServerCapabilities::SemanticTokensOptions(
+            SemanticTokensOptions {
+                legend: to_proto::legend(),
+                full: Some(SemanticTokensFullOptions::Bool(true)),
+                ..SemanticTokensOptions::default()
+            },
+        )),
+        execute_command_provider: Some(ExecuteCommandOptions {
+            commands: COMMANDS.iter().map(|command| command.to_string()).collect(),
+            work_done_progress_options: WorkDoneProgressOptions::default(),
+        }),
+        diagnostic_provider,
+        ..ServerCapabilities::default()
+    };
+    let server_info =
+        ServerInfo { name: "rungwise".to_string(), version: Some(env!("CARGO_PKG_VERSION").to_string()) };
+    InitializeResult { capabilities, server_info: Some(server_info), offset_encoding: None }
+}

@@ -1,0 +1,215 @@
+//! From plain structs to the protocol's types.
+
+use super::workspace::Open;
+use crate::document::Document;
+use crate::ide;
+use crate::text::{Diagnostic, Encoding, Language, LineColumn, Severity, Span, TextEdit};
+use tower_lsp::ls_types as lsp;
+
+/// A client draws no more of them; one at the end says how many there are.
+const DIAGNOSTICS_LIMIT: usize = 1000;
+
+/// Where answers about one document go: its offsets and the client's way to count.
+#[derive(Clone, Copy)]
+pub(super) struct Place<'a> {
+    pub document: &'a Document,
+    pub encoding: Encoding,
+}
+
+impl Place<'_> {
+    pub(super) fn position(self, offset: usize) -> lsp::Position {
+        let LineColumn { line, column } = self.document.position(offset, self.encoding);
+        lsp::Position::new(line, column)
+    }
+
+    pub(super) fn range(self, span: Span) -> lsp::Range {
+        lsp::Range::new(self.position(span.start as usize), self.position(span.end as usize))
+    }
+
+    pub(super) fn offset(self, position: lsp::Position) -> usize {
+        self.document.offset(LineColumn { line: position.line, column: position.character }, self.encoding)
+    }
+
+    pub(super) fn span(self, range: lsp::Range) -> Span {
+        let start = self.offset(range.start);
+        Span::new(start, self.offset(range.end).max(start))
+    }
+
+    pub(super) fn edit(self, edit: &TextEdit) -> lsp::TextEdit {
+        lsp::TextEdit::new(self.range(edit.span), edit.text.clone())
+    }
+
+    pub(super) fn edits(self, edits: &[TextEdit]) -> Vec<lsp::TextEdit> {
+        edits.iter().map(|edit| self.edit(edit)).collect()
+    }
+}
+
+pub(super) fn encoding(encoding: Encoding) -> lsp::PositionEncodingKind {
+    match encoding {
+        Encoding::Utf8 => lsp::PositionEncodingKind::UTF8,
+        Encoding::Utf16 => lsp::PositionEncodingKind::UTF16,
+        Encoding::Utf32 => lsp::PositionEncodingKind::UTF32,
+    }
+}
+
+pub(super) fn diagnostics(open: &Open, found: Vec<Diagnostic>, encoding: Encoding) -> Vec<lsp::Diagnostic> {
+    let total = found.len();
+    let mut shown: Vec<_> =
+        found.iter().take(DIAGNOSTICS_LIMIT).map(|found| diagnostic(open, found, encoding)).collect();
+    if let Some(last) = shown.last_mut().filter(|_| total > DIAGNOSTICS_LIMIT) {
+        let message =
+            crate::text::Message::new("limits.more-diagnostics").with("count", total - DIAGNOSTICS_LIMIT + 1);
+        *last = lsp::Diagnostic {
+            range: last.range,
+            severity: Some(lsp::DiagnosticSeverity::INFORMATION),
+            source: Some("rungwise".to_string()),
+            message: message.render(Language::English),
+            ..lsp::Diagnostic::default()
+        };
+    }
+    shown
+}
+
+pub(super) fn diagnostic(open: &Open, found: &Diagnostic, encoding: Encoding) -> lsp::Diagnostic {
+    let place = Place { document: &open.document, encoding };
+    let related = found.related.iter().map(|related| lsp::DiagnosticRelatedInformation {
+        location: lsp::Location { uri: open.uri.clone(), range: place.range(related.span) },
+        message: related.message.render(Language::English),
+    });
+    lsp::Diagnostic {
+        range: place.range(found.span),
+        severity: Some(match found.severity {
+            Severity::Error => lsp::DiagnosticSeverity::ERROR,
+            Severity::Warning => lsp::DiagnosticSeverity::WARNING,
+            Severity::Hint => lsp::DiagnosticSeverity::HINT,
+        }),
+        code: Some(lsp::NumberOrString::String(found.code.to_string())),
+        source: Some("rungwise".to_string()),
+        message: found.message.render(Language::English),
+        related_information: (!found.related.is_empty()).then(|| related.collect()),
+        ..lsp::Diagnostic::default()
+    }
+}
+
+pub(super) fn hover(place: Place<'_>, hover: ide::Hover) -> lsp::Hover {
+    let contents = lsp::MarkupContent { kind: lsp::MarkupKind::Markdown, value: hover.markdown };
+    lsp::Hover { contents: lsp::HoverContents::Markup(contents), range: Some(place.range(hover.span)) }
+}
+
+pub(super) fn completion(place: Place<'_>, proposal: ide::Completion) -> lsp::CompletionItem {
+    let documentation = lsp::MarkupContent { kind: lsp::MarkupKind::Markdown, value: proposal.documentation };
+    lsp::CompletionItem {
+        kind: Some(completion_kind(proposal.kind)),
+        detail: (!proposal.detail.is_empty()).then_some(proposal.detail),
+        documentation: (!documentation.value.is_empty())
+            .then_some(lsp::Documentation::MarkupContent(documentation)),
+        sort_text: Some(format!("{:05}{}", proposal.rank, proposal.label)),
+        insert_text_format: proposal.is_snippet.then_some(lsp::InsertTextFormat::SNIPPET),
+        text_edit: Some(lsp::CompletionTextEdit::Edit(place.edit(&proposal.edit))),
+        label: proposal.label,
+        ..lsp::CompletionItem::default()
+    }
+}
+
+fn completion_kind(kind: ide::CompletionKind) -> lsp::CompletionItemKind {
+    match kind {
+        ide::CompletionKind::Instruction => lsp::CompletionItemKind::OPERATOR,
+        ide::CompletionKind::Device | ide::CompletionKind::Variable => lsp::CompletionItemKind::VARIABLE,
+        ide::CompletionKind::Label => lsp::CompletionItemKind::REFERENCE,
+        ide::CompletionKind::Function => lsp::CompletionItemKind::FUNCTION,
+        ide::CompletionKind::FunctionBlock => lsp::CompletionItemKind::CLASS,
+        ide::CompletionKind::Keyword => lsp::CompletionItemKind::KEYWORD,
+        ide::CompletionKind::Type => lsp::CompletionItemKind::TYPE_PARAMETER,
+        ide::CompletionKind::Constant => lsp::CompletionItemKind::CONSTANT,
+        ide::CompletionKind::Snippet => lsp::CompletionItemKind::SNIPPET,
+    }
+}
+
+pub(super) fn symbol(place: Place<'_>, node: ide::SymbolNode) -> lsp::DocumentSymbol {
+    let children: Vec<_> = node.children.into_iter().map(|child| symbol(place, child)).collect();
+    #[allow(deprecated, reason = "the protocol's struct still has the field")]
+    lsp::DocumentSymbol {
+        name: if node.name.is_empty() { "?".to_string() } else { node.name },
+        detail: (!node.detail.is_empty()).then_some(node.detail),
+        kind: symbol_kind(node.kind),
+        tags: None,
+        deprecated: None,
+        range: place.range(node.span),
+        selection_range: place.range(node.selection),
+        children: (!children.is_empty()).then_some(children),
+    }
+}
+
+fn symbol_kind(kind: ide::SymbolKind) -> lsp::SymbolKind {
+    match kind {
+        ide::SymbolKind::Program => lsp::SymbolKind::MODULE,
+        ide::SymbolKind::FunctionBlock => lsp::SymbolKind::CLASS,
+        ide::SymbolKind::Function => lsp::SymbolKind::FUNCTION,
+        ide::SymbolKind::Network | ide::SymbolKind::Section => lsp::SymbolKind::NAMESPACE,
+        ide::SymbolKind::Rung => lsp::SymbolKind::EVENT,
+        ide::SymbolKind::Label => lsp::SymbolKind::KEY,
+        ide::SymbolKind::Step => lsp::SymbolKind::METHOD,
+        ide::SymbolKind::Variable => lsp::SymbolKind::VARIABLE,
+        ide::SymbolKind::Type => lsp::SymbolKind::STRUCT,
+        ide::SymbolKind::Configuration => lsp::SymbolKind::PACKAGE,
+    }
+}
+
+pub(super) fn fold(place: Place<'_>, fold: ide::Fold) -> lsp::FoldingRange {
+    lsp::FoldingRange {
+        start_line: place.position(fold.span.start as usize).line,
+        end_line: place.position(fold.span.end as usize).line,
+        kind: Some(match fold.kind {
+            ide::FoldKind::Region => lsp::FoldingRangeKind::Region,
+            ide::FoldKind::Comment => lsp::FoldingRangeKind::Comment,
+        }),
+        ..lsp::FoldingRange::default()
+    }
+}
+
+pub(super) fn inlay_hint(place: Place<'_>, hint: ide::InlayHint) -> lsp::InlayHint {
+    lsp::InlayHint {
+        position: place.position(hint.offset),
+        label: lsp::InlayHintLabel::String(hint.label),
+        kind: None,
+        text_edits: None,
+        tooltip: Some(lsp::InlayHintTooltip::String(hint.tooltip)),
+        padding_left: Some(true),
+        padding_right: None,
+        data: None,
+    }
+}
+
+/// The token types in the order of [`ide::TokenKind`], by the names that themes know.
+pub(super) fn legend() -> lsp::SemanticTokensLegend {
+    let types = [
+        "comment", "keyword", "operator", "variable", "variable", "label", "number", "string", "function",
+        "class", "type", "wire", "contact",
+    ];
+    lsp::SemanticTokensLegend {
+        token_types: types.into_iter().map(lsp::SemanticTokenType::new).collect(),
+        token_modifiers: vec![lsp::SemanticTokenModifier::MODIFICATION],
+    }
+}
+
+/// The tokens in the protocol's relative form; the document is walked once, line by line.
+pub(super) fn semantic_tokens(place: Place<'_>, tokens: &[ide::Token]) -> lsp::SemanticTokens {
+    let mut data = Vec::with_capacity(tokens.len());
+    let mut last = lsp::Position::default();
+    for token in tokens {
+        let lsp::Range { start, end } = place.range(token.span);
+        if end.line != start.line || end.character == start.character {
+            continue;
+        }
+        let same_line = start.line == last.line;
+        data.push(lsp::SemanticToken {
+            delta_line: start.line - last.line,
+            delta_start: if same_line { start.character - last.character } else { start.character },
+            length: end.character - start.character,
+            token_type: token.kind as u32,
+            token_modifiers_bitset: u32::from(token.modification),
+        });
+        last = start;
+    }
+    lsp::SemanticTokens { result_id: None, data }
+}
