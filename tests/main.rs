@@ -2,6 +2,7 @@
 
 mod document;
 mod il_fx;
+mod ladder_read;
 mod rules;
 mod target_fx;
 mod target_fx_applied;
