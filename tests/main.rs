@@ -2,6 +2,8 @@
 
 mod document;
 mod il_fx;
+mod ladder_generate;
+mod ladder_print;
 mod ladder_read;
 mod rules;
 mod target_fx;
