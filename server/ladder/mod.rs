@@ -58,3 +58,6 @@ mod canvas;
 
 mod printer;
 pub use printer::{Drawing, Style, StyleKind, print};
+
+mod format;
+pub use format::{Page, format, format_chunk};

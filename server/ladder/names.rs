@@ -66,10 +66,13 @@ impl Naming<'_> {
     pub(super) fn run(mut self, hint: NameHabit) -> Named {
         let mut words = self.words();
         let mut habit = NameHabit::default();
-        for word in &words {
+        for (number, word) in words.iter().enumerate() {
+            // What takes no name says nothing about names, and the first of two words hangs over its element's side.
+            let takes = |symbol: usize| self.tokens.symbols[symbol].wants != Wants::Nothing;
+            let in_phrase = words.get(number + 1).is_some_and(|next| next.row == word.row && word.end + 1 == next.start);
             match (word.below, word.above) {
-                (Candidate::One(..), Candidate::None) => habit.above += 1,
-                (Candidate::None, Candidate::One(..)) => habit.below += 1,
+                (Candidate::One(symbol, _), Candidate::None) if takes(symbol) => habit.above += 1,
+                (Candidate::None, Candidate::One(symbol, _)) if takes(symbol) && !in_phrase => habit.below += 1,
                 _ => {}
             }
         }
