@@ -127,11 +127,8 @@ impl Planner<'_> {
     fn element(&mut self, element: u32, at: At) -> Option<Placed> {
         let symbol = self.symbols.get(element as usize)?;
         if symbol.figure.is_some() {
-            let block = BlockShape {
-                element: super::ElementId(element),
-                inputs: Vec::new(),
-                outputs: Vec::new(),
-            };
+            let block =
+                BlockShape { element: super::ElementId(element), inputs: Vec::new(), outputs: Vec::new() };
             return self.block(&block, at).map(|(_, placed)| placed);
         }
         let place = Place { element, column: at.column, line: at.line };

@@ -298,7 +298,8 @@ impl Painter<'_> {
         for BlockPlace { place, inputs, outputs, .. } in &layout.blocks {
             let Some(figure) = &self.drawing.symbol(place).figure else { continue };
             let wired = |(pin, line): (&FigurePin, &i32)| pin.power.then_some(*line);
-            leaving.extend(figure.inputs.iter().zip(inputs).filter_map(wired).map(|line| (line, place.column)));
+            leaving
+                .extend(figure.inputs.iter().zip(inputs).filter_map(wired).map(|line| (line, place.column)));
             let lines = figure.outputs.iter().zip(outputs).filter_map(wired);
             arriving.extend(lines.map(|line| (line, place.column + 1)));
         }
