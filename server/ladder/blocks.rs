@@ -304,5 +304,8 @@ fn word_beside(
     };
     let span = grid.span(row, first, last + 1);
     let far = if side == Side::Left { first } else { last };
-    (!super::glyph::Arms::of(beyond).is_horizontal() && !span.of(text).is_empty()).then_some((far, span))
+    let arms = super::glyph::Arms::of(beyond);
+    // The circle of the next box touches that box.
+    let circle = arms.is_upright() && first == last && matches!(grid.at(row, first), 'O' | 'o');
+    (!circle && !arms.is_horizontal() && !span.of(text).is_empty()).then_some((far, span))
 }
