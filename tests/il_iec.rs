@@ -915,3 +915,426 @@ fn mistakes_in_declarations() {
         "#]],
     );
 }
+
+/// Cuts `text` and shows the chunks with a line between them.
+fn check_split(text: &str, expected: Expect) {
+    expected.assert_eq(&chunks(text).join("────\n"));
+}
+
+fn chunks(text: &str) -> Vec<&str> {
+    let mut start = 0;
+    split(text).into_iter().map(|end| &text[std::mem::replace(&mut start, end)..end]).collect()
+}
+
+#[test]
+fn chunks_of_a_file() {
+    check_split(
+        "(* head *)\nPROGRAM p\n\n// inputs\nVAR_INPUT\n  a : BOOL;\nEND_VAR\nVAR x : INT; END_VAR\nCAL T1\nLD a\nST b\n\n(* next *)\n; more\nl1:\n\nLD c\nAND(\nLD d\n)\nST e\nl2: LDN f\nST g\n(* last *)\nEND_PROGRAM\n\n(* own *)\n\nFUNCTION f : INT\nLD 1\nST f\nEND_FUNCTION\nTYPE t : INT; END_TYPE\nCONFIGURATION c\nTASK t(PRIORITY := 1);\nPROGRAM q WITH t : p;\nEND_CONFIGURATION\nLD stray\n",
+        expect![[r#"
+            (* head *)
+            PROGRAM p
+
+            ────
+            // inputs
+            VAR_INPUT
+              a : BOOL;
+            END_VAR
+            ────
+            VAR x : INT; END_VAR
+            ────
+            CAL T1
+            ────
+            LD a
+            ST b
+
+            ────
+            (* next *)
+            ; more
+            l1:
+
+            LD c
+            AND(
+            LD d
+            )
+            ST e
+            ────
+            l2: LDN f
+            ST g
+            (* last *)
+            END_PROGRAM
+
+            (* own *)
+
+            ────
+            FUNCTION f : INT
+            ────
+            LD 1
+            ST f
+            END_FUNCTION
+            ────
+            TYPE t : INT; END_TYPE
+            ────
+            CONFIGURATION c
+            TASK t(PRIORITY := 1);
+            PROGRAM q WITH t : p;
+            END_CONFIGURATION
+            ────
+            LD stray
+        "#]],
+    );
+    check_split(
+        "VAR\n a : BOOL;\nLD a\nST b\nVAR\n LD : BOOL;\nPROGRAM p\nCONFIGURATION c\nPROGRAM p\nLD x\nTYPE\nFUNCTION f\n",
+        expect![[r#"
+        VAR
+         a : BOOL;
+        ────
+        LD a
+        ST b
+        ────
+        VAR
+         LD : BOOL;
+        ────
+        PROGRAM p
+        ────
+        CONFIGURATION c
+        ────
+        PROGRAM p
+        ────
+        LD x
+        ────
+        TYPE
+        ────
+        FUNCTION f
+    "#]],
+    );
+    check_split(
+        "CAL T1(\nLD := a,\nLD b\nST c\nLD d\nAND(\nLD e\nJMP x\nLD f\nADD(\nIN1 := a,\nLD g\nST h\nLD i\n",
+        expect![[r#"
+        CAL T1(
+        LD := a,
+        ────
+        LD b
+        ST c
+        ────
+        LD d
+        AND(
+        LD e
+        JMP x
+        ────
+        LD f
+        ADD(
+        IN1 := a,
+        ────
+        LD g
+        ST h
+        ────
+        LD i
+    "#]],
+    );
+    check_split(
+        "LD a\n(* LD b\nLD c\n*) ST d\n{\nLD e\n}\nLD f\n(* LD g\nLD h\n",
+        expect![[r#"
+        LD a
+        (* LD b
+        LD c
+        *) ST d
+        ────
+        {
+        LD e
+        }
+        LD f
+        (* LD g
+        LD h
+    "#]],
+    );
+    assert_eq!(split(""), [0usize; 0]);
+    assert_eq!(split("\n\n"), [2]);
+}
+
+const WORDS: &[&str] = &[
+    "LD",
+    "LDN",
+    "ST",
+    "AND",
+    "AND(",
+    "ANDN(",
+    "ADD",
+    "GT(",
+    "NOT",
+    "S",
+    "R",
+    "JMP",
+    "JMPC",
+    "CAL",
+    "CALC",
+    "RET",
+    "RETCN",
+    "(",
+    ")",
+    ",",
+    ";",
+    ":",
+    ":=",
+    "=>",
+    "..",
+    ".",
+    "^",
+    "?",
+    "[",
+    "]",
+    "\n",
+    "\n",
+    "\n",
+    "\n",
+    "\r\n",
+    " ",
+    "a",
+    "b.c",
+    "a[1]",
+    "x",
+    "lbl:",
+    "T1",
+    "IN",
+    "PT",
+    "CU",
+    "LIMIT(",
+    "LIMIT",
+    "5",
+    "-3",
+    "16#FF",
+    "1.",
+    ".5",
+    "T#1h",
+    "'text'",
+    "'open",
+    "%IX0.0",
+    "TRUE",
+    "PROGRAM",
+    "END_PROGRAM",
+    "FUNCTION_BLOCK",
+    "END_FUNCTION_BLOCK",
+    "FUNCTION",
+    "END_FUNCTION",
+    "VAR",
+    "VAR_INPUT",
+    "VAR_ACCESS",
+    "VAR_CONFIG",
+    "VAR_GLOBAL",
+    "END_VAR",
+    "CONSTANT",
+    "RETAIN",
+    "AT",
+    "R_EDGE",
+    "READ_ONLY",
+    "TYPE",
+    "END_TYPE",
+    "STRUCT",
+    "END_STRUCT",
+    "ARRAY",
+    "OF",
+    "REF_TO",
+    "STRING",
+    "INT",
+    "BOOL",
+    "CONFIGURATION",
+    "END_CONFIGURATION",
+    "RESOURCE",
+    "END_RESOURCE",
+    "ON",
+    "TASK",
+    "WITH",
+    "(* c *)",
+    "(*",
+    "*)",
+    "//",
+    "/*",
+    "*/",
+    "{",
+    "}",
+    "{p}",
+    "; c",
+    "§",
+    "é",
+    "&",
+    "#",
+    "\u{feff}",
+];
+
+/// Words of the language in any order: what a text looks like in the middle of an edit.
+fn soup() -> impl Strategy<Value = String> {
+    proptest::collection::vec((0..WORDS.len(), proptest::bool::weighted(0.8)), 0..60).prop_map(|words| {
+        words
+            .iter()
+            .map(|(word, blank)| format!("{}{}", WORDS[*word], if *blank { " " } else { "" }))
+            .collect()
+    })
+}
+
+/// Lines that make sense one by one.
+const LINES: &[&str] = &[
+    "PROGRAM p",
+    "END_PROGRAM",
+    "VAR",
+    "VAR_INPUT",
+    "  a, b : BOOL := TRUE;",
+    "END_VAR",
+    "LD a",
+    "LDN b",
+    "ST c",
+    "AND(",
+    "LD d",
+    ")",
+    "OR( e",
+    "CAL T1(",
+    "IN := a,",
+    "PT := T#5s",
+    "l1:",
+    "l2: LD f",
+    "l3: ST g",
+    "JMP l1",
+    "RET",
+    "",
+    "(* c *)",
+    "// d",
+    "; e",
+    "(* f",
+    "g *)",
+    "{ p }",
+    "TYPE",
+    "  T : STRUCT x : INT; END_STRUCT;",
+    "END_TYPE",
+    "CONFIGURATION c",
+    "TASK t(PRIORITY := 1);",
+    "PROGRAM i WITH t : p;",
+    "VAR_GLOBAL",
+    "END_CONFIGURATION",
+    "FUNCTION f : INT",
+    "END_FUNCTION",
+    "ADD(",
+    "LIMIT(",
+    "S1 x",
+    "ST c;",
+    "LD a;ST b",
+    "IN := (",
+    "),",
+    "NOT Q => z",
+    "CAL T1",
+    "END_VAR;",
+    ".5",
+    "a.b",
+    "LD",
+    "LD (* h *) a (* LD i *)",
+];
+
+fn lines() -> impl Strategy<Value = String> {
+    proptest::collection::vec(0..LINES.len(), 0..40)
+        .prop_map(|lines| lines.iter().map(|line| format!("{}\n", LINES[*line])).collect())
+}
+
+fn any_text() -> impl Strategy<Value = String> {
+    prop_oneof![soup(), lines(), "\\PC{0,80}", "[ -~\n]{0,120}"]
+}
+
+/// What a document does after an edit: it cuts again from the start of the chunk before the first touched one, until a
+/// cut of the old text with an untouched chunk behind it comes back.
+fn split_incrementally(old: &str, edit: std::ops::Range<usize>, new_text: &str) -> (String, Vec<usize>) {
+    let text = format!("{}{}{}", &old[..edit.start], new_text, &old[edit.end..]);
+    let old_ends = split(old);
+    let starts: Vec<usize> = std::iter::once(0).chain(old_ends.iter().copied()).collect();
+    // The chunk that an insertion at its end touches is touched.
+    let first = old_ends.iter().position(|end| *end >= edit.start).unwrap_or(0);
+    let window = starts[first.saturating_sub(1)];
+    let grown = |offset: usize| offset + new_text.len() - edit.len();
+    let mut ends: Vec<usize> = old_ends.iter().copied().filter(|end| *end <= window).collect();
+    let mut last = old_ends.iter().position(|end| *end > edit.end).unwrap_or(old_ends.len());
+    loop {
+        // One untouched chunk after the last touched one.
+        let limit = old_ends.get(last + 1).copied();
+        let window_end = limit.map_or(text.len(), grown);
+        let found: Vec<usize> = split(&text[window..window_end]).iter().map(|end| end + window).collect();
+        let Some(limit) = limit else {
+            ends.extend(found);
+            return (text, ends);
+        };
+        let kept = grown(old_ends[last]);
+        if found.contains(&kept) {
+            ends.extend(found.iter().take_while(|end| **end <= kept));
+            ends.push(grown(limit));
+            ends.extend(old_ends[last + 2..].iter().map(|end| grown(*end)));
+            return (text, ends);
+        }
+        last += 1;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
+
+    #[test]
+    fn reading_never_fails(text in any_text()) {
+        let tree = parse(&text, iec());
+        assert_spans_in_range(&text, &tree);
+        let ends = split(&text);
+        prop_assert!(ends.windows(2).all(|pair| pair[0] < pair[1]));
+        prop_assert!(ends.iter().all(|end| text.is_char_boundary(*end)));
+        prop_assert_eq!(ends.last().copied().unwrap_or(0), text.len());
+        for chunk in chunks(&text) {
+            assert_spans_in_range(chunk, &parse(chunk, iec()));
+        }
+    }
+
+    /// Cutting a chunk and what follows it gives what cutting the whole text gives there.
+    #[test]
+    fn cuts_depend_on_what_follows_only(text in prop_oneof![lines(), soup()]) {
+        let ends = split(&text);
+        for (index, end) in ends.iter().enumerate() {
+            let behind: Vec<usize> = split(&text[*end..]).iter().map(|later| later + end).collect();
+            prop_assert_eq!(&behind, &ends[index + 1..]);
+        }
+        // And whether a text is cut is known once the chunk behind the cut is.
+        for pair in ends.windows(2) {
+            let head = split(&text[..pair[1]]);
+            prop_assert!(head.contains(&pair[0]), "{:?} {:?}", head, pair);
+        }
+    }
+
+    #[test]
+    fn cuts_can_be_kept_up_to_date(
+        old in prop_oneof![lines(), soup()],
+        new in prop_oneof![lines(), soup(), Just(String::new())],
+        from in any::<prop::sample::Index>(),
+        to in any::<prop::sample::Index>(),
+    ) {
+        let places: Vec<usize> = old.char_indices().map(|(at, _)| at).chain([old.len()]).collect();
+        let (from, to) = (*from.get(&places), *to.get(&places));
+        let (text, ends) = split_incrementally(&old, from.min(to)..from.max(to), &new);
+        prop_assert_eq!(ends, split(&text));
+    }
+}
+
+#[test]
+fn ten_thousand_parentheses() {
+    let text = format!("LD a\n{}LD b\n{}ST c\n", "AND(\n".repeat(10_000), ")\n".repeat(10_000));
+    let tree = parse(&text, iec());
+    assert_eq!(problems(&text, &tree), "");
+    assert_eq!(tree.items.len(), 20_003);
+    assert_eq!(tree.items.iter().map(|item| item.depth).max(), Some(10_000));
+    assert_eq!(split(&text), [text.len()]);
+    for text in [
+        "AND(".repeat(10_000),
+        format!("CAL T({}", "x := (\nLIMIT(\n".repeat(10_000)),
+        "LD a[".repeat(10_000),
+    ] {
+        assert_spans_in_range(&text, &parse(&text, iec()));
+    }
+    for text in [
+        format!("VAR a : {}INT;", "ARRAY[1..2] OF ".repeat(10_000)),
+        format!("VAR a : INT := {};", "(x := ".repeat(10_000)),
+        format!("VAR a : {}", "STRUCT b : ".repeat(10_000)),
+        format!("VAR {}", "a : INT := [[[ ; ".repeat(10_000)),
+    ] {
+        let tree = parse(&text, iec());
+        assert!(!tree.problems.is_empty());
+        assert_spans_in_range(&text, &tree);
+    }
+}
