@@ -4,7 +4,8 @@ use expect_test::{Expect, expect};
 use proptest::prelude::*;
 use rungwise::il::iec::{
     Condition, Declaration, Direction, FormatOptions, IecTree, InitialValue, ItemKind, ListForm, OperandId,
-    Parameter, ParameterValue, Run, TypeId, TypeSpec, ValueKind, format_chunk, parse, split,
+    Parameter, ParameterValue, Run, TypeId, TypeSpec, ValueKind, fold_case, format_chunk, parse, same_name,
+    split,
 };
 use rungwise::target::{Model, Operand, Target};
 use rungwise::text::{Language, Severity, Span};
@@ -1337,4 +1338,273 @@ fn ten_thousand_parentheses() {
         assert!(!tree.problems.is_empty());
         assert_spans_in_range(&text, &tree);
     }
+}
+
+fn formatted(text: &str) -> String {
+    let text_of_chunk = |chunk: &&str| format_chunk(chunk, &parse(chunk, iec()), &FormatOptions::default());
+    chunks(text).iter().map(text_of_chunk).collect()
+}
+
+/// Formats `text` chunk by chunk, as an editor does; the result must have the same tree and be stable.
+fn check_format(text: &str, expected: Expect) {
+    let result = formatted(text);
+    expected.assert_eq(&result);
+    assert_eq!(formatted(&result), result, "formatting twice changes something");
+    assert_eq!(shape(text), shape(&result));
+}
+
+/// The items of a text, letter case, blanks inside operands and the fields of spans aside.
+fn shape(text: &str) -> String {
+    let shapes = chunks(text).into_iter().map(|chunk| {
+        let tree = parse(chunk, iec());
+        dump(chunk, &IecTree { problems: Vec::new(), ..tree })
+    });
+    folded(&shapes.collect::<String>())
+}
+
+fn folded(dump: &str) -> String {
+    dump.to_uppercase().replace(' ', "")
+}
+
+#[test]
+fn formatting_bodies() {
+    check_format(
+        "program p\n// start\nld a (* one *)\nandn( b\nor c // two\n)\n  ST  d;\n\n   (* three *)\nl1: ld 5\nadd x , 3\nst? e\njmpcn   l1\nend_program\n",
+        expect![[r#"
+            PROGRAM p
+                // start
+                LD      a                           (* one *)
+                ANDN(   b
+                    OR      c                       // two
+                )
+                ST      d
+
+            (* three *)
+            l1:
+                LD      5
+                ADD     x, 3
+                ST?     e
+                JMPCN   l1
+            END_PROGRAM
+        "#]],
+    );
+    check_format(
+        "CAL T1(IN:=a, // why\nPT:=T#1s,not Q=>b)\ncalc c10( a ,b , 5 )\nLIMIT(MN:=(\nLD 1\n), IN:=limit_of [ 1 ,i ] . x)\ncu c10\nret\nCAL T2()\nAND(LD x\nOR y) (* tail *)\n",
+        expect![[r#"
+                CAL     T1(
+                    IN := a,                        // why
+                    PT := T#1s,
+                    NOT Q => b
+                )
+                CALC    c10(a, b, 5)
+                LIMIT(
+                    MN := (
+                        LD      1
+                    ),
+                    IN := limit_of[1, i].x
+                )
+                CU      c10
+                RET
+                CAL     T2()
+                AND(
+                    LD      x
+                    OR      y
+                )                                   (* tail *)
+        "#]],
+    );
+    check_format(
+        "LD a ; one\n  ; two\nST b;ST c;\n(* over\n   lines *)\nLD x b\n   JMP\nNOT\n",
+        expect![[r#"
+                LD      a                           ; one
+                ; two
+                ST      b
+                ST      c
+            (* over
+               lines *)
+            LD x b
+               JMP
+                NOT
+        "#]],
+    );
+    check_format("LD a\r\nl: ST b\r\n", expect!["    LD      a\r\nl:\r\n    ST      b\r\n"]);
+}
+
+#[test]
+fn formatting_declarations() {
+    check_format(
+        "var inp: bool; end_var\nvar_input retain a,b:int:=5;(* both *)\n// why\nlong_name at %ix0.0 :bool; t : string [ 20 ] := 'x' ;\n\nm : array[ 0..3 ] of int := [ 1,2 ,\n 2 ( 0 ) ];\nbroken : ;\nend_var\n",
+        expect![[r#"
+            VAR
+                inp : BOOL;
+            END_VAR
+            VAR_INPUT RETAIN
+                a, b                : INT                := 5; (* both *)
+                // why
+                long_name AT %IX0.0 : BOOL;
+                t                   : STRING[20]         := 'x';
+
+                m                   : ARRAY[0..3] OF INT := [1, 2,
+                    2(0)];
+            broken : ;
+            END_VAR
+        "#]],
+    );
+    check_format(
+        "type colour:(Red,Green):=Red; p:struct x,y:int; inner : struct z:bool:=true; end_struct; end_struct;r: int( 0..9 );end_type\n",
+        expect![[r#"
+            TYPE
+                colour : (Red, Green) := Red;
+                p      : STRUCT
+                    x, y  : INT;
+                    inner : STRUCT
+                        z : BOOL := TRUE;
+                    END_STRUCT;
+                END_STRUCT;
+                r : INT(0..9);
+            END_TYPE
+        "#]],
+    );
+    check_format(
+        "configuration c var_global g:int; end_var resource r on cpu task t( interval:=t#1s,priority:=1 ); program p with t:main(a:=g,b=>g);end_resource end_configuration\n",
+        expect![[r#"
+            CONFIGURATION c
+                VAR_GLOBAL
+                    g : INT;
+                END_VAR
+                RESOURCE r ON cpu
+                    TASK t(INTERVAL := t#1s, PRIORITY := 1);
+                    PROGRAM p WITH t : main(a := g, b => g);
+                END_RESOURCE
+            END_CONFIGURATION
+        "#]],
+    );
+    check_format(
+        "function f:int var_input a:int; end_var ld a st b\nend_function function_block g end_function_block\n",
+        expect![[r#"
+            function f:int var_input a:int; end_var ld a st b
+            END_FUNCTION
+            FUNCTION_BLOCK g
+            END_FUNCTION_BLOCK
+        "#]],
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
+
+    #[test]
+    fn formatting_twice_changes_nothing(text in any_text()) {
+        let tree = parse(&text, iec());
+        let once = format_chunk(&text, &tree, &FormatOptions::default());
+        let again = parse(&once, iec());
+        prop_assert_eq!(&format_chunk(&once, &again, &FormatOptions::default()), &once);
+        let items = |text: &str, tree: IecTree| folded(&dump(text, &IecTree { problems: Vec::new(), ..tree }));
+        prop_assert_eq!(items(&text, tree), items(&once, again));
+    }
+}
+
+/// Programs by other authors, if they lie beside the repository: only hints, and the formatter takes them.
+#[test]
+fn programs_by_others() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/corpus/iec");
+    let folder = std::env::var_os("RUNGWISE_CORPUS")
+        .map_or(folder, |corpus| std::path::Path::new(&corpus).join("iec"));
+    let Ok(files) = std::fs::read_dir(&folder) else {
+        eprintln!("skipped: no programs by others in {} (set RUNGWISE_CORPUS)", folder.display());
+        return;
+    };
+    let mut read = 0;
+    for file in
+        files.map(|file| file.unwrap().path()).filter(|file| file.extension().is_some_and(|end| end == "il"))
+    {
+        let text = std::fs::read_to_string(&file).unwrap();
+        for chunk in chunks(&text) {
+            let tree = parse(chunk, iec());
+            assert_spans_in_range(chunk, &tree);
+            let errors = tree.problems.iter().filter(|problem| problem.severity != Severity::Hint).count();
+            assert_eq!(errors, 0, "{}\n{}", file.display(), problems(chunk, &tree));
+        }
+        let whole = parse(&text, iec());
+        assert_eq!(
+            folded(&dump(&text, &IecTree { problems: Vec::new(), ..whole })),
+            shape(&text),
+            "chunks make the file"
+        );
+        let result = formatted(&text);
+        assert_eq!(formatted(&result), result);
+        assert_eq!(shape(&text), shape(&result));
+        assert!(result.contains("\nEND_PROGRAM") && !result.contains(" cal "), "{result}");
+        read += 1;
+    }
+    assert!(read > 0, "no programs in {}", folder.display());
+}
+
+#[test]
+fn mentions_of_names() {
+    let text = "PROGRAM Main\nVAR a, b : MyType := Colour#Red; END_VAR\nTYPE E : (X, Y); S : STRUCT f : INT(0..N); END_STRUCT; END_TYPE\nl1: LD a.b[i].c\nST q[j]\nS m\nCAL T1(\nIN := (\nLD z\n),\nNOT Q => w\n)\nCU C1\nJMPC l1\nFB.M1 p, 5\nLIMIT(\nMN := k\n)\nEND_PROGRAM\n";
+    let tree = parse(text, iec());
+    let mut out = String::new();
+    for mention in tree.mentions(text) {
+        writeln!(out, "{} {:?}", mention.span.of(text), mention.role).unwrap();
+    }
+    expect![[r#"
+        Main DeclaresPou(Program)
+        a DeclaresVariable
+        b DeclaresVariable
+        MyType NamesType
+        Colour NamesType
+        E DeclaresType
+        X DeclaresEnumerator
+        Y DeclaresEnumerator
+        S DeclaresType
+        f DeclaresField
+        N Reads
+        l1 DeclaresLabel
+        a Reads
+        b NamesMember
+        i Reads
+        c NamesMember
+        q Writes
+        j Reads
+        m Writes
+        T1 Calls
+        IN NamesParameter
+        z Reads
+        Q NamesParameter
+        w Writes
+        CU NamesMember
+        C1 Calls
+        l1 Jumps
+        FB CallsFunction
+        M1 NamesMember
+        p Reads
+        LIMIT CallsFunction
+        MN NamesParameter
+        k Reads
+    "#]].assert_eq(&out);
+    let text = "CONFIGURATION c\nRESOURCE r ON cpu\nTASK t(SINGLE := g.x, PRIORITY := 1);\nPROGRAM p WITH t : Main(in := v, out => w, f WITH t);\nEND_RESOURCE\nVAR_CONFIG r.p.x AT %QX0.1 : BOOL; END_VAR\nEND_CONFIGURATION\n";
+    let tree = parse(text, iec());
+    let names: Vec<String> =
+        tree.mentions(text).map(|mention| format!("{} {:?}", mention.span.of(text), mention.role)).collect();
+    expect![[r#"
+        c DeclaresRuntime
+        r DeclaresRuntime
+        cpu NamesRuntime
+        t DeclaresRuntime
+        g Reads
+        x NamesMember
+        p DeclaresRuntime
+        t NamesRuntime
+        Main NamesType
+        in NamesParameter
+        v Reads
+        out NamesParameter
+        w Writes
+        f NamesParameter
+        t NamesRuntime
+        r Writes
+        p NamesMember
+        x NamesMember"#]].assert_eq(&names.join("\n"));
+    assert!(same_name("Motor_1", "mOTOR_1") && !same_name("Motor", "Moto"));
+    assert_eq!(fold_case("Motor_1"), "MOTOR_1");
 }

@@ -8,8 +8,8 @@ use super::declare::{Block, read_result, read_section, read_types};
 use super::reader::Reader;
 use super::token::{Region, Token, TokenKind, ends_open_list, leaves_parentheses};
 use super::{Condition, ItemKind, ListForm, OperandId, Operation, Parameter, PouKind};
-use crate::target::Operand;
 use crate::target::iec::{FunctionBlock, Operator, OperatorRole, Written};
+use crate::target::{Model, Operand};
 use crate::text::{Message, Span};
 
 /// The parser of a chunk.
@@ -358,14 +358,18 @@ impl<'a> BodyReader<'a> {
             let (span, length) = self.path_at(self.reader.at);
             self.reader.at += length;
             let broken = self.reader.tree.problems.len() > problems;
-            let blank = self.reader.word(span).contains(|c: char| c.is_whitespace() || c == '*');
-            // The reader of operands takes one word; a path with blanks or comments in it is still a variable, and
-            // what is wrong with a broken one is said already.
-            return Some(if broken || blank && length > 1 {
-                self.reader.push_operand(span, Operand::Variable)
-            } else {
-                self.reader.read_operand(span)
-            });
+            // What is wrong with a broken path is said already.
+            if broken {
+                return Some(self.reader.push_operand(span, Operand::Variable));
+            }
+            if length == 1 {
+                return Some(self.reader.read_operand(span));
+            }
+            // Blanks and comments may stand inside a path; the reader of operands takes one word.
+            let words = &self.reader.tokens[self.reader.at - length..self.reader.at];
+            let word: String = words.iter().map(|token| self.reader.word(token.span)).collect();
+            let operand = Operand::read(&word, Model::Iec);
+            return Some(self.reader.push_operand(span, operand));
         }
         if first.kind.starts_operand() || first.kind.is_keyword() {
             self.reader.at += 1;

@@ -36,5 +36,7 @@ pub use split::split;
 mod parse;
 pub use parse::parse;
 
+mod layout;
+
 mod format;
 pub use format::{FormatOptions, format_chunk};

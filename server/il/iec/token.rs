@@ -239,7 +239,7 @@ impl TokenKind {
     }
 
     /// How a message names it: kinds in words, others as they are written, in backticks.
-    pub fn quoted(self) -> std::string::String {
+    pub fn quoted(self) -> String {
         use TokenKind::*;
         match self {
             Newline | Word | Number | Typed | Text | Address => self.name().to_string(),
