@@ -1,5 +1,7 @@
 //! Instruction List of IEC 61131-3: trees, problems, chunks, mentions and formatting.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 use expect_test::{Expect, expect};
 use proptest::prelude::*;
 use rungwise::il::iec::{
@@ -20,13 +22,6 @@ fn check(text: &str, expected: Expect) {
     let tree = parse(text, iec());
     assert_spans_in_range(text, &tree);
     expected.assert_eq(&dump(text, &tree));
-}
-
-/// Only the problems.
-fn check_problems(text: &str, expected: Expect) {
-    let tree = parse(text, iec());
-    assert_spans_in_range(text, &tree);
-    expected.assert_eq(&problems(text, &tree));
 }
 
 fn dump(text: &str, tree: &IecTree) -> String {
@@ -1348,7 +1343,9 @@ fn formatted(text: &str) -> String {
 /// Formats `text` chunk by chunk, as an editor does; the result must have the same tree and be stable.
 fn check_format(text: &str, expected: Expect) {
     let result = formatted(text);
-    expected.assert_eq(&result);
+    // The bar keeps the indentation, which the macro would take for its own.
+    let lines: String = result.split('\n').map(|line| format!("|{line}\n")).collect();
+    expected.assert_eq(&lines);
     assert_eq!(formatted(&result), result, "formatting twice changes something");
     assert_eq!(shape(text), shape(&result));
 }
@@ -1371,62 +1368,65 @@ fn formatting_bodies() {
     check_format(
         "program p\n// start\nld a (* one *)\nandn( b\nor c // two\n)\n  ST  d;\n\n   (* three *)\nl1: ld 5\nadd x , 3\nst? e\njmpcn   l1\nend_program\n",
         expect![[r#"
-            PROGRAM p
-                // start
-                LD      a                           (* one *)
-                ANDN(   b
-                    OR      c                       // two
-                )
-                ST      d
-
-            (* three *)
-            l1:
-                LD      5
-                ADD     x, 3
-                ST?     e
-                JMPCN   l1
-            END_PROGRAM
+            |PROGRAM p
+            |    // start
+            |    LD      a                           (* one *)
+            |    ANDN(   b
+            |        OR      c                       // two
+            |    )
+            |    ST      d
+            |
+            |(* three *)
+            |l1:
+            |    LD      5
+            |    ADD     x, 3
+            |    ST?     e
+            |    JMPCN   l1
+            |END_PROGRAM
+            |
         "#]],
     );
     check_format(
         "CAL T1(IN:=a, // why\nPT:=T#1s,not Q=>b)\ncalc c10( a ,b , 5 )\nLIMIT(MN:=(\nLD 1\n), IN:=limit_of [ 1 ,i ] . x)\ncu c10\nret\nCAL T2()\nAND(LD x\nOR y) (* tail *)\n",
         expect![[r#"
-                CAL     T1(
-                    IN := a,                        // why
-                    PT := T#1s,
-                    NOT Q => b
-                )
-                CALC    c10(a, b, 5)
-                LIMIT(
-                    MN := (
-                        LD      1
-                    ),
-                    IN := limit_of[1, i].x
-                )
-                CU      c10
-                RET
-                CAL     T2()
-                AND(
-                    LD      x
-                    OR      y
-                )                                   (* tail *)
+            |    CAL     T1(
+            |        IN := a,                        // why
+            |        PT := T#1s,
+            |        NOT Q => b
+            |    )
+            |    CALC    c10(a, b, 5)
+            |    LIMIT(
+            |        MN := (
+            |            LD      1
+            |        ),
+            |        IN := limit_of[1, i].x
+            |    )
+            |    CU      c10
+            |    RET
+            |    CAL     T2()
+            |    AND(
+            |        LD      x
+            |        OR      y
+            |    )                                   (* tail *)
+            |
         "#]],
     );
     check_format(
         "LD a ; one\n  ; two\nST b;ST c;\n(* over\n   lines *)\nLD x b\n   JMP\nNOT\n",
         expect![[r#"
-                LD      a                           ; one
-                ; two
-                ST      b
-                ST      c
-            (* over
-               lines *)
-            LD x b
-               JMP
-                NOT
+            |    LD      a                           ; one
+            |    ; two
+            |    ST      b
+            |    ST      c
+            |(* over
+            |   lines *)
+            |LD x b
+            |   JMP
+            |    NOT
+            |
         "#]],
     );
-    check_format("LD a\r\nl: ST b\r\n", expect!["    LD      a\r\nl:\r\n    ST      b\r\n"]);
+    assert_eq!(formatted("LD a\r\nl: ST b\r\n"), "    LD      a\r\nl:\r\n    ST      b\r\n");
 }
 
 #[test]
@@ -1434,57 +1434,61 @@ fn formatting_declarations() {
     check_format(
         "var inp: bool; end_var\nvar_input retain a,b:int:=5;(* both *)\n// why\nlong_name at %ix0.0 :bool; t : string [ 20 ] := 'x' ;\n\nm : array[ 0..3 ] of int := [ 1,2 ,\n 2 ( 0 ) ];\nbroken : ;\nend_var\n",
         expect![[r#"
-            VAR
-                inp : BOOL;
-            END_VAR
-            VAR_INPUT RETAIN
-                a, b                : INT                := 5; (* both *)
-                // why
-                long_name AT %IX0.0 : BOOL;
-                t                   : STRING[20]         := 'x';
-
-                m                   : ARRAY[0..3] OF INT := [1, 2,
-                    2(0)];
-            broken : ;
-            END_VAR
+            |VAR
+            |    inp : BOOL;
+            |END_VAR
+            |VAR_INPUT RETAIN
+            |    a, b                : INT                := 5; (* both *)
+            |    // why
+            |    long_name AT %IX0.0 : BOOL;
+            |    t                   : STRING[20]         := 'x';
+            |
+            |    m                   : ARRAY[0..3] OF INT := [1, 2,
+            |        2(0)];
+            |broken : ;
+            |END_VAR
+            |
         "#]],
     );
     check_format(
         "type colour:(Red,Green):=Red; p:struct x,y:int; inner : struct z:bool:=true; end_struct; end_struct;r: int( 0..9 );end_type\n",
         expect![[r#"
-            TYPE
-                colour : (Red, Green) := Red;
-                p      : STRUCT
-                    x, y  : INT;
-                    inner : STRUCT
-                        z : BOOL := TRUE;
-                    END_STRUCT;
-                END_STRUCT;
-                r : INT(0..9);
-            END_TYPE
+            |TYPE
+            |    colour : (Red, Green) := Red;
+            |    p      : STRUCT
+            |        x, y  : INT;
+            |        inner : STRUCT
+            |            z : BOOL := TRUE;
+            |        END_STRUCT;
+            |    END_STRUCT;
+            |    r : INT(0..9);
+            |END_TYPE
+            |
         "#]],
     );
     check_format(
         "configuration c var_global g:int; end_var resource r on cpu task t( interval:=t#1s,priority:=1 ); program p with t:main(a:=g,b=>g);end_resource end_configuration\n",
         expect![[r#"
-            CONFIGURATION c
-                VAR_GLOBAL
-                    g : INT;
-                END_VAR
-                RESOURCE r ON cpu
-                    TASK t(INTERVAL := t#1s, PRIORITY := 1);
-                    PROGRAM p WITH t : main(a := g, b => g);
-                END_RESOURCE
-            END_CONFIGURATION
+            |CONFIGURATION c
+            |    VAR_GLOBAL
+            |        g : INT;
+            |    END_VAR
+            |    RESOURCE r ON cpu
+            |        TASK t(INTERVAL := t#1s, PRIORITY := 1);
+            |        PROGRAM p WITH t : main(a := g, b => g);
+            |    END_RESOURCE
+            |END_CONFIGURATION
+            |
         "#]],
     );
     check_format(
         "function f:int var_input a:int; end_var ld a st b\nend_function function_block g end_function_block\n",
         expect![[r#"
-            function f:int var_input a:int; end_var ld a st b
-            END_FUNCTION
-            FUNCTION_BLOCK g
-            END_FUNCTION_BLOCK
+            |function f:int var_input a:int; end_var ld a st b
+            |END_FUNCTION
+            |FUNCTION_BLOCK g
+            |END_FUNCTION_BLOCK
+            |
         "#]],
     );
 }
@@ -1575,13 +1579,14 @@ fn mentions_of_names() {
         CU NamesMember
         C1 Calls
         l1 Jumps
-        FB CallsFunction
+        FB Calls
         M1 NamesMember
         p Reads
         LIMIT CallsFunction
         MN NamesParameter
         k Reads
-    "#]].assert_eq(&out);
+    "#]]
+    .assert_eq(&out);
     let text = "CONFIGURATION c\nRESOURCE r ON cpu\nTASK t(SINGLE := g.x, PRIORITY := 1);\nPROGRAM p WITH t : Main(in := v, out => w, f WITH t);\nEND_RESOURCE\nVAR_CONFIG r.p.x AT %QX0.1 : BOOL; END_VAR\nEND_CONFIGURATION\n";
     let tree = parse(text, iec());
     let names: Vec<String> =
@@ -1604,7 +1609,41 @@ fn mentions_of_names() {
         t NamesRuntime
         r Writes
         p NamesMember
-        x NamesMember"#]].assert_eq(&names.join("\n"));
+        x NamesMember"#]]
+    .assert_eq(&names.join("\n"));
     assert!(same_name("Motor_1", "mOTOR_1") && !same_name("Motor", "Moto"));
     assert_eq!(fold_case("Motor_1"), "MOTOR_1");
+}
+
+/// Reading is linear: ten times the text takes about ten times as long, not a hundred.
+#[test]
+fn reading_is_not_quadratic() {
+    let pieces = [
+        "LD a\nAND( b\nOR c\n)\nST d\n",
+        "CAL T1(\nIN := a,\nPT := b\n)\n",
+        "; c\n",
+        "AND(\n",
+        "VAR a : INT\n",
+        ";",
+        "(a, ",
+        "LD [",
+        "x := (\n",
+        "/*",
+        "TYPE s : STRUCT ",
+    ];
+    for piece in pieces {
+        let time = |count: usize| {
+            let text = piece.repeat(count);
+            let start = std::time::Instant::now();
+            let tree = parse(&text, iec());
+            let ends = split(&text);
+            assert!(!ends.is_empty() && tree.comments.len() <= text.len());
+            start.elapsed()
+        };
+        let (short, long) = (time(2_000), time(20_000));
+        assert!(
+            long < short * 40 + std::time::Duration::from_millis(200),
+            "{piece:?}: {short:?}, then {long:?}"
+        );
+    }
 }

@@ -7,7 +7,8 @@
 //! are, those behind code at one column. Lines with a mistake are left alone.
 
 use super::layout::Layout;
-use super::token::{Region, Scanner, Token, TokenKind};
+use super::scan::Scanner;
+use super::token::{Region, Token, TokenKind};
 use super::{IecTree, parse};
 use crate::target::iec::is_keyword;
 use crate::target::{Model, Target};

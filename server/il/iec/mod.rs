@@ -16,6 +16,8 @@ pub use mention::{Mention, MentionRole, fold_case, same_name};
 
 mod token;
 
+mod scan;
+
 mod grammar;
 
 mod reader;
@@ -25,6 +27,8 @@ mod lower;
 mod declare;
 
 mod configure;
+
+mod body;
 
 mod instruct;
 

@@ -9,7 +9,8 @@
 //! that starts at a cut with an untouched chunk behind it, and going on until an old cut with an untouched chunk
 //! behind it appears, yields what cutting the whole file would.
 
-use super::token::{Region, Scanner, Token, TokenKind, ends_open_list, leaves_parentheses};
+use super::scan::{Scanner, ends_open_list, leaves_parentheses};
+use super::token::{Region, Token, TokenKind};
 use crate::target::iec::{Operator, OperatorRole};
 
 /// The ends of the chunks of `text`: the last one is `text.len()`; an empty text has none.
