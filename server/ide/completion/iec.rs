@@ -2,11 +2,12 @@
 
 use super::{Place, Proposal};
 use crate::document::{DeclaredType, Symbol, Tree, Use, Variable};
-use crate::ide::names::{self, Thing};
+use crate::ide::names;
 use crate::ide::{CompletionKind, declared};
 use crate::il::iec::{ItemKind, PouKind, SectionKind};
 use crate::target::iec::{ElementaryType, Function, FunctionBlock, Operator, OperatorRole};
 use crate::text::{Encoding, Message};
+use rustc_hash::FxHashSet;
 
 /// How far back an open parenthesis is looked for, in bytes.
 const CALL_REACH: usize = 4000;
@@ -184,32 +185,28 @@ pub(super) fn propose_variables(place: &mut Place<'_>, typed: &str, written: boo
 /// Names and addresses that the document uses without declaring them, as drawings do.
 fn undeclared(place: &mut Place<'_>, typed: &str, variables: &[&Variable]) {
     let document = place.document;
-    let mut names: Vec<String> = Vec::new();
+    let has_units = !document.scopes().pous.is_empty();
+    let declared: FxHashSet<String> = variables.iter().map(|variable| variable.name.to_lowercase()).collect();
+    let is_undeclared = |symbol: &Symbol| match symbol {
+        Symbol::Variable(name) => !has_units && !declared.contains(name.as_str()),
+        Symbol::Direct(_) => true,
+        _ => false,
+    };
+    let mut names: FxHashSet<&str> = FxHashSet::default();
     for page in document.pages() {
+        if !page.names().symbols().iter().any(|(symbol, _)| is_undeclared(symbol)) {
+            continue;
+        }
         for chunk in page.chunks() {
-            for mention in chunk.mentions() {
-                let is_name = match &mention.symbol {
-                    Symbol::Variable(_) => mention.usage != Use::Declare && document.scopes().pous.is_empty(),
-                    Symbol::Direct(_) => true,
-                    _ => false,
-                };
-                let word = mention.span.of(chunk.text());
-                let declared = || variables.iter().any(|variable| variable.name.eq_ignore_ascii_case(word));
-                if is_name && !word.is_empty() && super::is_abbreviation(typed, word) && !declared() {
-                    names.push(word.to_string());
-                }
-            }
+            let mentions = chunk.mentions().iter().filter(|mention| is_undeclared(&mention.symbol));
+            names.extend(mentions.map(|mention| mention.span.of(chunk.text())).filter(|word| !word.is_empty()));
         }
     }
-    names.sort();
-    names.dedup();
-    let own_start = place.offset - typed.len();
-    for name in names {
-        // The word that is being typed is no proposal for itself.
-        let is_own = name == typed && place.document.slice(crate::text::Span::new(own_start, place.offset)) == name;
-        if !is_own {
-            place.propose(typed, Proposal::new(name, CompletionKind::Variable, "", 1500));
-        }
+    let mut names: Vec<&str> = names.into_iter().collect();
+    names.sort_unstable();
+    // The word that is being typed is no proposal for itself.
+    for name in names.into_iter().filter(|name| *name != typed) {
+        place.propose(typed, Proposal::new(name, CompletionKind::Variable, "", 1500));
     }
 }
 
@@ -403,6 +400,3 @@ fn unit_keywords(place: &mut Place<'_>, typed: &str) {
         }
     }
 }
-
-#[allow(unused_imports, reason = "named in documentation")]
-use Thing as _;
