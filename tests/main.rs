@@ -1,6 +1,13 @@
 //! Every test of the package that needs no private item, one module for each subject.
 
+mod document;
 mod il_fx;
+mod il_iec;
+mod ladder_generate;
+mod ladder_print;
+mod ladder_read;
+mod lsp;
+mod lsp_client;
 mod rules;
 mod target_fx;
 mod target_fx_applied;

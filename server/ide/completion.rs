@@ -84,7 +84,8 @@ impl<'d> Place<'d> {
         if !is_abbreviation(typed, &proposal.label) {
             return;
         }
-        let starts_so = proposal.label.get(..typed.len()).is_some_and(|head| head.eq_ignore_ascii_case(typed));
+        let starts_so =
+            proposal.label.get(..typed.len()).is_some_and(|head| head.eq_ignore_ascii_case(typed));
         let span = Span::new(self.offset - typed.len(), self.offset);
         let is_snippet = proposal.snippet.is_some();
         self.found.push(Completion {

@@ -94,7 +94,9 @@ impl Folding<'_> {
                     self.open.push((Opener::Configuration, start));
                 }
                 ItemKind::End(_) => self.close(Opener::Configuration, end),
-                ItemKind::Section { .. } | ItemKind::Types { .. } => self.add(at, item.span, FoldKind::Region),
+                ItemKind::Section { .. } | ItemKind::Types { .. } => {
+                    self.add(at, item.span, FoldKind::Region)
+                }
                 ItemKind::Task(_) | ItemKind::Instance(_) => {}
                 _ => {
                     let whole = statements.map_or(item.span, |span| span.to(item.span));
@@ -112,11 +114,15 @@ impl Folding<'_> {
         let text = at.chunk.text();
         let mut run: Option<Span> = None;
         for &comment in comments {
-            let line_start = text.get(..comment.start as usize).and_then(|head| head.rfind('\n')).map_or(0, |end| end + 1);
-            let stands_alone = text.get(line_start..comment.start as usize).is_some_and(|head| head.trim().is_empty());
+            let line_start =
+                text.get(..comment.start as usize).and_then(|head| head.rfind('\n')).map_or(0, |end| end + 1);
+            let stands_alone =
+                text.get(line_start..comment.start as usize).is_some_and(|head| head.trim().is_empty());
             let gap = |run: Span| text.get(run.end as usize..comment.start as usize).unwrap_or("x");
             run = match run {
-                Some(run) if stands_alone && gap(run).trim().is_empty() && gap(run).matches('\n').count() == 1 => {
+                Some(run)
+                    if stands_alone && gap(run).trim().is_empty() && gap(run).matches('\n').count() == 1 =>
+                {
                     Some(run.to(comment))
                 }
                 _ => {

@@ -69,7 +69,9 @@ impl Search<'_> {
                 self.path(operand.span);
             }
             let ElementKind::Block(block) = &element.kind else { continue };
-            let Some(unit) = block.type_name.and_then(|name| self.unit_named(name.of(self.text))) else { continue };
+            let Some(unit) = block.type_name.and_then(|name| self.unit_named(name.of(self.text))) else {
+                continue;
+            };
             for pin in block.inputs.iter().filter_map(|pin| pin.name) {
                 self.add(unit, pin, Use::Write);
             }

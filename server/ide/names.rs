@@ -50,7 +50,9 @@ impl Thing {
             Symbol::Label(name) => Thing::Label { pou, name: name.clone() },
             Symbol::Connector(name) => Thing::Connector { pou, name: name.clone() },
             Symbol::Pou(name) => Thing::Pou(name.clone()),
-            Symbol::Type(name) if is_pou(name) || FunctionBlock::named(name).is_some() => Thing::Pou(name.clone()),
+            Symbol::Type(name) if is_pou(name) || FunctionBlock::named(name).is_some() => {
+                Thing::Pou(name.clone())
+            }
             Symbol::Type(name) => Thing::Type(name.clone()),
             Symbol::Variable(name) => {
                 let is_global = |section| matches!(section, SectionKind::Global | SectionKind::External);
@@ -144,7 +146,13 @@ pub(super) fn at(document: &Document, offset: usize) -> Option<Named<'_>> {
             (thing, member.span, member.usage)
         }
     };
-    Some(Named { thing, span: span.shifted(found.start), usage, chunk: found.chunk, chunk_start: found.start })
+    Some(Named {
+        thing,
+        span: span.shifted(found.start),
+        usage,
+        chunk: found.chunk,
+        chunk_start: found.start,
+    })
 }
 
 /// Calls `see` for every place of `thing`, in the order of the text. Pages that do not name it cost one look-up.

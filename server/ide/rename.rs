@@ -121,7 +121,9 @@ fn device_name(document: &Document, old: Device, new: &str) -> Result<String, Me
             }
         });
         if let Some((span, _)) = taken {
-            return Err(Message::new("rename.taken").with("new", device).with("line", line_of(document, span)));
+            return Err(Message::new("rename.taken")
+                .with("new", device)
+                .with("line", line_of(document, span)));
         }
     }
     Ok(device.to_string())
@@ -142,7 +144,9 @@ fn direct_name(
     };
     let taken = first_place(document, &Thing::Direct(new_address)).filter(|_| new_address != old);
     match taken {
-        Some(span) => Err(Message::new("rename.taken").with("new", new).with("line", line_of(document, span))),
+        Some(span) => {
+            Err(Message::new("rename.taken").with("new", new).with("line", line_of(document, span)))
+        }
         None => Ok(new.to_string()),
     }
 }
@@ -167,7 +171,9 @@ fn identifier(document: &Document, named: &Named<'_>, new: &str) -> Result<Strin
     };
     let taken = if is_same { None } else { taken(document, &named.thing, &folded) };
     match taken {
-        Some(span) => Err(Message::new("rename.taken").with("new", new).with("line", line_of(document, span))),
+        Some(span) => {
+            Err(Message::new("rename.taken").with("new", new).with("line", line_of(document, span)))
+        }
         None => Ok(new.to_string()),
     }
 }
@@ -175,7 +181,9 @@ fn identifier(document: &Document, named: &Named<'_>, new: &str) -> Result<Strin
 /// A place where the folded name `new` already means something that the renamed `thing` would meet.
 fn taken(document: &Document, thing: &Thing, new: &SmolStr) -> Option<Span> {
     let same = |symbol: &Symbol| match (thing, symbol) {
-        (Thing::Label { .. }, Symbol::Label(name)) | (Thing::Connector { .. }, Symbol::Connector(name)) => name == new,
+        (Thing::Label { .. }, Symbol::Label(name)) | (Thing::Connector { .. }, Symbol::Connector(name)) => {
+            name == new
+        }
         (Thing::Label { .. } | Thing::Connector { .. }, _) => false,
         (_, Symbol::Variable(name) | Symbol::Pou(name) | Symbol::Type(name)) => name == new,
         _ => false,

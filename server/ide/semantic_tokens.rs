@@ -62,7 +62,9 @@ fn operand(operand: &Spanned<Operand>, modification: bool) -> Option<Token> {
         Operand::Direct(_) => TokenKind::Device,
         Operand::Constant { .. } => TokenKind::Number,
         Operand::Literal(literal) => match literal.value {
-            crate::target::iec::LiteralValue::Text | crate::target::iec::LiteralValue::WideText => TokenKind::Text,
+            crate::target::iec::LiteralValue::Text | crate::target::iec::LiteralValue::WideText => {
+                TokenKind::Text
+            }
             _ => TokenKind::Number,
         },
         Operand::Text => TokenKind::Text,
@@ -78,7 +80,8 @@ fn of_ladder(chunk: &Chunk, tree: &LadderTree, tokens: &mut Vec<Token>) {
         tokens.push(token(header.span, TokenKind::Keyword));
         tokens.extend(header.number.map(|number| token(number.span, TokenKind::Number)));
         tokens.extend(header.title.map(|title| token(title, TokenKind::Text)));
-        tokens.extend(header.label.map(|label| Token { modification: true, ..token(label, TokenKind::Label) }));
+        tokens
+            .extend(header.label.map(|label| Token { modification: true, ..token(label, TokenKind::Label) }));
     }
     for rung in &tree.rungs {
         tokens.extend(rung.number.map(|number| token(number.span, TokenKind::Number)));
@@ -93,7 +96,8 @@ fn of_ladder(chunk: &Chunk, tree: &LadderTree, tokens: &mut Vec<Token>) {
 /// The operands say what they are, the mentions whether they are written or declared.
 fn mark_changes(chunk: &Chunk, tokens: &mut [Token]) {
     let changes = |usage: Use| usage.writes() || usage == Use::Declare;
-    let changed = chunk.mentions().iter().filter(|mention| changes(mention.usage)).map(|mention| mention.span);
+    let changed =
+        chunk.mentions().iter().filter(|mention| changes(mention.usage)).map(|mention| mention.span);
     let changed: FxHashSet<Span> = changed.collect();
     for token in tokens.iter_mut() {
         token.modification |= changed.contains(&token.span);
@@ -106,7 +110,9 @@ fn of_element(element: &Element, tokens: &mut Vec<Token>) {
     tokens.extend(element.name_lines.iter().map(|line| token(*line, TokenKind::Variable)));
     tokens.extend(element.notes.iter().map(|note| token(*note, TokenKind::Comment)));
     match &element.kind {
-        ElementKind::Instruction { form: Some(_), mnemonic } => tokens.push(token(*mnemonic, TokenKind::Instruction)),
+        ElementKind::Instruction { form: Some(_), mnemonic } => {
+            tokens.push(token(*mnemonic, TokenKind::Instruction))
+        }
         ElementKind::Jump(label) => tokens.push(token(*label, TokenKind::Label)),
         ElementKind::ConnectorIn(name) | ElementKind::ConnectorOut(name) => {
             tokens.push(token(*name, TokenKind::Label));
@@ -143,7 +149,9 @@ fn of_iec(chunk: &Chunk, tree: &IecTree, tokens: &mut Vec<Token>) {
             MentionRole::CallsFunction => TokenKind::Function,
             MentionRole::DeclaresPou(_) => TokenKind::FunctionBlock,
             MentionRole::DeclaresType => TokenKind::Type,
-            MentionRole::NamesType if crate::target::iec::FunctionBlock::named(mention.span.of(text)).is_some() => {
+            MentionRole::NamesType
+                if crate::target::iec::FunctionBlock::named(mention.span.of(text)).is_some() =>
+            {
                 TokenKind::FunctionBlock
             }
             MentionRole::NamesType => TokenKind::Type,

@@ -40,7 +40,10 @@ fn level(kind: SymbolKind) -> usize {
         SymbolKind::Network | SymbolKind::Label => 1,
         SymbolKind::Step => 2,
         SymbolKind::Rung | SymbolKind::Section | SymbolKind::Variable | SymbolKind::Type => 3,
-        SymbolKind::Program | SymbolKind::FunctionBlock | SymbolKind::Function | SymbolKind::Configuration => 0,
+        SymbolKind::Program
+        | SymbolKind::FunctionBlock
+        | SymbolKind::Function
+        | SymbolKind::Configuration => 0,
     }
 }
 
@@ -105,7 +108,8 @@ impl Outline {
         }
         for (place, rung) in tree.rungs.iter().enumerate() {
             let title = if place == 0 { title(text, &tree.comments, rung.span.start) } else { None };
-            let first_line = rung.span.of(text).find('\n').map_or(rung.span.end, |end| rung.span.start + end as u32);
+            let first_line =
+                rung.span.of(text).find('\n').map_or(rung.span.end, |end| rung.span.start + end as u32);
             self.rung(at, rung.span, Span { start: rung.span.start, end: first_line }, title.as_deref());
         }
     }
@@ -114,7 +118,8 @@ impl Outline {
         let text = at.chunk.text();
         for item in &tree.items {
             let span = item.span.shifted(at.start);
-            let named = |name: Option<Span>| name.map_or(("", span), |name| (name.of(text), name.shifted(at.start)));
+            let named =
+                |name: Option<Span>| name.map_or(("", span), |name| (name.of(text), name.shifted(at.start)));
             match item.kind {
                 ItemKind::Pou { kind, name, result } => {
                     let (name, selection) = named(name);
@@ -141,7 +146,8 @@ impl Outline {
                 ItemKind::End(crate::il::iec::FileKeyword::Configuration) => self.end(span.end),
                 ItemKind::Section { kind, declarations, .. } => {
                     let keyword = declared::section_keyword(kind);
-                    let selection = Span { start: span.start, end: (span.start + keyword.len() as u32).min(span.end) };
+                    let selection =
+                        Span { start: span.start, end: (span.start + keyword.len() as u32).min(span.end) };
                     let mut section = node(keyword.to_string(), SymbolKind::Section, span, selection);
                     section.children = variables(at, tree, declarations, SymbolKind::Variable);
                     self.add(section);
@@ -237,8 +243,12 @@ fn variables(at: ChunkRef<'_>, tree: &IecTree, declarations: Run, kind: SymbolKi
         let detail = detail.split_whitespace().collect::<Vec<_>>().join(" ");
         declaration.names.of(&tree.names).iter().map(move |name| {
             let selection = name.shifted(at.start);
-            let mut variable =
-                node(name.of(text).to_string(), kind, declaration.span.shifted(at.start).to(selection), selection);
+            let mut variable = node(
+                name.of(text).to_string(),
+                kind,
+                declaration.span.shifted(at.start).to(selection),
+                selection,
+            );
             variable.detail = detail.clone();
             variable
         })
@@ -273,7 +283,8 @@ fn title(text: &str, comments: &[Span], rung: u32) -> Option<String> {
         }
         first = *comment;
     }
-    let words = first.of(text).trim_start_matches(['(', '*', '/', ';', '{']).trim_end_matches([')', '*', '}']);
+    let words =
+        first.of(text).trim_start_matches(['(', '*', '/', ';', '{']).trim_end_matches([')', '*', '}']);
     let line = words.trim().lines().next()?.trim();
     (!line.is_empty()).then(|| line.chars().take(TITLE_LENGTH).collect())
 }

@@ -38,7 +38,8 @@ pub(super) fn complete(place: &mut Place<'_>) {
     }
     // A label may stand before the instruction.
     let statement = before.rsplit_once(':').map_or(before, |(_, statement)| statement);
-    let mut words = statement.split(|c: char| c.is_whitespace() || c == '(' || c == ',').filter(|word| !word.is_empty());
+    let mut words =
+        statement.split(|c: char| c.is_whitespace() || c == '(' || c == ',').filter(|word| !word.is_empty());
     match words.next() {
         None => statement_words(place, typed),
         Some(word) => operands(place, typed, word),
@@ -95,9 +96,11 @@ fn statement_words(place: &mut Place<'_>, typed: &str) {
     if pou(place).is_some() || place.document.scopes().pous.is_empty() {
         for (rank, written) in Operator::all_written().enumerate() {
             let word = written.word();
-            let takes_operand = written.operator.operand.is_some() && written.operator.role != OperatorRole::Complement;
+            let takes_operand =
+                written.operator.operand.is_some() && written.operator.role != OperatorRole::Complement;
             let calls = matches!(written.operator.role, OperatorRole::Jump | OperatorRole::Call);
-            let mut proposal = Proposal::new(&word, CompletionKind::Instruction, written.operator.title, rank as u16);
+            let mut proposal =
+                Proposal::new(&word, CompletionKind::Instruction, written.operator.title, rank as u16);
             if takes_operand || calls {
                 proposal.snippet = Some(format!("{word} $1"));
             }
@@ -130,7 +133,10 @@ fn blocks_in_scope(place: &Place<'_>) -> Vec<(&'static str, &'static str)> {
             blocks.push(block);
         }
     }
-    blocks.iter().flat_map(|block| block.input_operators.iter().map(|operator| (*operator, block.name))).collect()
+    blocks
+        .iter()
+        .flat_map(|block| block.input_operators.iter().map(|operator| (*operator, block.name)))
+        .collect()
 }
 
 fn operands(place: &mut Place<'_>, typed: &str, word: &str) {
@@ -174,8 +180,10 @@ pub(super) fn propose_variables(place: &mut Place<'_>, typed: &str, written: boo
         if written && (variable.constant || variable.section == SectionKind::Input) {
             continue;
         }
-        let message = Message::new("complete.variable").with("section", declared::section_keyword(variable.section));
-        let detail = message.with("kind", declared::type_name(&variable.declared, &scopes)).render(place.language);
+        let message =
+            Message::new("complete.variable").with("section", declared::section_keyword(variable.section));
+        let detail =
+            message.with("kind", declared::type_name(&variable.declared, &scopes)).render(place.language);
         let rank = 10 + (rank as u16).min(1000);
         place.propose(typed, Proposal::new(variable.name.as_str(), CompletionKind::Variable, detail, rank));
     }
@@ -199,7 +207,9 @@ fn undeclared(place: &mut Place<'_>, typed: &str, variables: &[&Variable]) {
         }
         for chunk in page.chunks() {
             let mentions = chunk.mentions().iter().filter(|mention| is_undeclared(&mention.symbol));
-            names.extend(mentions.map(|mention| mention.span.of(chunk.text())).filter(|word| !word.is_empty()));
+            names.extend(
+                mentions.map(|mention| mention.span.of(chunk.text())).filter(|word| !word.is_empty()),
+            );
         }
     }
     let mut names: Vec<&str> = names.into_iter().collect();
@@ -220,7 +230,9 @@ fn instances(place: &mut Place<'_>, typed: &str, calls: bool, wanted: impl Fn(&F
                 let inputs = pou.variables.iter().filter(|variable| variable.section == SectionKind::Input);
                 inputs.map(|variable| variable.name.to_string()).collect()
             }
-            (Some(block), None) if wanted(block) => block.inputs.iter().map(|input| input.name.to_string()).collect(),
+            (Some(block), None) if wanted(block) => {
+                block.inputs.iter().map(|input| input.name.to_string()).collect()
+            }
             _ => continue,
         };
         let detail = declared::type_name(&variable.declared, &scopes);
@@ -326,7 +338,8 @@ fn functions(place: &mut Place<'_>, typed: &str, rank: u16) {
         // ADD, GT and their like are operators as well, and proposed as such.
         if Operator::written(function.name).is_none() {
             let rank = rank + number as u16;
-            place.propose(typed, Proposal::new(function.name, CompletionKind::Function, function.title, rank));
+            place
+                .propose(typed, Proposal::new(function.name, CompletionKind::Function, function.title, rank));
         }
     }
     let scopes = place.document.scopes().clone();
@@ -340,10 +353,12 @@ fn functions(place: &mut Place<'_>, typed: &str, rank: u16) {
 fn types(place: &mut Place<'_>, typed: &str) {
     let kind = Message::new("complete.type").render(place.language);
     for (rank, elementary) in ElementaryType::ALL.into_iter().enumerate() {
-        place.propose(typed, Proposal::new(elementary.name(), CompletionKind::Type, &kind, 100 + rank as u16));
+        place
+            .propose(typed, Proposal::new(elementary.name(), CompletionKind::Type, &kind, 100 + rank as u16));
     }
     for (rank, block) in FunctionBlock::all().enumerate() {
-        let proposal = Proposal::new(block.name, CompletionKind::FunctionBlock, block.title, 200 + rank as u16);
+        let proposal =
+            Proposal::new(block.name, CompletionKind::FunctionBlock, block.title, 200 + rank as u16);
         place.propose(typed, proposal);
     }
     let scopes = place.document.scopes().clone();
@@ -356,7 +371,8 @@ fn types(place: &mut Place<'_>, typed: &str) {
     for name in names {
         place.propose(typed, Proposal::new(name.as_str(), CompletionKind::Type, &kind, 60));
     }
-    for (word, snippet) in [("ARRAY", "ARRAY[${1:0..9}] OF ${2:INT}"), ("STRUCT", "STRUCT\n\t$0\nEND_STRUCT")] {
+    for (word, snippet) in [("ARRAY", "ARRAY[${1:0..9}] OF ${2:INT}"), ("STRUCT", "STRUCT\n\t$0\nEND_STRUCT")]
+    {
         let detail = Message::new("complete.keyword").render(place.language);
         place.propose(typed, Proposal::new(word, CompletionKind::Keyword, detail, 300).snippet(snippet));
     }

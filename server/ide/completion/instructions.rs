@@ -10,9 +10,9 @@ const PAGES: usize = 60;
 
 /// What people write most, in this order.
 const COMMON: &[&str] = &[
-    "LD", "LDI", "OUT", "AND", "ANI", "OR", "ORI", "SET", "RST", "MOV", "LDP", "LDF", "ANB", "ORB", "MPS", "MRD", "MPP",
-    "END", "STL", "RET", "INC", "ADD", "SUB", "MUL", "DIV", "LD=", "LD>=", "LD<=", "CMP", "ZRST", "CJ", "CALL", "PLS",
-    "PLF", "MC", "MCR", "INV", "DMOV", "MOVP", "INCP",
+    "LD", "LDI", "OUT", "AND", "ANI", "OR", "ORI", "SET", "RST", "MOV", "LDP", "LDF", "ANB", "ORB", "MPS",
+    "MRD", "MPP", "END", "STL", "RET", "INC", "ADD", "SUB", "MUL", "DIV", "LD=", "LD>=", "LD<=", "CMP",
+    "ZRST", "CJ", "CALL", "PLS", "PLF", "MC", "MCR", "INV", "DMOV", "MOVP", "INCP",
 ];
 
 /// A form with what its proposal shows.
@@ -34,7 +34,8 @@ impl Known {
     fn new(place: usize, form: Form) -> Known {
         let mnemonic = form.mnemonic();
         let required = form.instruction.operands.iter().filter(|spec| !spec.optional);
-        let places = required.enumerate().map(|(number, spec)| format!(" ${{{}:{}}}", number + 1, escaped(spec.name)));
+        let places =
+            required.enumerate().map(|(number, spec)| format!(" ${{{}:{}}}", number + 1, escaped(spec.name)));
         let names: String = form.instruction.operands.iter().map(|spec| format!(" {}", spec.name)).collect();
         let common = COMMON.iter().position(|common| *common == mnemonic);
         let rank = common.unwrap_or(100 + place) as u16;
@@ -46,13 +47,15 @@ impl Known {
 pub(super) fn complete(place: &mut Place<'_>) {
     let typed = place.typed(|c| !c.is_whitespace() && c != ',');
     let before = &place.head[..place.head.len() - typed.len()];
-    let mut words = before.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty()).peekable();
+    let mut words =
+        before.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty()).peekable();
     if words.peek().is_some_and(|word| word.bytes().all(|byte| byte.is_ascii_digit())) {
         words.next();
     }
     let model = place.document.target().model;
     let is_label = |word: &&str| {
-        let kind = Operand::read(word.trim_end_matches(':'), model).device().map(|device| device.kind.letter());
+        let kind =
+            Operand::read(word.trim_end_matches(':'), model).device().map(|device| device.kind.letter());
         matches!(kind, Some('P' | 'I')) && Form::named(word).is_none()
     };
     words.next_if(is_label);
@@ -77,8 +80,7 @@ pub(super) fn propose_forms(place: &mut Place<'_>, typed: &str, wanted: impl Fn(
     for known in known {
         let kind = CompletionKind::Instruction;
         let mut proposal = Proposal::new(&known.mnemonic, kind, known.form.instruction.title, known.rank);
-        proposal.documentation =
-            if with_pages { instruction_page(known.form) } else { known.usage.clone() };
+        proposal.documentation = if with_pages { instruction_page(known.form) } else { known.usage.clone() };
         if known.snippet != known.mnemonic {
             proposal.snippet = Some(known.snippet.clone());
         }
@@ -91,5 +93,8 @@ pub(super) fn is_box(form: Form) -> bool {
     use crate::target::Role;
     matches!(form.instruction.opcode, Opcode::Function(_))
         && matches!(form.instruction.role, Role::Output | Role::Standalone)
-        || matches!(form.instruction.mnemonic, "MC" | "MCR" | "STL" | "RET" | "END" | "SET" | "RST" | "PLS" | "PLF")
+        || matches!(
+            form.instruction.mnemonic,
+            "MC" | "MCR" | "STL" | "RET" | "END" | "SET" | "RST" | "PLS" | "PLF"
+        )
 }

@@ -57,7 +57,8 @@ fn inside(place: &mut Place<'_>, bracket: char, content: &str) {
         (_, None) => names(place, typed, COIL, Access::Write),
         (_, Some(word)) => {
             let device = Operand::read(word, model);
-            let is_letter = matches!(word, "S" | "R" | "P" | "N" | "L" | "U" | "/" | "SET" | "RST" | "PLS" | "PLF");
+            let is_letter =
+                matches!(word, "S" | "R" | "P" | "N" | "L" | "U" | "/" | "SET" | "RST" | "PLS" | "PLF");
             match device.device().map(|device| device.kind) {
                 Some(DeviceKind::T | DeviceKind::C) if given.is_empty() => {
                     if let Some(form) = Form::named("OUT") {
@@ -106,7 +107,8 @@ fn elements(place: &mut Place<'_>, typed: &str) {
         }
     }
     if place.document.target().is_fx() {
-        let forms = |form: Form| instructions::is_box(form) && !matches!(form.instruction.mnemonic, "SET" | "RST");
+        let forms =
+            |form: Form| instructions::is_box(form) && !matches!(form.instruction.mnemonic, "SET" | "RST");
         let from = place.found.len();
         instructions::propose_forms(place, typed, forms);
         for proposal in &mut place.found[from..] {

@@ -29,11 +29,23 @@ pub(super) fn propose(place: &mut Place<'_>, typed: &str, form: Form, given: &[O
     if accepts.contains(Accepts::P) {
         propose_labels(place, typed, form.instruction.mnemonic == "CALL");
     }
-    propose_constants(place, typed, accepts, form.constant_limits(given.len(), given), driven.filter(|_| spec.optional));
+    propose_constants(
+        place,
+        typed,
+        accepts,
+        form.constant_limits(given.len(), given),
+        driven.filter(|_| spec.optional),
+    );
 }
 
 /// Proposes devices of the kinds in `accepts`, in runs of `count`.
-pub(super) fn propose_devices(place: &mut Place<'_>, typed: &str, accepts: Accepts, access: Access, count: u32) {
+pub(super) fn propose_devices(
+    place: &mut Place<'_>,
+    typed: &str,
+    accepts: Accepts,
+    access: Access,
+    count: u32,
+) {
     let target = place.document.target();
     let takes = |kind: DeviceKind| accepts.contains(Accepts::of_kind(kind));
     let is_label = |kind: DeviceKind| matches!(kind, DeviceKind::P | DeviceKind::I);
@@ -43,13 +55,17 @@ pub(super) fn propose_devices(place: &mut Place<'_>, typed: &str, accepts: Accep
     listed.retain(|(device, _)| !(device.kind == DeviceKind::X && access != Access::Read));
     listed.sort_by_key(|(device, uses)| (std::cmp::Reverse(*uses), *device));
     for (rank, (device, uses)) in listed.into_iter().take(USED_LIMIT).enumerate() {
-        let message = if uses == 1 { Message::new("complete.used-once") } else { Message::new("complete.used") };
+        let message =
+            if uses == 1 { Message::new("complete.used-once") } else { Message::new("complete.used") };
         let kind = match device.special_on(target) {
             Some(special) => special.meaning.to_string(),
             None => devices::kind_name(device.kind, place.language),
         };
         let detail = message.with("kind", kind).with("count", uses).render(place.language);
-        place.propose(typed, Proposal::new(device.to_string(), CompletionKind::Device, detail, 10 + rank as u16));
+        place.propose(
+            typed,
+            Proposal::new(device.to_string(), CompletionKind::Device, detail, 10 + rank as u16),
+        );
     }
     for (rank, range) in target.devices.iter().enumerate() {
         let is_proposed = takes(range.kind) && !is_label(range.kind) && range.first < SPECIAL;
@@ -77,7 +93,8 @@ pub(super) fn used_devices(document: &Document) -> FxHashMap<Device, u32> {
 }
 
 fn starts_with(device: Device, typed: &str) -> bool {
-    typed.is_empty() || device.to_string().get(..typed.len()).is_some_and(|head| head.eq_ignore_ascii_case(typed))
+    typed.is_empty()
+        || device.to_string().get(..typed.len()).is_some_and(|head| head.eq_ignore_ascii_case(typed))
 }
 
 /// The first run of `count` devices of `range` that nothing uses.
@@ -102,10 +119,14 @@ fn propose_special(
     }
     for special in place.document.target().special {
         let device = special.device;
-        let takes = accepts.contains(Accepts::of_kind(device.kind)) && (special.writable || access == Access::Read);
+        let takes =
+            accepts.contains(Accepts::of_kind(device.kind)) && (special.writable || access == Access::Read);
         if takes && !used.contains_key(&device) && starts_with(device, typed) {
             let rank = 500 + (device.number.saturating_sub(SPECIAL) as u16).min(999);
-            place.propose(typed, Proposal::new(device.to_string(), CompletionKind::Device, special.meaning, rank));
+            place.propose(
+                typed,
+                Proposal::new(device.to_string(), CompletionKind::Device, special.meaning, rank),
+            );
         }
     }
 }
@@ -140,7 +161,10 @@ fn propose_constants(
             let detail = format!("16 × {}", devices::kind_name(group_kind(letter), language));
             let label = format!("K4{letter}0");
             let snippet = format!("K${{1:4}}{letter}${{2:0}}");
-            place.propose(typed, Proposal::new(label, CompletionKind::Device, detail, 410 + rank as u16).snippet(snippet));
+            place.propose(
+                typed,
+                Proposal::new(label, CompletionKind::Device, detail, 410 + rank as u16).snippet(snippet),
+            );
         }
     }
 }
@@ -153,7 +177,8 @@ fn group_kind(letter: char) -> DeviceKind {
 fn propose_labels(place: &mut Place<'_>, typed: &str, calls: bool) {
     let document = place.document;
     let used = used_devices(document);
-    let mut pointers: Vec<Device> = used.keys().filter(|device| device.kind == DeviceKind::P).copied().collect();
+    let mut pointers: Vec<Device> =
+        used.keys().filter(|device| device.kind == DeviceKind::P).copied().collect();
     pointers.sort();
     for pointer in pointers {
         let mut line = None;

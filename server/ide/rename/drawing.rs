@@ -16,8 +16,10 @@ pub(super) fn edits(document: &Document, places: &[Span], new: &str) -> Result<V
         let start = document.offset(LineColumn { line, column: 0 }, Encoding::Utf8);
         let end = document.offset(LineColumn { line, column: u32::MAX }, Encoding::Utf8);
         let old = document.slice(Span::new(start, end));
-        let inside: Vec<Span> =
-            run.iter().map(|span| Span::new(span.start as usize - start, span.end as usize - start)).collect();
+        let inside: Vec<Span> = run
+            .iter()
+            .map(|span| Span::new(span.start as usize - start, span.end as usize - start))
+            .collect();
         let Some(redrawn) = redrawn(&old, &inside, new) else {
             return Err(Message::new("rename.drawing").with("name", new).with("line", line + 1));
         };
@@ -120,8 +122,12 @@ fn width(text: &str) -> usize {
 
 /// The one edit that makes `new` of `old`, which starts at `start`, without what both have in common at their ends.
 fn smallest(old: &str, new: &str, start: usize) -> TextEdit {
-    let head: usize =
-        old.chars().zip(new.chars()).take_while(|(left, right)| left == right).map(|(c, _)| c.len_utf8()).sum();
+    let head: usize = old
+        .chars()
+        .zip(new.chars())
+        .take_while(|(left, right)| left == right)
+        .map(|(c, _)| c.len_utf8())
+        .sum();
     let tails = old[head..].chars().rev().zip(new[head..].chars().rev());
     let tail: usize = tails.take_while(|(left, right)| left == right).map(|(c, _)| c.len_utf8()).sum();
     TextEdit::new(Span::new(start + head, start + old.len() - tail), &new[head..new.len() - tail])

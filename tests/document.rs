@@ -1,0 +1,205 @@
+//! The incremental document against the one read from scratch, and positions in all encodings.
+
+use proptest::prelude::*;
+use rungwise::check::{self, Severities};
+use rungwise::document::{Document, Edit, Notation};
+use rungwise::project::{Manifest, open_document, program_files};
+use rungwise::text::{Encoding, LineColumn};
+use std::path::Path;
+
+/// Pieces that open, close, join and break things.
+const PIECES: &[&str] = &[
+    "",
+    "\n",
+    "\n\n",
+    " ",
+    "(*",
+    "*)",
+    "// x\n",
+    ";",
+    "X0",
+    "LD X1\n",
+    "ANB\n",
+    "ORB\n",
+    "OUT Y0\n",
+    "MPS\n",
+    "MPP\n",
+    "END\n",
+    "P0\n",
+    "STL S0\n",
+    "LD ",
+    "(",
+    ")",
+    "VAR\n",
+    "END_VAR\n",
+    "a : BOOL;\n",
+    "PROGRAM P\n",
+    "END_PROGRAM\n",
+    "LD a\n",
+    "ST b\n",
+    "CAL t(\n",
+    "IN := a,\n",
+    "|",
+    "-",
+    "+",
+    "| |",
+    "---",
+    "|   X0  \n+---| |---( )-+\n",
+    "|      |\n",
+    "NETWORK 2 'x'\n",
+    "L1:\n",
+    "{",
+    "}",
+    "\r\n",
+    "\t",
+    "电机",
+    "ü",
+    "\u{feff}",
+    "'",
+    "\"",
+    "FEND\n",
+    "]",
+    "[",
+];
+
+/// All shipped examples, with the mistakes, as documents.
+fn samples() -> Vec<Document> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let files = program_files(&folder).unwrap();
+    assert!(files.len() > 15, "only {} examples", files.len());
+    let read = |path: &std::path::PathBuf| {
+        let text = std::fs::read_to_string(path).unwrap();
+        open_document(&path.to_string_lossy(), &text, &Manifest::default(), None, None)
+    };
+    files.iter().map(read).collect()
+}
+
+/// What a document says, whatever way it came to be.
+fn check_same(incremental: &Document, edits: &str) {
+    let scratch = Document::new(&incremental.text(), incremental.notation(), incremental.target());
+    let pieces = |document: &Document| -> Vec<(usize, String)> {
+        document.chunks().map(|at| (at.start, at.chunk.text().to_string())).collect()
+    };
+    assert_eq!(pieces(incremental), pieces(&scratch), "chunks differ after {edits}");
+    for (left, right) in incremental.chunks().zip(scratch.chunks()) {
+        assert_eq!(left.chunk.tree(), right.chunk.tree(), "trees differ after {edits}");
+    }
+    let severities = Severities::default();
+    assert_eq!(
+        check::all(incremental, &severities),
+        check::all(&scratch, &severities),
+        "diagnostics differ after {edits}"
+    );
+}
+
+/// Where to edit, in thousandths of the text, how many bytes go, and which piece comes.
+fn edits() -> impl Strategy<Value = Vec<(usize, usize, usize)>> {
+    prop::collection::vec(
+        (0..1000usize, prop_oneof![Just(0usize), 1..4usize, 4..80usize], 0..PIECES.len()),
+        1..12,
+    )
+}
+
+fn apply(document: &mut Document, (place, removed, piece): (usize, usize, usize)) {
+    let start = document.len() * place / 1000;
+    let edit = Edit { range: Some(start..start + removed), text: PIECES[piece].to_string() };
+    document.apply(&[edit]);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn incremental_equals_from_scratch(sample in 0..1000usize, edits in edits()) {
+        let samples = SAMPLES.with(|samples| samples.clone());
+        let mut document = samples[sample % samples.len()].clone();
+        // Diagnostics kept with chunks must not outlive what they depend on, so they are made before the edits.
+        check::all(&document, &Severities::default());
+        for edit in &edits {
+            apply(&mut document, *edit);
+            check_same(&document, &format!("{edits:?}"));
+        }
+    }
+
+    #[test]
+    fn offsets_and_positions_agree(sample in 0..1000usize, place in 0..=1000usize) {
+        let samples = SAMPLES.with(|samples| samples.clone());
+        let document = &samples[sample % samples.len()];
+        let text = document.text();
+        let mut offset = text.len() * place / 1000;
+        while !text.is_char_boundary(offset) || text[..offset].ends_with('\r') {
+            offset -= 1;
+        }
+        for encoding in [Encoding::Utf8, Encoding::Utf16, Encoding::Utf32] {
+            let position = document.position(offset, encoding);
+            prop_assert_eq!(document.offset(position, encoding), offset);
+        }
+    }
+}
+
+thread_local! {
+    static SAMPLES: std::rc::Rc<Vec<Document>> = std::rc::Rc::new(samples());
+}
+
+#[test]
+fn positions_outside_of_the_text_are_moved_inside() {
+    let document = Document::new("LD X0 // 电机\r\nOUT Y0", Notation::FxIl, rungwise::target::Target::ALL[2]);
+    let offset = |line, column, encoding| document.offset(LineColumn { line, column }, encoding);
+    assert_eq!(offset(0, 1000, Encoding::Utf16), "LD X0 // 电机".len());
+    assert_eq!(offset(9, 0, Encoding::Utf16), document.len());
+    assert_eq!(offset(0, 10, Encoding::Utf16), "LD X0 // 电".len());
+    assert_eq!(offset(0, 10, Encoding::Utf8), "LD X0 // ".len(), "inside of a character counts as its start");
+    assert_eq!(offset(1, 3, Encoding::Utf32), "LD X0 // 电机\r\nOUT".len());
+}
+
+#[test]
+fn a_snapshot_keeps_its_text() {
+    let mut document =
+        Document::new("LD X0\nOUT Y0\nEND\n", Notation::FxIl, rungwise::target::Target::ALL[2]);
+    let snapshot = document.clone();
+    document.apply(&[Edit { range: Some(3..5), text: "M1".to_string() }]);
+    assert_eq!(snapshot.text(), "LD X0\nOUT Y0\nEND\n");
+    assert_eq!(document.text(), "LD M1\nOUT Y0\nEND\n");
+}
+
+#[test]
+fn an_edit_reads_only_the_chunks_around_it() {
+    let rung = "LD X0\nAND X1\nOUT M5\n\n";
+    let mut document = Document::new(&rung.repeat(2000), Notation::FxIl, rungwise::target::Target::ALL[2]);
+    let before = document.clone();
+    let middle = rung.len() * 1000 + 4;
+    document.apply(&[Edit { range: Some(middle..middle + 1), text: "7".to_string() }]);
+    let kept: std::collections::HashSet<_> =
+        before.chunks().map(|at| std::sync::Arc::as_ptr(at.chunk)).collect();
+    let read = document.chunks().filter(|at| !kept.contains(&std::sync::Arc::as_ptr(at.chunk))).count();
+    assert!((1..=2).contains(&read), "{read} chunks were read anew");
+}
+
+#[test]
+fn an_unclosed_comment_and_its_end_reach_far() {
+    let mut document =
+        Document::new(&"LD X0\nOUT M5\n".repeat(3000), Notation::FxIl, rungwise::target::Target::ALL[2]);
+    document.apply(&[Edit { range: Some(13..13), text: "(*".to_string() }]);
+    check_same(&document, "opening a comment");
+    assert_eq!(document.chunks().count(), 1);
+    let end = document.len();
+    document.apply(&[Edit { range: Some(end..end), text: "*)".to_string() }]);
+    check_same(&document, "closing it at the end");
+    document.apply(&[Edit { range: Some(13..15), text: String::new() }]);
+    check_same(&document, "removing the opening");
+    assert!(document.chunks().count() >= 3000);
+}
+
+#[test]
+fn edits_of_an_empty_text_and_to_an_empty_text() {
+    for notation in [Notation::Ladder, Notation::FxIl, Notation::IecIl] {
+        let mut document = Document::new("", notation, rungwise::target::Target::ALL[2]);
+        document.apply(&[Edit { range: Some(5..9), text: "LD X0\n".to_string() }]);
+        check_same(&document, "filling an empty text");
+        document.apply(&[Edit { range: Some(0..6), text: String::new() }]);
+        check_same(&document, "emptying it");
+        document.apply(&[Edit { range: None, text: "OUT Y0\n".to_string() }]);
+        check_same(&document, "replacing everything");
+        assert_eq!(document.text(), "OUT Y0\n");
+    }
+}
