@@ -75,8 +75,10 @@ pub(super) fn duration(milliseconds: u64) -> String {
     }
     let fraction = format!(".{rest:03}");
     let fraction = fraction.trim_end_matches('0').trim_end_matches('.');
-    let with_unit = |count: u64, unit: &str| if count > 0 { format!("{count} {unit}") } else { String::new() };
-    let tail = if seconds % 60 > 0 || rest > 0 { format!("{}{fraction} s", seconds % 60) } else { String::new() };
+    let with_unit =
+        |count: u64, unit: &str| if count > 0 { format!("{count} {unit}") } else { String::new() };
+    let tail =
+        if seconds % 60 > 0 || rest > 0 { format!("{}{fraction} s", seconds % 60) } else { String::new() };
     let parts = [with_unit(seconds / 3600, "h"), with_unit(seconds / 60 % 60, "min"), tail];
     parts.iter().filter(|part| !part.is_empty()).map(String::as_str).collect::<Vec<_>>().join(" ")
 }
@@ -84,14 +86,17 @@ pub(super) fn duration(milliseconds: u64) -> String {
 /// The preset that `chunk` gives to the timer or counter `device`.
 pub(super) fn preset_of(chunk: &Chunk, device: Device) -> Option<Spanned<Operand>> {
     chunk.operations().find_map(|operation| match operation.operands {
-        [driven, preset, ..] if driven.value == Operand::Device(device) && is_preset(&operation) => Some(*preset),
+        [driven, preset, ..] if driven.value == Operand::Device(device) && is_preset(&operation) => {
+            Some(*preset)
+        }
         _ => None,
     })
 }
 
 /// Whether the second operand is the preset of the timer or counter that is the first.
 pub(super) fn is_preset(operation: &crate::document::Operation<'_>) -> bool {
-    let optional = operation.form.and_then(|form| form.instruction.operands.get(1)).is_some_and(|spec| spec.optional);
+    let optional =
+        operation.form.and_then(|form| form.instruction.operands.get(1)).is_some_and(|spec| spec.optional);
     let driven = operation.operands.first().map(|operand| operand.value);
     let counts = |device: Device| matches!(device.kind, DeviceKind::T | DeviceKind::C);
     optional && matches!(driven, Some(Operand::Device(device)) if counts(device))

@@ -55,9 +55,10 @@ impl View<'_> {
         let rungs = tree.rungs.iter().filter(|rung| rung.span.touches(inside));
         for element in rungs.flat_map(|rung| &rung.graph.elements) {
             if let Some(operand) = element.operands.iter().find(|operand| operand.span.touches(inside)) {
-                let operation = self.chunk.operations().find(|operation| {
-                    std::ptr::eq(operation.operands.as_ptr(), element.operands.as_ptr())
-                });
+                let operation = self
+                    .chunk
+                    .operations()
+                    .find(|operation| std::ptr::eq(operation.operands.as_ptr(), element.operands.as_ptr()));
                 return self.operand(operand, operation.as_ref());
             }
             if let Some(answer) = self.element(element, inside) {
@@ -191,7 +192,8 @@ impl View<'_> {
             LiteralValue::Time(nanoseconds) => {
                 let milliseconds = nanoseconds.unsigned_abs() / 1_000_000;
                 let sign = if nanoseconds < 0 { "-" } else { "" };
-                Message::new("hover.literal-time").with("time", format!("{sign}{}", devices::duration(milliseconds)))
+                Message::new("hover.literal-time")
+                    .with("time", format!("{sign}{}", devices::duration(milliseconds)))
             }
             _ => return None,
         };
@@ -228,8 +230,10 @@ impl View<'_> {
     fn name(&self, around: Span) -> Answer {
         let named = names::at(self.document, self.offset).or_else(|| {
             let mentions = self.chunk.mentions().iter();
-            let inner = mentions.filter(|mention| around.start <= mention.span.start && !mention.span.is_empty());
-            let mention = inner.filter(|mention| mention.span.end <= around.end).min_by_key(|mention| mention.span)?;
+            let inner =
+                mentions.filter(|mention| around.start <= mention.span.start && !mention.span.is_empty());
+            let mention =
+                inner.filter(|mention| mention.span.end <= around.end).min_by_key(|mention| mention.span)?;
             names::at(self.document, self.start + mention.span.start as usize)
         })?;
         let start = self.start as u32;
@@ -265,7 +269,12 @@ impl View<'_> {
                 preset = Some(self.preset(*device, found.value, found.span.of(place.chunk.text())));
             }
         });
-        [head, preset.unwrap_or_default(), uses].iter().filter(|part| !part.is_empty()).cloned().collect::<Vec<_>>().join("\n\n")
+        [head, preset.unwrap_or_default(), uses]
+            .iter()
+            .filter(|part| !part.is_empty())
+            .cloned()
+            .collect::<Vec<_>>()
+            .join("\n\n")
     }
 
     fn device(&self, device: Device, count: u16) -> String {
@@ -273,7 +282,8 @@ impl View<'_> {
         if count > 1 {
             let last = Device::new(device.kind, device.number.saturating_add(u32::from(count) - 1));
             let word = format!("{device} × {count}");
-            let message = Message::new("hover.covers").with("word", word).with("first", device).with("last", last);
+            let message =
+                Message::new("hover.covers").with("word", word).with("first", device).with("last", last);
             text += &format!("\n\n{}", message.render(self.language));
         }
         text
@@ -283,7 +293,8 @@ impl View<'_> {
         let target = self.document.target();
         let message = match (operand, devices::timer_unit(device, target)) {
             (Operand::Constant { value, index: None }, Some(_)) => {
-                let time = devices::integer(value).and_then(|count| devices::timer_time(device, count, target));
+                let time =
+                    devices::integer(value).and_then(|count| devices::timer_time(device, count, target));
                 Message::new("hover.preset").with("time", time.unwrap_or_else(|| "?".to_string()))
             }
             (_, Some(unit)) => Message::new("hover.preset-register").with("unit", unit),
