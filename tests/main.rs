@@ -2,6 +2,12 @@
 
 mod document;
 mod il_fx;
+mod il_iec;
+mod ladder_generate;
+mod ladder_print;
+mod ladder_read;
+mod lsp;
+mod lsp_client;
 mod rules;
 mod target_fx;
 mod target_fx_applied;

@@ -1,3 +1,5 @@
 //! Being written.
 use super::Fold;
-pub(super) fn of(_: &crate::document::Document) -> Vec<Fold> { Vec::new() }
+pub(super) fn of(_: &crate::document::Document) -> Vec<Fold> {
+    Vec::new()
+}

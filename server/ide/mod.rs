@@ -5,7 +5,8 @@ use crate::text::{Diagnostic, Language, Message, Span, TextEdit};
 
 mod answer;
 pub use answer::{
-    Completion, CompletionKind, Fold, FoldKind, Hover, InlayHint, Status, SymbolKind, SymbolNode, Token, TokenKind,
+    Completion, CompletionKind, Fold, FoldKind, Hover, InlayHint, Status, SymbolKind, SymbolNode, Token,
+    TokenKind,
 };
 
 mod names;

@@ -49,7 +49,9 @@ impl Thing {
             Symbol::Label(name) => Thing::Label { pou, name: name.clone() },
             Symbol::Connector(name) => Thing::Connector { pou, name: name.clone() },
             Symbol::Pou(name) => Thing::Pou(name.clone()),
-            Symbol::Type(name) if is_pou(name) || FunctionBlock::named(name).is_some() => Thing::Pou(name.clone()),
+            Symbol::Type(name) if is_pou(name) || FunctionBlock::named(name).is_some() => {
+                Thing::Pou(name.clone())
+            }
             Symbol::Type(name) => Thing::Type(name.clone()),
             Symbol::Variable(name) => {
                 let is_global = |section| matches!(section, SectionKind::Global | SectionKind::External);
@@ -124,7 +126,8 @@ pub(super) fn at(document: &Document, offset: usize) -> Option<Named<'_>> {
     let found = document.chunk_at(offset)?;
     let inside = offset.checked_sub(found.start)?;
     let touched = found.chunk.mentions().iter().filter(|mention| mention.span.touches(inside));
-    let mention = touched.filter(|mention| !mention.span.is_empty()).max_by_key(|mention| mention.span.start)?;
+    let mention =
+        touched.filter(|mention| !mention.span.is_empty()).max_by_key(|mention| mention.span.start)?;
     let pou = pou_at(document, found.start);
     Some(Named {
         thing: Thing::of(mention, pou, document.scopes()),

@@ -1,3 +1,5 @@
 //! Being written.
 use super::Token;
-pub(super) fn of(_: &crate::document::Document) -> Vec<Token> { Vec::new() }
+pub(super) fn of(_: &crate::document::Document) -> Vec<Token> {
+    Vec::new()
+}

@@ -4,6 +4,34 @@
 //! as elements and wires, and these as the [`Graph`] of each rung. [`reduce`](reduce::reduce) turns a graph into the
 //! series-parallel [`Shape`](reduce::Shape) that the printer draws. IL is unknown here.
 
+mod chunks;
+pub use chunks::{ChunkKind, chunk_ends, kind_of, split};
+
+mod reader;
+pub use reader::{parse, parse_with};
+
+mod lines;
+
+mod glyph;
+
+mod grid;
+
+mod blocks;
+
+mod scan;
+
+mod content;
+
+mod uprights;
+
+mod ragged;
+
+mod wires;
+
+mod names;
+
+mod rungs;
+
 mod element;
 pub use element::{
     Block, CoilKind, CompareOperator, ContactKind, Element, ElementId, ElementKind, OperandPlace, Pin,
@@ -31,23 +59,5 @@ mod canvas;
 mod printer;
 pub use printer::{Drawing, Style, StyleKind, print};
 
-/// (Replaced by the reader.)
-#[derive(PartialEq, Eq, Clone, Copy, Debug)]
-pub enum ChunkKind {
-    #[allow(missing_docs)]
-    Drawing,
-    #[allow(missing_docs)]
-    Declarations,
-}
-/// (Replaced by the reader.)
-pub fn kind_of(_: &str) -> ChunkKind {
-    ChunkKind::Drawing
-}
-/// (Replaced by the reader.)
-pub fn split(text: &str) -> Vec<usize> {
-    if text.is_empty() { vec![] } else { vec![text.len()] }
-}
-/// (Replaced by the reader.)
-pub fn parse(_: &str, _: &crate::target::Target) -> LadderTree {
-    LadderTree::default()
-}
+mod format;
+pub use format::{Page, format, format_chunk};

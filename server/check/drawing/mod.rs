@@ -2,5 +2,7 @@
 
 use super::Rule;
 
+mod rung_without_output;
+
 /// The rules of this group.
-pub(super) const RULES: &[&Rule] = &[];
+pub(super) const RULES: &[&Rule] = &[&rung_without_output::RULE];

@@ -36,8 +36,16 @@ impl Walk<'_> {
                 (None, ListForm::Formal) => None,
                 (None, _) => callee.pin_at(&view, position + offset),
             };
-            let (Some(pin), ParameterValue::Operand(id)) = (pin, parameter.value) else { continue };
-            self.parameter(parameter, pin, id, &mut groups, &mut constants);
+            let Some(pin) = pin else { continue };
+            match parameter.value {
+                ParameterValue::Operand(id) => {
+                    self.parameter(parameter, pin, id, &mut groups, &mut constants);
+                }
+                ParameterValue::Instructions => {
+                    _ = self.awaited.insert(parameters.start + position as u32, pin.expected);
+                }
+                ParameterValue::Missing => {}
+            }
         }
         for (value, group) in constants {
             if let Some(kind) = groups.of(group) {

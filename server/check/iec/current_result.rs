@@ -30,6 +30,7 @@ pub fn follow(view: View<'_>) -> (Vec<Diagnostic>, Vec<Guess>) {
         current: start,
         stack: Vec::new(),
         jumps: FxHashMap::default(),
+        awaited: FxHashMap::default(),
         found: Vec::new(),
         guesses: Vec::new(),
     };
@@ -45,6 +46,8 @@ pub(super) struct Walk<'a> {
     stack: Vec<Frame>,
     /// What the jumps of this chunk bring to each label.
     jumps: FxHashMap<SmolStr, Current>,
+    /// The types of parameters whose values are instruction lists that are still to come.
+    pub(super) awaited: FxHashMap<u32, Expected>,
     pub(super) found: Vec<Diagnostic>,
     pub(super) guesses: Vec<Guess>,
 }
@@ -114,7 +117,7 @@ impl<'a> Walk<'a> {
             ItemKind::Function { name, form, parameters } => self.function(item, name, form, parameters),
             ItemKind::InputOperator { input, instance } => self.input_operator(input, instance),
             ItemKind::ParameterOpen { parameter } => {
-                let expected = self.expected_by(parameter);
+                let expected = self.awaited.remove(&parameter).unwrap_or(Expected::Unknown);
                 self.push(FrameKind::Parameter(expected), item.span);
             }
             _ => {
@@ -405,24 +408,6 @@ impl<'a> Walk<'a> {
         self.judge_result(input, input, &current, pin.expected);
     }
 
-    /// The type that an instruction list in the place of parameter `index` should have.
-    fn expected_by(&self, index: u32) -> Expected {
-        let Some(parameter) = self.view.tree.parameters.get(index as usize) else { return Expected::Unknown };
-        let owner = self.view.tree.items.iter().rev().find_map(|item| match item.kind {
-            ItemKind::Call { parameters, callee: Some(id), .. } if holds(parameters, index) => {
-                let ValueType::Instance(block) = self.view.value(id) else { return None };
-                Callee::block(&self.view, &block)
-            }
-            ItemKind::Function { parameters, name, .. } if holds(parameters, index) => {
-                Callee::function(&self.view, name.of(self.view.text))
-            }
-            _ => None,
-        });
-        let (Some(owner), Some(name)) = (owner, parameter.name) else { return Expected::Unknown };
-        let pin = owner.pin_named(&self.view, name.of(self.view.text));
-        pin.map_or(Expected::Unknown, |pin| pin.expected)
-    }
-
     /// The current result; where there is none, that is reported and supposed to be mended.
     fn needed(&mut self, word: Span, operand: Option<OperandId>) -> Option<Value> {
         let reason = match &self.current {
@@ -435,7 +420,7 @@ impl<'a> Walk<'a> {
             let negated = word.of(self.view.text).to_ascii_uppercase().ends_with('N');
             let is_logic = matches!(fit(&self.view.value(id), Expected::Group(GenericType::AnyBit)), Fit::Fits);
             let load = if negated && is_logic { "LDN" } else { "LD" };
-            let title = Message::new("no-current-result.load").with("load", load).with("word", self.view.word(id));
+            let title = Message::new("no-current-result.iec-load").with("load", load).with("word", self.view.word(id));
             diagnostic = diagnostic.fix(title, vec![TextEdit::new(word, load)]);
         }
         self.found.push(diagnostic);
@@ -456,7 +441,7 @@ impl<'a> Walk<'a> {
             let blank = if others.is_empty() { "" } else { " " };
             let indent = self.view.indentation(name.start);
             let mended = format!("LD {first}\n{indent}{function}{blank}{}", others.join(", "));
-            let title = Message::new("no-current-result.load").with("load", "LD").with("word", first);
+            let title = Message::new("no-current-result.iec-load").with("load", "LD").with("word", first);
             diagnostic = diagnostic.fix(title, vec![TextEdit::new(span, mended)]);
         }
         self.found.push(diagnostic);
@@ -465,27 +450,23 @@ impl<'a> Walk<'a> {
 
     fn no_result(&self, word: Span, reason: Reason) -> Diagnostic {
         let key = match reason {
-            Reason::Start => "no-current-result.start",
-            Reason::Parenthesis(_) => "no-current-result.parenthesis",
-            Reason::Left(_) => "no-current-result.left",
+            Reason::Start => "no-current-result.iec-start",
+            Reason::Parenthesis(_) => "no-current-result.iec-parenthesis",
+            Reason::Left(_) => "no-current-result.iec-left",
         };
         let name = word.of(self.view.text).to_ascii_uppercase();
         let name = if name == ")" { "`)`".to_string() } else { name };
         let diagnostic = Diagnostic::new("no-current-result", word, Message::new(key).with("word", name));
         match reason {
             Reason::Start => diagnostic,
-            Reason::Parenthesis(at) => diagnostic.related(at, Message::new("no-current-result.opened")),
-            Reason::Left(at) => diagnostic.related(at, Message::new("no-current-result.left-here")),
+            Reason::Parenthesis(at) => diagnostic.related(at, Message::new("no-current-result.iec-opened")),
+            Reason::Left(at) => diagnostic.related(at, Message::new("no-current-result.iec-left-here")),
         }
     }
 
     fn set(&mut self, kind: ValueType, at: Span) {
         self.current = Current::Value(Value { kind, at, source: None });
     }
-}
-
-fn holds(run: Run, index: u32) -> bool {
-    run.start <= index && index < run.end
 }
 
 /// Which side of an operator is wrong.

@@ -5,7 +5,7 @@ use crate::document::{DeclaredType, Pou, Scopes, Tree, Variable};
 use crate::il::iec::{Direction, IecTree, ItemKind, OperandId, Parameter, ParameterValue, PouKind};
 use crate::target::iec::{ElementaryType, FunctionBlock, Literal, LiteralValue, OperatorRole};
 use crate::target::{Operand, Width};
-use crate::text::Span;
+use crate::text::{Severity, Span};
 use smol_str::SmolStr;
 
 /// A chunk of IEC text in its surroundings. Offsets are those of the chunk.
@@ -197,10 +197,10 @@ impl<'a> View<'a> {
     pub fn has_problem(&self, span: Span) -> bool {
         let end = span.end as usize;
         let rest = self.text.get(end..).and_then(|rest| rest.find('\n')).map_or(self.text.len(), |n| end + n);
-        let touched = span.start..=rest as u32;
-        self.tree.problems.iter().any(|problem| {
-            touched.contains(&problem.span.start) && problem.severity == crate::text::Severity::Error
-        })
+        let problems = &self.tree.problems;
+        let from = problems.partition_point(|problem| problem.span.start < span.start);
+        let near = problems[from..].iter().take_while(|problem| problem.span.start as usize <= rest);
+        near.into_iter().any(|problem| problem.severity == Severity::Error)
     }
 
     /// How many blanks and tabs stand before the first word of the line of `offset`.

@@ -5,7 +5,7 @@ use super::lower::append;
 use super::token::{Region, Token, TokenKind};
 use super::{Direction, ItemKind, ListForm, OperandId, Parameter, ParameterValue, Run};
 use crate::target::iec::{Function, Written};
-use crate::text::{Message, Span};
+use crate::text::Span;
 
 impl BodyReader<'_> {
     /// `CAL instance`, with or without parameters.
@@ -97,15 +97,17 @@ impl BodyReader<'_> {
                 let Some(operand) = self.read_operand() else { return };
                 let parameter = self.positional(operand);
                 let formal = self.list_form() == Some(ListForm::Formal);
+                self.push_parameter(parameter);
                 if formal {
                     let found = self.reader.peek();
-                    self.reader.expected(found, ":=, =>");
+                    self.reader.expected(found, "`:=`, `=>`");
+                    self.skip_parameter();
+                } else {
+                    self.finish_parameter();
                 }
-                self.push_parameter(parameter);
-                self.finish_parameter();
             }
             _ => {
-                self.reader.expected(Some(token), "parameter, )");
+                self.reader.expected(Some(token), "parameter, `)`");
                 self.skip_parameter();
             }
         }
@@ -129,7 +131,7 @@ impl BodyReader<'_> {
             value: ParameterValue::Missing,
         };
         if self.list_form() == Some(ListForm::NonFormal) {
-            self.reader.expected(Some(sign), ", )");
+            self.reader.expected(Some(sign), "`,`, `)`");
         }
         if self.reader.kind(0) == Some(TokenKind::LeftParenthesis) && direction == Direction::In {
             return self.open_value(parameter);
@@ -141,7 +143,7 @@ impl BodyReader<'_> {
             }
             None => {
                 let found = self.reader.peek();
-                let expected = if direction == Direction::In { "operand, (" } else { "variable" };
+                let expected = if direction == Direction::In { "operand, `(`" } else { "variable" };
                 self.reader.expected(found, expected);
             }
         }
@@ -201,16 +203,15 @@ impl BodyReader<'_> {
                     Some(next)
                         if next.region == Region::Body && !next.kind.closes() && !next.kind.opens_unit() =>
                     {
-                        let comma = Message::new("syntax-error.expected-at-end").with("expected", ", )");
                         let before = self.last_word_before(self.reader.at);
-                        self.reader.problem("syntax-error", Span::at(before.end as usize), comma);
+                        self.reader.expected_at_end(before, "`,`, `)`");
                     }
                     _ => {}
                 }
             }
             kind if kind.opens_unit() || kind.closes() => {}
             _ => {
-                self.reader.expected(Some(next), ", )");
+                self.reader.expected(Some(next), "`,`, `)`");
                 self.skip_parameter();
             }
         }

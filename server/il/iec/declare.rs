@@ -251,8 +251,7 @@ fn recover<'b>(
         let node = grammar.parse(&block.kinds[at..at + error.at]).into_output();
         if let Some(node) = node {
             let before = block.token_span(at + error.at - 1);
-            let message = Message::new("syntax-error.expected-at-end").with("expected", ";");
-            reader.problem("syntax-error", Span::at(before.end as usize), message);
+            reader.expected_at_end(before, &TokenKind::Semicolon.quoted());
             return (Some(node), at + error.at);
         }
     }

@@ -123,9 +123,10 @@ impl<'a> BodyReader<'a> {
             None => {
                 let next = self.reader.peek();
                 self.reader.expected(next, TokenKind::Word.name());
+                self.skip_line();
             }
         }
-        let end = self.reader.tokens[self.reader.at - 1].span;
+        let end = self.last_word_before(self.reader.at);
         let name = name.map(|name| name.span);
         let kind = ItemKind::Pou { kind: unit_kind(token.kind), name, result };
         self.reader.push_item(token.span.to(end), 0, kind);
@@ -197,7 +198,7 @@ impl<'a> BodyReader<'a> {
     fn read_instruction(&mut self, first: Token) {
         if matches!(self.reader.kind(1), Some(TokenKind::Assign | TokenKind::Arrow)) {
             let found = self.reader.tokens.get(self.reader.at + 1).copied();
-            self.reader.expected(found, "operand, (, end of line");
+            self.reader.expected(found, "operand, `(`, end of line");
             return self.skip_line();
         }
         let Some(written) = Operator::written(self.reader.word(first.span)) else {
@@ -252,6 +253,12 @@ impl<'a> BodyReader<'a> {
             word = word.to(question.span);
         }
         let operand = self.read_operand();
+        let strange = |kind: TokenKind| matches!(kind, TokenKind::Unexpected | TokenKind::LeftBracket);
+        if operand.is_none() && self.reader.kind(0).is_some_and(strange) {
+            let found = self.reader.peek();
+            self.reader.expected(found, "operand");
+            self.skip_line();
+        }
         // The names of most operators are also names of functions, which take several operands.
         let is_function = matches!(written.operator.role, OperatorRole::Combine { .. })
             && word_is_name(self.reader.word(word))
@@ -347,11 +354,14 @@ impl<'a> BodyReader<'a> {
     pub fn read_operand(&mut self) -> Option<OperandId> {
         let first = self.reader.peek().filter(|token| token.region == Region::Body)?;
         if first.kind == TokenKind::Word {
+            let problems = self.reader.tree.problems.len();
             let (span, length) = self.path_at(self.reader.at);
             self.reader.at += length;
+            let broken = self.reader.tree.problems.len() > problems;
             let blank = self.reader.word(span).contains(|c: char| c.is_whitespace() || c == '*');
-            // The reader of operands takes one word; a path with blanks or comments in it is still a variable.
-            return Some(if blank && length > 1 {
+            // The reader of operands takes one word; a path with blanks or comments in it is still a variable, and
+            // what is wrong with a broken one is said already.
+            return Some(if broken || blank && length > 1 {
                 self.reader.push_operand(span, Operand::Variable)
             } else {
                 self.reader.read_operand(span)

@@ -238,7 +238,16 @@ impl TokenKind {
         )
     }
 
-    /// How a message names it.
+    /// How a message names it: kinds in words, others as they are written, in backticks.
+    pub fn quoted(self) -> std::string::String {
+        use TokenKind::*;
+        match self {
+            Newline | Word | Number | Typed | Text | Address => self.name().to_string(),
+            _ => format!("`{}`", self.name()),
+        }
+    }
+
+    /// As it is written, or what it is.
     pub fn name(self) -> &'static str {
         use TokenKind::*;
         match self {

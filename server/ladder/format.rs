@@ -1,0 +1,270 @@
+//! Puts the rungs of a document into the canonical form and leaves everything else as it is.
+//!
+//! Only rungs that were read without doubt are redrawn: a rung with a problem, a loose end, a bridge, a comment
+//! between its lines, or outputs that would change their order stays exactly as it was drawn. What was redrawn is
+//! read again, and taken only if the logic is the same.
+
+use super::reduce::reduce;
+use super::symbol::width;
+use super::{Drawing, LadderTree, Rung, Style, StyleKind, parse, split};
+use crate::target::Target;
+use crate::text::Span;
+
+/// Problems that redrawing mends. Every other one means that the rung may not say what its author meant.
+const MENDED: [&str; 2] = ["ragged-rail", "tab-character"];
+
+/// What all rungs of a document share.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Page {
+    /// The characters of drawings.
+    pub kind: StyleKind,
+    /// The column of the right rail, from 0, counted from the left rail.
+    pub rail: u32,
+    /// Cells to the left of the left rail, for rung numbers; 0 if no rung has one.
+    pub margin: u32,
+    /// How lines end: a line feed, or carriage return and line feed.
+    pub line_end: &'static str,
+}
+
+impl Page {
+    /// The page for the chunks of a document with their trees: wide enough for its widest rung that can be drawn.
+    pub fn of<'a>(chunks: impl IntoIterator<Item = (&'a str, &'a LadderTree)>, style: &Style) -> Page {
+        let rail = style.width.clamp(1, Style::WIDTH_MAX) - 1;
+        let mut page = Page { kind: style.kind, rail, margin: 0, line_end: "\n" };
+        let mut first_line_end = None;
+        for (chunk, tree) in chunks {
+            if first_line_end.is_none() {
+                first_line_end = chunk.find('\n').map(|end| chunk[..end].ends_with('\r'));
+            }
+            let lines = Lines::of(chunk);
+            for rung in &tree.rungs {
+                if let Some(number) = rung.number {
+                    page.margin = page.margin.max(width(number.span.of(chunk)) as u32 + 1);
+                }
+                if let Some(drawing) = drawing(chunk, tree, rung, &lines, style.kind) {
+                    page.rail = page.rail.max(drawing.rail_column_min());
+                }
+            }
+        }
+        if first_line_end == Some(true) {
+            page.line_end = "\r\n";
+        }
+        page
+    }
+}
+
+/// The document in canonical form.
+pub fn format(text: &str, target: &Target, style: &Style) -> String {
+    let mut start = 0;
+    let chunks: Vec<(&str, LadderTree)> = split(text)
+        .into_iter()
+        .map(|end| {
+            let chunk = &text[start..end];
+            start = end;
+            (chunk, parse(chunk, target))
+        })
+        .collect();
+    let page = Page::of(chunks.iter().map(|(chunk, tree)| (*chunk, tree)), style);
+    let mut formatted = String::with_capacity(text.len() + text.len() / 4);
+    for (chunk, tree) in &chunks {
+        match format_chunk(chunk, tree, target, &page) {
+            Some(chunk) => formatted.push_str(&chunk),
+            None => formatted.push_str(chunk),
+        }
+    }
+    formatted
+}
+
+/// The chunk in canonical form, or nothing if it is already.
+pub fn format_chunk(chunk: &str, tree: &LadderTree, target: &Target, page: &Page) -> Option<String> {
+    let lines = Lines::of(chunk);
+    let mut drawn: Vec<Option<Vec<String>>> = tree
+        .rungs
+        .iter()
+        .map(|rung| {
+            drawing(chunk, tree, rung, &lines, page.kind).and_then(|drawing| drawing.paint(page.rail))
+        })
+        .collect();
+    leave_entangled_rungs(&tree.rungs, &mut drawn);
+    // Where the reader would take a drawing for another, the search halves, so that it does not keep the rest.
+    let mut taken = vec![None; drawn.len()];
+    let mut waiting = vec![(0, drawn.len())];
+    while let Some((first, end)) = waiting.pop() {
+        if drawn[first..end].iter().all(Option::is_none) {
+            continue;
+        }
+        let before = taken.clone();
+        taken[first..end].clone_from_slice(&drawn[first..end]);
+        if !same(chunk, tree, &lines.with_rungs(tree, &taken, page), target) {
+            taken = before;
+            let middle = first.midpoint(end);
+            if end - first > 1 {
+                waiting.extend([(middle, end), (first, middle)]);
+            }
+        }
+    }
+    let formatted = lines.with_rungs(tree, &taken, page);
+    (formatted != chunk).then_some(formatted)
+}
+
+/// Whether `formatted` reads as the same rungs, with no further problem and all comments.
+fn same(chunk: &str, tree: &LadderTree, formatted: &str, target: &Target) -> bool {
+    let again = parse(formatted, target);
+    again.rungs.len() == tree.rungs.len()
+        && again.problems.len() <= tree.problems.len()
+        && again.comments.len() == tree.comments.len()
+        && tree
+            .comments
+            .iter()
+            .zip(&again.comments)
+            .all(|(a, b)| words(a.of(chunk)).eq(words(b.of(formatted))))
+        && tree.rungs.iter().zip(&again.rungs).all(|(rung, again)| {
+            rung.number.map(|number| number.value) == again.number.map(|number| number.value)
+                && rung.graph.same_logic(chunk, &again.graph, formatted)
+        })
+}
+
+/// A text but for its blanks, which may be trimmed at the ends of lines.
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split_whitespace()
+}
+
+/// Rungs that share lines with others cannot be replaced by lines of their own.
+fn leave_entangled_rungs(rungs: &[Rung], drawn: &mut [Option<Vec<String>>]) {
+    for number in 1..rungs.len() {
+        if rungs[number].lines.0 < rungs[number - 1].lines.1 {
+            drawn[number] = None;
+            drawn[number - 1] = None;
+        }
+    }
+}
+
+/// The drawing of a rung that may be redrawn.
+fn drawing(
+    chunk: &str,
+    tree: &LadderTree,
+    rung: &Rung,
+    lines: &Lines<'_>,
+    kind: StyleKind,
+) -> Option<Drawing> {
+    let (start, end) = lines.bytes(rung.lines);
+    // An empty span marks the place between two cells.
+    let inside = |span: Span| (span.start as usize) < end && (span.end.max(span.start + 1) as usize) > start;
+    let doubtful =
+        tree.problems.iter().any(|problem| !MENDED.contains(&problem.code) && inside(problem.span));
+    if doubtful || tree.comments.iter().any(|comment| inside(*comment)) {
+        return None;
+    }
+    let shape = reduce(&rung.graph).ok()?;
+    let drawing = Drawing::new(&shape, &rung.graph, chunk, kind)?;
+    keeps_order(rung, &drawing).then_some(drawing)
+}
+
+/// Whether outputs and function blocks, which act in the order in which they are drawn, keep that order.
+fn keeps_order(rung: &Rung, drawing: &Drawing) -> bool {
+    let acts = |id: &u32| {
+        let element = &rung.graph.elements[*id as usize];
+        element.is_output() || element.block().is_some()
+    };
+    let place = |id: &u32| {
+        let element = &rung.graph.elements[*id as usize];
+        (element.row, element.columns)
+    };
+    let order: Vec<u32> = drawing.reading_order().into_iter().filter(acts).collect();
+    order.is_sorted_by_key(place)
+}
+
+/// The lines of a chunk.
+struct Lines<'t> {
+    lines: Vec<&'t str>,
+    /// Offset of each line and of the end.
+    starts: Vec<usize>,
+}
+
+impl<'t> Lines<'t> {
+    fn of(chunk: &'t str) -> Lines<'t> {
+        let lines: Vec<&str> = chunk.split_inclusive('\n').collect();
+        let mut starts = vec![0];
+        let mut offset = 0;
+        for line in &lines {
+            offset += line.len();
+            starts.push(offset);
+        }
+        Lines { lines, starts }
+    }
+
+    /// The bytes of lines from the first of `range` to before the second.
+    fn bytes(&self, range: (u32, u32)) -> (usize, usize) {
+        let start = |line: u32| self.starts.get(line as usize).or(self.starts.last()).copied().unwrap_or(0);
+        (start(range.0), start(range.1))
+    }
+
+    /// The chunk with the lines of rungs replaced by their drawings, where there are any.
+    fn with_rungs(&self, tree: &LadderTree, drawn: &[Option<Vec<String>>], page: &Page) -> String {
+        let mut text = String::new();
+        let mut line = 0;
+        for (rung, drawing) in tree.rungs.iter().zip(drawn) {
+            let first = (rung.lines.0 as usize).clamp(line, self.lines.len());
+            let end = (rung.lines.1 as usize).clamp(first, self.lines.len());
+            self.lines[line..first].iter().for_each(|line| push_line_between(&mut text, line, page));
+            match drawing {
+                Some(drawing) => {
+                    let last = self.lines[first..end].last().copied().unwrap_or("");
+                    self.push_drawing(&mut text, rung, drawing, page, last);
+                    if first == 0 && self.lines.first().is_some_and(|line| line.starts_with(BYTE_ORDER_MARK))
+                    {
+                        text.insert(0, BYTE_ORDER_MARK);
+                    }
+                }
+                None => text.extend(self.lines[first..end].iter().copied()),
+            }
+            line = end;
+        }
+        self.lines[line..].iter().for_each(|line| push_line_between(&mut text, line, page));
+        text
+    }
+
+    /// The rung's number stands beside its first power line.
+    fn push_drawing(&self, text: &mut String, rung: &Rung, drawing: &[String], page: &Page, last: &str) {
+        let margin = page.margin as usize;
+        let mut number = rung.number.map(|number| number.value.to_string());
+        for (row, line) in drawing.iter().enumerate() {
+            let leaves_rail = line.starts_with(['+', '├']) || !line.starts_with(['|', '│']);
+            match number.take_if(|_| leaves_rail || row + 1 == drawing.len()) {
+                Some(number) => {
+                    let blanks = margin.saturating_sub(number.len() + 1);
+                    text.extend(std::iter::repeat_n(' ', blanks));
+                    text.push_str(&number);
+                    text.push(' ');
+                }
+                None => text.extend(std::iter::repeat_n(' ', margin)),
+            }
+            text.push_str(line);
+            if row + 1 < drawing.len() || last.ends_with('\n') {
+                text.push_str(page.line_end);
+            }
+        }
+    }
+}
+
+const BYTE_ORDER_MARK: char = '\u{feff}';
+
+/// A line that belongs to no rung: kept but for blanks at its end; rails without anything between follow the page.
+fn push_line_between(text: &mut String, line: &str, page: &Page) {
+    let content = line.trim_end_matches(['\n', '\r']);
+    let ending = &line[content.len()..];
+    let content = content.trim_end_matches([' ', '\t']);
+    let rails = content.split([' ', '\t']).filter(|word| !word.is_empty()).collect::<Vec<_>>();
+    let is_rail = |word: &&str| matches!(*word, "|" | "||" | "│" | "││" | "┃" | "!");
+    match rails.as_slice() {
+        [left, right] if is_rail(left) && is_rail(right) && left == right => {
+            text.extend(std::iter::repeat_n(' ', page.margin as usize));
+            let rail = if page.kind == StyleKind::Unicode { '│' } else { '|' };
+            text.push(rail);
+            text.extend(std::iter::repeat_n(' ', (page.rail as usize).saturating_sub(1)));
+            text.push(rail);
+        }
+        _ => text.push_str(content),
+    }
+    text.push_str(ending);
+}

@@ -1,0 +1,135 @@
+//! A block of drawing lines as rows of displayed cells.
+
+use super::glyph::Arms;
+use super::lines::{Line, display_width, is_blank};
+use crate::text::Span;
+use std::ops::Range;
+
+/// More rows than this in one block are not read.
+pub(super) const MOST_ROWS: usize = 5_000;
+/// More columns than this in one line are not read.
+pub(super) const MOST_COLUMNS: usize = 10_000;
+
+/// Rows of cells. Cells beyond the end of a row are blank.
+#[derive(Debug, Default)]
+pub(super) struct Grid {
+    rows: Vec<Row>,
+}
+
+#[derive(Debug)]
+struct Row {
+    /// The line of the chunk, from 0.
+    line: u32,
+    /// One past the last byte of the line.
+    end: u32,
+    cells: Vec<Cell>,
+}
+
+/// A displayed cell; the second cell of a wide character is a blank with the same bytes.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    character: char,
+    start: u32,
+    end: u32,
+}
+
+impl Grid {
+    /// Adds a line as the next row, comments blanked out.
+    pub(super) fn push(&mut self, line: &Line, number: u32, text: &str) {
+        let mut row = Row { line: number, end: line.span.end, cells: Vec::with_capacity(line.span.len()) };
+        for (column, offset, character) in line.cells(text) {
+            let length = text[offset..].chars().next().map_or(0, char::len_utf8);
+            let (start, end) = (offset as u32, (offset + length) as u32);
+            // What has no width, such as a combining accent, belongs to the cell before it.
+            if let Some(before) = row.cells.last_mut()
+                && before.end < start
+            {
+                before.end = start;
+            }
+            let shown = if is_blank(character) { ' ' } else { character };
+            let width = match text[offset..].starts_with('\t') {
+                true => 8 - column % 8,
+                false => display_width(text[offset..].chars().next().unwrap_or(' ')),
+            };
+            row.cells.push(Cell { character: shown, start, end });
+            // A wide letter goes on as a letter, so that a word is one run of cells.
+            let rest = if shown == ' ' { ' ' } else { WIDE };
+            row.cells.extend((1..width).map(|_| Cell { character: rest, start, end }));
+        }
+        if let Some(last) = row.cells.last_mut() {
+            last.end = last.end.max(line.span.end.min(text.len() as u32));
+        }
+        self.rows.push(row);
+    }
+
+    /// Number of rows.
+    pub(super) fn height(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Number of cells in a row.
+    pub(super) fn width(&self, row: usize) -> usize {
+        self.rows.get(row).map_or(0, |row| row.cells.len())
+    }
+
+    /// The line of the chunk, from 0, that is `row`.
+    pub(super) fn line(&self, row: usize) -> u32 {
+        self.rows.get(row).map_or(0, |row| row.line)
+    }
+
+    /// The character of a cell, a blank outside the drawing.
+    pub(super) fn at(&self, row: usize, column: usize) -> char {
+        self.rows.get(row).and_then(|row| row.cells.get(column)).map_or(' ', |cell| cell.character)
+    }
+
+    /// The lines that a cell's character draws.
+    pub(super) fn arms(&self, row: usize, column: usize) -> Arms {
+        Arms::of(self.at(row, column))
+    }
+
+    /// The bytes of the cells `first..last` of a row.
+    pub(super) fn span(&self, row: usize, first: usize, last: usize) -> Span {
+        let Some(row) = self.rows.get(row) else { return Span::default() };
+        let start = row.cells.get(first).map_or(row.end, |cell| cell.start);
+        let end = last.checked_sub(1).map_or(start, |last| row.cells.get(last).map_or(row.end, |cell| cell.end));
+        Span { start, end: end.max(start) }
+    }
+
+    /// From the first to the last cell of a row that is not blank.
+    pub(super) fn content(&self, row: usize) -> Option<Span> {
+        let cells = &self.rows.get(row)?.cells;
+        let first = cells.iter().position(|cell| cell.character != ' ')?;
+        let last = cells.iter().rposition(|cell| cell.character != ' ')?;
+        Some(self.span(row, first, last + 1))
+    }
+
+    /// Marks cells as taken by a function block.
+    pub(super) fn take(&mut self, row: usize, columns: Range<usize>) {
+        self.fill(row, columns, TAKEN);
+    }
+
+    /// Turns cells that have been read into blanks.
+    pub(super) fn clear(&mut self, row: usize, columns: Range<usize>) {
+        self.fill(row, columns, ' ');
+    }
+
+    /// Draws wire over the negation circle in cell `circle`.
+    pub(super) fn bridge(&mut self, row: usize, circle: Option<usize>) {
+        if let Some(circle) = circle {
+            self.fill(row, circle..circle + 1, '-');
+        }
+    }
+
+    fn fill(&mut self, row: usize, columns: Range<usize>, character: char) {
+        if let Some(row) = self.rows.get_mut(row) {
+            for cell in row.cells.iter_mut().take(columns.end).skip(columns.start) {
+                cell.character = character;
+            }
+        }
+    }
+}
+
+/// The second cell of a wide character.
+pub(super) const WIDE: char = '\u{1}';
+/// A cell that belongs to a function block.
+pub(super) const TAKEN: char = '\u{2}';

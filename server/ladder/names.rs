@@ -1,0 +1,525 @@
+//! Whose name each word outside a symbol is.
+
+use super::content::{Wants, is_preset};
+use super::grid::Grid;
+use super::scan::{Symbol, Token, Tokens, What};
+use super::{Block, ElementKind, NameHabit, OperandPlace};
+use crate::target::{Operand, Target};
+use crate::text::{Diagnostic, Message, Span, Spanned, TextEdit};
+
+/// Names stand at most this many lines from their element.
+const FARTHEST: usize = 3;
+
+/// A word outside all symbols.
+#[derive(Clone, Copy, Debug)]
+struct Word {
+    row: usize,
+    start: usize,
+    end: usize,
+    /// The symbols that it could name, standing below it and above it.
+    below: Candidate,
+    above: Candidate,
+    /// Whose name it is.
+    owner: Option<usize>,
+}
+
+/// What a word overlaps in the nearest row with symbols, in one direction.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Candidate {
+    None,
+    /// One symbol, at a distance in rows.
+    One(usize, usize),
+    /// Two symbols, the one that it overlaps more first, at a distance in rows.
+    Two(usize, usize, usize),
+}
+
+impl Candidate {
+    fn symbol(self) -> Option<usize> {
+        match self {
+            Candidate::One(symbol, _) => Some(symbol),
+            _ => None,
+        }
+    }
+}
+
+/// Gives every word outside the symbols to an element.
+pub(super) struct Naming<'a> {
+    pub(super) grid: &'a Grid,
+    pub(super) text: &'a str,
+    pub(super) target: &'a Target,
+    pub(super) tokens: &'a mut Tokens,
+    /// The leftmost column in which a line is drawn; words left of it are rung numbers.
+    pub(super) left: usize,
+    pub(super) problems: &'a mut Vec<Diagnostic>,
+}
+
+/// What came of it.
+#[derive(Debug, Default)]
+pub(super) struct Named {
+    pub(super) habit: NameHabit,
+    /// For each symbol, the first and last row of its names.
+    pub(super) rows: Vec<Option<(usize, usize)>>,
+}
+
+impl Naming<'_> {
+    /// Matches words and symbols. `hint` is the habit of the document, for drawings that do not show their own.
+    pub(super) fn run(mut self, hint: NameHabit) -> Named {
+        let mut words = self.words();
+        let mut habit = NameHabit::default();
+        for (number, word) in words.iter().enumerate() {
+            // What takes no name says nothing about names, and the first of two words hangs over its element's side.
+            let takes = |symbol: usize| self.tokens.symbols[symbol].wants != Wants::Nothing;
+            let in_phrase = words.get(number + 1).is_some_and(|next| next.row == word.row && word.end + 1 == next.start);
+            match (word.below, word.above) {
+                (Candidate::One(symbol, _), Candidate::None) if takes(symbol) => habit.above += 1,
+                (Candidate::None, Candidate::One(symbol, _)) if takes(symbol) && !in_phrase => habit.below += 1,
+                _ => {}
+            }
+        }
+        let names_below = habit.decided().or(hint.decided()).unwrap_or(false);
+        self.own(&mut words, names_below);
+        let mut named = Named { habit, rows: vec![None; self.tokens.symbols.len()] };
+        let mut owned: Vec<Vec<Word>> = vec![Vec::new(); self.tokens.symbols.len()];
+        for word in &words {
+            let Some(owner) = word.owner else { continue };
+            owned[owner].push(*word);
+            let rows = &mut named.rows[owner];
+            *rows = Some(rows.map_or((word.row, word.row), |(a, b)| (a.min(word.row), b.max(word.row))));
+        }
+        for (symbol, words) in owned.iter().enumerate() {
+            self.give(symbol, words);
+        }
+        self.mend(&mut words, &mut named);
+        self.report_stray(&words, names_below);
+        self.report_missing(&words);
+        named
+    }
+
+    /// All words that can be names, in reading order, with their candidates.
+    fn words(&self) -> Vec<Word> {
+        let mut words = Vec::new();
+        for (row, line) in self.tokens.rows.iter().enumerate() {
+            for (number, token) in line.iter().enumerate() {
+                let margin = token.end <= self.left && line.get(number + 1).is_some_and(Token::is_drawn) && number == 0;
+                if token.what != What::Word || (margin && self.is_number(row, token)) {
+                    continue;
+                }
+                let mut word = Word {
+                    row,
+                    start: token.start,
+                    end: token.end,
+                    below: Candidate::None,
+                    above: Candidate::None,
+                    owner: None,
+                };
+                // A word between wires names nothing.
+                let touches = |other: Option<&Token>, at: fn(&Token) -> usize, edge: usize| {
+                    other.is_some_and(|other| other.what == What::Wire && at(other) == edge)
+                };
+                let before = number.checked_sub(1).and_then(|before| line.get(before));
+                let wired = touches(before, |t| t.end, token.start) || touches(line.get(number + 1), |t| t.start, token.end);
+                if !wired {
+                    let rows = self.tokens.rows.len();
+                    word.below = self.candidate(&word, row + 1..rows.min(row + 1 + FARTHEST));
+                    word.above = self.candidate(&word, (row.saturating_sub(FARTHEST)..row).rev());
+                }
+                words.push(word);
+            }
+        }
+        words
+    }
+
+    fn is_number(&self, row: usize, token: &Token) -> bool {
+        (token.start..token.end).all(|column| self.grid.at(row, column).is_ascii_digit())
+    }
+
+    /// What `word` overlaps in the first of `rows` where something is drawn over its columns.
+    fn candidate(&self, word: &Word, rows: impl Iterator<Item = usize>) -> Candidate {
+        for (distance, row) in rows.enumerate() {
+            let line = &self.tokens.rows[row];
+            let from = line.partition_point(|token| token.end <= word.start);
+            let over = line[from..].iter().take_while(|token| token.start < word.end).filter(|token| token.is_drawn());
+            let mut blocked = false;
+            // Cells of overlap and symbol, the largest overlap first; symbols that take no name come last.
+            let mut first = (0, 0);
+            let mut second = (0, 0);
+            for token in over {
+                blocked = true;
+                let What::Symbol(symbol) = token.what else { continue };
+                let found = &self.tokens.symbols[symbol];
+                if found.element.block().is_some() && !self.is_border(row, token, symbol) {
+                    continue;
+                }
+                let cells = 2 * (token.end.min(word.end) - token.start.max(word.start));
+                let overlap = if found.wants == Wants::Nothing { 1 } else { cells };
+                if overlap > first.0 {
+                    second = std::mem::replace(&mut first, (overlap, symbol));
+                } else if overlap > second.0 {
+                    second = (overlap, symbol);
+                }
+            }
+            // One cell is not enough to be in doubt, unless it is one for each.
+            let doubtful = second.0 > 2 || (second.0 == 2 && first.0 == 2);
+            match (first, second) {
+                ((0, _), _) if blocked => return Candidate::None,
+                ((0, _), _) => {}
+                ((_, first), (_, second)) if doubtful => return Candidate::Two(first, second, distance + 1),
+                ((_, first), _) => return Candidate::One(first, distance + 1),
+            }
+        }
+        Candidate::None
+    }
+
+    /// Whether the token is the top border of a function block, above which the instance name stands.
+    fn is_border(&self, row: usize, token: &Token, symbol: usize) -> bool {
+        let above = row.checked_sub(1).and_then(|row| self.tokens.rows.get(row)).map_or(&[][..], |line| line);
+        let same = |other: &Token| other.what == What::Symbol(symbol) && other.start == token.start;
+        let from = above.partition_point(|other| other.start < token.start);
+        !above.get(from).is_some_and(same)
+    }
+
+    /// Decides whose each word is.
+    fn own(&self, words: &mut [Word], names_below: bool) {
+        let takes = |symbol: usize| self.tokens.symbols[symbol].wants != Wants::Nothing;
+        let mut counts = vec![0usize; self.tokens.symbols.len()];
+        for word in words.iter_mut() {
+            let wanted = if names_below { word.above } else { word.below };
+            word.owner = wanted.symbol();
+            if let Some(owner) = word.owner {
+                counts[owner] += 1;
+            }
+        }
+        // A name over two elements is clear if one of them has another name.
+        for word in words.iter_mut() {
+            let wanted = if names_below { &mut word.above } else { &mut word.below };
+            let Candidate::Two(first, second, distance) = *wanted else { continue };
+            let owner = match (counts[first], counts[second]) {
+                (_, 1..) => first,
+                (1.., 0) => second,
+                (0, 0) => continue,
+            };
+            *wanted = Candidate::One(owner, distance);
+            word.owner = Some(owner);
+            counts[owner] += 1;
+        }
+        // The second operand of a comparison may stand on the other side. It can be told from the upper line of a
+        // name only if the element there has a nearer name.
+        let nearest = nearest_words(words, names_below);
+        for number in 0..words.len() {
+            let word = words[number];
+            let other = if names_below { word.below } else { word.above };
+            let Candidate::One(symbol, 1) = other else { continue };
+            let free = word.owner.is_none_or(|owner| owner != symbol && nearest.get(&owner) != Some(&number));
+            if self.tokens.symbols[symbol].wants == Wants::TwoOperands && counts[symbol] == 1 && free {
+                words[number].owner = Some(symbol);
+                counts[symbol] += 1;
+                if let Some(owner) = word.owner {
+                    counts[owner] -= 1;
+                }
+            }
+        }
+        for word in words.iter_mut().filter(|word| word.owner.is_none()) {
+            // Against the habit, but there is only one reading.
+            let other = if names_below { word.below } else { word.above };
+            let wanted = if names_below { word.above } else { word.below };
+            if let (Candidate::None, Candidate::One(symbol, _)) = (wanted, other)
+                && counts[symbol] == 0
+                && takes(symbol)
+            {
+                word.owner = Some(symbol);
+                counts[symbol] += 1;
+            }
+        }
+        self.join_phrases(words);
+    }
+
+    /// `T0 K50` over a coil: a word over nothing, one blank away from a name of a coil, belongs to that name.
+    fn join_phrases(&self, words: &mut [Word]) {
+        let phrases = |symbol: usize| {
+            matches!(self.tokens.symbols[symbol].wants, Wants::DeviceAndPreset | Wants::TwoOperands | Wants::Operands)
+        };
+        for number in 0..words.len() {
+            let word = words[number];
+            let over_nothing = word.below == Candidate::None || word.above == Candidate::None;
+            if word.owner.is_some() || !over_nothing {
+                continue;
+            }
+            let left = number.checked_sub(1).map(|left| words[left]).filter(|left| left.end + 1 == word.start);
+            let right = words.get(number + 1).copied().filter(|right| word.end + 1 == right.start);
+            let near = [left, right].into_iter().flatten().filter(|near| near.row == word.row);
+            words[number].owner = near.filter_map(|near| near.owner).find(|owner| phrases(*owner));
+        }
+    }
+
+    /// Makes operands of the words of a symbol, which come in reading order.
+    fn give(&mut self, number: usize, words: &[Word]) {
+        let Some(first) = words.first() else { return };
+        let target = self.target;
+        let spans: Vec<Span> = words.iter().map(|word| self.grid.span(word.row, word.start, word.end)).collect();
+        let read = |span: &Span| Spanned::new(Operand::read(span.of(self.text), target.model), *span);
+        let operands: Vec<Spanned<Operand>> = spans.iter().map(read).collect();
+        let one_line = words.iter().all(|word| word.row == first.row);
+        let symbol = &mut self.tokens.symbols[number];
+        let place = if first.row < symbol.row { OperandPlace::Above } else { OperandPlace::Below };
+        let mut surplus = Vec::new();
+        match symbol.wants {
+            Wants::Nothing => surplus = operands,
+            Wants::Instance => {
+                if let ElementKind::Block(block) = &mut symbol.element.kind {
+                    surplus = name_instance(block, operands);
+                }
+            }
+            Wants::Operands => symbol.element.operands = operands,
+            Wants::TwoOperands => {
+                surplus = operands.get(2..).map_or(Vec::new(), <[_]>::to_vec);
+                symbol.element.operands = operands.into_iter().take(2).collect();
+            }
+            Wants::Device | Wants::DeviceAndPreset => {
+                let preset = matches!(&operands[..], [device, preset] if is_preset(&device.value, &preset.value)
+                    || (!target.is_fx() && one_line));
+                if symbol.wants == Wants::DeviceAndPreset && preset {
+                    symbol.element.operands = operands;
+                } else {
+                    surplus = name_device(symbol, &operands, words, place, target);
+                }
+            }
+        }
+        if symbol.wants != Wants::Nothing && symbol.wants != Wants::Instance {
+            symbol.element.place = place;
+        }
+        let is_note = |operand: &Spanned<Operand>| target.is_fx() && matches!(operand.value, Operand::Invalid(_));
+        for operand in surplus {
+            if is_note(&operand) {
+                symbol.element.notes.push(operand.span);
+                continue;
+            }
+            let message = Message::new("stray-operand.surplus").with("text", operand.span.of(self.text));
+            let related = Message::new("stray-operand.element");
+            let problem = Diagnostic::new("stray-operand", operand.span, message);
+            self.problems.push(problem.related(symbol.element.span, related));
+        }
+    }
+
+    /// The words of a line that has several, none of them a name and nothing drawn between.
+    fn line_of_text(&self, word: &Word, words: &[Word]) -> Option<Span> {
+        let tokens = &self.tokens.rows[word.row];
+        let inner = |token: &Token| matches!(token.what, What::Wire | What::Symbol(_));
+        let from = words.partition_point(|other| other.row < word.row);
+        let own = words[from..].iter().take_while(|other| other.row == word.row);
+        let (mut count, mut last) = (0, word.end);
+        for other in own {
+            if other.owner.is_some() || self.nameless_near(other, 4).next().is_some() {
+                return None;
+            }
+            (count, last) = (count + 1, other.end);
+        }
+        let prose = count > 2 && !tokens.iter().any(inner);
+        prose.then(|| self.grid.span(word.row, words[from].start, last))
+    }
+
+    /// Gives words that miss their element by a column or two to it, if there is only one reading.
+    fn mend(&mut self, words: &mut [Word], named: &mut Named) {
+        const ASIDE: usize = 1;
+        let mut wanted: rustc_hash::FxHashMap<usize, Vec<usize>> = rustc_hash::FxHashMap::default();
+        for (number, word) in words.iter().enumerate() {
+            let unclear = matches!(word.below, Candidate::Two(..)) || matches!(word.above, Candidate::Two(..));
+            if word.owner.is_some() || unclear {
+                continue;
+            }
+            let mut near: Vec<usize> = self.nameless_near(word, ASIDE).collect();
+            near.dedup();
+            if let [symbol] = near[..] {
+                wanted.entry(symbol).or_default().push(number);
+            }
+        }
+        let mut wanted: Vec<_> = wanted.into_iter().filter(|(_, words)| words.len() == 1).collect();
+        wanted.sort_unstable();
+        for (symbol, numbers) in wanted {
+            let word = words[numbers[0]];
+            words[numbers[0]].owner = Some(symbol);
+            let rows = &mut named.rows[symbol];
+            *rows = Some(rows.map_or((word.row, word.row), |(a, b)| (a.min(word.row), b.max(word.row))));
+            self.give(symbol, &[word]);
+            let span = self.grid.span(word.row, word.start, word.end);
+            let found = &self.tokens.symbols[symbol];
+            let message = Message::new("ragged-drawing.operand").with("text", span.of(self.text));
+            let mut problem = Diagnostic::new("ragged-drawing", span, message)
+                .related(found.element.span, Message::new("stray-operand.element"));
+            if let Some(edit) = self.moved(&word, found) {
+                let title = Message::new("stray-operand.move").with("text", span.of(self.text));
+                problem = problem.fix(title, vec![edit]);
+            }
+            self.problems.push(problem);
+        }
+    }
+
+    fn report_stray(&mut self, words: &[Word], names_below: bool) {
+        let stray: Vec<&Word> = words.iter().filter(|word| word.owner.is_none()).collect();
+        let mut row = None;
+        let mut prose = false;
+        for word in &stray {
+            if row != Some(word.row) {
+                row = Some(word.row);
+                let line = self.line_of_text(word, words);
+                prose = line.is_some();
+                if let Some(line) = line {
+                    // One finding for a line of prose, not one for each word.
+                    let message = Message::new("unreadable-cell.text");
+                    self.problems.push(Diagnostic::new("unreadable-cell", line, message));
+                }
+            }
+            if prose {
+                continue;
+            }
+            let span = self.grid.span(word.row, word.start, word.end);
+            let wanted = if names_below { word.above } else { word.below };
+            let text = span.of(self.text);
+            if let Candidate::Two(first, second, _) = wanted {
+                let mut problem =
+                    Diagnostic::new("stray-operand", span, Message::new("stray-operand.two").with("text", text));
+                for symbol in [first, second] {
+                    let element = self.tokens.symbols[symbol].element.span;
+                    problem = problem.related(element, Message::new("stray-operand.element"));
+                }
+                self.problems.push(problem);
+                continue;
+            }
+            let message = Message::new("stray-operand.nothing").with("text", text);
+            let mut problem = Diagnostic::new("stray-operand", span, message);
+            const ASIDE: usize = 4;
+            let gap = |symbol: &usize| {
+                let symbol = &self.tokens.symbols[*symbol];
+                symbol.start.saturating_sub(word.end).max(word.start.saturating_sub(symbol.end))
+            };
+            if let Some(symbol) = self.nameless_near(word, ASIDE).min_by_key(gap) {
+                let symbol = &self.tokens.symbols[symbol];
+                problem = problem.related(symbol.element.span, Message::new("stray-operand.nearest"));
+                if let Some(edit) = self.moved(word, symbol) {
+                    let title = Message::new("stray-operand.move").with("text", text);
+                    problem = problem.fix(title, vec![edit]);
+                }
+            }
+            self.problems.push(problem);
+        }
+    }
+
+    /// Elements without a name, one line away and at most `aside` columns to the side.
+    fn nameless_near(&self, word: &Word, aside: usize) -> impl Iterator<Item = usize> {
+        let (start, end) = (word.start, word.end);
+        let rows = [Some(word.row + 1), word.row.checked_sub(1)].into_iter().flatten();
+        let near = rows.filter_map(|row| self.tokens.rows.get(row)).flat_map(move |line| {
+            let from = line.partition_point(|token| token.end + aside < start);
+            line[from..].iter().take_while(move |token| token.start <= end + aside)
+        });
+        near.filter_map(|token| match token.what {
+            What::Symbol(symbol) if is_nameless(&self.tokens.symbols[symbol]) => Some(symbol),
+            _ => None,
+        })
+    }
+
+    /// The edit that centres `word` over `symbol`, if there is nothing but blanks on the way.
+    fn moved(&self, word: &Word, symbol: &Symbol) -> Option<TextEdit> {
+        let width = word.end - word.start;
+        let start = ((symbol.start + symbol.end).saturating_sub(width)) / 2;
+        let (from, to) = (start.min(word.start), (start + width).max(word.end));
+        let blank = |column: usize| self.grid.at(word.row, column) == ' ';
+        let free = (from..word.start).chain(word.end..to).all(blank);
+        let apart = (from == 0 || blank(from - 1)) && blank(to);
+        if !free || !apart || to > self.grid.width(word.row) {
+            return None;
+        }
+        let name = self.grid.span(word.row, word.start, word.end).of(self.text);
+        let moved = format!("{}{name}{}", " ".repeat(start - from), " ".repeat(to - start - width));
+        Some(TextEdit::new(self.grid.span(word.row, from, to), moved))
+    }
+
+    fn report_missing(&mut self, words: &[Word]) {
+        // A name over two elements is one mistake, not three.
+        let shared: rustc_hash::FxHashSet<usize> = words
+            .iter()
+            .filter(|word| word.owner.is_none())
+            .flat_map(|word| [word.below, word.above])
+            .flat_map(|over| match over {
+                Candidate::Two(first, second, _) => vec![first, second],
+                _ => Vec::new(),
+            })
+            .collect();
+        for (number, symbol) in self.tokens.symbols.iter().enumerate() {
+            if is_nameless(symbol) && !shared.contains(&number) {
+                let span = symbol.element.span;
+                let kind = match &symbol.element.kind {
+                    ElementKind::Contact(_) => Message::new("missing-operand.contact"),
+                    ElementKind::Compare(_) => Message::new("missing-operand.compare"),
+                    _ => Message::new("missing-operand.coil"),
+                };
+                self.problems.push(Diagnostic::new("missing-operand", span, kind));
+            }
+        }
+    }
+}
+
+/// Whether the element lacks an operand that it must have.
+fn is_nameless(symbol: &Symbol) -> bool {
+    let least = match symbol.element.kind {
+        ElementKind::Contact(_) | ElementKind::Coil(_) => 1,
+        ElementKind::Compare(_) => 2,
+        _ => 0,
+    };
+    symbol.element.operands.len() < least
+}
+
+/// For each symbol, its word nearest to it.
+fn nearest_words(words: &[Word], names_below: bool) -> rustc_hash::FxHashMap<usize, usize> {
+    let mut nearest = rustc_hash::FxHashMap::default();
+    for (number, word) in words.iter().enumerate() {
+        let wanted = if names_below { word.above } else { word.below };
+        if let Candidate::One(symbol, distance) = wanted {
+            let best = nearest.entry(symbol).or_insert((distance, number));
+            if distance < best.0 {
+                *best = (distance, number);
+            }
+        }
+    }
+    nearest.into_iter().map(|(symbol, (_, number))| (symbol, number)).collect()
+}
+
+/// The instance is the last word, next to the border; returns the others.
+fn name_instance(block: &mut Block, mut operands: Vec<Spanned<Operand>>) -> Vec<Spanned<Operand>> {
+    block.instance = operands.pop().map(|name| name.span);
+    operands
+}
+
+/// Gives a contact or a coil its device; returns the words that are not part of it.
+///
+/// Of several lines a device or an address is the operand and the rest is description; identifiers are one name
+/// over several lines.
+fn name_device(
+    symbol: &mut Symbol,
+    operands: &[Spanned<Operand>],
+    words: &[Word],
+    place: OperandPlace,
+    target: &Target,
+) -> Vec<Spanned<Operand>> {
+    let addressed = |operand: &Spanned<Operand>| match operand.value {
+        Operand::Invalid(_) | Operand::Variable => false,
+        Operand::Literal(_) => false,
+        _ => true,
+    };
+    let lines_differ = words.windows(2).all(|pair| pair[0].row != pair[1].row);
+    let all_names = operands.iter().all(|operand| operand.value == Operand::Variable);
+    if operands.len() > 1 && operands.len() <= FARTHEST && lines_differ && all_names && !target.is_fx() {
+        symbol.element.name_lines = operands.iter().map(|operand| operand.span).collect();
+        symbol.element.operands = operands.last().copied().into_iter().collect();
+        return Vec::new();
+    }
+    // Nearest line first, and in it left to right.
+    let row = |number: &usize| words[*number].row;
+    let mut order: Vec<usize> = (0..operands.len()).collect();
+    order.sort_by_key(|number| match place {
+        OperandPlace::Above => usize::MAX - row(number),
+        _ => row(number),
+    });
+    let chosen = order.iter().copied().find(|number| addressed(&operands[*number])).or(order.first().copied());
+    symbol.element.operands = chosen.map(|chosen| operands[chosen]).into_iter().collect();
+    (0..operands.len()).filter(|number| Some(*number) != chosen).map(|number| operands[number]).collect()
+}
