@@ -3,7 +3,6 @@
 use super::content::{Wants, is_preset};
 use super::grid::Grid;
 use super::scan::{Symbol, Token, Tokens, What};
-use super::uprights::is_drawn;
 use super::{Block, ElementKind, NameHabit, OperandPlace};
 use crate::target::{Operand, Target};
 use crate::text::{Diagnostic, Message, Span, Spanned, TextEdit};
@@ -87,6 +86,7 @@ impl Naming<'_> {
         for (symbol, words) in owned.iter().enumerate() {
             self.give(symbol, words);
         }
+        self.mend(&mut words, &mut named);
         self.report_stray(&words, names_below);
         self.report_missing(&words);
         named
@@ -97,7 +97,7 @@ impl Naming<'_> {
         let mut words = Vec::new();
         for (row, line) in self.tokens.rows.iter().enumerate() {
             for (number, token) in line.iter().enumerate() {
-                let margin = token.end <= self.left && line.get(number + 1).is_some_and(is_drawn) && number == 0;
+                let margin = token.end <= self.left && line.get(number + 1).is_some_and(Token::is_drawn) && number == 0;
                 if token.what != What::Word || (margin && self.is_number(row, token)) {
                     continue;
                 }
@@ -135,7 +135,7 @@ impl Naming<'_> {
         for (distance, row) in rows.enumerate() {
             let line = &self.tokens.rows[row];
             let from = line.partition_point(|token| token.end <= word.start);
-            let over = line[from..].iter().take_while(|token| token.start < word.end).filter(|t| is_drawn(t));
+            let over = line[from..].iter().take_while(|token| token.start < word.end).filter(|token| token.is_drawn());
             let mut blocked = false;
             // Cells of overlap and symbol, the largest overlap first; symbols that take no name come last.
             let mut first = (0, 0);
@@ -297,8 +297,77 @@ impl Naming<'_> {
         }
     }
 
+    /// The words of a line that has several, none of them a name and nothing drawn between.
+    fn line_of_text(&self, word: &Word, words: &[Word]) -> Option<Span> {
+        let tokens = &self.tokens.rows[word.row];
+        let inner = |token: &Token| matches!(token.what, What::Wire | What::Symbol(_));
+        let from = words.partition_point(|other| other.row < word.row);
+        let own = words[from..].iter().take_while(|other| other.row == word.row);
+        let (mut count, mut last) = (0, word.end);
+        for other in own {
+            if other.owner.is_some() || self.nameless_near(other, 4).next().is_some() {
+                return None;
+            }
+            (count, last) = (count + 1, other.end);
+        }
+        let prose = count > 2 && !tokens.iter().any(inner);
+        prose.then(|| self.grid.span(word.row, words[from].start, last))
+    }
+
+    /// Gives words that miss their element by a column or two to it, if there is only one reading.
+    fn mend(&mut self, words: &mut [Word], named: &mut Named) {
+        const ASIDE: usize = 1;
+        let mut wanted: rustc_hash::FxHashMap<usize, Vec<usize>> = rustc_hash::FxHashMap::default();
+        for (number, word) in words.iter().enumerate() {
+            let unclear = matches!(word.below, Candidate::Two(..)) || matches!(word.above, Candidate::Two(..));
+            if word.owner.is_some() || unclear {
+                continue;
+            }
+            let mut near: Vec<usize> = self.nameless_near(word, ASIDE).collect();
+            near.dedup();
+            if let [symbol] = near[..] {
+                wanted.entry(symbol).or_default().push(number);
+            }
+        }
+        let mut wanted: Vec<_> = wanted.into_iter().filter(|(_, words)| words.len() == 1).collect();
+        wanted.sort_unstable();
+        for (symbol, numbers) in wanted {
+            let word = words[numbers[0]];
+            words[numbers[0]].owner = Some(symbol);
+            let rows = &mut named.rows[symbol];
+            *rows = Some(rows.map_or((word.row, word.row), |(a, b)| (a.min(word.row), b.max(word.row))));
+            self.give(symbol, &[word]);
+            let span = self.grid.span(word.row, word.start, word.end);
+            let found = &self.tokens.symbols[symbol];
+            let message = Message::new("ragged-drawing.operand").with("text", span.of(self.text));
+            let mut problem = Diagnostic::new("ragged-drawing", span, message)
+                .related(found.element.span, Message::new("stray-operand.element"));
+            if let Some(edit) = self.moved(&word, found) {
+                let title = Message::new("stray-operand.move").with("text", span.of(self.text));
+                problem = problem.fix(title, vec![edit]);
+            }
+            self.problems.push(problem);
+        }
+    }
+
     fn report_stray(&mut self, words: &[Word], names_below: bool) {
-        for word in words.iter().filter(|word| word.owner.is_none()) {
+        let stray: Vec<&Word> = words.iter().filter(|word| word.owner.is_none()).collect();
+        let mut row = None;
+        let mut prose = false;
+        for word in &stray {
+            if row != Some(word.row) {
+                row = Some(word.row);
+                let line = self.line_of_text(word, words);
+                prose = line.is_some();
+                if let Some(line) = line {
+                    // One finding for a line of prose, not one for each word.
+                    let message = Message::new("unreadable-cell.text");
+                    self.problems.push(Diagnostic::new("unreadable-cell", line, message));
+                }
+            }
+            if prose {
+                continue;
+            }
             let span = self.grid.span(word.row, word.start, word.end);
             let wanted = if names_below { word.above } else { word.below };
             let text = span.of(self.text);
@@ -314,7 +383,13 @@ impl Naming<'_> {
             }
             let message = Message::new("stray-operand.nothing").with("text", text);
             let mut problem = Diagnostic::new("stray-operand", span, message);
-            if let Some(symbol) = self.nameless_near(word) {
+            const ASIDE: usize = 4;
+            let gap = |symbol: &usize| {
+                let symbol = &self.tokens.symbols[*symbol];
+                symbol.start.saturating_sub(word.end).max(word.start.saturating_sub(symbol.end))
+            };
+            if let Some(symbol) = self.nameless_near(word, ASIDE).min_by_key(gap) {
+                let symbol = &self.tokens.symbols[symbol];
                 problem = problem.related(symbol.element.span, Message::new("stray-operand.nearest"));
                 if let Some(edit) = self.moved(word, symbol) {
                     let title = Message::new("stray-operand.move").with("text", text);
@@ -325,20 +400,18 @@ impl Naming<'_> {
         }
     }
 
-    /// The nearest element without a name, one line away and at most four columns to the side.
-    fn nameless_near(&self, word: &Word) -> Option<&Symbol> {
-        const ASIDE: usize = 4;
+    /// Elements without a name, one line away and at most `aside` columns to the side.
+    fn nameless_near(&self, word: &Word, aside: usize) -> impl Iterator<Item = usize> {
+        let (start, end) = (word.start, word.end);
         let rows = [Some(word.row + 1), word.row.checked_sub(1)].into_iter().flatten();
-        let near = rows.filter_map(|row| self.tokens.rows.get(row)).flat_map(|line| {
-            let from = line.partition_point(|token| token.end + ASIDE < word.start);
-            line[from..].iter().take_while(|token| token.start <= word.end + ASIDE)
+        let near = rows.filter_map(|row| self.tokens.rows.get(row)).flat_map(move |line| {
+            let from = line.partition_point(|token| token.end + aside < start);
+            line[from..].iter().take_while(move |token| token.start <= end + aside)
         });
-        let symbols = near.filter_map(|token| match token.what {
-            What::Symbol(symbol) => self.tokens.symbols.get(symbol),
+        near.filter_map(|token| match token.what {
+            What::Symbol(symbol) if is_nameless(&self.tokens.symbols[symbol]) => Some(symbol),
             _ => None,
-        });
-        let gap = |symbol: &Symbol| symbol.start.saturating_sub(word.end).max(word.start.saturating_sub(symbol.end));
-        symbols.filter(|symbol| is_nameless(symbol)).min_by_key(|symbol| gap(symbol))
+        })
     }
 
     /// The edit that centres `word` over `symbol`, if there is nothing but blanks on the way.

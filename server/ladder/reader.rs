@@ -7,7 +7,7 @@ use super::grid::{Grid, MOST_COLUMNS, MOST_ROWS};
 use super::lines::{HeaderLine, LineKind, Lines, OpenComment};
 use super::names::{Named, Naming};
 use super::rungs::build_rungs;
-use super::scan::{Scanner, Tokens, What};
+use super::scan::{Scanner, Token, Tokens, What};
 use super::uprights::Uprights;
 use super::wires::Tracer;
 use super::{LadderTree, NameHabit, NetworkHeader};
@@ -73,7 +73,7 @@ fn read_drawing(mut grid: Grid, text: &str, target: &Target, habit: NameHabit, t
         report_text(&grid, &tokens, problems);
         return;
     }
-    let uprights = Uprights::find(&tokens, left);
+    let uprights = Uprights::find(&grid, &tokens, left, problems);
     uprights.report(&grid, &tokens, problems);
     let wiring = Tracer::new(&grid, &tokens, &uprights, problems).trace();
     let naming = Naming { grid: &grid, text, target, tokens: &mut tokens, left, problems };
@@ -99,13 +99,16 @@ fn left_column(grid: &Grid) -> usize {
 
 /// Lines of text without any drawing.
 fn report_text(grid: &Grid, tokens: &Tokens, problems: &mut Vec<Diagnostic>) {
-    for (row, line) in tokens.rows.iter().enumerate() {
-        let words = line.iter().any(|token| token.what == What::Word);
-        if let (true, Some(span)) = (words, grid.content(row)) {
-            problems.retain(|problem| problem.span.end <= span.start || span.end <= problem.span.start);
-            problems.push(Diagnostic::new("unreadable-cell", span, Message::new("unreadable-cell.text")));
-        }
-    }
+    let has_word = |line: &[Token]| line.iter().any(|token| token.what == What::Word);
+    let rows = (0..grid.height()).filter(|row| has_word(&tokens.rows[*row]));
+    let lines: Vec<Span> = rows.filter_map(|row| grid.content(row)).collect();
+    // One finding for a line, not one more for each of its characters.
+    problems.retain(|problem| {
+        let line = lines.partition_point(|line| line.end <= problem.span.start);
+        lines.get(line).is_none_or(|line| problem.span.end <= line.start)
+    });
+    let text = |span: &Span| Diagnostic::new("unreadable-cell", *span, Message::new("unreadable-cell.text"));
+    problems.extend(lines.iter().map(text));
 }
 
 fn report_unclosed(open: Option<OpenComment>, text: &str, problems: &mut Vec<Diagnostic>) {

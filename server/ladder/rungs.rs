@@ -2,7 +2,7 @@
 
 use super::grid::Grid;
 use super::scan::{Symbol, Tokens, What};
-use super::uprights::{Role, Uprights, is_drawn};
+use super::uprights::{Role, Uprights};
 use super::wires::{Link, Node, Wiring};
 use super::{Graph, Rung, VertexId, VertexKind};
 use crate::text::{Span, Spanned};
@@ -23,10 +23,11 @@ pub(super) fn build_rungs(
         upright.role == Role::LeftRail && upright.cells.iter().any(|cell| cell.right)
     });
     let groups = row_groups(&tokens, uprights);
-    let Tokens { rows, symbols } = tokens;
+    let Tokens { rows, symbols, .. } = tokens;
     let mut symbols: Vec<Option<Symbol>> = symbols.into_iter().map(Some).collect();
     let mut rungs = Vec::with_capacity(groups.len());
     let mut links = wiring.links.as_slice();
+    let mut rails = wiring.right_rail.as_slice();
     for (first, last) in groups {
         let count = links.iter().take_while(|link| link.row <= last).count();
         let (own, rest) = links.split_at(count);
@@ -35,7 +36,7 @@ pub(super) fn build_rungs(
         // Without a left rail the leftmost wires of a rung are joined to it all the same.
         let edge = match has_rail {
             true => None,
-            false => group.iter().flatten().filter(|token| is_drawn(token)).map(|token| token.start).min(),
+            false => group.iter().flatten().filter(|token| token.is_drawn()).map(|token| token.start).min(),
         };
         let mut lines = (first, last);
         let numbers = group.iter().flatten().filter_map(|token| match token.what {
@@ -68,13 +69,15 @@ pub(super) fn build_rungs(
             builder.place(symbol);
         }
         let number = (first..=last).find_map(|row| margin_number(grid, &rows, row, left, text));
-        let rails = wiring.right_rail.iter().filter(|(row, _)| first <= *row && *row <= last);
+        let count = rails.iter().take_while(|(row, _)| *row <= last).count();
+        let (own_rails, rest) = rails.split_at(count);
+        rails = rest;
         rungs.push(Rung {
             graph: builder.graph,
             number,
             span: content(grid, lines.0).to(content(grid, lines.1)),
             lines: (grid.line(lines.0), grid.line(lines.1) + 1),
-            right_rail: rails.map(|(_, rail)| *rail).collect(),
+            right_rail: own_rails.iter().map(|(_, rail)| *rail).collect(),
         });
     }
     rungs

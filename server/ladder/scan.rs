@@ -51,6 +51,37 @@ pub(super) struct Symbol {
 pub(super) struct Tokens {
     pub(super) rows: Vec<Vec<Token>>,
     pub(super) symbols: Vec<Symbol>,
+    extents: Vec<Extent>,
+}
+
+/// How far the drawing reaches in a row.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Extent {
+    /// Start of the first and of the last token that is drawn.
+    pub(super) drawn: Option<(usize, usize)>,
+    /// Start of the first symbol, end of the last one.
+    pub(super) symbols: Option<(usize, usize)>,
+}
+
+impl Tokens {
+    /// How far the drawing reaches in `row`.
+    pub(super) fn extent(&self, row: usize) -> Extent {
+        self.extents.get(row).copied().unwrap_or_default()
+    }
+
+    /// The token that covers a column of a row, with its number.
+    pub(super) fn over(&self, row: usize, columns: std::ops::Range<usize>) -> Option<(usize, &Token)> {
+        let line = self.rows.get(row)?;
+        let number = line.partition_point(|token| token.end <= columns.start);
+        line.get(number).filter(|token| token.start < columns.end).map(|token| (number, token))
+    }
+}
+
+impl Token {
+    /// Whether it is part of the drawing, not a word in it.
+    pub(super) fn is_drawn(&self) -> bool {
+        !matches!(self.what, What::Word | What::Unreadable)
+    }
 }
 
 /// Reads the rows of a grid, in which function blocks have been found already.
@@ -105,7 +136,8 @@ impl Scanner<'_> {
             self.flush(row, unreadable);
             rows.push(tokens);
         }
-        Tokens { rows, symbols: self.symbols }
+        let extents = rows.iter().map(|line| extent(line)).collect();
+        Tokens { rows, symbols: self.symbols, extents }
     }
 
     fn flush(&mut self, row: usize, unreadable: Option<(usize, usize)>) {
@@ -121,6 +153,9 @@ impl Scanner<'_> {
     /// The token that starts at a cell which is not blank; nothing if the cell cannot be read.
     fn token(&mut self, row: usize, column: usize, character: char) -> Option<Token> {
         let arms = Arms::of(character);
+        if let Some(end) = self.turned_contact_end(row, column) {
+            return Some(self.on_vertical(row, column, end));
+        }
         if arms.is_upright() {
             return Some(self.contact(row, column).unwrap_or_else(|| self.upright(row, column, arms)));
         }
@@ -331,7 +366,41 @@ impl Scanner<'_> {
         };
         let inside = pieces(self.grid, row, column + 1, close, self.text);
         let reading = read(&inside, self.target);
+        if self.stands_on_vertical(row, column, close + 1) {
+            return Some(self.on_vertical(row, column, close + 1));
+        }
         Some(self.symbol(row, column, close + 1, reading))
+    }
+
+    /// One past the end of `| |` without wires beside it, but with a vertical wire above and below.
+    fn turned_contact_end(&self, row: usize, column: usize) -> Option<usize> {
+        let bar = |at: usize| self.grid.arms(row, at).is_vertical();
+        let marked = bar(column) && bar(column + 2) && contact_mark(self.grid.at(row, column + 1)).is_some();
+        let middle = column + 1;
+        let held = |row: usize| self.grid.arms(row, middle).is_upright() && !self.in_contact(row, middle);
+        let on = marked && row > 0 && held(row - 1) && held(row + 1) && !self.linked_raw(row, column);
+        (on && self.stands_on_vertical(row, column, column + 3)).then_some(column + 3)
+    }
+
+    /// Whether a vertical wire ends above and below the cells `start..end`, and no wire beside them.
+    fn stands_on_vertical(&self, row: usize, start: usize, end: usize) -> bool {
+        let beside = (start > 0 && self.leads(row, start - 1)) || self.leads(row, end);
+        let held = |row: usize| (start..end).any(|at| self.grid.arms(row, at).is_upright() && !self.in_contact(row, at));
+        !beside && row > 0 && held(row - 1) && held(row + 1)
+    }
+
+    /// Reports an element in the middle of a vertical wire, and reads it as a part of the wire.
+    fn on_vertical(&mut self, row: usize, start: usize, end: usize) -> Token {
+        let span = self.grid.span(row, start, end);
+        let mut problem = Diagnostic::new("contact-on-vertical", span, Message::new("contact-on-vertical.element"));
+        for near in [row - 1, row + 1] {
+            if let Some(at) = (start..end).find(|at| self.grid.arms(near, *at).is_upright()) {
+                let wire = self.grid.span(near, at, at + 1);
+                problem = problem.related(wire, Message::new("contact-on-vertical.wire"));
+            }
+        }
+        self.problems.push(problem);
+        Token { start, end, what: What::Upright(Arms::of('|')) }
     }
 
     /// `>>LABEL`, `>NAME>` or `<RETURN>`.
@@ -383,4 +452,15 @@ impl Scanner<'_> {
         self.symbols.push(Symbol { row, start, end, element, wants: reading.wants, depth: 0 });
         Token { start, end, what: What::Symbol(self.symbols.len() - 1) }
     }
+}
+
+fn extent(line: &[Token]) -> Extent {
+    let mut extent = Extent::default();
+    for token in line.iter().filter(|token| token.is_drawn()) {
+        extent.drawn = Some((extent.drawn.map_or(token.start, |(first, _)| first), token.start));
+        if let What::Symbol(_) = token.what {
+            extent.symbols = Some((extent.symbols.map_or(token.start, |(first, _)| first), token.end));
+        }
+    }
+    extent
 }
