@@ -304,7 +304,6 @@ fn declared_type(text: &str, tree: &IecTree, id: TypeId) -> DeclaredType {
             });
             DeclaredType::Structure(fields.collect())
         }
-        TypeSpec::Reference { .. } => DeclaredType::Unknown,
     }
 }
 
