@@ -1,6 +1,6 @@
 //! Ladder graphs: their shape, their drawing, and what drawing and reading make of them.
 
-use crate::ladder_generate::{Generated, Leaf, Part, all_rungs, generate, rung};
+use crate::ladder_generate::{Generated, Part, all_rungs, generate, rung};
 use expect_test::{Expect, expect};
 use proptest::prelude::*;
 use rungwise::ladder::reduce::{NotSeriesParallel, Shape, reduce};
@@ -820,6 +820,45 @@ fn outputs_never_change_their_order() {
     assert!(tree.problems.is_empty(), "{:?}", tree.problems);
     assert!(reduce(&tree.rungs[0].graph).is_ok());
     assert_eq!(format(text, fx(), &Style::default()), text);
+}
+
+#[test]
+fn lines_without_output_run_on_to_the_right_rail() {
+    let typed = "\
+|   X0                 |
++---| |---+---[INV]----+
+|         |            |
+|         +------------+
+|         |   X1       |
+|         +---|/|------+
+";
+    check_styles(typed, fx(), [expect![[r#"
+        |   X0                                         |
+        +---| |---+--[INV]-----------------------------+
+        |         |                                    |
+        |         +------------------------------------+
+        |         |   X1                               |
+        |         +---|/|------------------------------+
+    "#]], expect![[r#"
+        +--[X0]--+--[INV]------------------------------+
+        |        |                                     |
+        |        +-------------------------------------+
+        |        |                                     |
+        |        +--[/X1]------------------------------+
+    "#]], expect![[r#"
+        │   X0                                         │
+        ├───┤ ├───┬──[INV]─────────────────────────────┤
+        │         │                                    │
+        │         ├────────────────────────────────────┤
+        │         │   X1                               │
+        │         └───┤/├──────────────────────────────┤
+    "#]]]);
+}
+
+#[test]
+fn a_byte_order_mark_before_a_rung_stays() {
+    let formatted = format("\u{feff}|--[X0]---(Y0)\n", fx(), &style(StyleKind::Brackets));
+    assert_eq!(formatted, format!("\u{feff}+--[X0]{}(Y0)-+\n", "-".repeat(35)));
 }
 
 #[test]
