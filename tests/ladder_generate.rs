@@ -309,6 +309,18 @@ pub fn rung(size: u32) -> impl Strategy<Value = Part> {
     })
 }
 
+/// A random rung of some dozens to 200 elements: several conditions side by side, then several in a row, then outputs.
+pub fn large_rung() -> impl Strategy<Value = Part> {
+    let some = || prop::collection::vec(condition(24), 4..12);
+    (some(), some(), rung(24)).prop_map(|(beside, row, rest)| {
+        let beside = beside.into_iter().map(|part| Part::Series(vec![part.clone(), part]));
+        // A line that starts at a connector starts nowhere else.
+        let mut rest = if let Part::Series(parts) = rest { parts } else { vec![rest] };
+        rest.retain(|part| !matches!(part, Part::Leaf(Leaf::ConnectorIn(_))));
+        Part::Series([vec![Part::Parallel(beside.collect())], row, rest].concat())
+    })
+}
+
 /// All series-parallel conditions of exactly `contacts` contacts, each once, closed by a coil.
 pub fn all_rungs(contacts: usize) -> Vec<Part> {
     let mut rungs = Vec::new();
