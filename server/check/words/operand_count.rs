@@ -27,6 +27,12 @@
 //! OUT T0 K50
 //! END
 //! ```
+//!
+//! ```lad
+//! |  X0                     |
+//! +--| |---[MOV K10]--------+
+//!           ^^^
+//! ```
 
 use crate::check::{ChunkContext, Rule, Run};
 use crate::document::{Operation, Tree};
