@@ -115,9 +115,15 @@ fn check_completions(text: &str, read: fn(&str) -> Document, shown: usize, expec
     expected.assert_eq(&answer);
 }
 
-fn check_places(text: &str, read: fn(&str) -> Document, find: fn(&Document, usize) -> Vec<Span>, expected: &Expect) {
+fn check_places(
+    text: &str,
+    read: fn(&str) -> Document,
+    find: fn(&Document, usize) -> Vec<Span>,
+    expected: &Expect,
+) {
     let (document, offset) = at_cursor(text, read);
-    let places: Vec<String> = find(&document, offset).into_iter().map(|span| place(&document, span)).collect();
+    let places: Vec<String> =
+        find(&document, offset).into_iter().map(|span| place(&document, span)).collect();
     expected.assert_eq(&(places.join("\n") + "\n"));
 }
 
@@ -150,8 +156,10 @@ fn check_outline(document: &Document, expected: &Expect) {
 fn check_folds(document: &Document, expected: &Expect) {
     let line = |offset: u32| document.position(offset as usize, Encoding::Utf8).line + 1;
     let folds = ide::folds(document);
-    let folds: Vec<String> =
-        folds.iter().map(|fold| format!("{}-{} {:?}\n", line(fold.span.start), line(fold.span.end), fold.kind)).collect();
+    let folds: Vec<String> = folds
+        .iter()
+        .map(|fold| format!("{}-{} {:?}\n", line(fold.span.start), line(fold.span.end), fold.kind))
+        .collect();
     expected.assert_eq(&folds.concat());
 }
 
@@ -173,14 +181,21 @@ fn hover_on_an_instruction_is_its_page() {
     let (document, offset) = at_cursor("LD X0\ndm$0ovp D0 D10\n", fx);
     let hover = ide::hover(&document, offset, EN).unwrap();
     assert_eq!((document.slice(hover.span), hover.markdown), ("dmovp".to_string(), page));
-    check_hover("LD X0\nXYZ$0 D0\n", fx, &expect![[r#"
+    check_hover(
+        "LD X0\nXYZ$0 D0\n",
+        fx,
+        &expect![[r#"
         nothing
-    "#]]);
+    "#]],
+    );
 }
 
 #[test]
 fn hover_on_devices() {
-    check_hover("LD X0\nOUT M50$00\nLD M500\nOR M500\nANI M500\nMOV K4M496 D0\nEND\n", fx, &expect![[r#"
+    check_hover(
+        "LD X0\nOUT M50$00\nLD M500\nOR M500\nANI M500\nMOV K4M496 D0\nEND\n",
+        fx,
+        &expect![[r#"
         2:5 `M500`
         **M500** auxiliary relay, latched (M500–M1023)
 
@@ -188,8 +203,12 @@ fn hover_on_devices() {
 
         - Written: line 2
         - Read: lines 3, 4, 5, 6
-    "#]]);
-    check_hover("LD $0T0\nOUT Y0\nLD X0\nOUT T0 K50\nEND\n", fx, &expect![[r#"
+    "#]],
+    );
+    check_hover(
+        "LD $0T0\nOUT Y0\nLD X0\nOUT T0 K50\nEND\n",
+        fx,
+        &expect![[r#"
         1:4 `T0`
         **T0** timer, 100 ms (T0–T191)
 
@@ -197,90 +216,143 @@ fn hover_on_devices() {
 
         - Written: line 4
         - Read: line 1
-    "#]]);
-    check_hover("LD $0M8013\nOUT Y0\n", fx, &expect![[r#"
+    "#]],
+    );
+    check_hover(
+        "LD $0M8013\nOUT Y0\n",
+        fx,
+        &expect![[r#"
         1:4 `M8013`
         **M8013** auxiliary relay, special (M8000–M8255)
 
         Clock of 1 s: 0.5 s on, 0.5 s off. A program only reads it.
 
         - Read: line 1
-    "#]]);
-    check_hover("LD M9$0000\nOUT Y0\n", fx, &expect![[r#"
+    "#]],
+    );
+    check_hover(
+        "LD M9$0000\nOUT Y0\n",
+        fx,
+        &expect![[r#"
         1:4 `M9000`
         **M9000** auxiliary relay: FX2N has none of this number; it has M0–M499, M500–M1023, M1024–M3071, M8000–M8255
 
         - Read: line 1
-    "#]]);
-    check_hover("LD X0\nMOV $0K4M0Z1 D0\n", fx, &expect![[r#"
+    "#]],
+    );
+    check_hover(
+        "LD X0\nMOV $0K4M0Z1 D0\n",
+        fx,
+        &expect![[r#"
         2:7 `M0`
         **M0** auxiliary relay, general (M0–M499)
 
         `M0 × 16` covers M0 to M15.
 
         - Read: line 2
-    "#]]);
+    "#]],
+    );
     let many = format!("{}LD $0X0\nOUT Y0\n", "LD X0\nOUT Y0\n".repeat(12));
-    check_hover(&many, fx, &expect![[r#"
+    check_hover(
+        &many,
+        fx,
+        &expect![[r#"
         25:4 `X0`
         **X0** input relay (X0–X377)
 
         - Read: lines 1, 3, 5, 7, 9, 11, 13, 15 and 5 more
-    "#]]);
+    "#]],
+    );
 }
 
 #[test]
 fn hover_on_constants_and_labels() {
-    check_hover("LD X0\nOUT T0 $0K50\n", fx, &expect![[r#"
+    check_hover(
+        "LD X0\nOUT T0 $0K50\n",
+        fx,
+        &expect![[r#"
         2:8 `K50`
         `K50` × 100 ms = 5 s
-    "#]]);
-    check_hover("LD X0\nOUT T200 $0K50\n", fx, &expect![[r#"
+    "#]],
+    );
+    check_hover(
+        "LD X0\nOUT T200 $0K50\n",
+        fx,
+        &expect![[r#"
         2:10 `K50`
         `K50` × 10 ms = 500 ms
-    "#]]);
-    check_hover("LD X0\nMOV $0HFF D0\n", fx, &expect![[r#"
+    "#]],
+    );
+    check_hover(
+        "LD X0\nMOV $0HFF D0\n",
+        fx,
+        &expect![[r#"
         2:5 `HFF`
         `HFF` = K255
-    "#]]);
-    check_hover("LD X0\nMOV $0K-1 D0\n", fx, &expect![[r#"
+    "#]],
+    );
+    check_hover(
+        "LD X0\nMOV $0K-1 D0\n",
+        fx,
+        &expect![[r#"
         2:5 `K-1`
         `K-1` = HFFFF
-    "#]]);
-    check_hover("LD X0\nCJ $0P0\nLD X1\nOUT Y0\nP0\nEND\n", fx, &expect![[r#"
+    "#]],
+    );
+    check_hover(
+        "LD X0\nCJ $0P0\nLD X1\nOUT Y0\nP0\nEND\n",
+        fx,
+        &expect![[r#"
         2:4 `P0`
         **P0** pointer (P0–P62)
 
         - Defined: line 5
         - Jumps and calls: line 2
-    "#]]);
-    check_hover("LD X0 ; $0X0 is it\n", fx, &expect![[r#"
+    "#]],
+    );
+    check_hover(
+        "LD X0 ; $0X0 is it\n",
+        fx,
+        &expect![[r#"
         nothing
-    "#]]);
+    "#]],
+    );
 }
 
 #[test]
 fn hover_in_ladder() {
-    check_hover(&marked(MOTOR, "|$0/|"), ladder, &expect![[r#"
+    check_hover(
+        &marked(MOTOR, "|$0/|"),
+        ladder,
+        &expect![[r#"
         3:15 `|/|`
         Normally closed contact: passes power while `X1` is off.
 
         **X1** input relay (X0–X377)
 
         - Read: line 2
-    "#]]);
-    check_hover(&marked(MOTOR, "(T0$0 K50"), ladder, &expect![[r#"
+    "#]],
+    );
+    check_hover(
+        &marked(MOTOR, "(T0$0 K50"),
+        ladder,
+        &expect![[r#"
         8:43 `T0`
         **T0** timer, 100 ms (T0–T191)
 
         Preset `K50` = 5 s
 
         - Written: line 8
-    "#]]);
-    check_hover(&marked(MOTOR, "K50"), ladder, &expect![[r#"
+    "#]],
+    );
+    check_hover(
+        &marked(MOTOR, "K50"),
+        ladder,
+        &expect![[r#"
         8:46 `K50`
         `K50` × 100 ms = 5 s
-    "#]]);
+    "#]],
+    );
     let (document, offset) = at_cursor(&marked(MOTOR, "MO$0V"), ladder);
     let hover = ide::hover(&document, offset, EN).unwrap();
     assert!(hover.markdown.starts_with("### MOV"), "{}", hover.markdown);
@@ -288,7 +360,10 @@ fn hover_in_ladder() {
 
 #[test]
 fn hover_in_iec() {
-    check_hover(&marked(DELAY, "LD St$0art"), iec, &expect![[r#"
+    check_hover(
+        &marked(DELAY, "LD St$0art"),
+        iec,
+        &expect![[r#"
         8:8 `Start`
         ```iec
         VAR Start AT %IX0.0 : BOOL
@@ -296,29 +371,49 @@ fn hover_in_iec() {
 
         - Declared: line 3
         - Read: lines 8, 10
-    "#]]);
-    check_hover(&marked(DELAY, "Delay.$0Q"), iec, &expect![[r#"
+    "#]],
+    );
+    check_hover(
+        &marked(DELAY, "Delay.$0Q"),
+        iec,
+        &expect![[r#"
         11:8 `Delay.Q`
         `Delay.Q : BOOL`
 
         output
-    "#]]);
-    check_hover(&marked(DELAY, "T#1m$030s"), iec, &expect![[r#"
+    "#]],
+    );
+    check_hover(
+        &marked(DELAY, "T#1m$030s"),
+        iec,
+        &expect![[r#"
         10:34 `T#1m30s`
         `T#1m30s` = 1 min 30 s
-    "#]]);
-    check_hover(&marked(DELAY, "16#$0FF"), iec, &expect![[r#"
+    "#]],
+    );
+    check_hover(
+        &marked(DELAY, "16#$0FF"),
+        iec,
+        &expect![[r#"
         16:9 `16#FF`
         `16#FF` = 255
-    "#]]);
-    check_hover(&marked(DELAY, "JMPC Fin$0ish"), iec, &expect![[r#"
+    "#]],
+    );
+    check_hover(
+        &marked(DELAY, "JMPC Fin$0ish"),
+        iec,
+        &expect![[r#"
         12:10 `Finish`
         **Finish** label
 
         - Defined: line 14
         - Jumps and calls: line 12
-    "#]]);
-    check_hover(&marked(DELAY, ": Ga$0te"), iec, &expect![[r#"
+    "#]],
+    );
+    check_hover(
+        &marked(DELAY, ": Ga$0te"),
+        iec,
+        &expect![[r#"
         6:13 `Gate`
         ```iec
         FUNCTION_BLOCK Gate
@@ -327,8 +422,12 @@ fn hover_in_iec() {
 
         - Declared: line 19
         - Read: line 6
-    "#]]);
-    check_hover(&marked(DELAY, "Valve.Op$0en"), iec, &expect![[r#"
+    "#]],
+    );
+    check_hover(
+        &marked(DELAY, "Valve.Op$0en"),
+        iec,
+        &expect![[r#"
         9:14 `Open`
         ```iec
         VAR_INPUT Open : BOOL
@@ -337,8 +436,11 @@ fn hover_in_iec() {
         - Declared: line 21
         - Written: lines 9, 17
         - Read: line 26
-    "#]]);
-    for (word, heading) in [("JM$0PC", "### JMP"), ("T$0ON", "### TON"), ("CA$0L", "### CAL"), ("S$0T", "### ST")] {
+    "#]],
+    );
+    for (word, heading) in
+        [("JM$0PC", "### JMP"), ("T$0ON", "### TON"), ("CA$0L", "### CAL"), ("S$0T", "### ST")]
+    {
         let (document, offset) = at_cursor(&marked(DELAY, word), iec);
         let hover = ide::hover(&document, offset, EN).unwrap();
         assert!(hover.markdown.starts_with(heading), "{word}: {}", hover.markdown);
@@ -347,30 +449,49 @@ fn hover_in_iec() {
 
 #[test]
 fn completion_of_fx_instructions() {
-    check_completions("LD X0\n$0", fx, 4, &expect![[r#"
+    check_completions(
+        "LD X0\n$0",
+        fx,
+        4,
+        &expect![[r#"
         LD | load | LD ${1:S}
         LDI | load inverse | LDI ${1:S}
         OUT | coil | OUT ${1:D}
         AND | contact in series | AND ${1:S}
         …
-    "#]]);
-    check_completions("LD X0\nmo$0", fx, 6, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        "LD X0\nmo$0",
+        fx,
+        6,
+        &expect![[r#"
         MOV | move | MOV ${1:S} ${2:D}
         MOVP | move | MOVP ${1:S} ${2:D}
-    "#]]);
-    check_completions("  12 L$0", fx, 3, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        "  12 L$0",
+        fx,
+        3,
+        &expect![[r#"
         LD | load |   12 LD ${1:S}
         LDI | load inverse |   12 LDI ${1:S}
         LDP | load rising edge |   12 LDP ${1:S}
         …
-    "#]]);
+    "#]],
+    );
     check_completions("LD X0 ; $0", fx, 3, &expect![[""]]);
 }
 
 #[test]
 fn completion_of_fx_operands() {
     let program = "LD M0\nAND X0\nOR M0\nOUT Y0\nLD X1\nCALL P1\nFEND\nP1\nLD M1\nOUT T0 K10\nSRET\nEND\n";
-    check_completions(&format!("{program}LD $0"), fx, 6, &expect![[r#"
+    check_completions(
+        &format!("{program}LD $0"),
+        fx,
+        6,
+        &expect![[r#"
         M0 | auxiliary relay, used 2 times | LD M0
         X0 | input relay, used once | LD X0
         X1 | input relay, used once | LD X1
@@ -378,8 +499,13 @@ fn completion_of_fx_operands() {
         M1 | auxiliary relay, used once | LD M1
         T0 | timer, used once | LD T0
         …
-    "#]]);
-    check_completions(&format!("{program}OUT $0"), fx, 6, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        &format!("{program}OUT $0"),
+        fx,
+        6,
+        &expect![[r#"
         M0 | auxiliary relay, used 2 times | OUT M0
         Y0 | output relay, used once | OUT Y0
         M1 | auxiliary relay, used once | OUT M1
@@ -387,25 +513,40 @@ fn completion_of_fx_operands() {
         Y1 | output relay, free | OUT Y1
         M2 | auxiliary relay, general, free | OUT M2
         …
-    "#]]);
-    check_completions(&format!("{program}OUT T$0"), fx, 6, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        &format!("{program}OUT T$0"),
+        fx,
+        6,
+        &expect![[r#"
         T0 | timer, used once | OUT T0
         T1 | timer, 100 ms, free | OUT T1
         T192 | timer, 100 ms timer for subroutines and interrupts, free | OUT T192
         T200 | timer, 10 ms, free | OUT T200
         T246 | timer, 1 ms retentive, free | OUT T246
         T250 | timer, 100 ms retentive, free | OUT T250
-    "#]]);
-    check_completions(&format!("{program}OUT T200 $0"), fx, 6, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        &format!("{program}OUT T200 $0"),
+        fx,
+        6,
+        &expect![[r#"
         K | decimal constant, 1–32767, × 10 ms | OUT T200 K${1:1}
         D0 | data register, general, free | OUT T200 D0
         D200 | data register, latched, free | OUT T200 D200
         D512 | data register, latched, free | OUT T200 D512
         D1000 | data register, latched register, may hold file registers, free | OUT T200 D1000
         H | hexadecimal constant | OUT T200 H${1:0}
-    "#]]);
+    "#]],
+    );
     check_completions(&format!("{program}OUT Y0 $0"), fx, 6, &expect![[""]]);
-    check_completions(&format!("{program}LD M801$0"), fx, 12, &expect![[r#"
+    check_completions(
+        &format!("{program}LD M801$0"),
+        fx,
+        12,
+        &expect![[r#"
         M801 | auxiliary relay, used once | LD M801
         M8011 | Clock of 10 ms: 5 ms on, 5 ms off | LD M8011
         M8012 | Clock of 100 ms: 50 ms on, 50 ms off | LD M8012
@@ -416,18 +557,33 @@ fn completion_of_fx_operands() {
         M8017 | On a rising edge rounds the clock to the nearest minute | LD M8017
         M8018 | On while a real-time clock is fitted | LD M8018
         M8019 | The clock was set to an impossible date or time | LD M8019
-    "#]]);
-    check_completions(&format!("{program}OUT M801$0"), fx, 12, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        &format!("{program}OUT M801$0"),
+        fx,
+        12,
+        &expect![[r#"
         M801 | auxiliary relay, used once | OUT M801
         M8015 | Stops the clock; it starts with what D8013 to D8019 hold when this goes off | OUT M8015
         M8016 | Freezes D8013 to D8019 for reading; the clock itself goes on | OUT M8016
         M8017 | On a rising edge rounds the clock to the nearest minute | OUT M8017
-    "#]]);
-    check_completions(&format!("{program}CJ $0"), fx, 4, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        &format!("{program}CJ $0"),
+        fx,
+        4,
+        &expect![[r#"
         P1 | label, line 8 | CJ P1
         P0 | free label | CJ P0
-    "#]]);
-    check_completions(&format!("{program}MOV K1 $0"), fx, 40, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        &format!("{program}MOV K1 $0"),
+        fx,
+        40,
+        &expect![[r#"
         T0 | timer, used once | MOV K1 T0
         D0 | data register, general, free | MOV K1 D0
         D200 | data register, latched, free | MOV K1 D200
@@ -447,25 +603,40 @@ fn completion_of_fx_operands() {
         K4Y0 | 16 × output relay | MOV K1 K${1:4}Y${2:0}
         K4M0 | 16 × auxiliary relay | MOV K1 K${1:4}M${2:0}
         K4S0 | 16 × state | MOV K1 K${1:4}S${2:0}
-    "#]]);
+    "#]],
+    );
 }
 
 #[test]
 fn completion_in_ladder() {
-    check_completions("$0", ladder, 3, &expect![[r#"
+    check_completions(
+        "$0",
+        ladder,
+        3,
+        &expect![[r#"
         rung | a rung with a contact and a coil | |  ${1:X0}                                  ${2:Y0}  |
         seal-in | start and stop with seal-in | |  ${1:X0}       ${2:X1}                       ${3:Y0}  |
         X0 | input relay, free | X0
         …
-    "#]]);
-    check_completions(&marked(MOTOR, "|   Y0    |$0"), ladder, 4, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        &marked(MOTOR, "|   Y0    |$0"),
+        ladder,
+        4,
+        &expect![[r#"
         Y0 | output relay, used 3 times | |   Y0    |Y0                                      |
         X0 | input relay, used once | |   Y0    |X0                                      |
         X1 | input relay, used once | |   Y0    |X1                                      |
         T0 | timer, used once | |   Y0    |T0                                      |
         …
-    "#]]);
-    check_completions("|   X0\n+---| |--$0--------( )-+\n", ladder, 8, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        "|   X0\n+---| |--$0--------( )-+\n",
+        ladder,
+        8,
+        &expect![[r#"
         | | | normally open contact | +---| |--| |-----( )-+
         |/| | normally closed contact | +---| |--|/|-----( )-+
         |P| | rising edge contact | +---| |--|P|-----( )-+
@@ -475,28 +646,48 @@ fn completion_in_ladder() {
         (R) | reset coil | +---| |--(R)-----( )-+
         MOV | move | +---| |--[MOV ${1:S} ${2:D}]--------( )-+
         …
-    "#]]);
-    check_completions("|   X0\n+---| |----[MO$0\n", ladder, 3, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        "|   X0\n+---| |----[MO$0\n",
+        ladder,
+        3,
+        &expect![[r#"
         MOV | move | +---| |----[MOV ${1:S} ${2:D}
         MOVP | move | +---| |----[MOVP ${1:S} ${2:D}
-    "#]]);
-    check_completions("|   X0  D7\n+---| |----[MOV K1 $0\n", ladder, 3, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        "|   X0  D7\n+---| |----[MOV K1 $0\n",
+        ladder,
+        3,
+        &expect![[r#"
         D0 | data register, general, free | +---| |----[MOV K1 D0
         D200 | data register, latched, free | +---| |----[MOV K1 D200
         D512 | data register, latched, free | +---| |----[MOV K1 D512
         …
-    "#]]);
-    check_completions("|   X0\n+---| |----(T0 $0)\n", ladder, 3, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        "|   X0\n+---| |----(T0 $0)\n",
+        ladder,
+        3,
+        &expect![[r#"
         K | decimal constant, 1–32767, × 100 ms | +---| |----(T0 K${1:1})
         D0 | data register, general, free | +---| |----(T0 D0)
         D200 | data register, latched, free | +---| |----(T0 D200)
         …
-    "#]]);
+    "#]],
+    );
 }
 
 #[test]
 fn completion_in_iec() {
-    check_completions(&marked(DELAY, "LD $0Start"), iec, 12, &expect![[r#"
+    check_completions(
+        &marked(DELAY, "LD $0Start"),
+        iec,
+        12,
+        &expect![[r#"
         Start | VAR BOOL |     LD StartStart
         Motor | VAR BOOL |     LD MotorStart
         Delay | VAR TON |     LD DelayStart
@@ -505,32 +696,62 @@ fn completion_in_iec() {
         FALSE | BOOL |     LD FALSEStart
         %IX0.0 |  |     LD %IX0.0Start
         %QX0.0 |  |     LD %QX0.0Start
-    "#]]);
-    check_completions(&marked(DELAY, "    ST Motor").replace("$0    ST Motor", "    ST $0"), iec, 12, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        &marked(DELAY, "    ST Motor").replace("$0    ST Motor", "    ST $0"),
+        iec,
+        12,
+        &expect![[r#"
         Start | VAR BOOL |     ST Start
         Motor | VAR BOOL |     ST Motor
         Delay | VAR TON |     ST Delay
         Valve | VAR Gate |     ST Valve
         %IX0.0 |  |     ST %IX0.0
         %QX0.0 |  |     ST %QX0.0
-    "#]]);
-    check_completions(&marked(DELAY, "Delay.$0Q"), iec, 12, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        &marked(DELAY, "Delay.$0Q"),
+        iec,
+        12,
+        &expect![[r#"
         IN | input, BOOL: start |     LD Delay.INQ
         PT | input, TIME: preset time |     LD Delay.PTQ
         Q | output, BOOL: output |     LD Delay.QQ
         ET | output, TIME: elapsed time |     LD Delay.ETQ
-    "#]]);
-    check_completions(&marked(DELAY, "Valve.$0Open"), iec, 12, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        &marked(DELAY, "Valve.$0Open"),
+        iec,
+        12,
+        &expect![[r#"
         Open | input, BOOL |     ST Valve.OpenOpen
-    "#]]);
-    check_completions(&marked(DELAY, "JMPC $0Finish"), iec, 12, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        &marked(DELAY, "JMPC $0Finish"),
+        iec,
+        12,
+        &expect![[r#"
         Finish | label, line 14 |     JMPC FinishFinish
-    "#]]);
-    check_completions(&marked(DELAY, "CAL $0Delay"), iec, 12, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        &marked(DELAY, "CAL $0Delay"),
+        iec,
+        12,
+        &expect![[r#"
         Delay | TON |     CAL Delay(IN := $1, PT := $2)Delay(IN := Start, PT := T#1m30s)
         Valve | Gate |     CAL Valve(Open := $1)Delay(IN := Start, PT := T#1m30s)
-    "#]]);
-    check_completions(&marked(DELAY, "Delay($0"), iec, 12, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        &marked(DELAY, "Delay($0"),
+        iec,
+        12,
+        &expect![[r#"
         IN | input, BOOL: start |     CAL Delay(IN := $1IN := Start, PT := T#1m30s)
         PT | input, TIME: preset time |     CAL Delay(PT := $1IN := Start, PT := T#1m30s)
         Q | output, BOOL: output |     CAL Delay(Q => $1IN := Start, PT := T#1m30s)
@@ -541,23 +762,43 @@ fn completion_in_iec() {
         Valve | VAR Gate |     CAL Delay(ValveIN := Start, PT := T#1m30s)
         %IX0.0 |  |     CAL Delay(%IX0.0IN := Start, PT := T#1m30s)
         %QX0.0 |  |     CAL Delay(%QX0.0IN := Start, PT := T#1m30s)
-    "#]]);
-    check_completions(&marked(DELAY, "Delay : $0TON").replace("TON;", ";"), iec, 3, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        &marked(DELAY, "Delay : $0TON").replace("TON;", ";"),
+        iec,
+        3,
+        &expect![[r#"
         Gate | function block |     Delay : Gate;
         BOOL | data type |     Delay : BOOL;
         BYTE | data type |     Delay : BYTE;
         …
-    "#]]);
-    check_completions(&marked(DELAY, "IN := $0"), iec, 3, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        &marked(DELAY, "IN := $0"),
+        iec,
+        3,
+        &expect![[r#"
         Start | VAR BOOL |     CAL Delay(IN := StartStart, PT := T#1m30s)
         Motor | VAR BOOL |     CAL Delay(IN := MotorStart, PT := T#1m30s)
         Delay | VAR TON |     CAL Delay(IN := DelayStart, PT := T#1m30s)
         …
-    "#]]);
-    check_completions(&marked(DELAY, "    LD Motor\n").replace("$0    LD Motor", "    LI$0"), iec, 12, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        &marked(DELAY, "    LD Motor\n").replace("$0    LD Motor", "    LI$0"),
+        iec,
+        12,
+        &expect![[r#"
         LIMIT | limiter |     LIMIT
-    "#]]);
-    check_completions("$0", iec, 60, &expect![[r#"
+    "#]],
+    );
+    check_completions(
+        "$0",
+        iec,
+        60,
+        &expect![[r#"
         LD | load | LD $1
         LDN | load | LDN $1
         ST | store | ST $1
@@ -598,126 +839,271 @@ fn completion_in_iec() {
         FUNCTION | keyword | FUNCTION ${1:Name} : ${2:INT}
         CONFIGURATION | keyword | CONFIGURATION ${1:Name}
         TYPE | keyword | TYPE
-    "#]]);
+    "#]],
+    );
 }
 
 #[test]
 fn definitions() {
-    check_places("LD Y0\nOUT Y1\nLD X0\nOUT $0Y0\nLD X1\nSET Y0\n", fx, ide::definition, &expect![[r#"
+    check_places(
+        "LD Y0\nOUT Y1\nLD X0\nOUT $0Y0\nLD X1\nSET Y0\n",
+        fx,
+        ide::definition,
+        &expect![[r#"
         4:5 `Y0`
         6:5 `Y0`
-    "#]]);
-    check_places("LD $0X0\nOUT Y1\nLD X0\nOUT Y0\n", fx, ide::definition, &expect![[r#"
+    "#]],
+    );
+    check_places(
+        "LD $0X0\nOUT Y1\nLD X0\nOUT Y0\n",
+        fx,
+        ide::definition,
+        &expect![[r#"
         1:4 `X0`
-    "#]]);
-    check_places("LD M3\nOUT Y1\nLD X0\nMOV K1 K1M0\nLD $0M3\nOUT Y2\n", fx, ide::definition, &expect![[r#"
+    "#]],
+    );
+    check_places(
+        "LD M3\nOUT Y1\nLD X0\nMOV K1 K1M0\nLD $0M3\nOUT Y2\n",
+        fx,
+        ide::definition,
+        &expect![[r#"
         4:10 `M0`
-    "#]]);
-    check_places("LD X0\nCJ $0P0\nLD X1\nOUT Y0\nP0\nEND\n", fx, ide::definition, &expect![[r#"
+    "#]],
+    );
+    check_places(
+        "LD X0\nCJ $0P0\nLD X1\nOUT Y0\nP0\nEND\n",
+        fx,
+        ide::definition,
+        &expect![[r#"
         5:1 `P0`
-    "#]]);
-    check_places(&marked(MOTOR, "$0Y0    |"), ladder, ide::definition, &expect![[r#"
+    "#]],
+    );
+    check_places(
+        &marked(MOTOR, "$0Y0    |"),
+        ladder,
+        ide::definition,
+        &expect![[r#"
         2:46 `Y0`
-    "#]]);
-    check_places(&marked(DELAY, "LD $0Start"), iec, ide::definition, &expect![[r#"
+    "#]],
+    );
+    check_places(
+        &marked(DELAY, "LD $0Start"),
+        iec,
+        ide::definition,
+        &expect![[r#"
         3:5 `Start`
-    "#]]);
-    check_places(&marked(DELAY, "ST $0Start"), iec, ide::definition, &expect![[r#"
+    "#]],
+    );
+    check_places(
+        &marked(DELAY, "ST $0Start"),
+        iec,
+        ide::definition,
+        &expect![[r#"
         24:5 `Start`
-    "#]]);
-    check_places(&marked(DELAY, "Valve : $0Gate"), iec, ide::definition, &expect![[r#"
+    "#]],
+    );
+    check_places(
+        &marked(DELAY, "Valve : $0Gate"),
+        iec,
+        ide::definition,
+        &expect![[r#"
         19:16 `Gate`
-    "#]]);
-    check_places(&marked(DELAY, "Valve.$0Open"), iec, ide::definition, &expect![[r#"
+    "#]],
+    );
+    check_places(
+        &marked(DELAY, "Valve.$0Open"),
+        iec,
+        ide::definition,
+        &expect![[r#"
         21:5 `Open`
-    "#]]);
-    check_places(&marked(DELAY, "JMPC $0Finish"), iec, ide::definition, &expect![[r#"
+    "#]],
+    );
+    check_places(
+        &marked(DELAY, "JMPC $0Finish"),
+        iec,
+        ide::definition,
+        &expect![[r#"
         14:1 `Finish`
-    "#]]);
+    "#]],
+    );
 }
 
 #[test]
 fn all_references() {
     let all = |document: &Document, offset: usize| ide::references(document, offset, true);
     let uses = |document: &Document, offset: usize| ide::references(document, offset, false);
-    check_places("LD M3\nOUT Y1\nLD X0\nMOV K1 K1M0\nLD $0M3\nMOV D0Z1 Z1\n", fx, all, &expect![[r#"
+    check_places(
+        "LD M3\nOUT Y1\nLD X0\nMOV K1 K1M0\nLD $0M3\nMOV D0Z1 Z1\n",
+        fx,
+        all,
+        &expect![[r#"
         1:4 `M3`
         4:10 `M0`
         5:4 `M3`
-    "#]]);
-    check_places("LD X0\nMOV D0$0Z1 D1\nMOV K0 Z1\n", fx, all, &expect![[r#"
+    "#]],
+    );
+    check_places(
+        "LD X0\nMOV D0$0Z1 D1\nMOV K0 Z1\n",
+        fx,
+        all,
+        &expect![[r#"
         2:7 `Z1`
         3:8 `Z1`
-    "#]]);
-    check_places(&marked(MOTOR, "X0"), ladder, all, &expect![[r#"
+    "#]],
+    );
+    check_places(
+        &marked(MOTOR, "X0"),
+        ladder,
+        all,
+        &expect![[r#"
         2:5 `X0`
-    "#]]);
-    check_places(&marked(MOTOR, "Y0"), ladder, all, &expect![[r#"
+    "#]],
+    );
+    check_places(
+        &marked(MOTOR, "Y0"),
+        ladder,
+        all,
+        &expect![[r#"
         2:46 `Y0`
         4:5 `Y0`
         7:5 `Y0`
-    "#]]);
-    check_places(&marked(DELAY, "Start"), iec, all, &expect![[r#"
+    "#]],
+    );
+    check_places(
+        &marked(DELAY, "Start"),
+        iec,
+        all,
+        &expect![[r#"
         3:5 `Start`
         8:8 `Start`
         10:21 `Start`
-    "#]]);
-    check_places(&marked(DELAY, "Start"), iec, uses, &expect![[r#"
+    "#]],
+    );
+    check_places(
+        &marked(DELAY, "Start"),
+        iec,
+        uses,
+        &expect![[r#"
         8:8 `Start`
         10:21 `Start`
-    "#]]);
-    check_places(&marked(DELAY, "$0Open : BOOL"), iec, all, &expect![[r#"
+    "#]],
+    );
+    check_places(
+        &marked(DELAY, "$0Open : BOOL"),
+        iec,
+        all,
+        &expect![[r#"
         9:14 `Open`
         17:15 `Open`
         21:5 `Open`
         26:8 `Open`
-    "#]]);
-    check_places(&marked(DELAY, "$0%QX0.0"), iec, all, &expect![[r#"
+    "#]],
+    );
+    check_places(
+        &marked(DELAY, "$0%QX0.0"),
+        iec,
+        all,
+        &expect![[r#"
         4:14 `%QX0.0`
-    "#]]);
+    "#]],
+    );
 }
 
 #[test]
 fn rename_in_lists() {
-    check_rename("LD $0M0\nOUT Y0\nLD M0\nOUT M1\n", fx, "m7", &expect![[r#"
+    check_rename(
+        "LD $0M0\nOUT Y0\nLD M0\nOUT M1\n",
+        fx,
+        "m7",
+        &expect![[r#"
         LD M7
         OUT Y0
         LD M7
         OUT M1
-    "#]]);
-    check_rename("LD $0M0\nOUT M1\n", fx, "M1", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        "LD $0M0\nOUT M1\n",
+        fx,
+        "M1",
+        &expect![[r#"
         refused: M1 is already used in line 2
-    "#]]);
-    check_rename("LD $0M0\nOUT M1\n", fx, "Y1", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        "LD $0M0\nOUT M1\n",
+        fx,
+        "Y1",
+        &expect![[r#"
         refused: M0 is of the kind auxiliary relay; Y1 is of another
-    "#]]);
-    check_rename("LD $0M0\nOUT M1\n", fx, "M9999", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        "LD $0M0\nOUT M1\n",
+        fx,
+        "M9999",
+        &expect![[r#"
         refused: FX2N has no M9999
-    "#]]);
-    check_rename("LD $0M0\nOUT M1\n", fx, "Motor", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        "LD $0M0\nOUT M1\n",
+        fx,
+        "Motor",
+        &expect![[r#"
         refused: `Motor` is no device
-    "#]]);
-    check_rename("LD $0M8002\nOUT M1\n", fx, "M3", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        "LD $0M8002\nOUT M1\n",
+        fx,
+        "M3",
+        &expect![[r#"
         refused: M8002 has a fixed meaning and cannot be renamed
-    "#]]);
-    check_rename("LD $0M1\nOUT Y1\nMOV K1 K1M0\n", fx, "M9", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        "LD $0M1\nOUT Y1\nMOV K1 K1M0\n",
+        fx,
+        "M9",
+        &expect![[r#"
         refused: M1 is also a part of the devices from M0 on, which line 3 uses together
-    "#]]);
-    check_rename("LD X0\nMOV K1 K2$0M0\nMOV K0 K2M0Z0\n", fx, "M16", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        "LD X0\nMOV K1 K2$0M0\nMOV K0 K2M0Z0\n",
+        fx,
+        "M16",
+        &expect![[r#"
         LD X0
         MOV K1 K2M16
         MOV K0 K2M16Z0
-    "#]]);
-    check_rename("LD $0T0\nOUT Y0\n", fx, "T200", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        "LD $0T0\nOUT Y0\n",
+        fx,
+        "T200",
+        &expect![[r#"
         refused: T0 is a 100 ms timer; T200 is not, so the program would behave differently
-    "#]]);
-    check_rename("LD X0\nCJ P$00\nP0\nEND\n", fx, "P5", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        "LD X0\nCJ P$00\nP0\nEND\n",
+        fx,
+        "P5",
+        &expect![[r#"
         LD X0
         CJ P5
         P5
         END
-    "#]]);
-    check_rename(&marked(DELAY, "LD $0Motor"), iec, "Pump", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        &marked(DELAY, "LD $0Motor"),
+        iec,
+        "Pump",
+        &expect![[r#"
         PROGRAM Main
         VAR
             Start AT %IX0.0 : BOOL;
@@ -746,17 +1132,37 @@ fn rename_in_lists() {
             LD Open
             ST Start
         END_FUNCTION_BLOCK
-    "#]]);
-    check_rename(&marked(DELAY, "LD $0Motor"), iec, "start", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        &marked(DELAY, "LD $0Motor"),
+        iec,
+        "start",
+        &expect![[r#"
         refused: start is already used in line 3
-    "#]]);
-    check_rename(&marked(DELAY, "LD $0Motor"), iec, "VAR", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        &marked(DELAY, "LD $0Motor"),
+        iec,
+        "VAR",
+        &expect![[r#"
         refused: `VAR` is a reserved word
-    "#]]);
-    check_rename(&marked(DELAY, ": $0TON"), iec, "Other", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        &marked(DELAY, ": $0TON"),
+        iec,
+        "Other",
+        &expect![[r#"
         refused: TON is part of the language and cannot be renamed
-    "#]]);
-    check_rename(&marked(DELAY, "$0Open : BOOL"), iec, "Lift", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        &marked(DELAY, "$0Open : BOOL"),
+        iec,
+        "Lift",
+        &expect![[r#"
         PROGRAM Main
         VAR
             Start AT %IX0.0 : BOOL;
@@ -785,8 +1191,13 @@ fn rename_in_lists() {
             LD Lift
             ST Start
         END_FUNCTION_BLOCK
-    "#]]);
-    check_rename(&marked(DELAY, ": $0Gate"), iec, "Door", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        &marked(DELAY, ": $0Gate"),
+        iec,
+        "Door",
+        &expect![[r#"
         PROGRAM Main
         VAR
             Start AT %IX0.0 : BOOL;
@@ -815,8 +1226,13 @@ fn rename_in_lists() {
             LD Open
             ST Start
         END_FUNCTION_BLOCK
-    "#]]);
-    check_rename(&marked(DELAY, "$0Finish:"), iec, "Done", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        &marked(DELAY, "$0Finish:"),
+        iec,
+        "Done",
+        &expect![[r#"
         PROGRAM Main
         VAR
             Start AT %IX0.0 : BOOL;
@@ -845,12 +1261,17 @@ fn rename_in_lists() {
             LD Open
             ST Start
         END_FUNCTION_BLOCK
-    "#]]);
+    "#]],
+    );
 }
 
 #[test]
 fn rename_keeps_the_drawing() {
-    check_rename(&marked(MOTOR, "Y0"), ladder, "Y17", &expect![[r#"
+    check_rename(
+        &marked(MOTOR, "Y0"),
+        ladder,
+        "Y17",
+        &expect![[r#"
         (* Start and stop *)
         |   X0        X1                             Y17 |
         +---| |---+---|/|----------------------------( )-+
@@ -861,8 +1282,13 @@ fn rename_keeps_the_drawing() {
         +---| |---+------------------------------(T0 K50)-+
         |         |                                      |
         |         +----------------------[MOV K10 D0]----+
-    "#]]);
-    check_rename(&marked(MOTOR, "T0"), ladder, "T100", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        &marked(MOTOR, "T0"),
+        ladder,
+        "T100",
+        &expect![[r#"
         (* Start and stop *)
         |   X0        X1                             Y0  |
         +---| |---+---|/|----------------------------( )-+
@@ -873,8 +1299,13 @@ fn rename_keeps_the_drawing() {
         +---| |---+----------------------------(T100 K50)-+
         |         |                                      |
         |         +----------------------[MOV K10 D0]----+
-    "#]]);
-    check_rename(&marked(MOTOR, "D0"), ladder, "D1000", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        &marked(MOTOR, "D0"),
+        ladder,
+        "D1000",
+        &expect![[r#"
         (* Start and stop *)
         |   X0        X1                             Y0  |
         +---| |---+---|/|----------------------------( )-+
@@ -885,17 +1316,33 @@ fn rename_keeps_the_drawing() {
         +---| |---+------------------------------(T0 K50)-+
         |         |                                      |
         |         +----------------------[MOV K10 D1000]-+
-    "#]]);
-    check_rename("|  $0X100                 Y0 |\n+---| |-----------------( )+\n", ladder, "X1", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        "|  $0X100                 Y0 |\n+---| |-----------------( )+\n",
+        ladder,
+        "X1",
+        &expect![[r#"
         |  X1                   Y0 |
         +---| |-----------------( )+
-    "#]]);
-    check_rename("+--[X0]-------------(Y0)-+\n".replace("X0", "$0X0").as_str(), ladder, "X10", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        "+--[X0]-------------(Y0)-+\n".replace("X0", "$0X0").as_str(),
+        ladder,
+        "X10",
+        &expect![[r#"
         +--[X10]------------(Y0)-+
-    "#]]);
-    check_rename("+--[X10]------------(Y0)-+\n".replace("X10", "$0X10").as_str(), ladder, "X1", &expect![[r#"
+    "#]],
+    );
+    check_rename(
+        "+--[X10]------------(Y0)-+\n".replace("X10", "$0X10").as_str(),
+        ladder,
+        "X1",
+        &expect![[r#"
         +--[X1]-------------(Y0)-+
-    "#]]);
+    "#]],
+    );
 }
 
 #[test]
@@ -924,7 +1371,9 @@ fn renaming_a_drawing_keeps_its_logic() {
 #[test]
 fn outlines() {
     let program = "; Start\n; and stop\nLD X0\nOUT Y0\nSTL S20\nOUT Y1\nLD X1\nSET S21\nSTL S21\nOUT Y2\nRET\nLD X2\nCALL P1\nFEND\nP1\nLD X3\nOUT Y3\nSRET\nEND\n";
-    check_outline(&fx(program), &expect![[r#"
+    check_outline(
+        &fx(program),
+        &expect![[r#"
         Rung Rung 1: Start [Y0] 3-4
         Step Step S20 [] 5-8
           Rung Rung 2 [Y1] 5-6
@@ -934,15 +1383,21 @@ fn outlines() {
         Rung Rung 5 [] 12-13
         Label Subroutine P1 [] 15-17
           Rung Rung 6 [Y3] 15-17
-    "#]]);
-    check_outline(&ladder(&format!("NETWORK 3 'Drive'\n{MOTOR}\nL1:\n| X5   Y5|\n+-| |--( )-+\n")), &expect![[r#"
+    "#]],
+    );
+    check_outline(
+        &ladder(&format!("NETWORK 3 'Drive'\n{MOTOR}\nL1:\n| X5   Y5|\n+-| |--( )-+\n")),
+        &expect![[r#"
         Network Network 3: Drive [] 1-11
           Rung Rung 1: Start and stop [Y0] 3-6
           Rung Rung 2 [T0, D0] 8-11
         Network L1 [] 13-15
           Rung Rung 3 [Y5] 14-15
-    "#]]);
-    check_outline(&iec(DELAY), &expect![[r#"
+    "#]],
+    );
+    check_outline(
+        &iec(DELAY),
+        &expect![[r#"
         Program Main [PROGRAM] 1-18
           Section VAR [] 2-7
             Variable Start [BOOL] 3-3
@@ -955,13 +1410,16 @@ fn outlines() {
             Variable Open [BOOL] 21-21
           Section VAR [] 23-25
             Variable Start [BOOL] 24-24
-    "#]]);
+    "#]],
+    );
 }
 
 #[test]
 fn folding() {
     let program = "; a\n; b\nLD X0\nOUT Y0\nLD X1\nMC N0 M0\nLD X2\nOUT Y1\nMCR N0\nFOR K3\nLD X1\nINC D0\nNEXT\nSTL S20\nOUT Y1\nSTL S21\nOUT Y2\nRET\n(* c\nd *)\nEND\n";
-    check_folds(&fx(program), &expect![[r#"
+    check_folds(
+        &fx(program),
+        &expect![[r#"
         1-2 Comment
         3-4 Region
         5-6 Region
@@ -974,15 +1432,21 @@ fn folding() {
         16-18 Region
         16-17 Region
         19-20 Comment
-    "#]]);
-    check_folds(&ladder(&format!("NETWORK 3 'Drive'\n{MOTOR}\nL1:\n| X5   Y5|\n+-| |--( )-+\n")), &expect![[r#"
+    "#]],
+    );
+    check_folds(
+        &ladder(&format!("NETWORK 3 'Drive'\n{MOTOR}\nL1:\n| X5   Y5|\n+-| |--( )-+\n")),
+        &expect![[r#"
         1-11 Region
         3-6 Region
         8-11 Region
         13-15 Region
         14-15 Region
-    "#]]);
-    check_folds(&iec(DELAY), &expect![[r#"
+    "#]],
+    );
+    check_folds(
+        &iec(DELAY),
+        &expect![[r#"
         1-18 Region
         2-7 Region
         8-10 Region
@@ -992,12 +1456,15 @@ fn folding() {
         20-22 Region
         23-25 Region
         26-27 Region
-    "#]]);
+    "#]],
+    );
 }
 
 #[test]
 fn highlighting() {
-    check_tokens(&fx("0 LD X0 ; in\nOUT T0 K50\nMOV K4M0 D0Z1\nP0\nASC \"AB\" D0\nXYZ D0\n(* a\n b *)\n"), &expect![[r#"
+    check_tokens(
+        &fx("0 LD X0 ; in\nOUT T0 K50\nMOV K4M0 D0Z1\nP0\nASC \"AB\" D0\nXYZ D0\n(* a\n b *)\n"),
+        &expect![[r#"
         1:1 `0` Number
         1:3 `LD` Instruction
         1:6 `X0` Device
@@ -1015,8 +1482,11 @@ fn highlighting() {
         6:5 `D0` Device
         7:1 `(* a` Comment
         8:2 `b *)` Comment
-    "#]]);
-    check_tokens(&ladder("NETWORK 1 'x'\n|   X0      |\n+---| |--(Y0)+\n"), &expect![[r#"
+    "#]],
+    );
+    check_tokens(
+        &ladder("NETWORK 1 'x'\n|   X0      |\n+---| |--(Y0)+\n"),
+        &expect![[r#"
         1:1 `NETWORK` Keyword
         1:9 `1` Number
         1:11 `'` Keyword
@@ -1029,8 +1499,13 @@ fn highlighting() {
         3:10 `(` Element
         3:11 `Y0` Device!
         3:13 `)` Element
-    "#]]);
-    check_tokens(&iec("PROGRAM p\nVAR a : BOOL; t : TON; END_VAR\nLD a (* c *)\nCAL t(IN := TRUE)\nl: JMP l\nEND_PROGRAM\n"), &expect![[r#"
+    "#]],
+    );
+    check_tokens(
+        &iec(
+            "PROGRAM p\nVAR a : BOOL; t : TON; END_VAR\nLD a (* c *)\nCAL t(IN := TRUE)\nl: JMP l\nEND_PROGRAM\n",
+        ),
+        &expect![[r#"
         1:1 `PROGRAM` Keyword
         1:9 `p` FunctionBlock!
         2:1 `VAR` Keyword
@@ -1050,7 +1525,8 @@ fn highlighting() {
         5:4 `JMP` Instruction
         5:8 `l` Label
         6:1 `END_PROGRAM` Keyword
-    "#]]);
+    "#]],
+    );
 }
 
 #[test]
@@ -1071,7 +1547,8 @@ fn hints_behind_presets() {
         OUT T200 K50 = 500 ms
         OUT T246 K65 = 65 ms
         MOV H0F = 15
-        OUT T1 K12345 = 20 min 34.5 s"#]].assert_eq(&drawn.join("\n"));
+        OUT T1 K12345 = 20 min 34.5 s"#]]
+    .assert_eq(&drawn.join("\n"));
     let second = text.find("K50\nOUT C0").unwrap();
     assert_eq!(ide::inlay_hints(&document, Span::new(second, second + 5), EN).len(), 1);
 }
@@ -1099,7 +1576,10 @@ fn status_follows_edits() {
 fn formatting_changes_what_is_not_canonical_and_nothing_else() {
     for (document, expected) in [
         (fx("ld x0\nOUT  Y0\nEND\n"), "LD X0\nOUT Y0\nEND\n"),
-        (iec("PROGRAM p\nVAR\na:BOOL;\nEND_VAR\nLD a\nEND_PROGRAM\n"), "PROGRAM p\nVAR\n    a : BOOL;\nEND_VAR\n    LD a\nEND_PROGRAM\n"),
+        (
+            iec("PROGRAM p\nVAR\na:BOOL;\nEND_VAR\nLD a\nEND_PROGRAM\n"),
+            "PROGRAM p\nVAR\n    a : BOOL;\nEND_VAR\n    LD      a\nEND_PROGRAM\n",
+        ),
     ] {
         let edits = ide::format(&document, STYLE);
         assert_eq!(TextEdit::apply_all(&edits, &document.text()), expected);
@@ -1127,7 +1607,8 @@ fn fixes_of_the_diagnostics_under_the_cursor() {
     };
     expect![[r#"
         Counted in decimal: X8 is X10
-        Mistyped: X8 was meant to be X7"#]].assert_eq(&titles(Span::at(4)).join("\n"));
+        Mistyped: X8 was meant to be X7"#]]
+    .assert_eq(&titles(Span::at(4)).join("\n"));
     assert!(titles(Span::at(9)).is_empty());
     assert!(titles(Span::new(0, document.len())).len() > titles(Span::at(4)).len());
 }
@@ -1223,9 +1704,59 @@ proptest! {
 
 /// What programs are made of, whole and broken.
 const PIECES: &[&str] = &[
-    "\n", "\n\n", " ", "(*", "*)", "; x\n", "// 电机\n", "LD X0\n", "LD X9", "OUT T0 K50\n", "MOV K4M0Z1 D0\n", "P0", "FEND\n",
-    "STL S20\n", "RET\n", "ß", "电机", "K", "D", "M80", "CJ ", ",", "VAR\n", "END_VAR\n", "a : BOOL;\n", "t : TON;\n", "f : F;\n",
-    "PROGRAM P\n", "END_PROGRAM\n", "FUNCTION_BLOCK F\nVAR_INPUT i : INT; END_VAR\n", "END_FUNCTION_BLOCK\n", "LD a\n",
-    "ST f.i\n", "CAL t(", "IN := ", "a)\n", "t.", "JMP l\n", "l:", "|   X0   Y0 |\n", "+---| |--( )-+\n", "|\n", "+--[MOV K1 D0]-+\n",
-    "(T0 K5)", "[", "(", "-->>l\n", "NETWORK 1 'x'\n", "\t", "\r\n", "%IX0.0", "16#FF", "T#5s", "'", "\u{feff}",
+    "\n",
+    "\n\n",
+    " ",
+    "(*",
+    "*)",
+    "; x\n",
+    "// 电机\n",
+    "LD X0\n",
+    "LD X9",
+    "OUT T0 K50\n",
+    "MOV K4M0Z1 D0\n",
+    "P0",
+    "FEND\n",
+    "STL S20\n",
+    "RET\n",
+    "ß",
+    "电机",
+    "K",
+    "D",
+    "M80",
+    "CJ ",
+    ",",
+    "VAR\n",
+    "END_VAR\n",
+    "a : BOOL;\n",
+    "t : TON;\n",
+    "f : F;\n",
+    "PROGRAM P\n",
+    "END_PROGRAM\n",
+    "FUNCTION_BLOCK F\nVAR_INPUT i : INT; END_VAR\n",
+    "END_FUNCTION_BLOCK\n",
+    "LD a\n",
+    "ST f.i\n",
+    "CAL t(",
+    "IN := ",
+    "a)\n",
+    "t.",
+    "JMP l\n",
+    "l:",
+    "|   X0   Y0 |\n",
+    "+---| |--( )-+\n",
+    "|\n",
+    "+--[MOV K1 D0]-+\n",
+    "(T0 K5)",
+    "[",
+    "(",
+    "-->>l\n",
+    "NETWORK 1 'x'\n",
+    "\t",
+    "\r\n",
+    "%IX0.0",
+    "16#FF",
+    "T#5s",
+    "'",
+    "\u{feff}",
 ];

@@ -187,7 +187,8 @@ impl View<'_> {
     fn literal(&self, word: &str, value: LiteralValue) -> Option<String> {
         let message = match value {
             LiteralValue::Integer(value) => {
-                let is_decimal = word.rsplit_once('#').is_none_or(|(prefix, _)| !prefix.ends_with(['2', '8', '6']));
+                let is_decimal =
+                    word.rsplit_once('#').is_none_or(|(prefix, _)| !prefix.ends_with(['2', '8', '6']));
                 let sign = if value < 0 { "-" } else { "" };
                 let hexadecimal = format!("{sign}16#{:X}", value.unsigned_abs());
                 let other = if is_decimal { hexadecimal } else { value.to_string() };

@@ -48,7 +48,9 @@ impl Search<'_> {
     fn iec(&mut self, tree: &IecTree) {
         let mut written: FxHashSet<OperandId> = FxHashSet::default();
         for parameter in &tree.parameters {
-            if let (Direction::Out { .. }, ParameterValue::Operand(id)) = (parameter.direction, parameter.value) {
+            if let (Direction::Out { .. }, ParameterValue::Operand(id)) =
+                (parameter.direction, parameter.value)
+            {
                 written.insert(id);
             }
         }

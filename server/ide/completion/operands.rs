@@ -72,7 +72,8 @@ pub(super) fn propose_devices(
     }
     for (rank, range) in target.devices.iter().enumerate() {
         let is_counting_input = range.kind == DeviceKind::C && range.first >= HIGH_SPEED;
-        let is_proposed = takes(range.kind) && !is_label(range.kind) && range.first < SPECIAL && !is_counting_input;
+        let is_proposed =
+            takes(range.kind) && !is_label(range.kind) && range.first < SPECIAL && !is_counting_input;
         if let (true, Some(free)) = (is_proposed, free_in(range, &used, count)) {
             let kind = devices::purpose(range, place.language);
             let detail = Message::new("complete.free").with("kind", kind).render(place.language);
