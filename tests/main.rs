@@ -2,6 +2,7 @@
 
 mod document;
 mod grammar;
+mod ide;
 mod il_fx;
 mod il_iec;
 mod ladder_generate;

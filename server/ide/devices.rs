@@ -30,6 +30,15 @@ pub(super) fn range_name(range: &DeviceRange) -> String {
     if first == last { first.to_string() } else { format!("{first}–{last}") }
 }
 
+/// The kind and what is special about the range: `auxiliary relay, latched`.
+pub(super) fn purpose(range: &DeviceRange, language: Language) -> String {
+    let kind = kind_name(range.kind, language);
+    // Purposes end with the short word for the kind, and some consist of nothing else.
+    let last_word = kind.rsplit(' ').next().unwrap_or("");
+    let special = range.purpose.strip_suffix(last_word).unwrap_or(range.purpose).trim();
+    if special.is_empty() || kind.starts_with(special) { kind } else { format!("{kind}, {special}") }
+}
+
 /// What `device` is on `target`: kind, purpose, range, and the meaning of a special one. Markdown.
 pub(super) fn describe(device: Device, target: &Target, language: Language) -> String {
     let kind = kind_name(device.kind, language);
@@ -39,8 +48,8 @@ pub(super) fn describe(device: Device, target: &Target, language: Language) -> S
         let message = Message::new(key).with("name", device).with("kind", kind).with("target", target.title);
         return message.with("ranges", ranges.join(", ")).render(language);
     };
-    let message = Message::new("hover.device").with("name", device).with("kind", kind);
-    let mut text = message.with("purpose", range.purpose).with("range", range_name(range)).render(language);
+    let message = Message::new("hover.device").with("name", device).with("kind", purpose(range, language));
+    let mut text = message.with("range", range_name(range)).render(language);
     let more = match device.special_on(target) {
         Some(special) if special.writable => {
             Some(Message::new("hover.special-written").with("meaning", special.meaning))

@@ -175,9 +175,10 @@ impl View<'_> {
             (None, Constant::Real(value), _) => {
                 return format!("`{word}` = {value}");
             }
-            (None, _, Some(count)) => Message::new("hover.constant")
-                .with("decimal", format!("K{count}"))
-                .with("hexadecimal", hexadecimal(count)),
+            (None, Constant::Hexadecimal(_), Some(count)) => {
+                Message::new("hover.constant").with("value", format!("K{count}"))
+            }
+            (None, _, Some(count)) => Message::new("hover.constant").with("value", hexadecimal(count)),
             (None, _, None) => return format!("`{word}`"),
         };
         message.with("word", word).render(self.language)
@@ -185,10 +186,14 @@ impl View<'_> {
 
     fn literal(&self, word: &str, value: LiteralValue) -> Option<String> {
         let message = match value {
-            LiteralValue::Integer(value) => Message::new("hover.constant").with("decimal", value).with(
-                "hexadecimal",
-                if value < 0 { format!("-16#{:X}", value.unsigned_abs()) } else { format!("16#{value:X}") },
-            ),
+            LiteralValue::Integer(value) => {
+                let is_decimal =
+                    word.rsplit_once('#').is_none_or(|(prefix, _)| !prefix.ends_with(['2', '8', '6']));
+                let sign = if value < 0 { "-" } else { "" };
+                let hexadecimal = format!("{sign}16#{:X}", value.unsigned_abs());
+                let other = if is_decimal { hexadecimal } else { value.to_string() };
+                Message::new("hover.constant").with("value", other)
+            }
             LiteralValue::Time(nanoseconds) => {
                 let milliseconds = nanoseconds.unsigned_abs() / 1_000_000;
                 let sign = if nanoseconds < 0 { "-" } else { "" };

@@ -2,10 +2,12 @@
 //! `CAL Valve(Open := a)`, `Open Valve`, and the pins of boxes.
 
 use crate::document::{Chunk, DeclaredType, Scopes, Tree, Use};
-use crate::il::iec::{Direction, IecTree, ItemKind, Run};
+use crate::il::iec::{Direction, IecTree, ItemKind, OperandId, ParameterValue, Run};
 use crate::ladder::{ElementKind, LadderTree};
 use crate::target::Operand;
+use crate::target::iec::OperatorRole;
 use crate::text::Span;
+use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
 /// A parameter named from outside of its program unit.
@@ -44,11 +46,21 @@ struct Search<'a> {
 
 impl Search<'_> {
     fn iec(&mut self, tree: &IecTree) {
-        for operand in tree.operands.iter().filter(|operand| operand.value == Operand::Variable) {
-            self.path(operand.span);
+        let mut written: FxHashSet<OperandId> = FxHashSet::default();
+        for parameter in &tree.parameters {
+            if let (Direction::Out { .. }, ParameterValue::Operand(id)) =
+                (parameter.direction, parameter.value)
+            {
+                written.insert(id);
+            }
         }
         for item in &tree.items {
             match item.kind {
+                ItemKind::Operation { operation, operand: Some(id) }
+                    if matches!(operation.operator.role, OperatorRole::Store | OperatorRole::Latch) =>
+                {
+                    written.insert(id);
+                }
                 ItemKind::Call { callee: Some(callee), parameters, .. } => {
                     self.parameters(tree, tree.operand(callee).span, parameters);
                 }
@@ -61,12 +73,19 @@ impl Search<'_> {
                 _ => {}
             }
         }
+        for (index, operand) in tree.operands.iter().enumerate() {
+            let usage = if written.contains(&OperandId(index as u32)) { Use::Write } else { Use::Read };
+            if operand.value == Operand::Variable {
+                self.path(operand.span, usage);
+            }
+        }
     }
 
     fn ladder(&mut self, tree: &LadderTree) {
         for element in tree.rungs.iter().flat_map(|rung| &rung.graph.elements) {
             for operand in element.operands.iter().filter(|operand| operand.value == Operand::Variable) {
-                self.path(operand.span);
+                let usage = if matches!(element.kind, ElementKind::Coil(_)) { Use::Write } else { Use::Read };
+                self.path(operand.span, usage);
             }
             let ElementKind::Block(block) = &element.kind else { continue };
             let Some(unit) = block.type_name.and_then(|name| self.unit_named(name.of(self.text))) else {
@@ -81,8 +100,8 @@ impl Search<'_> {
         }
     }
 
-    /// The members in a path such as `Valve.Open`.
-    fn path(&mut self, span: Span) {
+    /// The members in a path such as `Valve.Open`; `usage` is that of its end.
+    fn path(&mut self, span: Span, usage: Use) {
         let text = span.of(self.text);
         let mut from = 0;
         while let Some(point) = text.get(from..).and_then(|rest| rest.find('.')).map(|point| from + point) {
@@ -90,7 +109,8 @@ impl Search<'_> {
             let end = point + 1 + rest.find(['.', '[', '^']).unwrap_or(rest.len());
             if let Some(unit) = self.unit_of(&text[..point]) {
                 let start = span.start as usize;
-                self.add(unit, Span::new(start + point + 1, start + end), Use::Read);
+                let usage = if end == text.len() { usage } else { Use::Read };
+                self.add(unit, Span::new(start + point + 1, start + end), usage);
             }
             from = end.max(point + 1);
         }

@@ -14,6 +14,9 @@ const USED_LIMIT: usize = 200;
 /// The first special relay and register.
 const SPECIAL: u32 = 8000;
 
+/// The first counter that counts an input by itself; which one is free depends on the wiring.
+const HIGH_SPEED: u32 = 235;
+
 /// Proposes what operand number `given.len()` of `form` may be, after the operands `given`.
 pub(super) fn propose(place: &mut Place<'_>, typed: &str, form: Form, given: &[Operand]) {
     let Some(spec) = form.instruction.operands.get(given.len()) else { return };
@@ -68,11 +71,16 @@ pub(super) fn propose_devices(
         );
     }
     for (rank, range) in target.devices.iter().enumerate() {
-        let is_proposed = takes(range.kind) && !is_label(range.kind) && range.first < SPECIAL;
+        let is_counting_input = range.kind == DeviceKind::C && range.first >= HIGH_SPEED;
+        let is_proposed =
+            takes(range.kind) && !is_label(range.kind) && range.first < SPECIAL && !is_counting_input;
         if let (true, Some(free)) = (is_proposed, free_in(range, &used, count)) {
-            let kind = format!("{}, {}", devices::kind_name(range.kind, place.language), range.purpose);
+            let kind = devices::purpose(range, place.language);
             let detail = Message::new("complete.free").with("kind", kind).render(place.language);
-            let rank = 300 + rank as u16;
+            // Where a word is wanted, registers are what most people want.
+            let is_register = matches!(range.kind, DeviceKind::D | DeviceKind::R);
+            let aside = accepts.contains(Accepts::D) && !is_register;
+            let rank = if aside { 360 } else { 300 } + rank as u16;
             place.propose(typed, Proposal::new(free.to_string(), CompletionKind::Device, detail, rank));
         }
     }
@@ -113,7 +121,7 @@ fn propose_special(
     access: Access,
     used: &FxHashMap<Device, u32>,
 ) {
-    let begun = typed.len() >= 2 && typed[1..].starts_with('8');
+    let begun = typed.get(1..).is_some_and(|number| number.starts_with('8'));
     if !begun {
         return;
     }
@@ -147,13 +155,14 @@ fn propose_constants(
             None => format!("{least}–{greatest}"),
         };
         let detail = format!("{}, {limits}", Message::new("complete.constant-decimal").render(language));
-        place.propose(typed, Proposal::new("K", kind, detail, 400).snippet("K${1:1}"));
+        let rank = if driven.is_some() { 5 } else { 440 };
+        place.propose(typed, Proposal::new("K", kind, detail, rank).snippet("K${1:1}"));
         let detail = Message::new("complete.constant-hexadecimal").render(language);
-        place.propose(typed, Proposal::new("H", kind, detail, 401).snippet("H${1:0}"));
+        place.propose(typed, Proposal::new("H", kind, detail, 441).snippet("H${1:0}"));
     }
     if accepts.contains(Accepts::E) {
         let detail = Message::new("complete.constant-real").render(language);
-        place.propose(typed, Proposal::new("E", kind, detail, 402).snippet("E${1:1.0}"));
+        place.propose(typed, Proposal::new("E", kind, detail, 442).snippet("E${1:1.0}"));
     }
     let groups = [(Accepts::KNX, 'X'), (Accepts::KNY, 'Y'), (Accepts::KNM, 'M'), (Accepts::KNS, 'S')];
     for (rank, (group, letter)) in groups.into_iter().enumerate() {
@@ -163,7 +172,7 @@ fn propose_constants(
             let snippet = format!("K${{1:4}}{letter}${{2:0}}");
             place.propose(
                 typed,
-                Proposal::new(label, CompletionKind::Device, detail, 410 + rank as u16).snippet(snippet),
+                Proposal::new(label, CompletionKind::Device, detail, 450 + rank as u16).snippet(snippet),
             );
         }
     }
