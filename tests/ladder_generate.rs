@@ -174,7 +174,7 @@ impl Builder {
     }
 
     fn block(&mut self, n: u16) -> Element {
-        let mut pin = |builder: &mut Builder, name: &str, wire: PinWire, row: u32| Pin {
+        let pin = |builder: &mut Builder, name: &str, wire: PinWire, row: u32| Pin {
             name: Some(builder.word(name)),
             negated: n % 5 == 0 && wire == PinWire::Power,
             row,
