@@ -5,7 +5,8 @@ use expect_test::{Expect, expect};
 use proptest::prelude::*;
 use rungwise::ladder::reduce::{NotSeriesParallel, Shape, reduce};
 use rungwise::ladder::{
-    ContactKind, Element, ElementKind, Graph, LadderTree, Style, StyleKind, VertexId, VertexKind, format, parse, print,
+    ContactKind, Element, ElementKind, Graph, LadderTree, Style, StyleKind, VertexId, VertexKind, format,
+    parse, print,
 };
 use rungwise::target::{Device, DeviceKind, Operand, Target};
 use rungwise::text::{Span, Spanned, cell_width};
@@ -95,7 +96,9 @@ fn short(shape: &Shape, graph: &Graph) -> String {
         Shape::Wire => "-".to_string(),
         Shape::Series(parts) => all(parts).join(" "),
         Shape::Parallel(parts) => format!("({})", all(parts).join("|")),
-        Shape::Element(id) => graph.element(*id).device().map_or("?".to_string(), |device| device.to_string()),
+        Shape::Element(id) => {
+            graph.element(*id).device().map_or("?".to_string(), |device| device.to_string())
+        }
         Shape::Block(block) => format!("block {:?}", block.element),
     }
 }
@@ -106,35 +109,32 @@ fn short_of(graph: &Graph) -> String {
 
 #[test]
 fn series_and_parallel_are_reduced_in_drawn_order() {
-    let graph = contacts_between(4, &[
-        (0, Some(0), 2),
-        (0, Some(1), 2),
-        (2, Some(2), 3),
-        (3, Some(3), 1),
-        (3, Some(4), 1),
-    ]);
+    let graph = contacts_between(
+        4,
+        &[(0, Some(0), 2), (0, Some(1), 2), (2, Some(2), 3), (3, Some(3), 1), (3, Some(4), 1)],
+    );
     assert_eq!(short_of(&graph), "(X0|X1) X2 (X3|X4)");
 }
 
 #[test]
 fn junctions_joined_by_bare_wire_are_one() {
     // X0 into a chain of junctions: 2 feeds X1 and 3, and 3 feeds X2 and X3; 4 collects two and feeds 5.
-    let chained = contacts_between(6, &[
-        (0, Some(0), 2),
-        (2, Some(1), 5),
-        (2, None, 3),
-        (3, Some(2), 4),
-        (3, Some(3), 4),
-        (4, None, 5),
-        (5, Some(4), 1),
-    ]);
-    let plain = contacts_between(4, &[
-        (0, Some(0), 2),
-        (2, Some(1), 3),
-        (2, Some(2), 3),
-        (2, Some(3), 3),
-        (3, Some(4), 1),
-    ]);
+    let chained = contacts_between(
+        6,
+        &[
+            (0, Some(0), 2),
+            (2, Some(1), 5),
+            (2, None, 3),
+            (3, Some(2), 4),
+            (3, Some(3), 4),
+            (4, None, 5),
+            (5, Some(4), 1),
+        ],
+    );
+    let plain = contacts_between(
+        4,
+        &[(0, Some(0), 2), (2, Some(1), 3), (2, Some(2), 3), (2, Some(3), 3), (3, Some(4), 1)],
+    );
     assert_eq!(short_of(&chained), "X0 (X1|X2|X3) X4");
     assert_eq!(short_of(&plain), short_of(&chained));
     assert!(chained.same_logic("", &plain, ""));
@@ -171,28 +171,25 @@ fn wires_beside_contacts_stay_as_short_circuits() {
 #[test]
 fn branches_sort_by_the_drawing_not_by_the_order_of_reduction() {
     // The middle branch is a chain and is reduced after its neighbours.
-    let graph = contacts_between(6, &[
-        (0, Some(9), 2),
-        (2, Some(0), 3),
-        (2, Some(1), 4),
-        (2, Some(2), 3),
-        (4, Some(3), 5),
-        (5, Some(4), 3),
-        (3, Some(8), 1),
-    ]);
+    let graph = contacts_between(
+        6,
+        &[
+            (0, Some(9), 2),
+            (2, Some(0), 3),
+            (2, Some(1), 4),
+            (2, Some(2), 3),
+            (4, Some(3), 5),
+            (5, Some(4), 3),
+            (3, Some(8), 1),
+        ],
+    );
     assert_eq!(short_of(&graph), "X11 (X0|X1 X3 X4|X2) X10");
 }
 
 #[test]
 fn a_bridge_is_named_by_its_vertical_wire() {
-    let bridged = [
-        (0, Some(0), 2),
-        (0, Some(1), 3),
-        (2, Some(2), 4),
-        (2, None, 3),
-        (3, Some(3), 4),
-        (4, Some(4), 1),
-    ];
+    let bridged =
+        [(0, Some(0), 2), (0, Some(1), 3), (2, Some(2), 4), (2, None, 3), (3, Some(3), 4), (4, Some(4), 1)];
     let graph = contacts_between(5, &bridged);
     let Err(NotSeriesParallel::Bridge(bridge)) = reduce(&graph) else { panic!("{:?}", reduce(&graph)) };
     assert_eq!((bridge.from, bridge.to), (Some(VertexId(2)), Some(VertexId(3))));
@@ -200,7 +197,8 @@ fn a_bridge_is_named_by_its_vertical_wire() {
     assert!(bridge.elements.is_empty());
     assert_eq!(bridge.arcs.len(), 1);
     assert_eq!(graph.arc(bridge.arcs[0]).tail, VertexId(2));
-    let names: Vec<String> = bridge.beside.iter().map(|id| graph.element(*id).device().unwrap().to_string()).collect();
+    let names: Vec<String> =
+        bridge.beside.iter().map(|id| graph.element(*id).device().unwrap().to_string()).collect();
     assert_eq!(names, ["X0", "X1", "X2", "X3"]);
     let mended: Vec<_> = bridged.into_iter().filter(|(tail, _, head)| (*tail, *head) != (2, 3)).collect();
     assert_eq!(short_of(&contacts_between(5, &mended)), "(X0 X2|X1 X3) X4");
@@ -209,20 +207,23 @@ fn a_bridge_is_named_by_its_vertical_wire() {
 #[test]
 fn a_bridge_with_a_contact_on_it_is_found_inside_a_large_rung() {
     // Parallel parts before, beside and behind; the bridge is X7, from junction 4 to junction 5.
-    let graph = contacts_between(8, &[
-        (0, Some(0), 2),
-        (0, Some(1), 2),
-        (2, Some(2), 3),
-        (3, Some(3), 4),
-        (3, Some(4), 5),
-        (4, Some(5), 6),
-        (4, Some(6), 6),
-        (4, Some(7), 5),
-        (5, Some(10), 6),
-        (6, Some(11), 7),
-        (6, Some(12), 7),
-        (7, Some(13), 1),
-    ]);
+    let graph = contacts_between(
+        8,
+        &[
+            (0, Some(0), 2),
+            (0, Some(1), 2),
+            (2, Some(2), 3),
+            (3, Some(3), 4),
+            (3, Some(4), 5),
+            (4, Some(5), 6),
+            (4, Some(6), 6),
+            (4, Some(7), 5),
+            (5, Some(10), 6),
+            (6, Some(11), 7),
+            (6, Some(12), 7),
+            (7, Some(13), 1),
+        ],
+    );
     let Err(NotSeriesParallel::Bridge(bridge)) = reduce(&graph) else { panic!("{:?}", reduce(&graph)) };
     assert_eq!((bridge.from, bridge.to), (Some(VertexId(4)), Some(VertexId(5))));
     assert_eq!(bridge.elements.len(), 1);
@@ -231,13 +232,10 @@ fn a_bridge_with_a_contact_on_it_is_found_inside_a_large_rung() {
 
 #[test]
 fn a_bent_bridge_is_named_by_its_bend() {
-    let mut graph = contacts_between(5, &[
-        (0, Some(0), 2),
-        (0, Some(1), 3),
-        (2, Some(2), 4),
-        (3, Some(3), 4),
-        (4, Some(4), 1),
-    ]);
+    let mut graph = contacts_between(
+        5,
+        &[(0, Some(0), 2), (0, Some(1), 3), (2, Some(2), 4), (3, Some(3), 4), (4, Some(4), 1)],
+    );
     let cells = [Span::at(500), Span::at(501), Span::at(502)];
     let bend = graph.add_vertex(VertexKind::Junction, &cells);
     graph.add_arc((VertexId(2), 0), (bend, 0), &[]);
@@ -249,18 +247,21 @@ fn a_bent_bridge_is_named_by_its_bend() {
 
 #[test]
 fn two_bridges_still_name_one_that_runs_across() {
-    let graph = contacts_between(7, &[
-        (0, Some(0), 2),
-        (0, Some(1), 3),
-        (2, Some(2), 4),
-        (2, None, 3),
-        (3, Some(3), 4),
-        (4, Some(4), 5),
-        (4, Some(5), 6),
-        (5, Some(6), 1),
-        (5, None, 6),
-        (6, Some(7), 1),
-    ]);
+    let graph = contacts_between(
+        7,
+        &[
+            (0, Some(0), 2),
+            (0, Some(1), 3),
+            (2, Some(2), 4),
+            (2, None, 3),
+            (3, Some(3), 4),
+            (4, Some(4), 5),
+            (4, Some(5), 6),
+            (5, Some(6), 1),
+            (5, None, 6),
+            (6, Some(7), 1),
+        ],
+    );
     let Err(NotSeriesParallel::Bridge(bridge)) = reduce(&graph) else { panic!("{:?}", reduce(&graph)) };
     let ends = (bridge.from.unwrap().0, bridge.to.unwrap().0);
     assert!([(2, 3), (5, 6)].contains(&ends), "{ends:?}");
@@ -307,7 +308,8 @@ fn deep_nests_are_refused_and_wide_ones_drawn() {
 
 #[test]
 fn long_series_and_wide_parallels_take_linear_time() {
-    let long: Vec<_> = (0..200_000u32).map(|n| (if n == 0 { 0 } else { n + 1 }, Some(n % 8), n + 2)).collect();
+    let long: Vec<_> =
+        (0..200_000u32).map(|n| (if n == 0 { 0 } else { n + 1 }, Some(n % 8), n + 2)).collect();
     let graph = contacts_between(200_002, &[long, vec![(200_001, None, 1)]].concat());
     let Shape::Series(parts) = reduce(&graph).unwrap() else { panic!() };
     assert_eq!(parts.len(), 200_000);
@@ -417,7 +419,11 @@ fn every_element_has_its_symbol() {
 |                             |
 |                             +--[DMOVP D0 D2]
 ";
-    check_styles(typed, fx(), [expect![[r#"
+    check_styles(
+        typed,
+        fx(),
+        [
+            expect![[r#"
         |   X0      X1      X2      X3                              Y0  |
         +---| |-----|/|-----|P|-----|N|----[INV]--+--[>= D0 K10]----( )-+
         |                                         |                 Y1  |
@@ -434,7 +440,8 @@ fn every_element_has_its_symbol() {
         |                                         +-----------------( )-+
         |                                         |                     |
         |                                         +--[DMOVP D0 D2]------+
-    "#]], expect![[r#"
+    "#]],
+            expect![[r#"
         +--[X0]---[/X1]---[P X2]---[N X3]---[INV]--+--[>= D0 K10]----(Y0)-+
         |                                          |                      |
         |                                          +--[D<> D2 D4]---(/Y1)-+
@@ -450,7 +457,8 @@ fn every_element_has_its_symbol() {
         |                                          +------(C200 K-123456)-+
         |                                          |                      |
         |                                          +--[DMOVP D0 D2]-------+
-    "#]], expect![[r#"
+    "#]],
+            expect![[r#"
         │   X0      X1      X2      X3                              Y0  │
         ├───┤ ├─────┤/├─────┤P├─────┤N├────[INV]──┬──[>= D0 K10]────( )─┤
         │                                         │                 Y1  │
@@ -467,7 +475,9 @@ fn every_element_has_its_symbol() {
         │                                         ├─────────────────( )─┤
         │                                         │                     │
         │                                         └──[DMOVP D0 D2]──────┤
-    "#]]]);
+    "#]],
+        ],
+    );
 }
 
 #[test]
@@ -485,7 +495,11 @@ fn lines_start_and_end_at_connectors_and_jumps() {
 |   M0            |
 +---| |-----------+
 ";
-    check_styles(typed, fx(), [expect![[r#"
+    check_styles(
+        typed,
+        fx(),
+        [
+            expect![[r#"
         |   X0                                         |
         +---| |---+------------------------------>>P10 |
         |         |                                    |
@@ -497,7 +511,8 @@ fn lines_start_and_end_at_connectors_and_jumps() {
         |  >LINK>----| |---+-----------------------( )-+
         |   M0             |                           |
         +---| |------------+                           |
-    "#]], expect![[r#"
+    "#]],
+            expect![[r#"
         +--[X0]--+------------------------------->>P10 |
         |        |                                     |
         |        +----------------------------<RETURN> |
@@ -507,7 +522,8 @@ fn lines_start_and_end_at_connectors_and_jumps() {
         |  >LINK>---[X1]--+-----------------------(Y0)-+
         |                 |                            |
         +--[M0]-----------+                            |
-    "#]], expect![[r#"
+    "#]],
+            expect![[r#"
         │   X0                                         │
         ├───┤ ├───┬──────────────────────────────>>P10 │
         │         │                                    │
@@ -519,7 +535,9 @@ fn lines_start_and_end_at_connectors_and_jumps() {
         │  >LINK>────┤ ├───┬───────────────────────( )─┤
         │   M0             │                           │
         ├───┤ ├────────────┘                           │
-    "#]]]);
+    "#]],
+        ],
+    );
 }
 
 #[test]
@@ -553,7 +571,11 @@ fn function_blocks_keep_their_pins_and_wires() {
 |                   |  Other     |
 |                   +--( )-------+
 ";
-    check_styles(typed, iec(), [expect![[r#"
+    check_styles(
+        typed,
+        iec(),
+        [
+            expect![[r#"
         |                 T1                           |
         |               +------+                       |
         |    a          | TON  |                  Lamp |
@@ -578,7 +600,8 @@ fn function_blocks_keep_their_pins_and_wires() {
         +---| |---O|R   NQ|---+--------------------(S)-+
         |          +------+   |                   Other|
         |                     +--------------------( )-+
-    "#]], expect![[r#"
+    "#]],
+            expect![[r#"
         |               T1                             |
         |             +------+                         |
         |             | TON  |                         |
@@ -603,7 +626,8 @@ fn function_blocks_keep_their_pins_and_wires() {
         +--[c]--O|R   NQ|---+-----------------(S Horn)-+
         |        +------+   |                          |
         |                   +------------------(Other)-+
-    "#]], expect![[r#"
+    "#]],
+            expect![[r#"
         │                 T1                           │
         │               ┌──────┐                       │
         │    a          │ TON  │                  Lamp │
@@ -628,7 +652,9 @@ fn function_blocks_keep_their_pins_and_wires() {
         ├───┤ ├───O│R   NQ│───┬────────────────────(S)─┤
         │          └──────┘   │                   Other│
         │                     └────────────────────( )─┤
-    "#]]]);
+    "#]],
+        ],
+    );
 }
 
 #[test]
@@ -639,21 +665,29 @@ fn a_parallel_of_whole_lines_is_joined_beside_the_rail() {
 |   |   X1      Y1
 |   +---| |-----( )
 ";
-    check_styles(typed, fx(), [expect![[r#"
+    check_styles(
+        typed,
+        fx(),
+        [
+            expect![[r#"
         |     X0                                   Y0  |
         +-+---| |----------------------------------( )-+
         | |   X1                                   Y1  |
         | +---| |----------------------------------( )-+
-    "#]], expect![[r#"
+    "#]],
+            expect![[r#"
         +-+--[X0]---------------------------------(Y0)-+
         | |                                            |
         | +--[X1]---------------------------------(Y1)-+
-    "#]], expect![[r#"
+    "#]],
+            expect![[r#"
         │     X0                                   Y0  │
         ├─┬───┤ ├──────────────────────────────────( )─┤
         │ │   X1                                   Y1  │
         │ └───┤ ├──────────────────────────────────( )─┤
-    "#]]]);
+    "#]],
+        ],
+    );
 }
 
 #[test]
@@ -662,15 +696,23 @@ fn wide_letters_and_long_names_keep_their_distance() {
 |   启动按钮      EmergencyStop_Circuit_Closed     停
 +----| |----------------|/|------------------------( )
 ";
-    check_styles(typed, iec(), [expect![[r#"
+    check_styles(
+        typed,
+        iec(),
+        [
+            expect![[r#"
         | 启动按钮 EmergencyStop_Circuit_Closed    停  |
         +----| |----------------|/|----------------( )-+
-    "#]], expect![[r#"
+    "#]],
+            expect![[r#"
         +--[启动按钮]---[/EmergencyStop_Circuit_Closed]---(停)-+
-    "#]], expect![[r#"
+    "#]],
+            expect![[r#"
         │ 启动按钮 EmergencyStop_Circuit_Closed    停  │
         ├────┤ ├────────────────┤/├────────────────( )─┤
-    "#]]]);
+    "#]],
+        ],
+    );
 }
 
 #[test]
@@ -738,7 +780,8 @@ fn everything_but_rungs_is_kept() {
         ␍
         ␍
         |   X2                                     Y2  |
-        +---| |------------------------------------( )-+"#]].assert_eq(&formatted.replace('\r', "␍"));
+        +---| |------------------------------------( )-+"#]]
+    .assert_eq(&formatted.replace('\r', "␍"));
     assert_eq!(format(&formatted, fx(), &Style::default()), formatted);
 }
 
@@ -792,7 +835,8 @@ fn rung_numbers_stay_in_the_margin() {
 
            |   X2                                     Y2  |
            +---| |------------------------------------( )-+
-    "#]].assert_eq(&formatted);
+    "#]]
+    .assert_eq(&formatted);
     assert_eq!(format(&formatted, fx(), &Style::default()), formatted);
 }
 
@@ -813,7 +857,12 @@ fn formatting_takes_time_in_proportion_to_the_document() {
 fn debug_problems() {
     let text = std::fs::read_to_string("/tmp/debug.lad").unwrap();
     let tree = parse(&text, fx());
-    for problem in &tree.problems { println!("{:?} {:?}", problem, problem.span.of(&text)); }
-    for rung in &tree.rungs { println!("{}", rung.graph.logic_text(&text)); println!("{:?}", reduce(&rung.graph)); }
+    for problem in &tree.problems {
+        println!("{:?} {:?}", problem, problem.span.of(&text));
+    }
+    for rung in &tree.rungs {
+        println!("{}", rung.graph.logic_text(&text));
+        println!("{:?}", reduce(&rung.graph));
+    }
     println!("{}", format(&text, fx(), &Style::default()));
 }

@@ -195,19 +195,21 @@ fn debug_corpus() {
 #[test]
 fn debug_mistakes() {
     for dir in ["examples/mistakes", "examples/tank-level", "examples/traffic-lights", "examples/motor"] {
-    let mut files: Vec<_> = std::fs::read_dir(dir).unwrap().map(|f| f.unwrap().path()).collect();
-    files.sort();
-    for f in files {
-        if f.extension().unwrap() != "lad" { continue }
-        let text = std::fs::read_to_string(&f).unwrap();
-        println!("=== {}", f.display());
-        let mut start = 0;
-        for end in rungwise::ladder::split(&text) {
-            let chunk = &text[start..end];
-            start = end;
-            let tree = parse(chunk, fx());
-            println!("{}", dump(&tree, chunk));
+        let mut files: Vec<_> = std::fs::read_dir(dir).unwrap().map(|f| f.unwrap().path()).collect();
+        files.sort();
+        for f in files {
+            if f.extension().unwrap() != "lad" {
+                continue;
+            }
+            let text = std::fs::read_to_string(&f).unwrap();
+            println!("=== {}", f.display());
+            let mut start = 0;
+            for end in rungwise::ladder::split(&text) {
+                let chunk = &text[start..end];
+                start = end;
+                let tree = parse(chunk, fx());
+                println!("{}", dump(&tree, chunk));
+            }
         }
-    }
     }
 }

@@ -158,7 +158,8 @@ impl Walk<'_> {
             Fit::Fits => {}
             Fit::OutOfRange(kind) => self.out_of_range(current, kind),
             Fit::Mismatch => {
-                let key = if word == span { "result-type-mismatch.current" } else { "result-type-mismatch.store" };
+                let key =
+                    if word == span { "result-type-mismatch.current" } else { "result-type-mismatch.store" };
                 let message = Message::new(key)
                     .with("operator", word.of(self.view.text).to_ascii_uppercase())
                     .with("word", span.of(self.view.text))
@@ -188,7 +189,13 @@ impl Walk<'_> {
     }
 
     /// The operator does not take the operand, whatever the current result is.
-    pub(super) fn wrong_operand(&mut self, operation: Operation, id: OperandId, kind: &ValueType, takes: Expected) {
+    pub(super) fn wrong_operand(
+        &mut self,
+        operation: Operation,
+        id: OperandId,
+        kind: &ValueType,
+        takes: Expected,
+    ) {
         let at = self.view.tree.operand(id).span;
         let value = Value { kind: kind.clone(), at, source: Some(id) };
         self.wrong_value(operation, &value, takes);

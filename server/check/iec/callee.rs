@@ -3,7 +3,9 @@
 use super::{ValueType, View, folded};
 use crate::document::{DeclaredType, Pou, Variable};
 use crate::il::iec::{PouKind, SectionKind};
-use crate::target::iec::{EN, ENO, ElementaryType, Function, FunctionBlock, GenericType, Parameter, ParameterType};
+use crate::target::iec::{
+    EN, ENO, ElementaryType, Function, FunctionBlock, GenericType, Parameter, ParameterType,
+};
 
 /// A function or a function block.
 #[derive(Clone, Copy)]
@@ -106,11 +108,11 @@ impl<'a> Callee<'a> {
     pub fn pin_at(&self, view: &View<'a>, position: usize) -> Option<Pin<'a>> {
         match self {
             Callee::Function(function) => function.input(position).map(|input| Pin::of(input, Flow::In)),
-            Callee::Block(block) => block
-                .inputs
-                .get(position)
-                .map(|input| Pin::of(input, Flow::In))
-                .or_else(|| block.outputs.get(position - block.inputs.len()).map(|out| Pin::of(out, Flow::Out))),
+            Callee::Block(block) => {
+                block.inputs.get(position).map(|input| Pin::of(input, Flow::In)).or_else(|| {
+                    block.outputs.get(position - block.inputs.len()).map(|out| Pin::of(out, Flow::Out))
+                })
+            }
             Callee::Declared(_) => self.pins(view).get(position).copied(),
         }
     }

@@ -5,9 +5,11 @@
 //! something is not known, nothing is said.
 
 use super::{Callee, Expected, Fit, Flow, ValueType, View, fit, folded};
-use crate::il::iec::{Condition, Item, ItemKind, ListForm, OperandId, Operation, ParameterValue, PouKind, Run};
-use crate::target::iec::{ElementaryType, FunctionBlock, GenericType, Operator, OperatorRole};
+use crate::il::iec::{
+    Condition, Item, ItemKind, ListForm, OperandId, Operation, ParameterValue, PouKind, Run,
+};
 use crate::target::Operand;
+use crate::target::iec::{ElementaryType, FunctionBlock, GenericType, Operator, OperatorRole};
 use crate::text::{Diagnostic, Message, Span, TextEdit};
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
@@ -418,9 +420,12 @@ impl<'a> Walk<'a> {
         let loads = |id: &OperandId| !matches!(self.view.tree.operand(*id).value, Operand::Invalid(_));
         if let Some(id) = operand.filter(loads) {
             let negated = word.of(self.view.text).to_ascii_uppercase().ends_with('N');
-            let is_logic = matches!(fit(&self.view.value(id), Expected::Group(GenericType::AnyBit)), Fit::Fits);
+            let is_logic =
+                matches!(fit(&self.view.value(id), Expected::Group(GenericType::AnyBit)), Fit::Fits);
             let load = if negated && is_logic { "LDN" } else { "LD" };
-            let title = Message::new("no-current-result.iec-load").with("load", load).with("word", self.view.word(id));
+            let title = Message::new("no-current-result.iec-load")
+                .with("load", load)
+                .with("word", self.view.word(id));
             diagnostic = diagnostic.fix(title, vec![TextEdit::new(word, load)]);
         }
         self.found.push(diagnostic);
@@ -536,4 +541,3 @@ fn combined(operator: &Operator, left: &ValueType, right: &ValueType) -> (ValueT
         None => (ValueType::Unknown, Fault::Different),
     }
 }
-

@@ -175,9 +175,8 @@ impl<'a> View<'a> {
     pub fn written(&self) -> impl Iterator<Item = OperandId> + 'a {
         let tree = self.tree;
         let stores = tree.items.iter().filter_map(|item| match item.kind {
-            ItemKind::Operation { operation, operand } => {
-                operand.filter(|_| matches!(operation.operator.role, OperatorRole::Store | OperatorRole::Latch))
-            }
+            ItemKind::Operation { operation, operand } => operand
+                .filter(|_| matches!(operation.operator.role, OperatorRole::Store | OperatorRole::Latch)),
             _ => None,
         });
         let lists = tree.items.iter().filter_map(|item| match item.kind {
@@ -263,19 +262,6 @@ pub fn views<'a>(context: &ProgramContext<'a>) -> impl Iterator<Item = (usize, V
             _ => None,
         }
     })
-}
-
-/// The IEC chunks of a document, together for each POU; chunks outside of any come first, as do those that the
-/// header of the POU follows.
-pub fn bodies<'a>(context: &ProgramContext<'a>) -> Vec<Vec<(usize, View<'a>)>> {
-    let mut bodies: Vec<Vec<(usize, View<'a>)>> = Vec::new();
-    for (start, view) in views(context) {
-        match bodies.last_mut().filter(|body| body.first().is_some_and(|(_, first)| first.pou == view.pou)) {
-            Some(body) => body.push((start, view)),
-            None => bodies.push(vec![(start, view)]),
-        }
-    }
-    bodies
 }
 
 /// A name without letter case.
