@@ -9,6 +9,7 @@ mod ladder_read;
 mod lsp;
 mod lsp_client;
 mod rules;
+mod rules_fx;
 mod target_fx;
 mod target_fx_applied;
 mod target_iec;

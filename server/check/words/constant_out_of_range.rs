@@ -20,6 +20,12 @@
 //! OUT T0 K1
 //! END
 //! ```
+//!
+//! ```lad
+//! |  X0                      |
+//! +--| |--------(T0 K32768)--+
+//!                   ^^^^^^
+//! ```
 
 use crate::check::{ChunkContext, Rule, Run};
 use crate::target::{Constant, Form, Operand, Wide};

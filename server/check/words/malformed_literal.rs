@@ -21,6 +21,12 @@
 //! DMOV K8M0 D2
 //! END
 //! ```
+//!
+//! ```lad
+//! |  X0                     |
+//! +--| |---[MOV H1G D0]-----+
+//!               ^^^
+//! ```
 
 use crate::check::{ChunkContext, Rule, Run};
 use crate::target::{Operand, OperandProblem};

@@ -36,6 +36,12 @@
 //! DMOV C200 D2
 //! END
 //! ```
+//!
+//! ```lad
+//! |  D0                Y0   |
+//!    ^^
+//! +--| |---------------( )--+
+//! ```
 
 use crate::check::{ChunkContext, Rule, Run};
 use crate::document::Operation;

@@ -20,6 +20,12 @@
 //! OUT Y0
 //! END
 //! ```
+//!
+//! ```lad
+//! |  X0                    |
+//! +--| |---[MVO K10 D0]----+
+//!           ^^^
+//! ```
 
 use crate::check::{ChunkContext, Rule, Run};
 use crate::target::instructions::suggestions;

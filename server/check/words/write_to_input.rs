@@ -11,7 +11,7 @@
 //! OUT X1
 //!     ^^
 //! MOV K5 K2X10
-//!        ^^^^^
+//!          ^^^
 //! END
 //! ```
 //!
@@ -20,6 +20,23 @@
 //! OUT Y1
 //! MOV K5 K2Y10
 //! END
+//! ```
+//!
+//! ```lad
+//! |  X0            X1  |
+//!                  ^^
+//! +--| |-----------( )-+
+//! |                    |
+//! ```
+//!
+//! In IEC programs the same goes for `%I` addresses:
+//!
+//! ```iec
+//! PROGRAM Main
+//! LD %IX0.0
+//! ST %IX0.1
+//!    ^^^^^^
+//! END_PROGRAM
 //! ```
 
 use crate::check::{ChunkContext, Rule, Run};
