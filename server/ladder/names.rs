@@ -69,13 +69,10 @@ impl Naming<'_> {
         for (number, word) in words.iter().enumerate() {
             // What takes no name says nothing about names, and the first of two words hangs over its element's side.
             let takes = |symbol: usize| self.tokens.symbols[symbol].wants != Wants::Nothing;
-            let in_phrase =
-                words.get(number + 1).is_some_and(|next| next.row == word.row && word.end + 1 == next.start);
+            let in_phrase = words.get(number + 1).is_some_and(|next| next.row == word.row && word.end + 1 == next.start);
             match (word.below, word.above) {
                 (Candidate::One(symbol, _), Candidate::None) if takes(symbol) => habit.above += 1,
-                (Candidate::None, Candidate::One(symbol, _)) if takes(symbol) && !in_phrase => {
-                    habit.below += 1
-                }
+                (Candidate::None, Candidate::One(symbol, _)) if takes(symbol) && !in_phrase => habit.below += 1,
                 _ => {}
             }
         }
@@ -103,9 +100,7 @@ impl Naming<'_> {
         let mut words = Vec::new();
         for (row, line) in self.tokens.rows.iter().enumerate() {
             for (number, token) in line.iter().enumerate() {
-                let margin = token.end <= self.left
-                    && line.get(number + 1).is_some_and(Token::is_drawn)
-                    && number == 0;
+                let margin = token.end <= self.left && line.get(number + 1).is_some_and(Token::is_drawn) && number == 0;
                 if token.what != What::Word || (margin && self.is_number(row, token)) {
                     continue;
                 }
@@ -122,8 +117,7 @@ impl Naming<'_> {
                     other.is_some_and(|other| other.what == What::Wire && at(other) == edge)
                 };
                 let before = number.checked_sub(1).and_then(|before| line.get(before));
-                let wired = touches(before, |t| t.end, token.start)
-                    || touches(line.get(number + 1), |t| t.start, token.end);
+                let wired = touches(before, |t| t.end, token.start) || touches(line.get(number + 1), |t| t.start, token.end);
                 if !wired {
                     let rows = self.tokens.rows.len();
                     word.below = self.candidate(&word, row + 1..rows.min(row + 1 + FARTHEST));
@@ -144,10 +138,7 @@ impl Naming<'_> {
         for (distance, row) in rows.enumerate() {
             let line = &self.tokens.rows[row];
             let from = line.partition_point(|token| token.end <= word.start);
-            let over = line[from..]
-                .iter()
-                .take_while(|token| token.start < word.end)
-                .filter(|token| token.is_drawn());
+            let over = line[from..].iter().take_while(|token| token.start < word.end).filter(|token| token.is_drawn());
             let mut blocked = false;
             // Cells of overlap and symbol, the largest overlap first; symbols that take no name come last.
             let mut first = (0, 0);
@@ -245,10 +236,7 @@ impl Naming<'_> {
     /// `T0 K50` over a coil: a word over nothing, one blank away from a name of a coil, belongs to that name.
     fn join_phrases(&self, words: &mut [Word]) {
         let phrases = |symbol: usize| {
-            matches!(
-                self.tokens.symbols[symbol].wants,
-                Wants::DeviceAndPreset | Wants::TwoOperands | Wants::Operands
-            )
+            matches!(self.tokens.symbols[symbol].wants, Wants::DeviceAndPreset | Wants::TwoOperands | Wants::Operands)
         };
         for number in 0..words.len() {
             let word = words[number];
@@ -256,8 +244,7 @@ impl Naming<'_> {
             if word.owner.is_some() || !over_nothing {
                 continue;
             }
-            let left =
-                number.checked_sub(1).map(|left| words[left]).filter(|left| left.end + 1 == word.start);
+            let left = number.checked_sub(1).map(|left| words[left]).filter(|left| left.end + 1 == word.start);
             let right = words.get(number + 1).copied().filter(|right| word.end + 1 == right.start);
             let near = [left, right].into_iter().flatten().filter(|near| near.row == word.row);
             words[number].owner = near.filter_map(|near| near.owner).find(|owner| phrases(*owner));
@@ -268,8 +255,7 @@ impl Naming<'_> {
     fn give(&mut self, number: usize, words: &[Word]) {
         let Some(first) = words.first() else { return };
         let target = self.target;
-        let spans: Vec<Span> =
-            words.iter().map(|word| self.grid.span(word.row, word.start, word.end)).collect();
+        let spans: Vec<Span> = words.iter().map(|word| self.grid.span(word.row, word.start, word.end)).collect();
         let read = |span: &Span| Spanned::new(Operand::read(span.of(self.text), target.model), *span);
         let operands: Vec<Spanned<Operand>> = spans.iter().map(read).collect();
         let one_line = words.iter().all(|word| word.row == first.row);
@@ -301,8 +287,7 @@ impl Naming<'_> {
         if symbol.wants != Wants::Nothing && symbol.wants != Wants::Instance {
             symbol.element.place = place;
         }
-        let is_note =
-            |operand: &Spanned<Operand>| target.is_fx() && matches!(operand.value, Operand::Invalid(_));
+        let is_note = |operand: &Spanned<Operand>| target.is_fx() && matches!(operand.value, Operand::Invalid(_));
         for operand in surplus {
             if is_note(&operand) {
                 symbol.element.notes.push(operand.span);
@@ -337,8 +322,7 @@ impl Naming<'_> {
         const ASIDE: usize = 1;
         let mut wanted: rustc_hash::FxHashMap<usize, Vec<usize>> = rustc_hash::FxHashMap::default();
         for (number, word) in words.iter().enumerate() {
-            let unclear =
-                matches!(word.below, Candidate::Two(..)) || matches!(word.above, Candidate::Two(..));
+            let unclear = matches!(word.below, Candidate::Two(..)) || matches!(word.above, Candidate::Two(..));
             if word.owner.is_some() || unclear {
                 continue;
             }
@@ -391,11 +375,8 @@ impl Naming<'_> {
             let wanted = if names_below { word.above } else { word.below };
             let text = span.of(self.text);
             if let Candidate::Two(first, second, _) = wanted {
-                let mut problem = Diagnostic::new(
-                    "stray-operand",
-                    span,
-                    Message::new("stray-operand.two").with("text", text),
-                );
+                let mut problem =
+                    Diagnostic::new("stray-operand", span, Message::new("stray-operand.two").with("text", text));
                 for symbol in [first, second] {
                     let element = self.tokens.symbols[symbol].element.span;
                     problem = problem.related(element, Message::new("stray-operand.element"));
@@ -538,8 +519,7 @@ fn name_device(
         OperandPlace::Above => usize::MAX - row(number),
         _ => row(number),
     });
-    let chosen =
-        order.iter().copied().find(|number| addressed(&operands[*number])).or(order.first().copied());
+    let chosen = order.iter().copied().find(|number| addressed(&operands[*number])).or(order.first().copied());
     symbol.element.operands = chosen.map(|chosen| operands[chosen]).into_iter().collect();
     (0..operands.len()).filter(|number| Some(*number) != chosen).map(|number| operands[number]).collect()
 }

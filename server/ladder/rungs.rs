@@ -19,10 +19,9 @@ pub(super) fn build_rungs(
     names: &[Option<(usize, usize)>],
     left: usize,
 ) -> Vec<Rung> {
-    let has_rail = uprights
-        .all
-        .iter()
-        .any(|upright| upright.role == Role::LeftRail && upright.cells.iter().any(|cell| cell.right));
+    let has_rail = uprights.all.iter().any(|upright| {
+        upright.role == Role::LeftRail && upright.cells.iter().any(|cell| cell.right)
+    });
     let groups = row_groups(&tokens, uprights);
     let Tokens { rows, symbols, .. } = tokens;
     let mut symbols: Vec<Option<Symbol>> = symbols.into_iter().map(Some).collect();
@@ -101,8 +100,9 @@ fn row_groups(tokens: &Tokens, uprights: &Uprights) -> Vec<(usize, usize)> {
         let first = symbol.row.saturating_sub(symbol.depth);
         reach[first] = reach[first].max(first + height.saturating_sub(1));
     }
-    let live =
-        |row: usize| tokens.rows[row].iter().any(|token| matches!(token.what, What::Wire | What::Symbol(_)));
+    let live = |row: usize| {
+        tokens.rows[row].iter().any(|token| matches!(token.what, What::Wire | What::Symbol(_)))
+    };
     let mut groups: Vec<(usize, usize)> = Vec::new();
     let mut reached = None;
     for row in 0..tokens.rows.len() {
@@ -195,9 +195,7 @@ impl Builder<'_> {
             return *vertex;
         }
         // Each symbol belongs to one rung, and is moved into its graph once.
-        let Some(symbol) = self.symbols.get_mut(number).and_then(Option::take) else {
-            return Graph::LEFT_RAIL;
-        };
+        let Some(symbol) = self.symbols.get_mut(number).and_then(Option::take) else { return Graph::LEFT_RAIL };
         let vertex = self.graph.add_element(symbol.element);
         self.vertices.insert((true, number), vertex);
         vertex

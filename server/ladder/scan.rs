@@ -195,8 +195,7 @@ impl Scanner<'_> {
             // `K-5`, `T#-1s`, `E1.5+3`: a sign belongs to a number that goes on behind it.
             let signs = matches!(character, '-' | '+') && at(end + 1).is_ascii_digit() && {
                 let before = at(end - 1);
-                before == '#'
-                    || (end == column + 1 && matches!(first, 'K' | 'k' | 'E' | 'e'))
+                before == '#' || (end == column + 1 && matches!(first, 'K' | 'k' | 'E' | 'e'))
                     || (matches!(first, 'E' | 'e') && before.is_ascii_digit())
             };
             // A single hyphen inside a word is no wire, whatever becomes of the word.
@@ -229,11 +228,12 @@ impl Scanner<'_> {
     fn wire(&self, row: usize, column: usize) -> Token {
         let horizontal = |column: usize| self.grid.arms(row, column).is_horizontal();
         let corner = |column: usize| {
-            let bar = |row: usize| self.grid.arms(row, column).is_vertical() && !self.in_contact(row, column);
+            let bar = |row: usize| {
+                self.grid.arms(row, column).is_vertical() && !self.in_contact(row, column)
+            };
             (row > 0 && bar(row - 1)) || bar(row + 1)
         };
-        let junction =
-            |column: usize| Token { start: column, end: column + 1, what: What::Upright(Arms::of('+')) };
+        let junction = |column: usize| Token { start: column, end: column + 1, what: What::Upright(Arms::of('+')) };
         let open = |column: usize| matches!(self.grid.at(row, column), ' ');
         if (column == 0 || open(column - 1)) && corner(column) {
             return junction(column);
@@ -312,18 +312,16 @@ impl Scanner<'_> {
         [Some(column), column.checked_sub(2)].into_iter().flatten().any(|start| {
             start > 0
                 && self.leads(row, start - 1)
-                && self
-                    .contact_end(row, start)
-                    .is_some_and(|end| (column == start || column + 1 == end) && self.leads(row, end))
+                && self.contact_end(row, start).is_some_and(|end| {
+                    (column == start || column + 1 == end) && self.leads(row, end)
+                })
         })
     }
 
     /// Whether a wire, a junction or another element is at this cell, to which an element can be joined.
     fn leads(&self, row: usize, column: usize) -> bool {
         let arms = self.grid.arms(row, column);
-        arms.is_horizontal()
-            || arms.is_junction()
-            || matches!(self.grid.at(row, column), ')' | '(' | '[' | ']')
+        arms.is_horizontal() || arms.is_junction() || matches!(self.grid.at(row, column), ')' | '(' | '[' | ']')
     }
 
     /// Whether a vertical wire goes up or down from this cell.
@@ -355,9 +353,7 @@ impl Scanner<'_> {
             }
             if character == '[' && open != ']' && self.subscript_end(row, at).is_some() {
                 at = self.subscript_end(row, at)?;
-            } else if matches!(character, '[' | ']' | '(' | ')' | '{' | '}')
-                || Arms::of(character).is_junction()
-            {
+            } else if matches!(character, '[' | ']' | '(' | ')' | '{' | '}') || Arms::of(character).is_junction() {
                 break None;
             } else {
                 at += 1;
@@ -389,17 +385,14 @@ impl Scanner<'_> {
     /// Whether a vertical wire ends above and below the cells `start..end`, and no wire beside them.
     fn stands_on_vertical(&self, row: usize, start: usize, end: usize) -> bool {
         let beside = (start > 0 && self.leads(row, start - 1)) || self.leads(row, end);
-        let held = |row: usize| {
-            (start..end).any(|at| self.grid.arms(row, at).is_upright() && !self.in_contact(row, at))
-        };
+        let held = |row: usize| (start..end).any(|at| self.grid.arms(row, at).is_upright() && !self.in_contact(row, at));
         !beside && row > 0 && held(row - 1) && held(row + 1)
     }
 
     /// Reports an element in the middle of a vertical wire, and reads it as a part of the wire.
     fn on_vertical(&mut self, row: usize, start: usize, end: usize) -> Token {
         let span = self.grid.span(row, start, end);
-        let mut problem =
-            Diagnostic::new("contact-on-vertical", span, Message::new("contact-on-vertical.element"));
+        let mut problem = Diagnostic::new("contact-on-vertical", span, Message::new("contact-on-vertical.element"));
         for near in [row - 1, row + 1] {
             if let Some(at) = (start..end).find(|at| self.grid.arms(near, *at).is_upright()) {
                 let wire = self.grid.span(near, at, at + 1);
@@ -428,8 +421,7 @@ impl Scanner<'_> {
             '>' if closed => (ElementKind::ConnectorIn(name), end + 1),
             _ => return None,
         };
-        let is_return =
-            kind != ElementKind::Return || name.of(self.text).to_ascii_uppercase().starts_with("RET");
+        let is_return = kind != ElementKind::Return || name.of(self.text).to_ascii_uppercase().starts_with("RET");
         let reading = Reading { kind, operands: Vec::new(), surplus: Vec::new(), wants: Wants::Nothing };
         is_return.then(|| self.symbol(row, column, end, reading))
     }
