@@ -291,6 +291,13 @@ impl Scopes {
     }
 }
 
+impl DeclaredType {
+    /// The type that record `id` of `tree`, which was read from `text`, declares.
+    pub fn of(text: &str, tree: &IecTree, id: TypeId) -> DeclaredType {
+        declared_type(text, tree, id)
+    }
+}
+
 fn declared_type(text: &str, tree: &IecTree, id: TypeId) -> DeclaredType {
     let written = tree.type_spec(id);
     match written.value {

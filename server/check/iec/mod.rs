@@ -13,5 +13,11 @@ pub(super) use fit::{Fit, fit};
 mod current_result;
 pub(super) use current_result::follow;
 
+mod words;
+pub(super) use words::{misplaced_words, operand_counts, unknown_instructions, unreadable_operands};
+
+mod initial;
+pub(super) use initial::initial_values;
+
 mod arguments;
 pub(super) use arguments::out_of_range;

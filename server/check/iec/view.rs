@@ -202,6 +202,11 @@ impl<'a> View<'a> {
         near.into_iter().any(|problem| problem.severity == Severity::Error)
     }
 
+    /// Whether the reader has reported something that starts where `span` does.
+    pub fn has_problem_at(&self, span: Span) -> bool {
+        self.tree.problems.binary_search_by_key(&span.start, |problem| problem.span.start).is_ok()
+    }
+
     /// How many blanks and tabs stand before the first word of the line of `offset`.
     pub fn indentation(&self, offset: u32) -> &'a str {
         let head = self.text.get(..offset as usize).unwrap_or("");

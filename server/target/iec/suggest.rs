@@ -28,8 +28,6 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("GOTO", "JMP"),
     ("RETURN", "RET"),
     ("MOV", "MOVE"),
-    ("INC", "ADD 1"),
-    ("DEC", "SUB 1"),
 ];
 
 /// No name that is looked for is longer.
