@@ -33,7 +33,47 @@
 //! +--| |---[MOV K10]--------+
 //!           ^^^
 //! ```
+//!
+//! A function in IEC programs takes the current result as its first input, so one operand less than it has inputs
+//! stands behind its name; and `NOT` works on the current result alone.
+//!
+//! ```iec
+//! PROGRAM Main
+//! VAR
+//!     Value : INT;
+//!     Ready : BOOL;
+//! END_VAR
+//!     LD Value
+//!     ABS Value
+//!         ^^^^^
+//!     LIMIT 5
+//!     ^^^^^
+//!     LD Ready
+//!     NOT Ready
+//!         ^^^^^
+//!     ST
+//!     ^^
+//! END_PROGRAM
+//! ```
+//!
+//! ```iec
+//! PROGRAM Main
+//! VAR
+//!     Value : INT;
+//!     Ready : BOOL;
+//! END_VAR
+//!     LD Value
+//!     ABS
+//!     ST Value
+//!     LD 0
+//!     LIMIT Value, 100
+//!     ST Value
+//!     LDN Ready
+//!     ST Ready
+//! END_PROGRAM
+//! ```
 
+use crate::check::iec::{View, operand_counts};
 use crate::check::{ChunkContext, Rule, Run};
 use crate::document::{Operation, Tree};
 use crate::target::{DeviceKind, Form, Operand, OperandSpec};
@@ -47,6 +87,9 @@ pub(super) const RULE: Rule = Rule {
 };
 
 fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
+    if let Some(view) = View::of(context) {
+        return operand_counts(&view, found);
+    }
     // What belongs to a drawn contact or coil is decided by the drawing, whose rules report it.
     let is_drawn = matches!(context.chunk.tree(), Tree::Ladder(_));
     let mut problems: Vec<u32> = context.chunk.problems().iter().map(|problem| problem.span.start).collect();
