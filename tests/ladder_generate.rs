@@ -2,7 +2,8 @@
 
 use proptest::prelude::*;
 use rungwise::ladder::{
-    Block, CoilKind, CompareOperator, ContactKind, Element, ElementKind, Graph, Pin, PinWire, VertexId, VertexKind,
+    Block, CoilKind, CompareOperator, ContactKind, Element, ElementKind, Graph, Pin, PinWire, VertexId,
+    VertexKind,
 };
 use rungwise::target::{Form, Model, Operand, Target};
 use rungwise::text::{Span, Spanned};
@@ -126,11 +127,17 @@ impl Builder {
 
     fn element(&mut self, leaf: &Leaf) -> Element {
         let (kind, operands) = match leaf {
-            Leaf::Contact(kind, n) => (ElementKind::Contact(CONTACTS[*kind as usize % 4]), vec![self.bit(*n)]),
-            Leaf::Compare(kind, n) => (ElementKind::Compare(compare(*kind)), vec![self.number(*n), self.number(n / 3)]),
+            Leaf::Contact(kind, n) => {
+                (ElementKind::Contact(CONTACTS[*kind as usize % 4]), vec![self.bit(*n)])
+            }
+            Leaf::Compare(kind, n) => {
+                (ElementKind::Compare(compare(*kind)), vec![self.number(*n), self.number(n / 3)])
+            }
             Leaf::Invert => (ElementKind::Invert, vec![]),
             Leaf::Coil(kind, n) => (ElementKind::Coil(COILS[*kind as usize % 6]), vec![self.output(*n)]),
-            Leaf::Timer(n) if self.model == Model::Iec => (ElementKind::Coil(CoilKind::Plain), vec![self.output(*n)]),
+            Leaf::Timer(n) if self.model == Model::Iec => {
+                (ElementKind::Coil(CoilKind::Plain), vec![self.output(*n)])
+            }
             Leaf::Timer(n) => {
                 let device = if n % 2 == 0 { format!("T{}", n % 256) } else { format!("C{}", n % 256) };
                 (ElementKind::Coil(CoilKind::Plain), vec![device, format!("K{n}")])
@@ -167,7 +174,7 @@ impl Builder {
     }
 
     fn block(&mut self, n: u16) -> Element {
-        let mut pin = |builder: &mut Builder, name: &str, wire: PinWire, row: u32| Pin {
+        let pin = |builder: &mut Builder, name: &str, wire: PinWire, row: u32| Pin {
             name: Some(builder.word(name)),
             negated: n % 5 == 0 && wire == PinWire::Power,
             row,
@@ -178,7 +185,8 @@ impl Builder {
         let inputs = vec![pin(self, "IN", PinWire::Power, 2), pin(self, "PT", PinWire::Operand(0), 3)];
         let elapsed = if n % 3 == 0 { PinWire::Open } else { PinWire::Operand(1) };
         let outputs = vec![pin(self, "Q", PinWire::Power, 2), pin(self, "ET", elapsed, 3)];
-        let operands = if n % 3 == 0 { vec!["D0".to_string()] } else { vec!["D0".to_string(), "D1".to_string()] };
+        let operands =
+            if n % 3 == 0 { vec!["D0".to_string()] } else { vec!["D0".to_string(), "D1".to_string()] };
         let block = Block { instance, type_name, rows: Vec::new(), inputs, outputs };
         self.finish(ElementKind::Block(Box::new(block)), &operands)
     }
@@ -213,14 +221,8 @@ impl Builder {
 const CONTACTS: [ContactKind; 4] =
     [ContactKind::NormallyOpen, ContactKind::NormallyClosed, ContactKind::Rising, ContactKind::Falling];
 
-const COILS: [CoilKind; 6] = [
-    CoilKind::Plain,
-    CoilKind::Negated,
-    CoilKind::Set,
-    CoilKind::Reset,
-    CoilKind::Rising,
-    CoilKind::Falling,
-];
+const COILS: [CoilKind; 6] =
+    [CoilKind::Plain, CoilKind::Negated, CoilKind::Set, CoilKind::Reset, CoilKind::Rising, CoilKind::Falling];
 
 /// Names of one cell to many, also in letters that are two cells wide.
 const NAMES: [&str; 12] = [
@@ -338,7 +340,9 @@ pub fn all_shapes(leaves: usize) -> Vec<Part> {
             let choices = all_shapes(size);
             rows = rows
                 .into_iter()
-                .flat_map(|row| choices.iter().map(move |choice| [row.clone(), vec![choice.clone()]].concat()))
+                .flat_map(|row| {
+                    choices.iter().map(move |choice| [row.clone(), vec![choice.clone()]].concat())
+                })
                 .collect();
         }
         for row in rows {

@@ -12,6 +12,8 @@ pub use context::{ChunkContext, ProgramContext};
 mod engine;
 pub use engine::{Severities, all, program, realtime, sorted};
 
+mod statements;
+
 mod declarations;
 mod drawing;
 mod order;

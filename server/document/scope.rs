@@ -5,7 +5,8 @@
 use super::mention::{folded, of_operand};
 use super::{Chunk, Document, Mention, Symbol, Tree, Use};
 use crate::il::iec::{
-    Direction, IecTree, ItemKind, MentionRole, OperandId, ParameterValue, PouKind, SectionKind, TypeId, TypeSpec,
+    Direction, IecTree, ItemKind, MentionRole, OperandId, ParameterValue, PouKind, SectionKind, TypeId,
+    TypeSpec,
 };
 use crate::target::iec::{ElementaryType, FunctionBlock, OperatorRole, ParameterType};
 use crate::target::{DirectAddress, Operand};
@@ -290,6 +291,7 @@ fn declared_type(text: &str, tree: &IecTree, id: TypeId) -> DeclaredType {
             });
             DeclaredType::Structure(fields.collect())
         }
+        TypeSpec::Reference { .. } => DeclaredType::Unknown,
     }
 }
 

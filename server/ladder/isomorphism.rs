@@ -34,7 +34,8 @@ impl Graph {
                 walk.numbers[*node as usize].is_none() && lists.outs.iter().any(feeds)
             };
             let known = (unfed..nodes.nodes.len() as u32).find(fed_by);
-            let rest = || (unfed..nodes.nodes.len() as u32).find(|node| walk.numbers[*node as usize].is_none());
+            let rest =
+                || (unfed..nodes.nodes.len() as u32).find(|node| walk.numbers[*node as usize].is_none());
             match known.or_else(rest) {
                 Some(node) => walk.number(node),
                 None => return text,
@@ -99,7 +100,9 @@ impl Element {
             ElementKind::ConnectorIn(name) => format!("ConnectorIn {}", name.of(chunk)),
             ElementKind::Block(block) => {
                 let word = |span: Option<crate::text::Span>| span.map_or("", |span| span.of(chunk));
-                let pin = |pin: &Pin| format!("{}{}{:?}", word(pin.name), if pin.negated { "!" } else { "" }, pin.wire);
+                let pin = |pin: &Pin| {
+                    format!("{}{}{:?}", word(pin.name), if pin.negated { "!" } else { "" }, pin.wire)
+                };
                 let pins = |pins: &[Pin]| pins.iter().map(pin).collect::<Vec<_>>().join(",");
                 let (inputs, outputs) = (pins(&block.inputs), pins(&block.outputs));
                 format!("Block {}:{}({inputs};{outputs})", word(block.instance), word(block.type_name))

@@ -109,8 +109,9 @@ impl Planner<'_> {
             }
             Shape::Element(element) => self.element(element.0, at),
             Shape::Block(block) => {
-                let (number, placed) = self.block(block, at)?;
-                self.finish_block(block, number, placed)
+                let (index, placed) = self.block(block, at)?;
+                let bottom = placed.bottom.max(self.finish_block(block, index, at.line)?);
+                Some(Placed { bottom, ..placed })
             }
             Shape::Series(parts) => self.series(parts, at),
             Shape::Parallel(branches) => self.parallel(branches, at),
@@ -126,11 +127,8 @@ impl Planner<'_> {
     fn element(&mut self, element: u32, at: At) -> Option<Placed> {
         let symbol = self.symbols.get(element as usize)?;
         if symbol.figure.is_some() {
-            let block = BlockShape {
-                element: super::ElementId(element),
-                inputs: Vec::new(),
-                outputs: Vec::new(),
-            };
+            let block =
+                BlockShape { element: super::ElementId(element), inputs: Vec::new(), outputs: Vec::new() };
             return self.block(&block, at).map(|(_, placed)| placed);
         }
         let place = Place { element, column: at.column, line: at.line };
@@ -161,24 +159,25 @@ impl Planner<'_> {
 
     fn series(&mut self, parts: &[Shape], at: At) -> Option<Placed> {
         let mut placed = Placed { end: at.column, bottom: at.line };
-        let mut blocks = Vec::new();
+        let mut blocks: Vec<(&BlockShape, usize, i32)> = Vec::new();
         for (number, part) in parts.iter().enumerate() {
             let tail = at.tail && number + 1 == parts.len();
             let floor = if number == 0 { at.floor } else { at.floor.max(placed.bottom) };
             let part_at = At { column: placed.end, tail, floor, ..at };
             let part_placed = match part {
-                Shape::Block(block) => {
-                    let (number, part_placed) = self.block(block, part_at)?;
-                    blocks.push((block, number));
-                    part_placed
-                }
-                _ => self.place(part, part_at)?,
+                Shape::Block(block) => self.block(block, part_at)?,
+                _ => (usize::MAX, self.place(part, part_at)?),
             };
+            let (index, part_placed) = part_placed;
+            blocks.iter_mut().for_each(|(.., below)| *below = part_placed.bottom.max(*below));
+            if let Shape::Block(block) = part {
+                blocks.push((block, index, at.line));
+            }
             placed = Placed { end: part_placed.end, bottom: placed.bottom.max(part_placed.bottom) };
         }
         // Further outputs of a block run to the rail below everything that follows on its main line.
-        for (block, number) in blocks.into_iter().rev() {
-            placed.bottom = self.finish_block(block, number, placed)?.bottom;
+        for (block, index, below) in blocks.into_iter().rev() {
+            placed.bottom = placed.bottom.max(self.finish_block(block, index, below)?);
         }
         Some(placed)
     }
@@ -284,14 +283,14 @@ impl Planner<'_> {
         Some((self.layout.blocks.len() - 1, Placed { end, bottom: floor.max(last + 1) }))
     }
 
-    /// Places the lines from a block's further outputs to the right rail below `so_far`.
-    fn finish_block(&mut self, block: &BlockShape, number: usize, so_far: Placed) -> Option<Placed> {
+    /// Places the lines from a block's further outputs to the right rail, below the lines that are taken at its
+    /// right. Returns the last line.
+    fn finish_block(&mut self, block: &BlockShape, index: usize, below: i32) -> Option<i32> {
         if block.outputs.is_empty() {
-            return Some(so_far);
+            return Some(below);
         }
-        let BlockPlace { place, borders, mut outputs, .. } = self.layout.blocks.get(number)?.clone();
-        // The box's own lower border moves down with its pins.
-        let mut floor = so_far.bottom.max(place.line);
+        let BlockPlace { place, borders, mut outputs, .. } = self.layout.blocks.get(index)?.clone();
+        let mut floor = below;
         let first = block.outputs.iter().map(|(pin, _)| *pin as usize).min().unwrap_or(0);
         for pin in first..outputs.len() {
             let side = block.outputs.iter().find(|(number, _)| *number as usize == pin);
@@ -308,11 +307,11 @@ impl Planner<'_> {
         }
         let last = outputs.iter().copied().max().unwrap_or(place.line);
         let bottom = borders.1.max(last + 1);
-        if let Some(placed) = self.layout.blocks.get_mut(number) {
+        if let Some(placed) = self.layout.blocks.get_mut(index) {
             placed.borders.1 = bottom;
             placed.outputs = outputs;
         }
-        Some(Placed { end: so_far.end, bottom: floor.max(bottom) })
+        Some(floor.max(bottom))
     }
 }
 

@@ -119,6 +119,14 @@ impl Drawing {
         places.into_iter().map(|(place, _)| place.element).collect()
     }
 
+    /// The line of [`Drawing::paint`], from 0, on which the power line runs through an element.
+    pub fn line_of(&self, element: u32) -> Option<usize> {
+        let Layout { leaves, ends, blocks, .. } = &self.layout;
+        let mut places = leaves.iter().chain(ends).chain(blocks.iter().map(|block| &block.place));
+        let place = places.find(|place| place.element == element)?;
+        usize::try_from(place.line - self.first_line()).ok()
+    }
+
     fn symbol(&self, place: &Place) -> &Symbol {
         &self.symbols[place.element as usize]
     }
@@ -192,7 +200,7 @@ impl Drawing {
     /// Nothing if two parts would fill the same cell.
     pub fn paint(&self, rail: u32) -> Option<Vec<String>> {
         let rail = (rail as usize).max(self.rail_min);
-        let top = self.top_line();
+        let top = self.first_line();
         let lines = (self.layout.bottom - top + 1).max(1) as usize;
         if lines.saturating_mul(rail) > Drawing::CELLS_MAX {
             return None;
@@ -200,14 +208,11 @@ impl Drawing {
         let mut canvas = Canvas::new(lines, rail + 1, self.kind == StyleKind::Unicode);
         let mut painter = Painter { drawing: self, canvas: &mut canvas, top, rail };
         painter.paint()?;
-        let mut text = canvas.into_lines();
-        // Lines for names that the first row does not have would be read as the end of a rung.
-        let blank = |line: &String| line.chars().all(|character| matches!(character, '|' | '│' | ' '));
-        let skipped = text.iter().take_while(|line| blank(line)).count();
-        Some(text.split_off(skipped))
+        Some(canvas.into_lines())
     }
 
-    fn top_line(&self) -> i32 {
+    /// The first line with anything on it: an empty one would be read as the end of a rung.
+    fn first_line(&self) -> i32 {
         let above = |place: &Place| place.line - self.symbol(place).above.len() as i32;
         let symbols = self.layout.leaves.iter().chain(&self.layout.ends).map(above);
         let blocks = self.layout.blocks.iter();
@@ -293,7 +298,8 @@ impl Painter<'_> {
         for BlockPlace { place, inputs, outputs, .. } in &layout.blocks {
             let Some(figure) = &self.drawing.symbol(place).figure else { continue };
             let wired = |(pin, line): (&FigurePin, &i32)| pin.power.then_some(*line);
-            leaving.extend(figure.inputs.iter().zip(inputs).filter_map(wired).map(|line| (line, place.column)));
+            leaving
+                .extend(figure.inputs.iter().zip(inputs).filter_map(wired).map(|line| (line, place.column)));
             let lines = figure.outputs.iter().zip(outputs).filter_map(wired);
             arriving.extend(lines.map(|line| (line, place.column + 1)));
         }

@@ -59,8 +59,9 @@ pub(super) fn width(text: &str) -> usize {
 impl Symbol {
     /// The symbol of `element`, whose words stand in `source`. Nothing if a word is missing that it must have.
     pub fn of(element: &Element, source: &str, style: StyleKind) -> Option<Symbol> {
-        let words: Vec<String> =
-            (0..element.operands.len()).map(|index| element.operand_text(index, source).into_owned()).collect();
+        let words: Vec<String> = (0..element.operands.len())
+            .map(|index| element.operand_text(index, source).into_owned())
+            .collect();
         // A word of several lines has no place in a drawing, and an empty one would be read as another element.
         if words.iter().any(|word| word.is_empty() || word.contains(['\n', '\r', '\t'])) {
             return None;
@@ -188,8 +189,12 @@ fn figure(block: &Block, words: &[String], element: &Element, source: &str) -> O
         Some(instance) => vec![word(instance.of(source))?],
         None => Vec::new(),
     };
-    let mut symbol =
-        Symbol { above, body: String::new(), setting: Setting::Boxed { output: false }, figure: Some(figure) };
+    let mut symbol = Symbol {
+        above,
+        body: String::new(),
+        setting: Setting::Boxed { output: false },
+        figure: Some(figure),
+    };
     add_notes(&mut symbol, element, source);
     Some(symbol)
 }

@@ -1,9 +1,8 @@
 //! # rung-without-output
 //!
-//! Contacts that switch nothing: a line reaches the right rail without an output on its way.
-//!
-//! The condition is evaluated and thrown away. On a machine it is the output that was deleted, or the interlock
-//! that never got one; programming tools refuse the rung.
+//! The contacts of a rung lead to no output, or a line of it reaches the right rail without an output on its way. The
+//! PLC would evaluate the condition and do nothing with it, so the maker's tools refuse such a rung; mostly the output
+//! was forgotten or deleted, or the instruction that follows stands without contacts, as `END` and `FEND` do.
 //!
 //! ```lad
 //! |   X0        X1                               |
@@ -12,23 +11,66 @@
 //! ```
 //!
 //! ```lad
-//! |   X0        X1                           Y0  |
-//! +---| |-------| |--------------------------( )-+
+//! |   X0      X1                             Y0  |
+//! +---| |-----| |----------------------------( )-+
+//! ```
+//!
+//! ```fx
+//! LD X0
+//! AND X1
+//! ^^^^^^
+//! END
+//! ```
+//!
+//! ```fx
+//! LD X0
+//! AND X1
+//! OUT Y0
+//! END
 //! ```
 
 use super::Drawn;
-use crate::check::{Rule, Run};
+use crate::check::order::rung::{Finding, findings};
+use crate::check::{ChunkContext, Rule, Run};
+use crate::document::Tree;
 use crate::ladder::reduce::bypasses;
 use crate::ladder::{ArcId, Element, Graph, VertexId, VertexKind};
-use crate::text::{Diagnostic, Message, Severity};
+use crate::text::{Diagnostic, Message, Severity, Span};
 
 pub(super) const RULE: Rule = Rule {
     code: "rung-without-output",
     severity: Severity::Error,
-    run: Run::Chunk(|context, found| super::run(find, context, found)),
+    run: Run::Chunk(check),
     source: include_str!("rung_without_output.rs"),
 };
 
+fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
+    match context.chunk.tree() {
+        Tree::Fx(_) => of_list(context, found),
+        Tree::Ladder(_) => super::run(find, context, found),
+        Tree::Iec(_) => {}
+    }
+}
+
+/// Contacts of an instruction list. The last of them is marked: an output is missing right behind it.
+fn of_list(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
+    let Some((tree, findings)) = findings(context) else { return };
+    let text = context.chunk.text();
+    for finding in findings {
+        let Finding::NoOutput { first, last, before } = finding else { continue };
+        let (first, last) = (tree.lines[first].span, tree.lines[last].span);
+        let before = before.map_or(Span::at(0), |line| tree.lines[line].span);
+        let key = if before.is_empty() { "rung-without-output.list" } else { "rung-without-output.before" };
+        let message = Message::new(key).with("last", last.of(text)).with("before", before.of(text));
+        let mut diagnostic = Diagnostic::new(RULE.code, last, message);
+        if first != last {
+            diagnostic = diagnostic.related(first, Message::new("rung-without-output.first"));
+        }
+        found.push(diagnostic);
+    }
+}
+
+/// Lines of a drawing, marked at the element after which an output is missing.
 pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
     for rung in drawn.sound_rungs() {
         let graph = &rung.graph;
@@ -38,7 +80,7 @@ pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
             continue;
         }
         for element in elements {
-            let message = Message::new("rung-without-output.found").with("element", drawn.name(element));
+            let message = Message::new("rung-without-output.drawn").with("element", drawn.name(element));
             found.push(Diagnostic::new(RULE.code, element.span, message));
         }
     }
