@@ -42,7 +42,9 @@ pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
     for rung in drawn.sound_rungs() {
         let graph = &rung.graph;
         for id in unconditional(graph) {
-            let Some(element) = graph.element_at(id).filter(|element| needs_condition(element)) else { continue };
+            let Some(element) = graph.element_at(id).filter(|element| needs_condition(element)) else {
+                continue;
+            };
             let message = Message::new("coil-at-left-rail.found").with("element", drawn.name(element));
             let mut diagnostic = Diagnostic::new(RULE.code, element.span, message);
             if drawn.can_try() {
@@ -105,7 +107,9 @@ fn with_contact(drawn: &Drawn<'_>, graph: &Graph, id: VertexId) -> Option<Vec<Te
     let (row, first) = *cells.first()?;
     if element.place == OperandPlace::Inside || row == 0 {
         let contact = format!("[{ALWAYS_ON}]");
-        return (cells.len() > contact.len() + 1).then(|| picture.draw(&put((row, first + 1), &contact))).flatten();
+        return (cells.len() > contact.len() + 1)
+            .then(|| picture.draw(&put((row, first + 1), &contact)))
+            .flatten();
     }
     // As the formatter draws it: three cells of wire, the contact, its name centred above.
     const LEAD: usize = 3;

@@ -45,7 +45,8 @@ pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
                 .with("contact", drawn.name(first))
                 .with("output", drawn.name(output));
             let related = Message::new("contact-after-coil.output").with("output", drawn.name(output));
-            let mut diagnostic = Diagnostic::new(RULE.code, first.span, message).related(output.span, related);
+            let mut diagnostic =
+                Diagnostic::new(RULE.code, first.span, message).related(output.span, related);
             for other in others {
                 let message = Message::new("contact-after-coil.also").with("contact", drawn.name(other));
                 diagnostic = diagnostic.related(other.span, message);

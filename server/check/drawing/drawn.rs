@@ -68,7 +68,12 @@ impl<'a> Drawn<'a> {
     }
 
     /// Adds `edits` as a fix if the drawing is better with them: fewer mistakes, and none of another kind.
-    pub(super) fn try_fix(&self, found: &mut Diagnostic, title: Message, edits: Option<Vec<TextEdit>>) -> bool {
+    pub(super) fn try_fix(
+        &self,
+        found: &mut Diagnostic,
+        title: Message,
+        edits: Option<Vec<TextEdit>>,
+    ) -> bool {
         let Some(edits) = edits.filter(|edits| !edits.is_empty()) else { return false };
         let Some(trials) = self.trials.get().checked_sub(1) else { return false };
         self.trials.set(trials);

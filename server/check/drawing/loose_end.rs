@@ -1,8 +1,8 @@
 //! Loose ends of a chunk, and which of them are one mistake.
 
 use super::dead_end::dead_ends;
-use super::picture::{Picture, Place, Side, is_junction};
 use super::first_cell;
+use super::picture::{Picture, Place, Side, is_junction};
 use crate::ladder::{Arc, ArcId, ElementId, Graph, Rung, VertexId, VertexKind};
 use crate::text::Span;
 use rustc_hash::FxHashMap;
@@ -93,7 +93,16 @@ fn collect(rung: usize, graph: &Graph, picture: &Picture, ends: &mut Vec<End>) {
             false => (EndKind::JunctionRight, Side::Right),
         };
         let place = picture.place(span.start);
-        ends.push(End { rung, span, place, kind, sides: vec![side], element: None, arc: None, vertex: end.junction });
+        ends.push(End {
+            rung,
+            span,
+            place,
+            kind,
+            sides: vec![side],
+            element: None,
+            arc: None,
+            vertex: end.junction,
+        });
     }
 }
 
@@ -121,7 +130,8 @@ fn kind_of(graph: &Graph, arc: &Arc, lacks_left: bool, span: Span, character: ch
 
 /// Joins ends with nothing but blank cells between them, and ends beside the same blank cell: a gap is one mistake.
 fn join_facing(ends: &[End], picture: &Picture, groups: &mut Groups) {
-    let at: FxHashMap<Place, usize> = ends.iter().enumerate().map(|(number, end)| (end.place, number)).collect();
+    let at: FxHashMap<Place, usize> =
+        ends.iter().enumerate().map(|(number, end)| (end.place, number)).collect();
     let mut beside: FxHashMap<Place, usize> = FxHashMap::default();
     for (number, end) in ends.iter().enumerate() {
         if let Some(other) = at.get(&end.place) {

@@ -33,10 +33,10 @@
 //!             ^
 //! ```
 
+use super::Drawn;
 use super::loose_end::{End, EndKind, mistakes};
 use super::picture::{Picture, Place, Side, is_bar, is_box_drawing, is_junction, is_wire};
 use super::prune::Prune;
-use super::Drawn;
 use crate::check::{Rule, Run};
 use crate::ladder::{Element, VertexKind};
 use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
@@ -61,8 +61,7 @@ pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
         return;
     }
     let picture = Picture::new(drawn.text);
-    let broken: FxHashSet<Place> =
-        drawn.breaking().iter().flat_map(|span| around(&picture, *span)).collect();
+    let broken: FxHashSet<Place> = drawn.breaking().iter().flat_map(|span| around(&picture, *span)).collect();
     for mistake in mistakes(rungs, &picture) {
         // What ends at a cell that could not be read is no mistake of its own.
         if mistake.iter().any(|end| broken.contains(&end.place)) {
@@ -87,7 +86,9 @@ fn around(picture: &Picture, span: Span) -> Vec<Place> {
     let row = cells.first().map_or(0, |cell| cell.0);
     let first = cells.first().map_or(0, |cell| cell.1.saturating_sub(1));
     let last = cells.last().map_or(0, |cell| cell.1 + 1);
-    (row.saturating_sub(1)..=row + 1).flat_map(|row| (first..=last).map(move |column| (row, column))).collect()
+    (row.saturating_sub(1)..=row + 1)
+        .flat_map(|row| (first..=last).map(move |column| (row, column)))
+        .collect()
 }
 
 fn message(drawn: &Drawn<'_>, end: &End) -> Message {
@@ -100,7 +101,9 @@ fn message(drawn: &Drawn<'_>, end: &End) -> Message {
         (EndKind::WireLeft, None) => Message::new("open-circuit.wire-left"),
         (EndKind::ElementRight, _) => Message::new("open-circuit.element-right"),
         (EndKind::ElementLeft, _) => Message::new("open-circuit.element-left"),
-        (EndKind::Vertical, _) if end.sides.first() == Some(&Side::Up) => Message::new("open-circuit.vertical-top"),
+        (EndKind::Vertical, _) if end.sides.first() == Some(&Side::Up) => {
+            Message::new("open-circuit.vertical-top")
+        }
         (EndKind::Vertical, _) => Message::new("open-circuit.vertical-bottom"),
         (EndKind::Corner, _) => Message::new("open-circuit.corner"),
         (EndKind::JunctionLeft, _) => Message::new("open-circuit.junction-left"),
@@ -141,7 +144,8 @@ fn common_cell(picture: &Picture, mistake: &[End]) -> Option<Vec<(Place, char)>>
     let [first, second, ..] = mistake else { return None };
     let missing = |end: &End| end.sides.iter().filter_map(|side| side.of(end.place)).collect::<Vec<_>>();
     let others = missing(second);
-    let common = missing(first).into_iter().find(|place| others.contains(place) && picture.at(*place) == ' ')?;
+    let common =
+        missing(first).into_iter().find(|place| others.contains(place) && picture.at(*place) == ' ')?;
     let upright = |end: &End| end.place.1 == common.1;
     let mark = match (upright(first), upright(second), mistake.len()) {
         (true, true, 2) => '|',

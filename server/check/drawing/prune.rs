@@ -60,7 +60,8 @@ impl<'a> Prune<'a> {
                 self.junction(junction);
                 continue;
             };
-            let places = graph.cells(graph.vertex(junction).cells).iter().flat_map(|c| self.picture.places(*c));
+            let places =
+                graph.cells(graph.vertex(junction).cells).iter().flat_map(|c| self.picture.places(*c));
             self.cells.extend(places.filter(|(row, _)| row < first || last < row));
         }
     }

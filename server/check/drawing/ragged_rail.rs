@@ -35,7 +35,8 @@ pub(super) const RULE: Rule = Rule {
 };
 
 fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
-    let rails: Vec<Spanned<u32>> = drawn.sound_rungs().flat_map(|rung| rung.right_rail.iter().copied()).collect();
+    let rails: Vec<Spanned<u32>> =
+        drawn.sound_rungs().flat_map(|rung| rung.right_rail.iter().copied()).collect();
     let Some(column) = usual_column(&rails) else { return };
     let mut odd = rails.iter().filter(|rail| rail.value != column);
     let Some(first) = odd.next() else { return };

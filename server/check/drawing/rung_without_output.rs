@@ -107,7 +107,9 @@ fn idle_from_left(graph: &Graph) -> Vec<bool> {
         if std::mem::replace(&mut idle[vertex.0 as usize], true) {
             continue;
         }
-        stack.extend(graph.outgoing(vertex).map(|arc| graph.arc(arc).head).filter(|head| passes(graph, *head)));
+        stack.extend(
+            graph.outgoing(vertex).map(|arc| graph.arc(arc).head).filter(|head| passes(graph, *head)),
+        );
     }
     idle
 }

@@ -73,7 +73,9 @@ pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
 fn span(graph: &Graph, bypass: &Bypass) -> Span {
     let arcs = bypass.arcs.iter().flat_map(|arc| graph.cells(graph.arc(*arc).cells));
     let fallback = || bypass.arcs.first().map_or(Graph::LEFT_RAIL, |arc| graph.arc(*arc).head);
-    arcs.copied().max_by_key(|cells| (cells.len(), cells.start)).unwrap_or_else(|| first_cell(graph, fallback()))
+    arcs.copied()
+        .max_by_key(|cells| (cells.len(), cells.start))
+        .unwrap_or_else(|| first_cell(graph, fallback()))
 }
 
 /// The names of the elements, the first few of many.

@@ -46,7 +46,9 @@ pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
         }
         for upper in uppers {
             let message = match upper.element {
-                Some(id) => Message::new("upper-parallel.element").with("element", drawn.name(graph.element(id))),
+                Some(id) => {
+                    Message::new("upper-parallel.element").with("element", drawn.name(graph.element(id)))
+                }
                 None => Message::new("upper-parallel.branch"),
             };
             let mut diagnostic = Diagnostic::new(RULE.code, first_cell(graph, upper.junction), message);
