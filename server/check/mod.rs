@@ -14,6 +14,8 @@ pub use engine::{Severities, all, program, realtime, sorted};
 
 mod statements;
 
+mod iec;
+
 mod declarations;
 mod drawing;
 mod order;

@@ -27,6 +27,8 @@ pub struct Scopes {
     pub types: FxHashMap<SmolStr, DeclaredType>,
     /// Whether there is a CONFIGURATION.
     pub has_configuration: bool,
+    /// The number of the first POU with each folded name.
+    pou_numbers: FxHashMap<SmolStr, usize>,
 }
 
 /// A program organisation unit.
@@ -103,6 +105,13 @@ impl Chunk {
     }
 }
 
+impl Pou {
+    /// Its variable with the folded name `name`.
+    pub fn variable(&self, name: &str) -> Option<&Variable> {
+        self.variables.get(*self.index.get(name)?)
+    }
+}
+
 impl Scopes {
     pub(super) fn of(document: &Document) -> Scopes {
         let mut scopes = Scopes::default();
@@ -119,7 +128,17 @@ impl Scopes {
 
     /// The POU called `name`, letter case aside.
     pub fn pou_named(&self, name: &str) -> Option<&Pou> {
-        self.pous.iter().find(|pou| pou.name.eq_ignore_ascii_case(name))
+        self.pous.get(*self.pou_numbers.get(&folded(name))?)
+    }
+
+    /// Whether `name` is a declared data type.
+    pub fn is_type(&self, name: &str) -> bool {
+        self.types.contains_key(&folded(name))
+    }
+
+    /// The folded names of the data types, in no order.
+    pub fn type_names(&self) -> impl Iterator<Item = &str> {
+        self.types.keys().map(SmolStr::as_str)
     }
 
     /// The variable called `name` in POU number `pou`, or else the global one.
@@ -214,13 +233,17 @@ impl Scopes {
     fn add(&mut self, text: &str, tree: &IecTree) {
         for item in &tree.items {
             match item.kind {
-                ItemKind::Pou { kind, name, result } => self.pous.push(Pou {
-                    name: name.map_or(SmolStr::default(), |span| SmolStr::from(span.of(text))),
-                    kind,
-                    result: result.map(|id| declared_type(text, tree, id)),
-                    variables: Vec::new(),
-                    index: FxHashMap::default(),
-                }),
+                ItemKind::Pou { kind, name, result } => {
+                    let name = name.map_or(SmolStr::default(), |span| SmolStr::from(span.of(text)));
+                    self.pou_numbers.entry(folded(&name)).or_insert(self.pous.len());
+                    self.pous.push(Pou {
+                        name,
+                        kind,
+                        result: result.map(|id| declared_type(text, tree, id)),
+                        variables: Vec::new(),
+                        index: FxHashMap::default(),
+                    });
+                }
                 ItemKind::Section { kind, constant, declarations, .. } => {
                     for declaration in declarations.of(&tree.declarations) {
                         let declared = declaration
@@ -268,6 +291,13 @@ impl Scopes {
     }
 }
 
+impl DeclaredType {
+    /// The type that record `id` of `tree`, which was read from `text`, declares.
+    pub fn of(text: &str, tree: &IecTree, id: TypeId) -> DeclaredType {
+        declared_type(text, tree, id)
+    }
+}
+
 fn declared_type(text: &str, tree: &IecTree, id: TypeId) -> DeclaredType {
     let written = tree.type_spec(id);
     match written.value {
@@ -291,7 +321,6 @@ fn declared_type(text: &str, tree: &IecTree, id: TypeId) -> DeclaredType {
             });
             DeclaredType::Structure(fields.collect())
         }
-        TypeSpec::Reference { .. } => DeclaredType::Unknown,
     }
 }
 

@@ -30,6 +30,15 @@ pub(super) fn range_name(range: &DeviceRange) -> String {
     if first == last { first.to_string() } else { format!("{first}–{last}") }
 }
 
+/// The kind and what is special about the range: `auxiliary relay, latched`.
+pub(super) fn purpose(range: &DeviceRange, language: Language) -> String {
+    let kind = kind_name(range.kind, language);
+    // Purposes end with the short word for the kind, and some consist of nothing else.
+    let last_word = kind.rsplit(' ').next().unwrap_or("");
+    let special = range.purpose.strip_suffix(last_word).unwrap_or(range.purpose).trim();
+    if special.is_empty() || kind.starts_with(special) { kind } else { format!("{kind}, {special}") }
+}
+
 /// What `device` is on `target`: kind, purpose, range, and the meaning of a special one. Markdown.
 pub(super) fn describe(device: Device, target: &Target, language: Language) -> String {
     let kind = kind_name(device.kind, language);
@@ -39,8 +48,8 @@ pub(super) fn describe(device: Device, target: &Target, language: Language) -> S
         let message = Message::new(key).with("name", device).with("kind", kind).with("target", target.title);
         return message.with("ranges", ranges.join(", ")).render(language);
     };
-    let message = Message::new("hover.device").with("name", device).with("kind", kind);
-    let mut text = message.with("purpose", range.purpose).with("range", range_name(range)).render(language);
+    let message = Message::new("hover.device").with("name", device).with("kind", purpose(range, language));
+    let mut text = message.with("range", range_name(range)).render(language);
     let more = match device.special_on(target) {
         Some(special) if special.writable => {
             Some(Message::new("hover.special-written").with("meaning", special.meaning))
@@ -75,8 +84,10 @@ pub(super) fn duration(milliseconds: u64) -> String {
     }
     let fraction = format!(".{rest:03}");
     let fraction = fraction.trim_end_matches('0').trim_end_matches('.');
-    let with_unit = |count: u64, unit: &str| if count > 0 { format!("{count} {unit}") } else { String::new() };
-    let tail = if seconds % 60 > 0 || rest > 0 { format!("{}{fraction} s", seconds % 60) } else { String::new() };
+    let with_unit =
+        |count: u64, unit: &str| if count > 0 { format!("{count} {unit}") } else { String::new() };
+    let tail =
+        if seconds % 60 > 0 || rest > 0 { format!("{}{fraction} s", seconds % 60) } else { String::new() };
     let parts = [with_unit(seconds / 3600, "h"), with_unit(seconds / 60 % 60, "min"), tail];
     parts.iter().filter(|part| !part.is_empty()).map(String::as_str).collect::<Vec<_>>().join(" ")
 }
@@ -84,14 +95,17 @@ pub(super) fn duration(milliseconds: u64) -> String {
 /// The preset that `chunk` gives to the timer or counter `device`.
 pub(super) fn preset_of(chunk: &Chunk, device: Device) -> Option<Spanned<Operand>> {
     chunk.operations().find_map(|operation| match operation.operands {
-        [driven, preset, ..] if driven.value == Operand::Device(device) && is_preset(&operation) => Some(*preset),
+        [driven, preset, ..] if driven.value == Operand::Device(device) && is_preset(&operation) => {
+            Some(*preset)
+        }
         _ => None,
     })
 }
 
 /// Whether the second operand is the preset of the timer or counter that is the first.
 pub(super) fn is_preset(operation: &crate::document::Operation<'_>) -> bool {
-    let optional = operation.form.and_then(|form| form.instruction.operands.get(1)).is_some_and(|spec| spec.optional);
+    let optional =
+        operation.form.and_then(|form| form.instruction.operands.get(1)).is_some_and(|spec| spec.optional);
     let driven = operation.operands.first().map(|operand| operand.value);
     let counts = |device: Device| matches!(device.kind, DeviceKind::T | DeviceKind::C);
     optional && matches!(driven, Some(Operand::Device(device)) if counts(device))

@@ -55,9 +55,10 @@ impl View<'_> {
         let rungs = tree.rungs.iter().filter(|rung| rung.span.touches(inside));
         for element in rungs.flat_map(|rung| &rung.graph.elements) {
             if let Some(operand) = element.operands.iter().find(|operand| operand.span.touches(inside)) {
-                let operation = self.chunk.operations().find(|operation| {
-                    std::ptr::eq(operation.operands.as_ptr(), element.operands.as_ptr())
-                });
+                let operation = self
+                    .chunk
+                    .operations()
+                    .find(|operation| std::ptr::eq(operation.operands.as_ptr(), element.operands.as_ptr()));
                 return self.operand(operand, operation.as_ref());
             }
             if let Some(answer) = self.element(element, inside) {
@@ -174,9 +175,10 @@ impl View<'_> {
             (None, Constant::Real(value), _) => {
                 return format!("`{word}` = {value}");
             }
-            (None, _, Some(count)) => Message::new("hover.constant")
-                .with("decimal", format!("K{count}"))
-                .with("hexadecimal", hexadecimal(count)),
+            (None, Constant::Hexadecimal(_), Some(count)) => {
+                Message::new("hover.constant").with("value", format!("K{count}"))
+            }
+            (None, _, Some(count)) => Message::new("hover.constant").with("value", hexadecimal(count)),
             (None, _, None) => return format!("`{word}`"),
         };
         message.with("word", word).render(self.language)
@@ -184,14 +186,19 @@ impl View<'_> {
 
     fn literal(&self, word: &str, value: LiteralValue) -> Option<String> {
         let message = match value {
-            LiteralValue::Integer(value) => Message::new("hover.constant").with("decimal", value).with(
-                "hexadecimal",
-                if value < 0 { format!("-16#{:X}", value.unsigned_abs()) } else { format!("16#{value:X}") },
-            ),
+            LiteralValue::Integer(value) => {
+                let is_decimal =
+                    word.rsplit_once('#').is_none_or(|(prefix, _)| !prefix.ends_with(['2', '8', '6']));
+                let sign = if value < 0 { "-" } else { "" };
+                let hexadecimal = format!("{sign}16#{:X}", value.unsigned_abs());
+                let other = if is_decimal { hexadecimal } else { value.to_string() };
+                Message::new("hover.constant").with("value", other)
+            }
             LiteralValue::Time(nanoseconds) => {
                 let milliseconds = nanoseconds.unsigned_abs() / 1_000_000;
                 let sign = if nanoseconds < 0 { "-" } else { "" };
-                Message::new("hover.literal-time").with("time", format!("{sign}{}", devices::duration(milliseconds)))
+                Message::new("hover.literal-time")
+                    .with("time", format!("{sign}{}", devices::duration(milliseconds)))
             }
             _ => return None,
         };
@@ -228,8 +235,10 @@ impl View<'_> {
     fn name(&self, around: Span) -> Answer {
         let named = names::at(self.document, self.offset).or_else(|| {
             let mentions = self.chunk.mentions().iter();
-            let inner = mentions.filter(|mention| around.start <= mention.span.start && !mention.span.is_empty());
-            let mention = inner.filter(|mention| mention.span.end <= around.end).min_by_key(|mention| mention.span)?;
+            let inner =
+                mentions.filter(|mention| around.start <= mention.span.start && !mention.span.is_empty());
+            let mention =
+                inner.filter(|mention| mention.span.end <= around.end).min_by_key(|mention| mention.span)?;
             names::at(self.document, self.start + mention.span.start as usize)
         })?;
         let start = self.start as u32;
@@ -265,7 +274,12 @@ impl View<'_> {
                 preset = Some(self.preset(*device, found.value, found.span.of(place.chunk.text())));
             }
         });
-        [head, preset.unwrap_or_default(), uses].iter().filter(|part| !part.is_empty()).cloned().collect::<Vec<_>>().join("\n\n")
+        [head, preset.unwrap_or_default(), uses]
+            .iter()
+            .filter(|part| !part.is_empty())
+            .cloned()
+            .collect::<Vec<_>>()
+            .join("\n\n")
     }
 
     fn device(&self, device: Device, count: u16) -> String {
@@ -273,7 +287,8 @@ impl View<'_> {
         if count > 1 {
             let last = Device::new(device.kind, device.number.saturating_add(u32::from(count) - 1));
             let word = format!("{device} × {count}");
-            let message = Message::new("hover.covers").with("word", word).with("first", device).with("last", last);
+            let message =
+                Message::new("hover.covers").with("word", word).with("first", device).with("last", last);
             text += &format!("\n\n{}", message.render(self.language));
         }
         text
@@ -283,7 +298,8 @@ impl View<'_> {
         let target = self.document.target();
         let message = match (operand, devices::timer_unit(device, target)) {
             (Operand::Constant { value, index: None }, Some(_)) => {
-                let time = devices::integer(value).and_then(|count| devices::timer_time(device, count, target));
+                let time =
+                    devices::integer(value).and_then(|count| devices::timer_time(device, count, target));
                 Message::new("hover.preset").with("time", time.unwrap_or_else(|| "?".to_string()))
             }
             (_, Some(unit)) => Message::new("hover.preset-register").with("unit", unit),

@@ -37,7 +37,11 @@ fn of_chunk(chunk: &Chunk, start: usize, target: &Target, language: Language, hi
                 let count = devices::integer(value);
                 if let Some(time) = count.and_then(|count| devices::timer_time(device, count, target)) {
                     let tooltip = Message::new("hint.preset").with("device", device).with("unit", unit);
-                    hints.push(InlayHint { offset, label: format!("= {time}"), tooltip: tooltip.render(language) });
+                    hints.push(InlayHint {
+                        offset,
+                        label: format!("= {time}"),
+                        tooltip: tooltip.render(language),
+                    });
                 }
             } else if let Constant::Hexadecimal(bits) = value
                 && bits > 9

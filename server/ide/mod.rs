@@ -11,6 +11,8 @@ pub use answer::{
 
 mod names;
 
+mod members;
+
 mod pages;
 pub use pages::{block_page, function_page, instruction_page, operator_page};
 

@@ -15,7 +15,12 @@ struct Lines {
 }
 
 /// The uses of `thing` as a Markdown list; `see` is called for every place.
-pub(super) fn of(document: &Document, thing: &Thing, language: Language, mut see: impl FnMut(&Named<'_>)) -> String {
+pub(super) fn of(
+    document: &Document,
+    thing: &Thing,
+    language: Language,
+    mut see: impl FnMut(&Named<'_>),
+) -> String {
     let [mut declared, mut jumps, mut writes, mut reads] = <[Lines; 4]>::default();
     names::visit(document, thing, |place| {
         see(&place);
@@ -41,8 +46,9 @@ pub(super) fn of(document: &Document, thing: &Thing, language: Language, mut see
         (Message::new("hover.jumps"), jumps),
     ];
     let rows = parts.into_iter().filter(|(_, lines)| !lines.shown.is_empty());
-    let rows: Vec<String> =
-        rows.map(|(title, lines)| format!("- {}", title.with("lines", lines.words(language)).render(language))).collect();
+    let rows: Vec<String> = rows
+        .map(|(title, lines)| format!("- {}", title.with("lines", lines.words(language)).render(language)))
+        .collect();
     rows.join("\n")
 }
 

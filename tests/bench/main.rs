@@ -93,10 +93,13 @@ fn keystrokes(notation: &str, lines: usize, calibration: Duration) {
     });
     typing.report(&name("keystroke to diagnostics"), calibration);
 
-    for (what, method) in
-        [("hover", "textDocument/hover"), ("definition", "textDocument/definition"), ("completion", "textDocument/completion")]
-    {
-        Figures::of(100, |_| timed(&mut client, method, at(&uri, line, column))).report(&name(what), calibration);
+    for (what, method) in [
+        ("hover", "textDocument/hover"),
+        ("definition", "textDocument/definition"),
+        ("completion", "textDocument/completion"),
+    ] {
+        Figures::of(100, |_| timed(&mut client, method, at(&uri, line, column)))
+            .report(&name(what), calibration);
     }
     let whole = json!({"textDocument": {"uri": uri}});
     let tokens = Figures::of(10, |_| timed(&mut client, "textDocument/semanticTokens/full", whole.clone()));

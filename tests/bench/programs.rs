@@ -38,7 +38,10 @@ fn il_rung(number: usize, marked: bool) -> String {
     let input = if marked { "X10".to_string() } else { format!("X{:o}", number % 128) };
     match number % 4 {
         0 => format!("// Rung {number}: seal-in\nLD {input}\nOR M{relay}\nANI X1\nOUT M{relay}\n"),
-        1 => format!("LD {input}\nLD M3\nOR M4\nANB\nMPS\nAND M5\nOUT M{relay}\nMPP\nANI M6\nSET S{}\n", number % 900),
+        1 => format!(
+            "LD {input}\nLD M3\nOR M4\nANB\nMPS\nAND M5\nOUT M{relay}\nMPP\nANI M6\nSET S{}\n",
+            number % 900
+        ),
         2 => format!("LD {input}\nOUT T{} K{}\n", number % 200, number % 1000 + 1),
         _ => format!("LD> D{} K{}\nAND {input}\nMOV K{relay} D{relay}\n", number % 500, number % 1000),
     }

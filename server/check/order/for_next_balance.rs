@@ -45,9 +45,8 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
         match statement.flow() {
             Some(Flow::LoopBegin) => open.push(statement),
             Some(Flow::LoopEnd) => {
-                if open.pop().is_none() {
-                    found.push(without_begin(&statement));
-                }
+                let begin = open.pop();
+                found.extend(begin.is_none().then(|| without_begin(&statement)));
             }
             Some(Flow::MainEnd | Flow::ProgramEnd | Flow::SubroutineEnd | Flow::InterruptEnd) => {
                 found.extend(open.drain(..).map(|begin| without_end(&begin, Some(&statement))));

@@ -6,6 +6,8 @@ pub(super) mod rung;
 
 mod no_current_result;
 
+mod result_type_mismatch;
+
 mod block_stack;
 
 mod branch_stack;
@@ -37,6 +39,7 @@ mod code_after_end;
 /// The rules of this group.
 pub(super) const RULES: &[&Rule] = &[
     &no_current_result::RULE,
+    &result_type_mismatch::RULE,
     &block_stack::RULE,
     &branch_stack::RULE,
     &nesting_too_deep::RULE,

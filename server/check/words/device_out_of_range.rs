@@ -17,6 +17,12 @@
 //! MOV K4M1530 D0
 //! END
 //! ```
+//!
+//! ```lad fx1s
+//! |  X0                M600 |
+//!                      ^^^^
+//! +--| |---------------( )--+
+//! ```
 
 use crate::check::{ChunkContext, Rule, Run};
 use crate::document::{Symbol, Use};

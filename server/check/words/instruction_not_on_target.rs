@@ -16,6 +16,12 @@
 //! SORT D0 K10 K2 D100 K1
 //! END
 //! ```
+//!
+//! ```lad fx1s
+//! |  X0                     |
+//! +--| |---[FLT D0 D2]------+
+//!           ^^^
+//! ```
 
 use crate::check::{ChunkContext, Rule, Run};
 use crate::target::Target;

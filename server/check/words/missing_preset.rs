@@ -20,6 +20,12 @@
 //! OUT C0 D10
 //! END
 //! ```
+//!
+//! ```lad
+//! |  X0                T5   |
+//!                      ^^
+//! +--| |---------------( )--+
+//! ```
 
 use crate::check::{ChunkContext, Rule, Run};
 use crate::document::Tree;

@@ -26,7 +26,11 @@ mod malformed_literal;
 
 mod unclosed_comment;
 
+mod unclosed_parenthesis;
+
 mod syntax_error;
+
+mod lenient_form;
 
 mod text_too_large;
 
@@ -44,6 +48,8 @@ pub(super) const RULES: &[&Rule] = &[
     &write_to_input::RULE,
     &malformed_literal::RULE,
     &unclosed_comment::RULE,
+    &unclosed_parenthesis::RULE,
     &syntax_error::RULE,
+    &lenient_form::RULE,
     &text_too_large::RULE,
 ];

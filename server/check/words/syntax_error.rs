@@ -20,6 +20,14 @@
 //! MOV K1,D0
 //! END
 //! ```
+//!
+//! ```iec
+//! PROGRAM Main
+//! VAR a : BOOL; END_VAR
+//! LD a b
+//!      ^
+//! END_PROGRAM
+//! ```
 
 use crate::check::{Rule, Run};
 use crate::text::Severity;

@@ -15,6 +15,13 @@
 //! OUT Y0 (* the motor *)
 //! END
 //! ```
+//!
+//! ```iec
+//! PROGRAM Main
+//! LD %IX0.0 (* the start button
+//!           ^^
+//! END_PROGRAM
+//! ```
 
 use crate::check::{Rule, Run};
 use crate::text::Severity;

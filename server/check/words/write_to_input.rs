@@ -11,7 +11,7 @@
 //! OUT X1
 //!     ^^
 //! MOV K5 K2X10
-//!        ^^^^^
+//!          ^^^
 //! END
 //! ```
 //!
@@ -20,6 +20,36 @@
 //! OUT Y1
 //! MOV K5 K2Y10
 //! END
+//! ```
+//!
+//! ```lad
+//! |  X0            X1  |
+//!                  ^^
+//! +--| |-----------( )-+
+//! |                    |
+//! ```
+//!
+//! In IEC programs the same goes for `%I` addresses:
+//!
+//! ```iec
+//! PROGRAM Main
+//! LD %IX0.0
+//! ST %IX0.1
+//!    ^^^^^^
+//! END_PROGRAM
+//! ```
+//!
+//! and for variables that lie there:
+//!
+//! ```iec
+//! PROGRAM Main
+//! VAR
+//!     Start AT %IX0.0 : BOOL;
+//! END_VAR
+//!     LD TRUE
+//!     S Start
+//!       ^^^^^
+//! END_PROGRAM
 //! ```
 
 use crate::check::{ChunkContext, Rule, Run};
@@ -48,6 +78,13 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
             }
             Symbol::Direct(address) if address.location == Location::Input => {
                 found.push(diagnostic("write-to-input.address"));
+            }
+            Symbol::Variable(name) => {
+                let variable = context.scopes.variable(context.pou, name);
+                let address = variable.and_then(|variable| variable.address);
+                if address.is_some_and(|address| address.location == Location::Input) {
+                    found.push(diagnostic("write-to-input.located"));
+                }
             }
             _ => {}
         }

@@ -18,7 +18,9 @@ pub fn describe(element: &Element, chunk: &str, language: Language) -> Option<St
             .with("operator", sign(*operator))
             .with("right", operand(1)),
         ElementKind::Invert => Message::new("element.invert"),
-        ElementKind::Coil(kind) => coil(*kind, element.device().map(|device| device.kind)).with("name", operand(0)),
+        ElementKind::Coil(kind) => {
+            coil(*kind, element.device().map(|device| device.kind)).with("name", operand(0))
+        }
         ElementKind::Jump(label) => Message::new("element.jump").with("name", label.of(chunk)),
         ElementKind::Return => Message::new("element.return"),
         ElementKind::ConnectorOut(name) => Message::new("element.connector-out").with("name", name.of(chunk)),

@@ -1,0 +1,23 @@
+//! What the rules about IEC 61131-3 share: the types of operands, what can be called with which parameters, and the
+//! walk that follows the current result.
+
+mod view;
+pub(super) use view::{Place, Root, ValueType, View, folded, views};
+
+mod callee;
+pub(super) use callee::{Callee, Expected, Flow, Pin};
+
+mod fit;
+pub(super) use fit::{Fit, fit};
+
+mod current_result;
+pub(super) use current_result::follow;
+
+mod words;
+pub(super) use words::{misplaced_words, operand_counts, unknown_instructions, unreadable_operands};
+
+mod initial;
+pub(super) use initial::initial_values;
+
+mod arguments;
+pub(super) use arguments::out_of_range;
