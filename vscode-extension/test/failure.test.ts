@@ -1,16 +1,21 @@
 import assert from 'node:assert/strict';
-import { chmodSync, mkdtempSync, writeFileSync } from 'node:fs';
+import { chmodSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { test } from 'node:test';
+import { after, test } from 'node:test';
 import { checkSummary } from '../src/checkResult';
 import { CRASH_WINDOW_MS, CrashPolicy } from '../src/crashPolicy';
 import { brokenServerMessage, missingServerMessage } from '../src/failure';
 import { failureReason, parseVersion, probeServer } from '../src/probe';
 import { targetChoices } from '../src/targets';
 
+const folder = mkdtempSync(join(tmpdir(), 'rungwise-unit-'));
+let programs = 0;
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+/** Writes a program that behaves as `text` says. */
 function program(text: string): string {
-  const file = join(mkdtempSync(join(tmpdir(), 'rungwise-')), 'rungwise');
+  const file = join(folder, `program-${(programs += 1)}`);
   writeFileSync(file, text);
   chmodSync(file, 0o755);
   return file;

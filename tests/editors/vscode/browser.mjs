@@ -1,12 +1,11 @@
-// Opens Chromium with an empty profile.
+// Opens Chromium with an empty profile, in a folder below `home`.
 
 import { mkdtempSync } from 'node:fs';
-import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { chromium } from 'playwright-core';
 
-export function openBrowser() {
-  return chromium.launchPersistentContext(mkdtempSync(join(tmpdir(), 'rungwise-chromium-')), {
+export function openBrowser(home) {
+  return chromium.launchPersistentContext(mkdtempSync(join(home, 'chromium-')), {
     executablePath: process.env.RUNGWISE_CHROMIUM ?? '/usr/bin/chromium',
     headless: true,
     viewport: { width: 1280, height: 800 },

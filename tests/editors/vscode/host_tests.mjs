@@ -13,7 +13,7 @@ export async function runHostTests(server, workspace, home, report, artefacts) {
   const results = join(home, 'host-results.jsonl');
   const environment = { RUNGWISE_TEST_RESULTS: results, RUNGWISE_TEST_WORKSPACE: workspace };
   await server.start(workspace, { environment, testDriver: true });
-  const browser = await openBrowser();
+  const browser = await openBrowser(home);
   try {
     const page = await browser.newPage();
     const remote = (path) => `vscode-remote://${server.authority}${path}`;

@@ -36,7 +36,7 @@ await report.check('the VSIX is built and installed', () => {
 });
 mkdirSync(artefacts, { recursive: true });
 await withWorkspace('host', (workspace) => runHostTests(server, workspace, home, report, artefacts));
-await withWorkspace('page', (workspace) => runPageTests(server, workspace, report, artefacts));
+await withWorkspace('page', (workspace) => runPageTests(server, workspace, home, report, artefacts));
 const code = report.finish();
 cpSync(server.log, join(artefacts, 'code-server.log'));
 if (code === 0) {

@@ -59,7 +59,7 @@ module.exports = [
     for (const [title, snippet] of rungs) {
       const drawing = expand(snippet);
       // An FX program ends with END, a jump needs its label; a function block needs no FX end.
-      const rest = title.includes('jump') ? `FINISH:\n${end}` : /END|IEC|\(TON\)|declarations/.test(title) ? '' : end;
+      const rest = title.includes('jump') ? `P0:\n${end}` : /END|IEC|\(TON\)|declarations/.test(title) ? '' : end;
       const document = await openText('ladder', `${drawing}\n${rest}`);
       await assertNoErrors(title, document);
       await vscode.commands.executeCommand('workbench.action.revertAndCloseActiveEditor');

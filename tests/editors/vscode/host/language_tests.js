@@ -25,7 +25,7 @@ module.exports = [
     assert.match(await hoverText(list, find(list, 'MOV')), /MOV/);
     assert.match(await hoverText(list, find(list, 'T0 K50')), /T0/);
     const ladder = await open('three_mistakes.lad');
-    assert.match(await hoverText(ladder, find(ladder, 'X0')), /X0/);
+    assert.match(await hoverText(ladder, find(ladder, 'X11')), /X11/);
   }],
   ['completion offers instructions', async () => {
     const document = await openText('plc-il', '// dialect: fx\nLD X0\nMO\nEND\n');
