@@ -10,6 +10,7 @@ mod lsp;
 mod lsp_client;
 mod rules;
 mod rules_fx;
+mod rules_iec;
 mod target_fx;
 mod target_fx_applied;
 mod target_iec;
