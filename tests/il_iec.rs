@@ -1,10 +1,13 @@
 //! Instruction List of IEC 61131-3: trees, problems, chunks, mentions and formatting.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+
 use expect_test::{Expect, expect};
 use proptest::prelude::*;
 use rungwise::il::iec::{
     Condition, Declaration, Direction, FormatOptions, IecTree, InitialValue, ItemKind, ListForm, OperandId,
-    Parameter, ParameterValue, Run, TypeId, TypeSpec, ValueKind, format_chunk, parse, split,
+    Parameter, ParameterValue, Run, TypeId, TypeSpec, ValueKind, fold_case, format_chunk, parse, same_name,
+    split,
 };
 use rungwise::target::{Model, Operand, Target};
 use rungwise::text::{Language, Severity, Span};
@@ -19,13 +22,6 @@ fn check(text: &str, expected: Expect) {
     let tree = parse(text, iec());
     assert_spans_in_range(text, &tree);
     expected.assert_eq(&dump(text, &tree));
-}
-
-/// Only the problems.
-fn check_problems(text: &str, expected: Expect) {
-    let tree = parse(text, iec());
-    assert_spans_in_range(text, &tree);
-    expected.assert_eq(&problems(text, &tree));
 }
 
 fn dump(text: &str, tree: &IecTree) -> String {
@@ -914,4 +910,740 @@ fn mistakes_in_declarations() {
             error 7:1 `VAR_GLOBAL` syntax-error: VAR_GLOBAL lacks its END_VAR
         "#]],
     );
+}
+
+/// Cuts `text` and shows the chunks with a line between them.
+fn check_split(text: &str, expected: Expect) {
+    expected.assert_eq(&chunks(text).join("────\n"));
+}
+
+fn chunks(text: &str) -> Vec<&str> {
+    let mut start = 0;
+    split(text).into_iter().map(|end| &text[std::mem::replace(&mut start, end)..end]).collect()
+}
+
+#[test]
+fn chunks_of_a_file() {
+    check_split(
+        "(* head *)\nPROGRAM p\n\n// inputs\nVAR_INPUT\n  a : BOOL;\nEND_VAR\nVAR x : INT; END_VAR\nCAL T1\nLD a\nST b\n\n(* next *)\n; more\nl1:\n\nLD c\nAND(\nLD d\n)\nST e\nl2: LDN f\nST g\n(* last *)\nEND_PROGRAM\n\n(* own *)\n\nFUNCTION f : INT\nLD 1\nST f\nEND_FUNCTION\nTYPE t : INT; END_TYPE\nCONFIGURATION c\nTASK t(PRIORITY := 1);\nPROGRAM q WITH t : p;\nEND_CONFIGURATION\nLD stray\n",
+        expect![[r#"
+            (* head *)
+            PROGRAM p
+
+            ────
+            // inputs
+            VAR_INPUT
+              a : BOOL;
+            END_VAR
+            ────
+            VAR x : INT; END_VAR
+            ────
+            CAL T1
+            ────
+            LD a
+            ST b
+
+            ────
+            (* next *)
+            ; more
+            l1:
+
+            LD c
+            AND(
+            LD d
+            )
+            ST e
+            ────
+            l2: LDN f
+            ST g
+            (* last *)
+            END_PROGRAM
+
+            (* own *)
+
+            ────
+            FUNCTION f : INT
+            ────
+            LD 1
+            ST f
+            END_FUNCTION
+            ────
+            TYPE t : INT; END_TYPE
+            ────
+            CONFIGURATION c
+            TASK t(PRIORITY := 1);
+            PROGRAM q WITH t : p;
+            END_CONFIGURATION
+            ────
+            LD stray
+        "#]],
+    );
+    check_split(
+        "VAR\n a : BOOL;\nLD a\nST b\nVAR\n LD : BOOL;\nPROGRAM p\nCONFIGURATION c\nPROGRAM p\nLD x\nTYPE\nFUNCTION f\n",
+        expect![[r#"
+        VAR
+         a : BOOL;
+        ────
+        LD a
+        ST b
+        ────
+        VAR
+         LD : BOOL;
+        ────
+        PROGRAM p
+        ────
+        CONFIGURATION c
+        ────
+        PROGRAM p
+        ────
+        LD x
+        ────
+        TYPE
+        ────
+        FUNCTION f
+    "#]],
+    );
+    check_split(
+        "CAL T1(\nLD := a,\nLD b\nST c\nLD d\nAND(\nLD e\nJMP x\nLD f\nADD(\nIN1 := a,\nLD g\nST h\nLD i\n",
+        expect![[r#"
+        CAL T1(
+        LD := a,
+        ────
+        LD b
+        ST c
+        ────
+        LD d
+        AND(
+        LD e
+        JMP x
+        ────
+        LD f
+        ADD(
+        IN1 := a,
+        ────
+        LD g
+        ST h
+        ────
+        LD i
+    "#]],
+    );
+    check_split(
+        "LD a\n(* LD b\nLD c\n*) ST d\n{\nLD e\n}\nLD f\n(* LD g\nLD h\n",
+        expect![[r#"
+        LD a
+        (* LD b
+        LD c
+        *) ST d
+        ────
+        {
+        LD e
+        }
+        LD f
+        (* LD g
+        LD h
+    "#]],
+    );
+    assert_eq!(split(""), [0usize; 0]);
+    assert_eq!(split("\n\n"), [2]);
+}
+
+const WORDS: &[&str] = &[
+    "LD",
+    "LDN",
+    "ST",
+    "AND",
+    "AND(",
+    "ANDN(",
+    "ADD",
+    "GT(",
+    "NOT",
+    "S",
+    "R",
+    "JMP",
+    "JMPC",
+    "CAL",
+    "CALC",
+    "RET",
+    "RETCN",
+    "(",
+    ")",
+    ",",
+    ";",
+    ":",
+    ":=",
+    "=>",
+    "..",
+    ".",
+    "^",
+    "?",
+    "[",
+    "]",
+    "\n",
+    "\n",
+    "\n",
+    "\n",
+    "\r\n",
+    " ",
+    "a",
+    "b.c",
+    "a[1]",
+    "x",
+    "lbl:",
+    "T1",
+    "IN",
+    "PT",
+    "CU",
+    "LIMIT(",
+    "LIMIT",
+    "5",
+    "-3",
+    "16#FF",
+    "1.",
+    ".5",
+    "T#1h",
+    "'text'",
+    "'open",
+    "%IX0.0",
+    "TRUE",
+    "PROGRAM",
+    "END_PROGRAM",
+    "FUNCTION_BLOCK",
+    "END_FUNCTION_BLOCK",
+    "FUNCTION",
+    "END_FUNCTION",
+    "VAR",
+    "VAR_INPUT",
+    "VAR_ACCESS",
+    "VAR_CONFIG",
+    "VAR_GLOBAL",
+    "END_VAR",
+    "CONSTANT",
+    "RETAIN",
+    "AT",
+    "R_EDGE",
+    "READ_ONLY",
+    "TYPE",
+    "END_TYPE",
+    "STRUCT",
+    "END_STRUCT",
+    "ARRAY",
+    "OF",
+    "REF_TO",
+    "STRING",
+    "INT",
+    "BOOL",
+    "CONFIGURATION",
+    "END_CONFIGURATION",
+    "RESOURCE",
+    "END_RESOURCE",
+    "ON",
+    "TASK",
+    "WITH",
+    "(* c *)",
+    "(*",
+    "*)",
+    "//",
+    "/*",
+    "*/",
+    "{",
+    "}",
+    "{p}",
+    "; c",
+    "§",
+    "é",
+    "&",
+    "#",
+    "\u{feff}",
+];
+
+/// Words of the language in any order: what a text looks like in the middle of an edit.
+fn soup() -> impl Strategy<Value = String> {
+    proptest::collection::vec((0..WORDS.len(), proptest::bool::weighted(0.8)), 0..60).prop_map(|words| {
+        words
+            .iter()
+            .map(|(word, blank)| format!("{}{}", WORDS[*word], if *blank { " " } else { "" }))
+            .collect()
+    })
+}
+
+/// Lines that make sense one by one.
+const LINES: &[&str] = &[
+    "PROGRAM p",
+    "END_PROGRAM",
+    "VAR",
+    "VAR_INPUT",
+    "  a, b : BOOL := TRUE;",
+    "END_VAR",
+    "LD a",
+    "LDN b",
+    "ST c",
+    "AND(",
+    "LD d",
+    ")",
+    "OR( e",
+    "CAL T1(",
+    "IN := a,",
+    "PT := T#5s",
+    "l1:",
+    "l2: LD f",
+    "l3: ST g",
+    "JMP l1",
+    "RET",
+    "",
+    "(* c *)",
+    "// d",
+    "; e",
+    "(* f",
+    "g *)",
+    "{ p }",
+    "TYPE",
+    "  T : STRUCT x : INT; END_STRUCT;",
+    "END_TYPE",
+    "CONFIGURATION c",
+    "TASK t(PRIORITY := 1);",
+    "PROGRAM i WITH t : p;",
+    "VAR_GLOBAL",
+    "END_CONFIGURATION",
+    "FUNCTION f : INT",
+    "END_FUNCTION",
+    "ADD(",
+    "LIMIT(",
+    "S1 x",
+    "ST c;",
+    "LD a;ST b",
+    "IN := (",
+    "),",
+    "NOT Q => z",
+    "CAL T1",
+    "END_VAR;",
+    ".5",
+    "a.b",
+    "LD",
+    "LD (* h *) a (* LD i *)",
+];
+
+fn lines() -> impl Strategy<Value = String> {
+    proptest::collection::vec(0..LINES.len(), 0..40)
+        .prop_map(|lines| lines.iter().map(|line| format!("{}\n", LINES[*line])).collect())
+}
+
+fn any_text() -> impl Strategy<Value = String> {
+    prop_oneof![soup(), lines(), "\\PC{0,80}", "[ -~\n]{0,120}"]
+}
+
+/// What a document does after an edit: it cuts again from the start of the chunk before the first touched one, until a
+/// cut of the old text with an untouched chunk behind it comes back.
+fn split_incrementally(old: &str, edit: std::ops::Range<usize>, new_text: &str) -> (String, Vec<usize>) {
+    let text = format!("{}{}{}", &old[..edit.start], new_text, &old[edit.end..]);
+    let old_ends = split(old);
+    let starts: Vec<usize> = std::iter::once(0).chain(old_ends.iter().copied()).collect();
+    // The chunk that an insertion at its end touches is touched.
+    let first = old_ends.iter().position(|end| *end >= edit.start).unwrap_or(0);
+    let window = starts[first.saturating_sub(1)];
+    let grown = |offset: usize| offset + new_text.len() - edit.len();
+    let mut ends: Vec<usize> = old_ends.iter().copied().filter(|end| *end <= window).collect();
+    let mut last = old_ends.iter().position(|end| *end > edit.end).unwrap_or(old_ends.len());
+    loop {
+        // One untouched chunk after the last touched one.
+        let limit = old_ends.get(last + 1).copied();
+        let window_end = limit.map_or(text.len(), grown);
+        let found: Vec<usize> = split(&text[window..window_end]).iter().map(|end| end + window).collect();
+        let Some(limit) = limit else {
+            ends.extend(found);
+            return (text, ends);
+        };
+        let kept = grown(old_ends[last]);
+        if found.contains(&kept) {
+            ends.extend(found.iter().take_while(|end| **end <= kept));
+            ends.push(grown(limit));
+            ends.extend(old_ends[last + 2..].iter().map(|end| grown(*end)));
+            return (text, ends);
+        }
+        last += 1;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
+
+    #[test]
+    fn reading_never_fails(text in any_text()) {
+        let tree = parse(&text, iec());
+        assert_spans_in_range(&text, &tree);
+        let ends = split(&text);
+        prop_assert!(ends.windows(2).all(|pair| pair[0] < pair[1]));
+        prop_assert!(ends.iter().all(|end| text.is_char_boundary(*end)));
+        prop_assert_eq!(ends.last().copied().unwrap_or(0), text.len());
+        for chunk in chunks(&text) {
+            assert_spans_in_range(chunk, &parse(chunk, iec()));
+        }
+    }
+
+    /// Cutting a chunk and what follows it gives what cutting the whole text gives there.
+    #[test]
+    fn cuts_depend_on_what_follows_only(text in prop_oneof![lines(), soup()]) {
+        let ends = split(&text);
+        for (index, end) in ends.iter().enumerate() {
+            let behind: Vec<usize> = split(&text[*end..]).iter().map(|later| later + end).collect();
+            prop_assert_eq!(&behind, &ends[index + 1..]);
+        }
+        // And whether a text is cut is known once the chunk behind the cut is.
+        for pair in ends.windows(2) {
+            let head = split(&text[..pair[1]]);
+            prop_assert!(head.contains(&pair[0]), "{:?} {:?}", head, pair);
+        }
+    }
+
+    #[test]
+    fn cuts_can_be_kept_up_to_date(
+        old in prop_oneof![lines(), soup()],
+        new in prop_oneof![lines(), soup(), Just(String::new())],
+        from in any::<prop::sample::Index>(),
+        to in any::<prop::sample::Index>(),
+    ) {
+        let places: Vec<usize> = old.char_indices().map(|(at, _)| at).chain([old.len()]).collect();
+        let (from, to) = (*from.get(&places), *to.get(&places));
+        let (text, ends) = split_incrementally(&old, from.min(to)..from.max(to), &new);
+        prop_assert_eq!(ends, split(&text));
+    }
+}
+
+#[test]
+fn ten_thousand_parentheses() {
+    let text = format!("LD a\n{}LD b\n{}ST c\n", "AND(\n".repeat(10_000), ")\n".repeat(10_000));
+    let tree = parse(&text, iec());
+    assert_eq!(problems(&text, &tree), "");
+    assert_eq!(tree.items.len(), 20_003);
+    assert_eq!(tree.items.iter().map(|item| item.depth).max(), Some(10_000));
+    assert_eq!(split(&text), [text.len()]);
+    for text in [
+        "AND(".repeat(10_000),
+        format!("CAL T({}", "x := (\nLIMIT(\n".repeat(10_000)),
+        "LD a[".repeat(10_000),
+    ] {
+        assert_spans_in_range(&text, &parse(&text, iec()));
+    }
+    for text in [
+        format!("VAR a : {}INT;", "ARRAY[1..2] OF ".repeat(10_000)),
+        format!("VAR a : INT := {};", "(x := ".repeat(10_000)),
+        format!("VAR a : {}", "STRUCT b : ".repeat(10_000)),
+        format!("VAR {}", "a : INT := [[[ ; ".repeat(10_000)),
+    ] {
+        let tree = parse(&text, iec());
+        assert!(!tree.problems.is_empty());
+        assert_spans_in_range(&text, &tree);
+    }
+}
+
+fn formatted(text: &str) -> String {
+    let text_of_chunk = |chunk: &&str| format_chunk(chunk, &parse(chunk, iec()), &FormatOptions::default());
+    chunks(text).iter().map(text_of_chunk).collect()
+}
+
+/// Formats `text` chunk by chunk, as an editor does; the result must have the same tree and be stable.
+fn check_format(text: &str, expected: Expect) {
+    let result = formatted(text);
+    // The bar keeps the indentation, which the macro would take for its own.
+    let lines: String = result.split('\n').map(|line| format!("|{line}\n")).collect();
+    expected.assert_eq(&lines);
+    assert_eq!(formatted(&result), result, "formatting twice changes something");
+    assert_eq!(shape(text), shape(&result));
+}
+
+/// The items of a text, letter case, blanks inside operands and the fields of spans aside.
+fn shape(text: &str) -> String {
+    let shapes = chunks(text).into_iter().map(|chunk| {
+        let tree = parse(chunk, iec());
+        dump(chunk, &IecTree { problems: Vec::new(), ..tree })
+    });
+    folded(&shapes.collect::<String>())
+}
+
+fn folded(dump: &str) -> String {
+    dump.to_uppercase().replace(' ', "")
+}
+
+#[test]
+fn formatting_bodies() {
+    check_format(
+        "program p\n// start\nld a (* one *)\nandn( b\nor c // two\n)\n  ST  d;\n\n   (* three *)\nl1: ld 5\nadd x , 3\nst? e\njmpcn   l1\nend_program\n",
+        expect![[r#"
+            |PROGRAM p
+            |    // start
+            |    LD      a                           (* one *)
+            |    ANDN(   b
+            |        OR      c                       // two
+            |    )
+            |    ST      d
+            |
+            |(* three *)
+            |l1:
+            |    LD      5
+            |    ADD     x, 3
+            |    ST?     e
+            |    JMPCN   l1
+            |END_PROGRAM
+            |
+        "#]],
+    );
+    check_format(
+        "CAL T1(IN:=a, // why\nPT:=T#1s,not Q=>b)\ncalc c10( a ,b , 5 )\nLIMIT(MN:=(\nLD 1\n), IN:=limit_of [ 1 ,i ] . x)\ncu c10\nret\nCAL T2()\nAND(LD x\nOR y) (* tail *)\n",
+        expect![[r#"
+            |    CAL     T1(
+            |        IN := a,                        // why
+            |        PT := T#1s,
+            |        NOT Q => b
+            |    )
+            |    CALC    c10(a, b, 5)
+            |    LIMIT(
+            |        MN := (
+            |            LD      1
+            |        ),
+            |        IN := limit_of[1, i].x
+            |    )
+            |    CU      c10
+            |    RET
+            |    CAL     T2()
+            |    AND(
+            |        LD      x
+            |        OR      y
+            |    )                                   (* tail *)
+            |
+        "#]],
+    );
+    check_format(
+        "LD a ; one\n  ; two\nST b;ST c;\n(* over\n   lines *)\nLD x b\n   JMP\nNOT\n",
+        expect![[r#"
+            |    LD      a                           ; one
+            |    ; two
+            |    ST      b
+            |    ST      c
+            |(* over
+            |   lines *)
+            |LD x b
+            |   JMP
+            |    NOT
+            |
+        "#]],
+    );
+    assert_eq!(formatted("LD a\r\nl: ST b\r\n"), "    LD      a\r\nl:\r\n    ST      b\r\n");
+}
+
+#[test]
+fn formatting_declarations() {
+    check_format(
+        "var inp: bool; end_var\nvar_input retain a,b:int:=5;(* both *)\n// why\nlong_name at %ix0.0 :bool; t : string [ 20 ] := 'x' ;\n\nm : array[ 0..3 ] of int := [ 1,2 ,\n 2 ( 0 ) ];\nbroken : ;\nend_var\n",
+        expect![[r#"
+            |VAR
+            |    inp : BOOL;
+            |END_VAR
+            |VAR_INPUT RETAIN
+            |    a, b                : INT                := 5; (* both *)
+            |    // why
+            |    long_name AT %IX0.0 : BOOL;
+            |    t                   : STRING[20]         := 'x';
+            |
+            |    m                   : ARRAY[0..3] OF INT := [1, 2,
+            |        2(0)];
+            |broken : ;
+            |END_VAR
+            |
+        "#]],
+    );
+    check_format(
+        "type colour:(Red,Green):=Red; p:struct x,y:int; inner : struct z:bool:=true; end_struct; end_struct;r: int( 0..9 );end_type\n",
+        expect![[r#"
+            |TYPE
+            |    colour : (Red, Green) := Red;
+            |    p      : STRUCT
+            |        x, y  : INT;
+            |        inner : STRUCT
+            |            z : BOOL := TRUE;
+            |        END_STRUCT;
+            |    END_STRUCT;
+            |    r : INT(0..9);
+            |END_TYPE
+            |
+        "#]],
+    );
+    check_format(
+        "configuration c var_global g:int; end_var resource r on cpu task t( interval:=t#1s,priority:=1 ); program p with t:main(a:=g,b=>g);end_resource end_configuration\n",
+        expect![[r#"
+            |CONFIGURATION c
+            |    VAR_GLOBAL
+            |        g : INT;
+            |    END_VAR
+            |    RESOURCE r ON cpu
+            |        TASK t(INTERVAL := t#1s, PRIORITY := 1);
+            |        PROGRAM p WITH t : main(a := g, b => g);
+            |    END_RESOURCE
+            |END_CONFIGURATION
+            |
+        "#]],
+    );
+    check_format(
+        "function f:int var_input a:int; end_var ld a st b\nend_function function_block g end_function_block\n",
+        expect![[r#"
+            |function f:int var_input a:int; end_var ld a st b
+            |END_FUNCTION
+            |FUNCTION_BLOCK g
+            |END_FUNCTION_BLOCK
+            |
+        "#]],
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
+
+    #[test]
+    fn formatting_twice_changes_nothing(text in any_text()) {
+        let tree = parse(&text, iec());
+        let once = format_chunk(&text, &tree, &FormatOptions::default());
+        let again = parse(&once, iec());
+        prop_assert_eq!(&format_chunk(&once, &again, &FormatOptions::default()), &once);
+        let items = |text: &str, tree: IecTree| folded(&dump(text, &IecTree { problems: Vec::new(), ..tree }));
+        prop_assert_eq!(items(&text, tree), items(&once, again));
+    }
+}
+
+/// Programs by other authors, if they lie beside the repository: only hints, and the formatter takes them.
+#[test]
+fn programs_by_others() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/corpus/iec");
+    let folder = std::env::var_os("RUNGWISE_CORPUS")
+        .map_or(folder, |corpus| std::path::Path::new(&corpus).join("iec"));
+    let Ok(files) = std::fs::read_dir(&folder) else {
+        eprintln!("skipped: no programs by others in {} (set RUNGWISE_CORPUS)", folder.display());
+        return;
+    };
+    let mut read = 0;
+    for file in
+        files.map(|file| file.unwrap().path()).filter(|file| file.extension().is_some_and(|end| end == "il"))
+    {
+        let text = std::fs::read_to_string(&file).unwrap();
+        for chunk in chunks(&text) {
+            let tree = parse(chunk, iec());
+            assert_spans_in_range(chunk, &tree);
+            let errors = tree.problems.iter().filter(|problem| problem.severity != Severity::Hint).count();
+            assert_eq!(errors, 0, "{}\n{}", file.display(), problems(chunk, &tree));
+        }
+        let whole = parse(&text, iec());
+        assert_eq!(
+            folded(&dump(&text, &IecTree { problems: Vec::new(), ..whole })),
+            shape(&text),
+            "chunks make the file"
+        );
+        let result = formatted(&text);
+        assert_eq!(formatted(&result), result);
+        assert_eq!(shape(&text), shape(&result));
+        assert!(result.contains("\nEND_PROGRAM") && !result.contains(" cal "), "{result}");
+        read += 1;
+    }
+    assert!(read > 0, "no programs in {}", folder.display());
+}
+
+#[test]
+fn mentions_of_names() {
+    let text = "PROGRAM Main\nVAR a, b : MyType := Colour#Red; END_VAR\nTYPE E : (X, Y); S : STRUCT f : INT(0..N); END_STRUCT; END_TYPE\nl1: LD a.b[i].c\nST q[j]\nS m\nCAL T1(\nIN := (\nLD z\n),\nNOT Q => w\n)\nCU C1\nJMPC l1\nFB.M1 p, 5\nLIMIT(\nMN := k\n)\nEND_PROGRAM\n";
+    let tree = parse(text, iec());
+    let mut out = String::new();
+    for mention in tree.mentions(text) {
+        writeln!(out, "{} {:?}", mention.span.of(text), mention.role).unwrap();
+    }
+    expect![[r#"
+        Main DeclaresPou(Program)
+        a DeclaresVariable
+        b DeclaresVariable
+        MyType NamesType
+        Colour NamesType
+        E DeclaresType
+        X DeclaresEnumerator
+        Y DeclaresEnumerator
+        S DeclaresType
+        f DeclaresField
+        N Reads
+        l1 DeclaresLabel
+        a Reads
+        b NamesMember
+        i Reads
+        c NamesMember
+        q Writes
+        j Reads
+        m Writes
+        T1 Calls
+        IN NamesParameter
+        z Reads
+        Q NamesParameter
+        w Writes
+        CU NamesMember
+        C1 Calls
+        l1 Jumps
+        FB Calls
+        M1 NamesMember
+        p Reads
+        LIMIT CallsFunction
+        MN NamesParameter
+        k Reads
+    "#]]
+    .assert_eq(&out);
+    let text = "CONFIGURATION c\nRESOURCE r ON cpu\nTASK t(SINGLE := g.x, PRIORITY := 1);\nPROGRAM p WITH t : Main(in := v, out => w, f WITH t);\nEND_RESOURCE\nVAR_CONFIG r.p.x AT %QX0.1 : BOOL; END_VAR\nEND_CONFIGURATION\n";
+    let tree = parse(text, iec());
+    let names: Vec<String> =
+        tree.mentions(text).map(|mention| format!("{} {:?}", mention.span.of(text), mention.role)).collect();
+    expect![[r#"
+        c DeclaresRuntime
+        r DeclaresRuntime
+        cpu NamesRuntime
+        t DeclaresRuntime
+        g Reads
+        x NamesMember
+        p DeclaresRuntime
+        t NamesRuntime
+        Main NamesType
+        in NamesParameter
+        v Reads
+        out NamesParameter
+        w Writes
+        f NamesParameter
+        t NamesRuntime
+        r Writes
+        p NamesMember
+        x NamesMember"#]]
+    .assert_eq(&names.join("\n"));
+    assert!(same_name("Motor_1", "mOTOR_1") && !same_name("Motor", "Moto"));
+    assert_eq!(fold_case("Motor_1"), "MOTOR_1");
+}
+
+/// Reading is linear: ten times the text takes about ten times as long, not a hundred.
+#[test]
+fn reading_is_not_quadratic() {
+    let pieces = [
+        "LD a\nAND( b\nOR c\n)\nST d\n",
+        "CAL T1(\nIN := a,\nPT := b\n)\n",
+        "; c\n",
+        "AND(\n",
+        "VAR a : INT\n",
+        ";",
+        "(a, ",
+        "LD [",
+        "x := (\n",
+        "/*",
+        "TYPE s : STRUCT ",
+    ];
+    for piece in pieces {
+        let time = |count: usize| {
+            let text = piece.repeat(count);
+            let start = std::time::Instant::now();
+            let tree = parse(&text, iec());
+            let ends = split(&text);
+            assert!(!ends.is_empty() && tree.comments.len() <= text.len());
+            start.elapsed()
+        };
+        let (short, long) = (time(2_000), time(20_000));
+        assert!(
+            long < short * 40 + std::time::Duration::from_millis(200),
+            "{piece:?}: {short:?}, then {long:?}"
+        );
+    }
 }

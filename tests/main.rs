@@ -1,6 +1,8 @@
 //! Every test of the package that needs no private item, one module for each subject.
 
 mod document;
+mod grammar;
+mod ide;
 mod il_fx;
 mod il_iec;
 mod ladder_generate;
@@ -8,7 +10,9 @@ mod ladder_print;
 mod ladder_read;
 mod lsp;
 mod lsp_client;
+mod mistakes;
 mod rules;
+mod rules_drawing;
 mod rules_fx;
 mod rules_iec;
 mod target_fx;

@@ -11,10 +11,16 @@ pub use answer::{
 
 mod names;
 
+mod members;
+
 mod pages;
 pub use pages::{block_page, function_page, instruction_page, operator_page};
 
 mod devices;
+
+mod declared;
+
+mod uses;
 
 mod hover;
 

@@ -84,7 +84,9 @@ fn frame_at(grid: &Grid, top: usize, left: usize) -> Option<Frame> {
         for column in left + 1..right {
             let character = grid.at(row, column);
             let drawn = upright(row, column) || matches!(character, '(' | ')' | '[' | ']');
-            if drawn && character != '!' || (grid.arms(row, column).is_line() && !matches!(character, '_' | '=')) {
+            if drawn && character != '!'
+                || (grid.arms(row, column).is_line() && !matches!(character, '_' | '='))
+            {
                 return None;
             }
             worded |= starts_word(character) || is_operator(character) || character == '&';
@@ -165,7 +167,14 @@ fn read_block(grid: &mut Grid, frame: Frame, text: &str, target: &Target) -> Sym
     let mut element = Element::new(ElementKind::Block(Box::new(block)), span, grid.line(row), columns);
     element.operands = operands;
     element.place = OperandPlace::Beside;
-    Symbol { row, start: frame.left, end: frame.right + 1, element, wants: Wants::Instance, depth: row - frame.top }
+    Symbol {
+        row,
+        start: frame.left,
+        end: frame.right + 1,
+        element,
+        wants: Wants::Instance,
+        depth: row - frame.top,
+    }
 }
 
 fn words_inside(grid: &Grid, row: usize, frame: Frame) -> Vec<Inside> {
@@ -295,5 +304,8 @@ fn word_beside(
     };
     let span = grid.span(row, first, last + 1);
     let far = if side == Side::Left { first } else { last };
-    (!super::glyph::Arms::of(beyond).is_horizontal() && !span.of(text).is_empty()).then_some((far, span))
+    let arms = super::glyph::Arms::of(beyond);
+    // The circle of the next box touches that box.
+    let circle = arms.is_upright() && first == last && matches!(grid.at(row, first), 'O' | 'o');
+    (!circle && !arms.is_horizontal() && !span.of(text).is_empty()).then_some((far, span))
 }

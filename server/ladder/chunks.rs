@@ -38,7 +38,7 @@ pub fn chunk_ends(text: &str) -> impl Iterator<Item = usize> {
     let mut chunk = Chunk::default();
     let mut finished = text.is_empty();
     std::iter::from_fn(move || {
-        while let Some(line) = lines.next() {
+        for line in lines.by_ref() {
             if !chunk.takes(&line, text) {
                 let end = line.span.start as usize;
                 chunk = Chunk::default();
@@ -204,9 +204,9 @@ impl BlockSoFar {
         match inner {
             [] => false,
             [bar] => {
-                // The last bar may be the second one of a double rail.
+                // The bar may be one of a double rail, or of a rail that is not straight.
                 match &mut self.wires {
-                    Some((line, Some(last), condition)) if *last == *bar || *last == *bar + 1 => {
+                    Some((line, Some(last), condition)) if last.abs_diff(*bar) <= 2 => {
                         *condition.get_or_insert_with(|| ends_in_condition(line, text))
                     }
                     _ => *bar < self.right,

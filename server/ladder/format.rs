@@ -1,12 +1,12 @@
 //! Puts the rungs of a document into the canonical form and leaves everything else as it is.
 //!
 //! Only rungs that were read without doubt are redrawn: a rung with a problem, a loose end, a bridge, a comment
-//! between its lines, or outputs that would change their order stays exactly as it was drawn. What was redrawn is
+//! in its midst, or outputs that would change their order stays exactly as it was drawn. What was redrawn is
 //! read again, and taken only if the logic is the same.
 
 use super::reduce::reduce;
 use super::symbol::width;
-use super::{Drawing, LadderTree, Rung, Style, StyleKind, parse, split};
+use super::{Drawing, LadderTree, NameHabit, Rung, Style, StyleKind, parse, parse_with, split};
 use crate::target::Target;
 use crate::text::Span;
 
@@ -22,7 +22,7 @@ pub struct Page {
     pub rail: u32,
     /// Cells to the left of the left rail, for rung numbers; 0 if no rung has one.
     pub margin: u32,
-    /// How lines end: a line feed, or carriage return and line feed.
+    /// How the document's first line ends, and so the lines of a rung that has only one, without an end.
     pub line_end: &'static str,
 }
 
@@ -53,17 +53,21 @@ impl Page {
     }
 }
 
-/// The document in canonical form.
+/// The document in canonical form. `text` is that of a ladder document as `target` reads it.
 pub fn format(text: &str, target: &Target, style: &Style) -> String {
     let mut start = 0;
-    let chunks: Vec<(&str, LadderTree)> = split(text)
-        .into_iter()
-        .map(|end| {
-            let chunk = &text[start..end];
-            start = end;
-            (chunk, parse(chunk, target))
-        })
-        .collect();
+    let mut habit = NameHabit::default();
+    let mut chunks = Vec::new();
+    for end in split(text) {
+        let chunk = text.get(start..end).unwrap_or("");
+        let tree = parse(chunk, target);
+        habit += tree.names;
+        chunks.push((chunk, tree));
+        start = end;
+    }
+    for (chunk, tree) in chunks.iter_mut().filter(|(_, tree)| tree.names.decided().is_none()) {
+        *tree = parse_with(chunk, target, habit);
+    }
     let page = Page::of(chunks.iter().map(|(chunk, tree)| (*chunk, tree)), style);
     let mut formatted = String::with_capacity(text.len() + text.len() / 4);
     for (chunk, tree) in &chunks {
@@ -82,7 +86,14 @@ pub fn format_chunk(chunk: &str, tree: &LadderTree, target: &Target, page: &Page
         .rungs
         .iter()
         .map(|rung| {
-            drawing(chunk, tree, rung, &lines, page.kind).and_then(|drawing| drawing.paint(page.rail))
+            let drawing = drawing(chunk, tree, rung, &lines, page.kind)?;
+            let mut text = drawing.paint(page.rail)?;
+            for (row, comment) in line_comments(chunk, tree, rung, &lines)? {
+                let line = text.get_mut(line_of(rung, &drawing, row))?;
+                line.push_str("  ");
+                line.push_str(comment);
+            }
+            Some(text)
         })
         .collect();
     leave_entangled_rungs(&tree.rungs, &mut drawn);
@@ -139,6 +150,35 @@ fn leave_entangled_rungs(rungs: &[Rung], drawn: &mut [Option<Vec<String>>]) {
     }
 }
 
+/// The comments behind a rung's lines, each with its line. Nothing if a comment stands anywhere else in the rung.
+fn line_comments<'t>(
+    chunk: &'t str,
+    tree: &LadderTree,
+    rung: &Rung,
+    lines: &Lines<'_>,
+) -> Option<Vec<(u32, &'t str)>> {
+    let (start, end) = lines.bytes(rung.lines);
+    let inside = |comment: &&Span| (comment.start as usize) < end && (comment.end as usize) > start;
+    let behind_line = |comment: &Span| {
+        let line = lines.starts.partition_point(|start| *start <= comment.start as usize) - 1;
+        let (line_start, line_end) = lines.bytes((line as u32, line as u32 + 1));
+        let before = chunk.get(line_start..comment.start as usize)?;
+        let after = chunk.get(comment.end as usize..line_end)?;
+        (!before.trim().is_empty() && after.trim().is_empty())
+            .then(|| (line as u32, comment.of(chunk).trim_end()))
+    };
+    tree.comments.iter().filter(inside).map(behind_line).collect()
+}
+
+/// The line of a drawing that shows what was drawn on line `row` of the chunk, or below it if no element was there.
+fn line_of(rung: &Rung, drawing: &Drawing, row: u32) -> usize {
+    let elements = (0u32..).zip(&rung.graph.elements);
+    let below =
+        elements.clone().filter(|(_, element)| element.row >= row).min_by_key(|(_, element)| element.row);
+    let nearest = below.or(elements.max_by_key(|(_, element)| element.row));
+    nearest.and_then(|(id, _)| drawing.line_of(id)).unwrap_or(0)
+}
+
 /// The drawing of a rung that may be redrawn.
 fn drawing(
     chunk: &str,
@@ -152,7 +192,7 @@ fn drawing(
     let inside = |span: Span| (span.start as usize) < end && (span.end.max(span.start + 1) as usize) > start;
     let doubtful =
         tree.problems.iter().any(|problem| !MENDED.contains(&problem.code) && inside(problem.span));
-    if doubtful || tree.comments.iter().any(|comment| inside(*comment)) {
+    if doubtful || line_comments(chunk, tree, rung, lines).is_none() {
         return None;
     }
     let shape = reduce(&rung.graph).ok()?;
@@ -209,8 +249,7 @@ impl<'t> Lines<'t> {
             self.lines[line..first].iter().for_each(|line| push_line_between(&mut text, line, page));
             match drawing {
                 Some(drawing) => {
-                    let last = self.lines[first..end].last().copied().unwrap_or("");
-                    self.push_drawing(&mut text, rung, drawing, page, last);
+                    self.push_drawing(&mut text, rung, drawing, page, &self.lines[first..end]);
                     if first == 0 && self.lines.first().is_some_and(|line| line.starts_with(BYTE_ORDER_MARK))
                     {
                         text.insert(0, BYTE_ORDER_MARK);
@@ -225,7 +264,13 @@ impl<'t> Lines<'t> {
     }
 
     /// The rung's number stands beside its first power line.
-    fn push_drawing(&self, text: &mut String, rung: &Rung, drawing: &[String], page: &Page, last: &str) {
+    fn push_drawing(&self, text: &mut String, rung: &Rung, drawing: &[String], page: &Page, before: &[&str]) {
+        let line_end = match before.first() {
+            Some(line) if line.ends_with("\r\n") => "\r\n",
+            Some(line) if line.ends_with('\n') => "\n",
+            _ => page.line_end,
+        };
+        let ended = before.last().is_some_and(|line| line.ends_with('\n'));
         let margin = page.margin as usize;
         let mut number = rung.number.map(|number| number.value.to_string());
         for (row, line) in drawing.iter().enumerate() {
@@ -240,8 +285,8 @@ impl<'t> Lines<'t> {
                 None => text.extend(std::iter::repeat_n(' ', margin)),
             }
             text.push_str(line);
-            if row + 1 < drawing.len() || last.ends_with('\n') {
-                text.push_str(page.line_end);
+            if row + 1 < drawing.len() || ended {
+                text.push_str(line_end);
             }
         }
     }

@@ -97,11 +97,13 @@ fn candidates(uprights: &Uprights, tokens: &Tokens, end: &End, row: usize) -> Ve
     let from = line.partition_point(|token| token.end + ASIDE <= end.token.start);
     let near = line[from..].iter().enumerate().take_while(|(_, token)| token.start < end.token.end + ASIDE);
     // The last bar of a line below the last corner of the line above is a right rail that is not straight.
-    let last = |row: usize, token: &Token| tokens.extent(row).drawn.is_some_and(|(_, last)| last == token.start);
+    let last =
+        |row: usize, token: &Token| tokens.extent(row).drawn.is_some_and(|(_, last)| last == token.start);
     near.filter(|(_, token)| !(last(row, token) && last(end.row, &end.token)))
         .filter_map(|(number, token)| {
             let (upright, free) = free_towards(uprights, token, row, from + number, end)?;
-            (free && matches!(token.what, What::Upright(arms) if arms.is_junction())).then_some((upright, *token))
+            (free && matches!(token.what, What::Upright(arms) if arms.is_junction()))
+                .then_some((upright, *token))
         })
         .collect()
 }

@@ -59,10 +59,16 @@ impl Uprights {
     }
 
     /// Finds the vertical wires of `tokens`. `left` is the leftmost column in which a line is drawn.
-    pub(super) fn find(grid: &Grid, tokens: &Tokens, left: usize, problems: &mut Vec<Diagnostic>) -> Uprights {
+    pub(super) fn find(
+        grid: &Grid,
+        tokens: &Tokens,
+        left: usize,
+        problems: &mut Vec<Diagnostic>,
+    ) -> Uprights {
         let mut found = Uprights::linked(tokens);
         super::ragged::mend(&mut found, grid, tokens, left, problems);
-        let right = tokens.rows.iter().flatten().filter(|token| token.is_drawn()).map(|t| t.end).max().unwrap_or(0);
+        let right =
+            tokens.rows.iter().flatten().filter(|token| token.is_drawn()).map(|t| t.end).max().unwrap_or(0);
         for upright in found.all.iter_mut().filter(|upright| !upright.cells.is_empty()) {
             join(upright, tokens);
             upright.role = role_of(upright, tokens, left, right);
@@ -84,7 +90,8 @@ impl Uprights {
         let mut found = Uprights::default();
         for (row, line) in tokens.rows.iter().enumerate() {
             found.of_token.push(vec![(u32::MAX, 0); line.len()]);
-            let above = row.checked_sub(1).and_then(|above| tokens.rows.get(above)).map_or(&[][..], |line| line);
+            let above =
+                row.checked_sub(1).and_then(|above| tokens.rows.get(above)).map_or(&[][..], |line| line);
             let mut candidates = above.iter().enumerate().peekable();
             for (number, token) in line.iter().enumerate() {
                 let What::Upright(arms) = token.what else { continue };

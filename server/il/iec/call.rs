@@ -1,6 +1,7 @@
 //! Reads calls of function blocks and functions with their lists of parameters.
 
-use super::instruct::{BodyReader, Frame, FrameKind, List, condition};
+use super::body::{BodyReader, Frame, FrameKind, List};
+use super::instruct::condition;
 use super::lower::append;
 use super::token::{Region, Token, TokenKind};
 use super::{Direction, ItemKind, ListForm, OperandId, Parameter, ParameterValue, Run};
@@ -194,11 +195,8 @@ impl BodyReader<'_> {
                 self.reader.at += 1;
                 while self.reader.take(TokenKind::Newline).is_some() {}
                 match self.reader.peek() {
-                    Some(end) if end.kind == TokenKind::RightParenthesis => {
-                        if !formal {
-                            self.hint_layout(end.span);
-                        }
-                    }
+                    Some(end) if end.kind == TokenKind::RightParenthesis && formal => {}
+                    Some(end) if end.kind == TokenKind::RightParenthesis => self.hint_layout(end.span),
                     Some(_) if self.list_is_forgotten() => {}
                     Some(next)
                         if next.region == Region::Body && !next.kind.closes() && !next.kind.opens_unit() =>

@@ -268,8 +268,7 @@ fn recover<'b>(
 fn salvage(kinds: &[TokenKind]) -> Option<DeclarationNode> {
     let mut names = Vec::new();
     let mut pairs = kinds.iter().enumerate().step_by(2);
-    loop {
-        let Some((index, TokenKind::Word)) = pairs.next() else { break };
+    while let Some((index, TokenKind::Word)) = pairs.next() {
         names.push(index);
         if kinds.get(index + 1) != Some(&TokenKind::Comma) {
             break;

@@ -1,6 +1,7 @@
 //! Where a chunk names things: for references, rename, and the rules about declarations.
 
-use super::token::{Scanner, TokenKind};
+use super::scan::Scanner;
+use super::token::TokenKind;
 use super::{
     Direction, IecTree, ItemKind, OperandId, ParameterValue, PouKind, Run, SectionKind, TypeId, TypeSpec,
     ValueKind,
@@ -111,7 +112,9 @@ impl Collector<'_> {
                 self.parameters(parameters);
             }
             ItemKind::Function { name, parameters, .. } => {
-                self.path(name, MentionRole::CallsFunction);
+                // `FB.Method` starts with an instance.
+                let method = name.of(self.chunk).contains('.');
+                self.path(name, if method { MentionRole::Calls } else { MentionRole::CallsFunction });
                 self.parameters(parameters);
             }
             ItemKind::InputOperator { input, instance } => {

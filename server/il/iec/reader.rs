@@ -1,7 +1,8 @@
 //! What all parts of the parser share: the tokens of the chunk, the tree as it grows, and the problems found.
 
 use super::grammar::Mismatch;
-use super::token::{Region, Scanner, Token, TokenKind};
+use super::scan::Scanner;
+use super::token::{Region, Token, TokenKind};
 use super::{IecTree, Item, ItemKind, OperandId};
 use crate::target::{Model, Operand, iec};
 use crate::text::{Diagnostic, Message, Severity, Span, Spanned};

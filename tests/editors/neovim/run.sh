@@ -25,9 +25,14 @@ failures=0
 neovim() {
     name=$1 script=$2 server=$3
     shift 3
+    # Neovim's own messages go to standard error and end without a newline, so they must not mix with the results.
     RUNGWISE_SERVER=$server RUNGWISE_TEST_CASE=$name timeout --kill-after=5 240 \
-        "$NVIM" --headless --clean "$@" --cmd "set runtimepath^=$home/plugin" -c "luafile $TESTS/neovim/$script" </dev/null \
-        || failures=$((failures + 1))
+        "$NVIM" --headless --clean "$@" --cmd "set runtimepath^=$home/plugin" -c "luafile $TESTS/neovim/$script" \
+        </dev/null 2>"$home/messages.log" && return
+    failures=$((failures + 1))
+    echo "messages of Neovim:"
+    cat "$home/messages.log"
+    echo
 }
 neovim main tests.lua "$SERVER"
 # Neovim 0.10 has neither function; without them the plugin takes the same way as there.
