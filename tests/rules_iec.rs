@@ -34,8 +34,9 @@ fn told(text: &str) -> Vec<String> {
     grave.map(|one| format!("{}: {}", one.code, one.span.of(text))).collect()
 }
 
+/// The program of a page, or nothing.
 fn example(page: &str) -> &str {
-    page.split("```il\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap()
+    page.split("```il\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap_or("")
 }
 
 #[test]
@@ -48,6 +49,7 @@ fn every_example_of_the_tables_is_clean() {
     let mut checked = 0;
     for (name, page) in pages {
         checked += 1;
+        assert!(example(&page).contains("END_PROGRAM"), "{name} has no example");
         for one in found(example(&page)) {
             wrong.push(format!("{name} {one}\n{}", example(&page)));
         }
