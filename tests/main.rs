@@ -14,6 +14,7 @@ mod mistakes;
 mod rules;
 mod rules_drawing;
 mod rules_fx;
+mod rules_iec;
 mod target_fx;
 mod target_fx_applied;
 mod target_iec;

@@ -50,6 +50,7 @@ impl Walk<'_> {
         for (value, group) in constants {
             if let Some(kind) = groups.of(group) {
                 self.judge_value(&value, Expected::Elementary(kind));
+                self.guess(value.source, kind, &value.kind);
             }
         }
         match callee.result(&view) {
@@ -114,7 +115,7 @@ impl Walk<'_> {
         }
         let Expected::Group(group) = pin.expected else { return };
         match value.kind {
-            ValueType::Literal(_) => constants.push((value.clone(), group)),
+            ValueType::Literal(_) | ValueType::Unknown => constants.push((value.clone(), group)),
             ValueType::Elementary(kind) => {
                 if let Some(common) = groups.join(group, kind) {
                     self.judge_value(value, Expected::Elementary(common));

@@ -494,6 +494,14 @@ enum Fault {
 fn combined(operator: &Operator, left: &ValueType, right: &ValueType) -> (ValueType, Fault) {
     use ValueType::{Elementary, Literal};
     let Some(group) = operator.operand else { return (ValueType::Unknown, Fault::None) };
+    // A constant that names its type is like a variable of that type to one that does not.
+    if let (Literal(one), Literal(other)) = (left, right) {
+        match (one.named_type, other.named_type) {
+            (Some(kind), None) => return combined(operator, &Elementary(kind), right),
+            (None, Some(kind)) => return combined(operator, left, &Elementary(kind)),
+            _ => {}
+        }
+    }
     let is_logic = group == GenericType::AnyBit;
     let (left_kind, right_kind) = match (left, right) {
         (Elementary(left), Elementary(right)) => (*left, *right),
@@ -512,19 +520,9 @@ fn combined(operator: &Operator, left: &ValueType, right: &ValueType) -> (ValueT
                 },
             }
         }
-        (Literal(left), Literal(right)) => match (left.natural_type(), right.natural_type()) {
-            (Some(left_kind), Some(right_kind)) => {
-                let untyped = left.named_type.is_none() && right.named_type.is_none();
-                if untyped && left_kind != right_kind || is_logic && untyped {
-                    return (ValueType::Unknown, Fault::None);
-                }
-                let fits = operator.combine(left_kind, right_kind, true);
-                let untyped = untyped && fits.is_some();
-                if untyped {
-                    return (ValueType::Unknown, Fault::None);
-                }
-                (left_kind, right_kind)
-            }
+        (Literal(left), Literal(right)) => match (left.named_type, right.named_type) {
+            (Some(left), Some(right)) => (left, right),
+            // Numbers alone: the place where the result goes will tell the type.
             _ => return (ValueType::Unknown, Fault::None),
         },
         // The result of a logic operator has the type of the side that is known.

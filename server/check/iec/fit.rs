@@ -34,7 +34,8 @@ fn fits_if(fits: bool) -> Fit {
 /// Whether a constant may stand where a value of type `kind` is expected.
 fn literal_fit(literal: &Literal, kind: ElementaryType) -> Fit {
     let widens = literal.named_type.is_some_and(|named| {
-        named.widens_to(kind) || named == ElementaryType::String && kind == ElementaryType::Char
+        use ElementaryType::{Char, String, Wchar, Wstring};
+        named.widens_to(kind) || matches!((named, kind), (String, Char) | (Wstring, Wchar))
     });
     if widens || literal.fits(kind) {
         return Fit::Fits;

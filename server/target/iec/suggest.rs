@@ -44,7 +44,7 @@ pub fn nearest<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Vec<Stri
         return Vec::new();
     }
     let word = word.to_ascii_uppercase();
-    let allowed = if word.len() <= 3 { 1 } else { 2 };
+    let allowed = if word.len() <= 5 { 1 } else { 2 };
     let mut near: Vec<(usize, Reverse<usize>, &str)> = names
         .filter(|name| name.len().abs_diff(word.len()) <= allowed && name.len() > 1)
         .filter_map(|name| {
