@@ -289,6 +289,14 @@ fn iec_allows_unconditional_outputs_and_contacts_behind_them() {
 }
 
 #[test]
+fn an_end_needs_nothing_on_any_target() {
+    let text = "||------[END]----------------------------------||\n";
+    for model in [Model::Fx2n, Model::Iec] {
+        assert_eq!(places(text, &found_for(text, model)), [""; 0]);
+    }
+}
+
+#[test]
 fn findings_name_devices_and_point_at_what_belongs_to_them() {
     let text = SOUND[1]
         .replacen("+---| |---+         +--[MOV", "+---------+         +--[MOV", 1)

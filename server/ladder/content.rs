@@ -3,7 +3,7 @@
 use super::glyph::is_operator;
 use super::grid::Grid;
 use super::{CoilKind, CompareOperator, ContactKind, ElementKind};
-use crate::target::{Constant, DeviceKind, Form, Operand, Target};
+use crate::target::{Constant, DeviceKind, Flow, Form, Operand, Target};
 use crate::text::{Span, Spanned};
 
 /// A word or an operator inside a symbol.
@@ -155,8 +155,13 @@ pub(super) fn read_braces(pieces: &[Piece], target: &Target) -> Reading {
 /// A mnemonic of the target with its operands. A word that names a device is no mnemonic.
 fn read_instruction(pieces: &[Piece], target: &Target) -> Option<Reading> {
     let (word, rest) = pieces.split_first()?;
-    let form = if target.is_fx() { Form::named(word.text)? } else { return None };
-    if rest.is_empty() && !matches!(Operand::read(word.text, target.model), Operand::Invalid(_)) {
+    let form = Form::named(word.text)?;
+    // Exports end with `[END]`, whatever they were made for; other instructions are those of the FX family.
+    let ends = rest.is_empty() && form.instruction.flow() == Flow::ProgramEnd;
+    if !target.is_fx() && !ends {
+        return None;
+    }
+    if rest.is_empty() && !ends && !matches!(Operand::read(word.text, target.model), Operand::Invalid(_)) {
         return None;
     }
     let wants = if form.instruction.operands.is_empty() { Wants::Nothing } else { Wants::Operands };
