@@ -21,6 +21,6 @@ pub mod project;
 
 pub mod ide;
 
-// pub mod lsp;
+pub mod lsp;
 
-// pub mod cli;
+pub mod cli;

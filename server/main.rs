@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    std::process::ExitCode::from(0)
+    rungwise::cli::run(std::env::args_os())
 }

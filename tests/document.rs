@@ -9,10 +9,57 @@ use std::path::Path;
 
 /// Pieces that open, close, join and break things.
 const PIECES: &[&str] = &[
-    "", "\n", "\n\n", " ", "(*", "*)", "// x\n", ";", "X0", "LD X1\n", "ANB\n", "ORB\n", "OUT Y0\n", "MPS\n", "MPP\n",
-    "END\n", "P0\n", "STL S0\n", "LD ", "(", ")", "VAR\n", "END_VAR\n", "a : BOOL;\n", "PROGRAM P\n", "END_PROGRAM\n",
-    "LD a\n", "ST b\n", "CAL t(\n", "IN := a,\n", "|", "-", "+", "| |", "---", "|   X0  \n+---| |---( )-+\n",
-    "|      |\n", "NETWORK 2 'x'\n", "L1:\n", "{", "}", "\r\n", "\t", "电机", "ü", "\u{feff}", "'", "\"", "FEND\n", "]", "[",
+    "",
+    "\n",
+    "\n\n",
+    " ",
+    "(*",
+    "*)",
+    "// x\n",
+    ";",
+    "X0",
+    "LD X1\n",
+    "ANB\n",
+    "ORB\n",
+    "OUT Y0\n",
+    "MPS\n",
+    "MPP\n",
+    "END\n",
+    "P0\n",
+    "STL S0\n",
+    "LD ",
+    "(",
+    ")",
+    "VAR\n",
+    "END_VAR\n",
+    "a : BOOL;\n",
+    "PROGRAM P\n",
+    "END_PROGRAM\n",
+    "LD a\n",
+    "ST b\n",
+    "CAL t(\n",
+    "IN := a,\n",
+    "|",
+    "-",
+    "+",
+    "| |",
+    "---",
+    "|   X0  \n+---| |---( )-+\n",
+    "|      |\n",
+    "NETWORK 2 'x'\n",
+    "L1:\n",
+    "{",
+    "}",
+    "\r\n",
+    "\t",
+    "电机",
+    "ü",
+    "\u{feff}",
+    "'",
+    "\"",
+    "FEND\n",
+    "]",
+    "[",
 ];
 
 /// All shipped examples, with the mistakes, as documents.
@@ -47,7 +94,10 @@ fn check_same(incremental: &Document, edits: &str) {
 
 /// Where to edit, in thousandths of the text, how many bytes go, and which piece comes.
 fn edits() -> impl Strategy<Value = Vec<(usize, usize, usize)>> {
-    prop::collection::vec((0..1000usize, prop_oneof![Just(0usize), 1..4usize, 4..80usize], 0..PIECES.len()), 1..12)
+    prop::collection::vec(
+        (0..1000usize, prop_oneof![Just(0usize), 1..4usize, 4..80usize], 0..PIECES.len()),
+        1..12,
+    )
 }
 
 fn apply(document: &mut Document, (place, removed, piece): (usize, usize, usize)) {
@@ -104,7 +154,8 @@ fn positions_outside_of_the_text_are_moved_inside() {
 
 #[test]
 fn a_snapshot_keeps_its_text() {
-    let mut document = Document::new("LD X0\nOUT Y0\nEND\n", Notation::FxIl, rungwise::target::Target::ALL[2]);
+    let mut document =
+        Document::new("LD X0\nOUT Y0\nEND\n", Notation::FxIl, rungwise::target::Target::ALL[2]);
     let snapshot = document.clone();
     document.apply(&[Edit { range: Some(3..5), text: "M1".to_string() }]);
     assert_eq!(snapshot.text(), "LD X0\nOUT Y0\nEND\n");
@@ -118,14 +169,16 @@ fn an_edit_reads_only_the_chunks_around_it() {
     let before = document.clone();
     let middle = rung.len() * 1000 + 4;
     document.apply(&[Edit { range: Some(middle..middle + 1), text: "7".to_string() }]);
-    let kept: std::collections::HashSet<_> = before.chunks().map(|at| std::sync::Arc::as_ptr(at.chunk)).collect();
+    let kept: std::collections::HashSet<_> =
+        before.chunks().map(|at| std::sync::Arc::as_ptr(at.chunk)).collect();
     let read = document.chunks().filter(|at| !kept.contains(&std::sync::Arc::as_ptr(at.chunk))).count();
     assert!((1..=2).contains(&read), "{read} chunks were read anew");
 }
 
 #[test]
 fn an_unclosed_comment_and_its_end_reach_far() {
-    let mut document = Document::new(&"LD X0\nOUT M5\n".repeat(3000), Notation::FxIl, rungwise::target::Target::ALL[2]);
+    let mut document =
+        Document::new(&"LD X0\nOUT M5\n".repeat(3000), Notation::FxIl, rungwise::target::Target::ALL[2]);
     document.apply(&[Edit { range: Some(13..13), text: "(*".to_string() }]);
     check_same(&document, "opening a comment");
     assert_eq!(document.chunks().count(), 1);

@@ -1,5 +1,7 @@
 //! Ladder graphs: their shape, their drawing, and what drawing and reading make of them.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on has failed")]
+
 use crate::ladder_generate::{Generated, Part, all_rungs, generate, large_rung, rung};
 use expect_test::{Expect, expect};
 use proptest::prelude::*;

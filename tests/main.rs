@@ -2,10 +2,16 @@
 
 mod document;
 mod il_fx;
+mod il_iec;
 mod ladder_generate;
 mod ladder_print;
 mod ladder_read;
+mod lsp;
+mod lsp_client;
+mod mistakes;
 mod rules;
+mod rules_drawing;
+mod rules_fx;
 mod target_fx;
 mod target_fx_applied;
 mod target_iec;

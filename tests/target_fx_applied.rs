@@ -188,7 +188,7 @@ fn the_small_models_have_what_their_manual_lists() {
         rows().filter(|row| !row.models.contains(&model)).filter_map(function).collect()
     };
     let full = vec![155, 156, 157, 158, 159];
-    assert_eq!(missing(Model::Fx3u), []);
+    assert_eq!(missing(Model::Fx3u), Vec::<u16>::new());
     assert_eq!(missing(Model::Fx2n), full);
     let floats = [110, 111, 118, 119, 120, 121, 122, 123, 127, 129, 130, 131, 132];
     let small: Vec<u16> = [51, 55, 61, 64, 65, 68, 69, 70, 71, 73, 75, 76, 77]

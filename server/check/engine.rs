@@ -54,7 +54,7 @@ pub fn program(document: &Document, severities: &Severities) -> Vec<Diagnostic> 
     let mut diagnostics = Vec::new();
     let context = ProgramContext { document };
     for rule in RULES.iter() {
-        if let Rule { run: Run::Program(judge), .. } = rule {
+        if let Rule { run: Run::Program(judge) | Run::Both(_, judge), .. } = rule {
             judge(&context, &mut diagnostics);
         }
     }
@@ -84,7 +84,7 @@ fn judge_page(document: &Document, page: &Page, mut pou_number: usize) -> Vec<Di
                 pou: pou_number.checked_sub(1),
             };
             for rule in RULES.iter() {
-                if let Rule { run: Run::Chunk(judge), .. } = rule {
+                if let Rule { run: Run::Chunk(judge) | Run::Both(judge, _), .. } = rule {
                     judge(&context, &mut found);
                 }
             }

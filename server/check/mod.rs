@@ -12,6 +12,10 @@ pub use context::{ChunkContext, ProgramContext};
 mod engine;
 pub use engine::{Severities, all, program, realtime, sorted};
 
+mod statements;
+
+mod iec;
+
 mod declarations;
 mod drawing;
 mod order;

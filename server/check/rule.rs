@@ -19,10 +19,14 @@ pub struct Rule {
 pub enum Run {
     /// By the reader of the text, which knows best what it could not read. Real-time tier.
     WhileReading,
+    /// Together with the rule of this code, whose judge sees both. Same tier as that one.
+    With(&'static str),
     /// On a chunk, as soon as an edit touched it. Real-time tier.
     Chunk(fn(&ChunkContext<'_>, &mut Vec<Diagnostic>)),
     /// On the whole program, when typing stops. Batch tier.
     Program(fn(&ProgramContext<'_>, &mut Vec<Diagnostic>)),
+    /// On each chunk, and on the whole program: each tier sees a part of it.
+    Both(fn(&ChunkContext<'_>, &mut Vec<Diagnostic>), fn(&ProgramContext<'_>, &mut Vec<Diagnostic>)),
 }
 
 impl Rule {

@@ -4,7 +4,8 @@ use super::Outcome;
 use super::input::{complain, say};
 use crate::check::{RULES, Rule};
 use crate::target::iec::{Function, FunctionBlock, Operator};
-use crate::target::{Form, Model, suggestions};
+use crate::target::instructions::suggestions;
+use crate::target::{Form, Model};
 
 #[derive(clap::Args)]
 pub(super) struct Arguments {

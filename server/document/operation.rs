@@ -39,13 +39,21 @@ impl Chunk {
         });
         let elements =
             ladder.into_iter().flat_map(|tree| tree.rungs.iter()).flat_map(|rung| &rung.graph.elements);
-        lines.chain(elements.filter_map(of_element))
+        lines.chain(elements.filter_map(Operation::of_element))
     }
 }
 
-/// The instruction that an element stands for.
-fn of_element(element: &Element) -> Option<Operation<'_>> {
-    let (form, symbol, is_word) = match &element.kind {
+impl<'a> Operation<'a> {
+    /// The instruction that an element stands for, if any.
+    pub fn of_element(element: &'a Element) -> Option<Operation<'a>> {
+        let (form, symbol, is_word) = form_of(element)?;
+        Some(Operation { form, symbol, is_word, operands: &element.operands })
+    }
+}
+
+/// The instruction of an element, its cells, and whether these are a word.
+fn form_of(element: &Element) -> Option<(Option<Form>, Span, bool)> {
+    Some(match &element.kind {
         ElementKind::Contact(kind) => (Form::named(contact_mnemonic(*kind)), element.span, false),
         ElementKind::Compare(operator) => (Form::named(compare_mnemonic(*operator)), element.span, false),
         ElementKind::Coil(kind) => (Form::named(coil_mnemonic(*kind)), element.span, false),
@@ -56,8 +64,7 @@ fn of_element(element: &Element) -> Option<Operation<'_>> {
         | ElementKind::Return
         | ElementKind::ConnectorOut(_)
         | ElementKind::ConnectorIn(_) => return None,
-    };
-    Some(Operation { form, symbol, is_word, operands: &element.operands })
+    })
 }
 
 fn contact_mnemonic(kind: ContactKind) -> &'static str {

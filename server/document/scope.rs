@@ -5,7 +5,8 @@
 use super::mention::{folded, of_operand};
 use super::{Chunk, Document, Mention, Symbol, Tree, Use};
 use crate::il::iec::{
-    Direction, IecTree, ItemKind, MentionRole, OperandId, ParameterValue, PouKind, SectionKind, TypeId, TypeSpec,
+    Direction, IecTree, ItemKind, MentionRole, OperandId, ParameterValue, PouKind, SectionKind, TypeId,
+    TypeSpec,
 };
 use crate::target::iec::{ElementaryType, FunctionBlock, OperatorRole, ParameterType};
 use crate::target::{DirectAddress, Operand};
@@ -26,6 +27,8 @@ pub struct Scopes {
     pub types: FxHashMap<SmolStr, DeclaredType>,
     /// Whether there is a CONFIGURATION.
     pub has_configuration: bool,
+    /// The number of the first POU with each folded name.
+    pou_numbers: FxHashMap<SmolStr, usize>,
 }
 
 /// A program organisation unit.
@@ -102,6 +105,13 @@ impl Chunk {
     }
 }
 
+impl Pou {
+    /// Its variable with the folded name `name`.
+    pub fn variable(&self, name: &str) -> Option<&Variable> {
+        self.variables.get(*self.index.get(name)?)
+    }
+}
+
 impl Scopes {
     pub(super) fn of(document: &Document) -> Scopes {
         let mut scopes = Scopes::default();
@@ -118,7 +128,7 @@ impl Scopes {
 
     /// The POU called `name`, letter case aside.
     pub fn pou_named(&self, name: &str) -> Option<&Pou> {
-        self.pous.iter().find(|pou| pou.name.eq_ignore_ascii_case(name))
+        self.pous.get(*self.pou_numbers.get(&folded(name))?)
     }
 
     /// The variable called `name` in POU number `pou`, or else the global one.
@@ -213,13 +223,17 @@ impl Scopes {
     fn add(&mut self, text: &str, tree: &IecTree) {
         for item in &tree.items {
             match item.kind {
-                ItemKind::Pou { kind, name, result } => self.pous.push(Pou {
-                    name: name.map_or(SmolStr::default(), |span| SmolStr::from(span.of(text))),
-                    kind,
-                    result: result.map(|id| declared_type(text, tree, id)),
-                    variables: Vec::new(),
-                    index: FxHashMap::default(),
-                }),
+                ItemKind::Pou { kind, name, result } => {
+                    let name = name.map_or(SmolStr::default(), |span| SmolStr::from(span.of(text)));
+                    self.pou_numbers.entry(folded(&name)).or_insert(self.pous.len());
+                    self.pous.push(Pou {
+                        name,
+                        kind,
+                        result: result.map(|id| declared_type(text, tree, id)),
+                        variables: Vec::new(),
+                        index: FxHashMap::default(),
+                    });
+                }
                 ItemKind::Section { kind, constant, declarations, .. } => {
                     for declaration in declarations.of(&tree.declarations) {
                         let declared = declaration

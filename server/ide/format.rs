@@ -2,6 +2,7 @@
 
 use crate::document::{Document, Tree};
 use crate::il::{fx, iec};
+use crate::ladder;
 use crate::project::FormatStyle;
 use crate::text::{Span, TextEdit};
 
@@ -15,22 +16,39 @@ pub struct Style {
 }
 
 pub(super) fn edits(document: &Document, style: Style) -> Vec<TextEdit> {
-    let _ = style;
     let mut edits = Vec::new();
     let mut instructions = Vec::new();
+    let page = ladder_page(document, style);
     for at in document.chunks() {
         let text = at.chunk.text();
-        match at.chunk.tree() {
-            Tree::Fx(tree) => instructions.push((text, tree)),
-            Tree::Iec(tree) => {
-                let formatted = iec::format_chunk(text, tree, &iec::FormatOptions::default());
-                edits.extend(line_edits(text, &formatted).iter().map(|edit| edit.shifted(at.start)));
+        let formatted = match at.chunk.tree() {
+            Tree::Fx(tree) => {
+                instructions.push((text, tree));
+                None
             }
-            Tree::Ladder(_) => {}
+            Tree::Iec(tree) => Some(iec::format_chunk(text, tree, &iec::FormatOptions::default())),
+            Tree::Ladder(tree) => ladder::format_chunk(text, tree, document.target(), &page),
+        };
+        if let Some(formatted) = formatted {
+            edits.extend(line_edits(text, &formatted).iter().map(|edit| edit.shifted(at.start)));
         }
     }
     edits.extend(fx::format_chunks(&instructions));
     edits
+}
+
+/// What all rungs of the document share.
+fn ladder_page(document: &Document, style: Style) -> ladder::Page {
+    let kind = match style.kind {
+        FormatStyle::Iec => ladder::StyleKind::Iec,
+        FormatStyle::Brackets => ladder::StyleKind::Brackets,
+        FormatStyle::Unicode => ladder::StyleKind::Unicode,
+    };
+    let drawings = document.chunks().filter_map(|at| match at.chunk.tree() {
+        Tree::Ladder(tree) => Some((at.chunk.text(), tree)),
+        _ => None,
+    });
+    ladder::Page::of(drawings, &ladder::Style { kind, width: style.width })
 }
 
 /// The edits that turn `old` into `new`: common lines at both ends stay, and where the rest has as many lines, only

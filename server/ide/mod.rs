@@ -5,15 +5,22 @@ use crate::text::{Diagnostic, Language, Message, Span, TextEdit};
 
 mod answer;
 pub use answer::{
-    Completion, CompletionKind, Fold, FoldKind, Hover, InlayHint, Status, SymbolKind, SymbolNode, Token, TokenKind,
+    Completion, CompletionKind, Fold, FoldKind, Hover, InlayHint, Status, SymbolKind, SymbolNode, Token,
+    TokenKind,
 };
 
 mod names;
+
+mod members;
 
 mod pages;
 pub use pages::{block_page, function_page, instruction_page, operator_page};
 
 mod devices;
+
+mod declared;
+
+mod uses;
 
 mod hover;
 

@@ -1,7 +1,8 @@
 //! What a name stands for, and every place where it stands: the ground of hover, definition, references and rename.
 
+use super::{declared, members};
 use crate::document::{Chunk, Document, Mention, Names, Scopes, Symbol, Use};
-use crate::il::iec::SectionKind;
+use crate::il::iec::{PouKind, SectionKind};
 use crate::target::iec::FunctionBlock;
 use crate::target::{Device, DeviceKind, DirectAddress};
 use crate::text::Span;
@@ -49,7 +50,9 @@ impl Thing {
             Symbol::Label(name) => Thing::Label { pou, name: name.clone() },
             Symbol::Connector(name) => Thing::Connector { pou, name: name.clone() },
             Symbol::Pou(name) => Thing::Pou(name.clone()),
-            Symbol::Type(name) if is_pou(name) || FunctionBlock::named(name).is_some() => Thing::Pou(name.clone()),
+            Symbol::Type(name) if is_pou(name) || FunctionBlock::named(name).is_some() => {
+                Thing::Pou(name.clone())
+            }
             Symbol::Type(name) => Thing::Type(name.clone()),
             Symbol::Variable(name) => {
                 let is_global = |section| matches!(section, SectionKind::Global | SectionKind::External);
@@ -109,6 +112,14 @@ impl Thing {
         }
     }
 
+    /// The program unit and the name, if it is a variable that other units see as a parameter or a member.
+    fn parameter_of(&self, scopes: &Scopes) -> Option<(usize, &SmolStr)> {
+        let Thing::Variable { pou: Some(unit), name } = self else { return None };
+        let section = scopes.variable(Some(*unit), name)?.section;
+        let has_callers = scopes.pous.get(*unit).is_some_and(|pou| pou.kind != PouKind::Program);
+        (has_callers && declared::is_parameter(section)).then_some((*unit, name))
+    }
+
     /// Whether it is a place in the program: a pointer or a label.
     pub(super) fn is_label(&self) -> bool {
         match self {
@@ -124,12 +135,21 @@ pub(super) fn at(document: &Document, offset: usize) -> Option<Named<'_>> {
     let found = document.chunk_at(offset)?;
     let inside = offset.checked_sub(found.start)?;
     let touched = found.chunk.mentions().iter().filter(|mention| mention.span.touches(inside));
-    let mention = touched.filter(|mention| !mention.span.is_empty()).max_by_key(|mention| mention.span.start)?;
+    let mention = touched.filter(|mention| !mention.span.is_empty()).max_by_key(|mention| mention.span.start);
     let pou = pou_at(document, found.start);
+    let (thing, span, usage) = match mention {
+        Some(mention) => (Thing::of(mention, pou, document.scopes()), mention.span, mention.usage),
+        None => {
+            let members = members::of(found.chunk, pou, document.scopes());
+            let member = members.into_iter().find(|member| member.span.touches(inside))?;
+            let thing = Thing::Variable { pou: Some(member.pou), name: member.name };
+            (thing, member.span, member.usage)
+        }
+    };
     Some(Named {
-        thing: Thing::of(mention, pou, document.scopes()),
-        span: mention.span.shifted(found.start),
-        usage: mention.usage,
+        thing,
+        span: span.shifted(found.start),
+        usage,
         chunk: found.chunk,
         chunk_start: found.start,
     })
@@ -138,14 +158,22 @@ pub(super) fn at(document: &Document, offset: usize) -> Option<Named<'_>> {
 /// Calls `see` for every place of `thing`, in the order of the text. Pages that do not name it cost one look-up.
 pub(super) fn visit<'d>(document: &'d Document, thing: &Thing, mut see: impl FnMut(Named<'d>)) {
     let scopes = document.scopes();
+    let from_outside = thing.parameter_of(scopes);
     let mut walk = PouWalk::default();
     let mut page_start = 0;
     for page in document.pages() {
         let names = page.names();
-        if thing.may_be_in(names) {
+        if thing.may_be_in(names) || from_outside.is_some() {
             let (mut walk, mut start) = (walk, page_start);
             for chunk in page.chunks() {
                 let pou = walk.enter(chunk);
+                if let Some((unit, name)) = from_outside {
+                    let members = members::of(chunk, pou, scopes).into_iter();
+                    for member in members.filter(|member| member.pou == unit && member.name == *name) {
+                        let (span, usage) = (member.span.shifted(start), member.usage);
+                        see(Named { thing: thing.clone(), span, usage, chunk, chunk_start: start });
+                    }
+                }
                 for mention in chunk.mentions().iter().filter(|mention| thing.may_be(&mention.symbol)) {
                     let found = Thing::of(mention, pou, scopes);
                     if found.meets(thing) {

@@ -2,14 +2,17 @@
 //! the table says.
 
 use crate::target::iec::{Function, FunctionBlock, Operator, Parameter};
-use crate::target::{Access, Accepts, Form, Instruction, Model, OperandSpec, Steps, Target, Wide, instructions};
+use crate::target::{
+    Accepts, Access, Form, Instruction, Model, OperandSpec, Steps, Target, Wide, instructions,
+};
 
 /// The page of an instruction: heading, forms, operands, steps and models, then the text with its example.
 pub fn instruction_page(form: Form) -> String {
     let row = form.instruction;
     let mut page = format!("### {}: {}{}\n\n", form.mnemonic(), row.title, variant(form));
     page += &usage_line(form);
-    let forms: Vec<String> = instructions::forms_of(row).map(|form| format!("`{}`", form.mnemonic())).collect();
+    let forms: Vec<String> =
+        instructions::forms_of(row).map(|form| format!("`{}`", form.mnemonic())).collect();
     if forms.len() > 1 {
         page += &format!("Forms: {}\n\n", forms.join(", "));
     }
@@ -127,7 +130,12 @@ fn operand_row(form: Form, place: usize, spec: &OperandSpec) -> String {
         }
         false => String::new(),
     };
-    format!("| {} | {}{access}{count}{optional} | {}{limits} |\n", spec.name, spec.meaning, kinds(spec.accepts))
+    format!(
+        "| {} | {}{access}{count}{optional} | {}{limits} |\n",
+        spec.name,
+        spec.meaning,
+        kinds(spec.accepts)
+    )
 }
 
 fn steps_words(form: Form) -> String {

@@ -12,5 +12,7 @@ pub(super) fn of(document: &Document, offset: usize, with_declaration: bool) -> 
             spans.push(place.span);
         }
     });
+    spans.sort_unstable();
+    spans.dedup();
     spans
 }

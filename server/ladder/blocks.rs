@@ -84,7 +84,9 @@ fn frame_at(grid: &Grid, top: usize, left: usize) -> Option<Frame> {
         for column in left + 1..right {
             let character = grid.at(row, column);
             let drawn = upright(row, column) || matches!(character, '(' | ')' | '[' | ']');
-            if drawn && character != '!' || (grid.arms(row, column).is_line() && !matches!(character, '_' | '=')) {
+            if drawn && character != '!'
+                || (grid.arms(row, column).is_line() && !matches!(character, '_' | '='))
+            {
                 return None;
             }
             worded |= starts_word(character) || is_operator(character) || character == '&';
@@ -165,7 +167,14 @@ fn read_block(grid: &mut Grid, frame: Frame, text: &str, target: &Target) -> Sym
     let mut element = Element::new(ElementKind::Block(Box::new(block)), span, grid.line(row), columns);
     element.operands = operands;
     element.place = OperandPlace::Beside;
-    Symbol { row, start: frame.left, end: frame.right + 1, element, wants: Wants::Instance, depth: row - frame.top }
+    Symbol {
+        row,
+        start: frame.left,
+        end: frame.right + 1,
+        element,
+        wants: Wants::Instance,
+        depth: row - frame.top,
+    }
 }
 
 fn words_inside(grid: &Grid, row: usize, frame: Frame) -> Vec<Inside> {

@@ -38,7 +38,7 @@ pub fn chunk_ends(text: &str) -> impl Iterator<Item = usize> {
     let mut chunk = Chunk::default();
     let mut finished = text.is_empty();
     std::iter::from_fn(move || {
-        while let Some(line) = lines.next() {
+        for line in lines.by_ref() {
             if !chunk.takes(&line, text) {
                 let end = line.span.start as usize;
                 chunk = Chunk::default();
@@ -103,8 +103,9 @@ struct BlockSoFar {
     left: Option<u32>,
     /// The rightmost column.
     right: u32,
-    /// The last line with a wire or an element in it.
-    wires: Option<Line>,
+    /// The last line with a wire or an element in it, the column of its last bar or corner if it ends in one, and
+    /// whether that stands behind a contact, once this is asked for.
+    wires: Option<(Line, Option<u32>, Option<bool>)>,
 }
 
 impl Chunk {
@@ -171,11 +172,13 @@ impl BlockSoFar {
         self.started = true;
         let mut margin = true;
         let mut has_wires = false;
+        let mut last = None;
         for (column, _, character) in line.cells(text) {
             if is_blank(character) {
                 continue;
             }
             let arms = Arms::of(character);
+            last = arms.is_upright().then_some(column);
             let draws = arms.is_line() || matches!(character, '[' | ']' | '(' | ')');
             // A rung number may stand left of the rail.
             if draws && margin {
@@ -188,12 +191,12 @@ impl BlockSoFar {
             }
         }
         if has_wires {
-            self.wires = Some(line.clone());
+            self.wires = Some((line.clone(), last, None));
         }
     }
 
     /// Whether one of `bars` on a line without anything else is a vertical wire, not a rail.
-    fn is_crossed(&self, bars: &[u32], text: &str) -> bool {
+    fn is_crossed(&mut self, bars: &[u32], text: &str) -> bool {
         let inner: &[u32] = match (bars, self.left) {
             ([first, rest @ ..], Some(left)) if *first <= left + 1 => rest,
             _ => bars,
@@ -201,24 +204,17 @@ impl BlockSoFar {
         match inner {
             [] => false,
             [bar] => {
-                let at_end = self.wires.as_ref().is_some_and(|wires| ends_at(wires, *bar, text));
-                let after_condition = self.wires.as_ref().is_some_and(|wires| ends_in_condition(wires, text));
-                if at_end { after_condition } else { *bar < self.right }
+                // The bar may be one of a double rail, or of a rail that is not straight.
+                match &mut self.wires {
+                    Some((line, Some(last), condition)) if last.abs_diff(*bar) <= 2 => {
+                        *condition.get_or_insert_with(|| ends_in_condition(line, text))
+                    }
+                    _ => *bar < self.right,
+                }
             }
             _ => true,
         }
     }
-}
-
-/// Whether the last thing of `line` is a bar or a corner in `column`, or the bar of a double rail beside it.
-fn ends_at(line: &Line, column: u32, text: &str) -> bool {
-    let mut last = None;
-    for (at, _, character) in line.cells(text) {
-        if !is_blank(character) {
-            last = Some((at, character));
-        }
-    }
-    last.is_some_and(|(at, character)| (at == column || at == column + 1) && Arms::of(character).is_upright())
 }
 
 /// Whether the last element of `line` is a contact, so that the corner after it is a branch and no rail.

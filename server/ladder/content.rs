@@ -49,7 +49,13 @@ impl Reading {
 }
 
 /// The pieces of the cells `first..last` of a row, separated by blanks, commas and comparison operators.
-pub(super) fn pieces<'t>(grid: &Grid, row: usize, first: usize, last: usize, text: &'t str) -> Vec<Piece<'t>> {
+pub(super) fn pieces<'t>(
+    grid: &Grid,
+    row: usize,
+    first: usize,
+    last: usize,
+    text: &'t str,
+) -> Vec<Piece<'t>> {
     let mut pieces = Vec::new();
     let mut start = first;
     let mut column = first;
@@ -232,7 +238,11 @@ fn coil_kind(word: &Piece, alone: bool) -> Option<CoilKind> {
         ("PLF", CoilKind::Falling),
     ];
     let mnemonics = if alone { &[][..] } else { &MNEMONICS[..] };
-    MARKS.iter().chain(mnemonics).find(|(name, _)| name.eq_ignore_ascii_case(word.text)).map(|(_, kind)| *kind)
+    MARKS
+        .iter()
+        .chain(mnemonics)
+        .find(|(name, _)| name.eq_ignore_ascii_case(word.text))
+        .map(|(_, kind)| *kind)
 }
 
 fn read_operand(piece: &Piece, target: &Target) -> Spanned<Operand> {
@@ -248,6 +258,7 @@ pub(super) fn is_preset(first: &Operand, second: &Operand) -> bool {
     let counts = |device: &Operand| {
         device.device().is_some_and(|device| matches!(device.kind, DeviceKind::T | DeviceKind::C))
     };
-    let number = matches!(second, Operand::Constant { value: Constant::Decimal(_) | Constant::Hexadecimal(_), .. });
+    let number =
+        matches!(second, Operand::Constant { value: Constant::Decimal(_) | Constant::Hexadecimal(_), .. });
     counts(first) && (number || second.device().is_some_and(|device| device.kind.is_word()))
 }

@@ -91,7 +91,8 @@ impl Grid {
     pub(super) fn span(&self, row: usize, first: usize, last: usize) -> Span {
         let Some(row) = self.rows.get(row) else { return Span::default() };
         let start = row.cells.get(first).map_or(row.end, |cell| cell.start);
-        let end = last.checked_sub(1).map_or(start, |last| row.cells.get(last).map_or(row.end, |cell| cell.end));
+        let end =
+            last.checked_sub(1).map_or(start, |last| row.cells.get(last).map_or(row.end, |cell| cell.end));
         Span { start, end: end.max(start) }
     }
 

@@ -171,7 +171,11 @@ impl Line {
     /// What kind of line it is.
     pub(super) fn kind(&self, text: &str) -> LineKind {
         let Some(content) = self.content(text) else {
-            return if self.comments.is_empty() && !self.continues { LineKind::Blank } else { LineKind::Comment };
+            return if self.comments.is_empty() && !self.continues {
+                LineKind::Blank
+            } else {
+                LineKind::Comment
+            };
         };
         let words = content.of(text);
         if Arms::of(words.chars().next().unwrap_or(' ')).is_upright() {
@@ -269,7 +273,9 @@ fn read_header(words: &str, start: usize) -> Option<HeaderLine> {
         }
     }
     let (keyword, rest) = words.split_at_checked("NETWORK".len())?;
-    if !keyword.eq_ignore_ascii_case("NETWORK") || rest.chars().next().is_some_and(super::glyph::continues_word) {
+    if !keyword.eq_ignore_ascii_case("NETWORK")
+        || rest.chars().next().is_some_and(super::glyph::continues_word)
+    {
         return None;
     }
     let mut header = HeaderLine { span, ..HeaderLine::default() };

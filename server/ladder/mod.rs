@@ -24,6 +24,8 @@ mod content;
 
 mod uprights;
 
+mod ragged;
+
 mod wires;
 
 mod names;

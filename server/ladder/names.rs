@@ -3,7 +3,6 @@
 use super::content::{Wants, is_preset};
 use super::grid::Grid;
 use super::scan::{Symbol, Token, Tokens, What};
-use super::uprights::is_drawn;
 use super::{Block, ElementKind, NameHabit, OperandPlace};
 use crate::target::{Operand, Target};
 use crate::text::{Diagnostic, Message, Span, Spanned, TextEdit};
@@ -70,11 +69,13 @@ impl Naming<'_> {
         for (number, word) in words.iter().enumerate() {
             // What takes no name says nothing about names, and the first of two words hangs over its element's side.
             let takes = |symbol: usize| self.tokens.symbols[symbol].wants != Wants::Nothing;
-            let next = words.get(number + 1).filter(|next| next.row == word.row);
-            let in_phrase = next.is_some_and(|next| word.end + 1 == next.start);
+            let in_phrase =
+                words.get(number + 1).is_some_and(|next| next.row == word.row && word.end + 1 == next.start);
             match (word.below, word.above) {
                 (Candidate::One(symbol, _), Candidate::None) if takes(symbol) => habit.above += 1,
-                (Candidate::None, Candidate::One(symbol, _)) if takes(symbol) && !in_phrase => habit.below += 1,
+                (Candidate::None, Candidate::One(symbol, _)) if takes(symbol) && !in_phrase => {
+                    habit.below += 1
+                }
                 _ => {}
             }
         }
@@ -91,6 +92,7 @@ impl Naming<'_> {
         for (symbol, words) in owned.iter().enumerate() {
             self.give(symbol, words);
         }
+        self.mend(&mut words, &mut named);
         self.report_stray(&words, names_below);
         self.report_missing(&words);
         named
@@ -101,24 +103,23 @@ impl Naming<'_> {
         let mut words = Vec::new();
         for (row, line) in self.tokens.rows.iter().enumerate() {
             for (number, token) in line.iter().enumerate() {
-                let margin = token.end <= self.left && line.get(number + 1).is_some_and(is_drawn) && number == 0;
-                if token.what != What::Word || (margin && self.is_number(row, token)) {
+                let before = number.checked_sub(1).and_then(|before| line.get(before));
+                let after = line.get(number + 1);
+                let margin = number == 0 && token.end <= self.left && after.is_some_and(Token::is_drawn);
+                let numbered = margin && self.is_number(row, token);
+                if token.what != What::Word
+                    || numbered
+                    || self.belongs_to_problem(row, token, [before, after])
+                {
                     continue;
                 }
-                let mut word = Word {
-                    row,
-                    start: token.start,
-                    end: token.end,
-                    below: Candidate::None,
-                    above: Candidate::None,
-                    owner: None,
-                };
+                let (start, end) = (token.start, token.end);
+                let mut word =
+                    Word { row, start, end, below: Candidate::None, above: Candidate::None, owner: None };
+                let is_wire = |other: &&Token| other.what == What::Wire;
+                let wired = before.filter(is_wire).is_some_and(|before| before.end == start)
+                    || after.filter(is_wire).is_some_and(|after| after.start == end);
                 // A word between wires names nothing.
-                let touches = |other: Option<&Token>, at: fn(&Token) -> usize, edge: usize| {
-                    other.is_some_and(|other| other.what == What::Wire && at(other) == edge)
-                };
-                let before = number.checked_sub(1).and_then(|before| line.get(before));
-                let wired = touches(before, |t| t.end, token.start) || touches(line.get(number + 1), |t| t.start, token.end);
                 if !wired {
                     let rows = self.tokens.rows.len();
                     word.below = self.candidate(&word, row + 1..rows.min(row + 1 + FARTHEST));
@@ -130,6 +131,22 @@ impl Naming<'_> {
         words
     }
 
+    /// Whether the word is the name of something that could not be read and has been reported: it stands beside an
+    /// element on a vertical wire, or over a bracket without partner.
+    fn belongs_to_problem(&self, row: usize, token: &Token, beside: [Option<&Token>; 2]) -> bool {
+        let turned = |other: &Token| {
+            let wide = other.end - other.start > 2 && matches!(other.what, What::Upright(_));
+            wide && other.end + 1 >= token.start && token.end + 1 >= other.start
+        };
+        let unreadable = |row: usize| {
+            let over = self.tokens.over(row, token.start..token.end);
+            over.is_some_and(|(_, over)| over.what == What::Unreadable)
+        };
+        beside.into_iter().flatten().any(turned)
+            || unreadable(row + 1)
+            || row.checked_sub(1).is_some_and(unreadable)
+    }
+
     fn is_number(&self, row: usize, token: &Token) -> bool {
         (token.start..token.end).all(|column| self.grid.at(row, column).is_ascii_digit())
     }
@@ -139,7 +156,10 @@ impl Naming<'_> {
         for (distance, row) in rows.enumerate() {
             let line = &self.tokens.rows[row];
             let from = line.partition_point(|token| token.end <= word.start);
-            let over = line[from..].iter().take_while(|token| token.start < word.end).filter(|t| is_drawn(t));
+            let over = line[from..]
+                .iter()
+                .take_while(|token| token.start < word.end)
+                .filter(|token| token.is_drawn());
             let mut blocked = false;
             // Cells of overlap and symbol, the largest overlap first; symbols that take no name come last.
             let mut first = (0, 0);
@@ -203,22 +223,7 @@ impl Naming<'_> {
             word.owner = Some(owner);
             counts[owner] += 1;
         }
-        // The second operand of a comparison may stand on the other side. It can be told from the upper line of a
-        // name only if the element there has a nearer name.
-        let nearest = nearest_words(words, names_below);
-        for number in 0..words.len() {
-            let word = words[number];
-            let other = if names_below { word.below } else { word.above };
-            let Candidate::One(symbol, 1) = other else { continue };
-            let free = word.owner.is_none_or(|owner| owner != symbol && nearest.get(&owner) != Some(&number));
-            if self.tokens.symbols[symbol].wants == Wants::TwoOperands && counts[symbol] == 1 && free {
-                words[number].owner = Some(symbol);
-                counts[symbol] += 1;
-                if let Some(owner) = word.owner {
-                    counts[owner] -= 1;
-                }
-            }
-        }
+        self.second_operands(words, &mut counts, names_below);
         for word in words.iter_mut().filter(|word| word.owner.is_none()) {
             // Against the habit, but there is only one reading.
             let other = if names_below { word.below } else { word.above };
@@ -234,10 +239,30 @@ impl Naming<'_> {
         self.join_phrases(words);
     }
 
+    /// The second operand of a comparison may stand on the other side. It can be told from the upper line of a name
+    /// only if the element there has a nearer name.
+    fn second_operands(&self, words: &mut [Word], counts: &mut [usize], names_below: bool) {
+        let nearest = nearest_words(words, names_below);
+        for (number, word) in words.iter_mut().enumerate() {
+            let other = if names_below { word.below } else { word.above };
+            let Candidate::One(symbol, 1) = other else { continue };
+            let free = word.owner.is_none_or(|owner| owner != symbol && nearest.get(&owner) != Some(&number));
+            if self.tokens.symbols[symbol].wants == Wants::TwoOperands && counts[symbol] == 1 && free {
+                counts[symbol] += 1;
+                if let Some(owner) = word.owner.replace(symbol) {
+                    counts[owner] -= 1;
+                }
+            }
+        }
+    }
+
     /// `T0 K50` over a coil: a word over nothing, one blank away from a name of a coil, belongs to that name.
     fn join_phrases(&self, words: &mut [Word]) {
         let phrases = |symbol: usize| {
-            matches!(self.tokens.symbols[symbol].wants, Wants::DeviceAndPreset | Wants::TwoOperands | Wants::Operands)
+            matches!(
+                self.tokens.symbols[symbol].wants,
+                Wants::DeviceAndPreset | Wants::TwoOperands | Wants::Operands
+            )
         };
         for number in 0..words.len() {
             let word = words[number];
@@ -245,7 +270,8 @@ impl Naming<'_> {
             if word.owner.is_some() || !over_nothing {
                 continue;
             }
-            let left = number.checked_sub(1).map(|left| words[left]).filter(|left| left.end + 1 == word.start);
+            let left =
+                number.checked_sub(1).map(|left| words[left]).filter(|left| left.end + 1 == word.start);
             let right = words.get(number + 1).copied().filter(|right| word.end + 1 == right.start);
             let near = [left, right].into_iter().flatten().filter(|near| near.row == word.row);
             words[number].owner = near.filter_map(|near| near.owner).find(|owner| phrases(*owner));
@@ -256,7 +282,8 @@ impl Naming<'_> {
     fn give(&mut self, number: usize, words: &[Word]) {
         let Some(first) = words.first() else { return };
         let target = self.target;
-        let spans: Vec<Span> = words.iter().map(|word| self.grid.span(word.row, word.start, word.end)).collect();
+        let spans: Vec<Span> =
+            words.iter().map(|word| self.grid.span(word.row, word.start, word.end)).collect();
         let read = |span: &Span| Spanned::new(Operand::read(span.of(self.text), target.model), *span);
         let operands: Vec<Spanned<Operand>> = spans.iter().map(read).collect();
         let one_line = words.iter().all(|word| word.row == first.row);
@@ -281,14 +308,15 @@ impl Naming<'_> {
                 if symbol.wants == Wants::DeviceAndPreset && preset {
                     symbol.element.operands = operands;
                 } else {
-                    surplus = name_device(symbol, &operands, words, place, target);
+                    surplus = name_device(symbol, &operands, words, place, (self.text, target));
                 }
             }
         }
         if symbol.wants != Wants::Nothing && symbol.wants != Wants::Instance {
             symbol.element.place = place;
         }
-        let is_note = |operand: &Spanned<Operand>| target.is_fx() && matches!(operand.value, Operand::Invalid(_));
+        let is_note =
+            |operand: &Spanned<Operand>| target.is_fx() && matches!(operand.value, Operand::Invalid(_));
         for operand in surplus {
             if is_note(&operand) {
                 symbol.element.notes.push(operand.span);
@@ -301,14 +329,87 @@ impl Naming<'_> {
         }
     }
 
+    /// The words of a line that has several, none of them a name and nothing drawn between.
+    fn line_of_text(&self, word: &Word, words: &[Word]) -> Option<Span> {
+        let tokens = &self.tokens.rows[word.row];
+        let inner = |token: &Token| matches!(token.what, What::Wire | What::Symbol(_));
+        let from = words.partition_point(|other| other.row < word.row);
+        let own = words[from..].iter().take_while(|other| other.row == word.row);
+        let (mut count, mut last) = (0, word.end);
+        for other in own {
+            if other.owner.is_some() || self.nameless_near(other, 4).next().is_some() {
+                return None;
+            }
+            (count, last) = (count + 1, other.end);
+        }
+        let prose = count > 2 && !tokens.iter().any(inner);
+        prose.then(|| self.grid.span(word.row, words[from].start, last))
+    }
+
+    /// Gives words that miss their element by a column or two to it, if there is only one reading.
+    fn mend(&mut self, words: &mut [Word], named: &mut Named) {
+        const ASIDE: usize = 1;
+        let mut wanted: rustc_hash::FxHashMap<usize, Vec<usize>> = rustc_hash::FxHashMap::default();
+        for (number, word) in words.iter().enumerate() {
+            let unclear =
+                matches!(word.below, Candidate::Two(..)) || matches!(word.above, Candidate::Two(..));
+            if word.owner.is_some() || unclear {
+                continue;
+            }
+            let mut near: Vec<usize> = self.nameless_near(word, ASIDE).collect();
+            near.dedup();
+            if let [symbol] = near[..] {
+                wanted.entry(symbol).or_default().push(number);
+            }
+        }
+        let mut wanted: Vec<_> = wanted.into_iter().filter(|(_, words)| words.len() == 1).collect();
+        wanted.sort_unstable();
+        for (symbol, numbers) in wanted {
+            let word = words[numbers[0]];
+            words[numbers[0]].owner = Some(symbol);
+            let rows = &mut named.rows[symbol];
+            *rows = Some(rows.map_or((word.row, word.row), |(a, b)| (a.min(word.row), b.max(word.row))));
+            self.give(symbol, &[word]);
+            let span = self.grid.span(word.row, word.start, word.end);
+            let found = &self.tokens.symbols[symbol];
+            let message = Message::new("ragged-drawing.operand").with("text", span.of(self.text));
+            let mut problem = Diagnostic::new("ragged-drawing", span, message)
+                .related(found.element.span, Message::new("stray-operand.element"));
+            if let Some(edit) = self.moved(&word, found) {
+                let title = Message::new("stray-operand.move").with("text", span.of(self.text));
+                problem = problem.fix(title, vec![edit]);
+            }
+            self.problems.push(problem);
+        }
+    }
+
     fn report_stray(&mut self, words: &[Word], names_below: bool) {
-        for word in words.iter().filter(|word| word.owner.is_none()) {
+        let stray: Vec<&Word> = words.iter().filter(|word| word.owner.is_none()).collect();
+        let mut row = None;
+        let mut prose = false;
+        for word in &stray {
+            if row != Some(word.row) {
+                row = Some(word.row);
+                let line = self.line_of_text(word, words);
+                prose = line.is_some();
+                if let Some(line) = line {
+                    // One finding for a line of prose, not one for each word.
+                    let message = Message::new("unreadable-cell.text");
+                    self.problems.push(Diagnostic::new("unreadable-cell", line, message));
+                }
+            }
+            if prose {
+                continue;
+            }
             let span = self.grid.span(word.row, word.start, word.end);
             let wanted = if names_below { word.above } else { word.below };
             let text = span.of(self.text);
             if let Candidate::Two(first, second, _) = wanted {
-                let mut problem =
-                    Diagnostic::new("stray-operand", span, Message::new("stray-operand.two").with("text", text));
+                let mut problem = Diagnostic::new(
+                    "stray-operand",
+                    span,
+                    Message::new("stray-operand.two").with("text", text),
+                );
                 for symbol in [first, second] {
                     let element = self.tokens.symbols[symbol].element.span;
                     problem = problem.related(element, Message::new("stray-operand.element"));
@@ -318,7 +419,13 @@ impl Naming<'_> {
             }
             let message = Message::new("stray-operand.nothing").with("text", text);
             let mut problem = Diagnostic::new("stray-operand", span, message);
-            if let Some(symbol) = self.nameless_near(word) {
+            const ASIDE: usize = 4;
+            let gap = |symbol: &usize| {
+                let symbol = &self.tokens.symbols[*symbol];
+                symbol.start.saturating_sub(word.end).max(word.start.saturating_sub(symbol.end))
+            };
+            if let Some(symbol) = self.nameless_near(word, ASIDE).min_by_key(gap) {
+                let symbol = &self.tokens.symbols[symbol];
                 problem = problem.related(symbol.element.span, Message::new("stray-operand.nearest"));
                 if let Some(edit) = self.moved(word, symbol) {
                     let title = Message::new("stray-operand.move").with("text", text);
@@ -329,20 +436,18 @@ impl Naming<'_> {
         }
     }
 
-    /// The nearest element without a name, one line away and at most four columns to the side.
-    fn nameless_near(&self, word: &Word) -> Option<&Symbol> {
-        const ASIDE: usize = 4;
+    /// Elements without a name, one line away and at most `aside` columns to the side.
+    fn nameless_near(&self, word: &Word, aside: usize) -> impl Iterator<Item = usize> {
+        let (start, end) = (word.start, word.end);
         let rows = [Some(word.row + 1), word.row.checked_sub(1)].into_iter().flatten();
-        let near = rows.filter_map(|row| self.tokens.rows.get(row)).flat_map(|line| {
-            let from = line.partition_point(|token| token.end + ASIDE < word.start);
-            line[from..].iter().take_while(|token| token.start <= word.end + ASIDE)
+        let near = rows.filter_map(|row| self.tokens.rows.get(row)).flat_map(move |line| {
+            let from = line.partition_point(|token| token.end + aside < start);
+            line[from..].iter().take_while(move |token| token.start <= end + aside)
         });
-        let symbols = near.filter_map(|token| match token.what {
-            What::Symbol(symbol) => self.tokens.symbols.get(symbol),
+        near.filter_map(|token| match token.what {
+            What::Symbol(symbol) if is_nameless(&self.tokens.symbols[symbol]) => Some(symbol),
             _ => None,
-        });
-        let gap = |symbol: &Symbol| symbol.start.saturating_sub(word.end).max(word.start.saturating_sub(symbol.end));
-        symbols.filter(|symbol| is_nameless(symbol)).min_by_key(|symbol| gap(symbol))
+        })
     }
 
     /// The edit that centres `word` over `symbol`, if there is nothing but blanks on the way.
@@ -352,7 +457,7 @@ impl Naming<'_> {
         let (from, to) = (start.min(word.start), (start + width).max(word.end));
         let blank = |column: usize| self.grid.at(word.row, column) == ' ';
         let free = (from..word.start).chain(word.end..to).all(blank);
-        let apart = (from == 0 || blank(from - 1)) && blank(to);
+        let apart = (from == word.start || from == 0 || blank(from - 1)) && (to == word.end || blank(to));
         if !free || !apart || to > self.grid.width(word.row) {
             return None;
         }
@@ -426,18 +531,20 @@ fn name_device(
     operands: &[Spanned<Operand>],
     words: &[Word],
     place: OperandPlace,
-    target: &Target,
+    (text, target): (&str, &Target),
 ) -> Vec<Spanned<Operand>> {
-    let addressed = |operand: &Spanned<Operand>| match operand.value {
-        Operand::Invalid(_) | Operand::Variable => false,
-        Operand::Literal(_) => false,
-        _ => true,
+    let addressed = |operand: &Spanned<Operand>| {
+        !matches!(operand.value, Operand::Invalid(_) | Operand::Variable | Operand::Literal(_))
     };
     let lines_differ = words.windows(2).all(|pair| pair[0].row != pair[1].row);
-    let all_names = operands.iter().all(|operand| operand.value == Operand::Variable);
+    let all_names = !operands.iter().any(addressed);
     if operands.len() > 1 && operands.len() <= FARTHEST && lines_differ && all_names && !target.is_fx() {
         symbol.element.name_lines = operands.iter().map(|operand| operand.span).collect();
         symbol.element.operands = operands.last().copied().into_iter().collect();
+        let name = symbol.element.operand_text(0, text).into_owned();
+        for operand in &mut symbol.element.operands {
+            operand.value = Operand::read(&name, target.model);
+        }
         return Vec::new();
     }
     // Nearest line first, and in it left to right.
@@ -447,7 +554,8 @@ fn name_device(
         OperandPlace::Above => usize::MAX - row(number),
         _ => row(number),
     });
-    let chosen = order.iter().copied().find(|number| addressed(&operands[*number])).or(order.first().copied());
+    let chosen =
+        order.iter().copied().find(|number| addressed(&operands[*number])).or(order.first().copied());
     symbol.element.operands = chosen.map(|chosen| operands[chosen]).into_iter().collect();
     (0..operands.len()).filter(|number| Some(*number) != chosen).map(|number| operands[number]).collect()
 }

@@ -7,7 +7,7 @@ use super::grid::{Grid, MOST_COLUMNS, MOST_ROWS};
 use super::lines::{HeaderLine, LineKind, Lines, OpenComment};
 use super::names::{Named, Naming};
 use super::rungs::build_rungs;
-use super::scan::{Scanner, Tokens, What};
+use super::scan::{Scanner, Token, Tokens, What};
 use super::uprights::Uprights;
 use super::wires::Tracer;
 use super::{LadderTree, NameHabit, NetworkHeader};
@@ -32,8 +32,7 @@ pub fn parse_with(chunk: &str, target: &Target, habit: NameHabit) -> LadderTree 
     let mut drawing: Option<Span> = None;
     let mut too_large = false;
     let mut lines = Lines::new(chunk);
-    let mut number = 0;
-    while let Some(line) = lines.next() {
+    for (number, line) in lines.by_ref().enumerate() {
         add_comments(&mut tree.comments, &line.comments, line.continues);
         if is_drawing {
             match line.kind(chunk) {
@@ -43,16 +42,16 @@ pub fn parse_with(chunk: &str, target: &Target, habit: NameHabit) -> LadderTree 
             }
             too_large |= grid.height() >= MOST_ROWS || line.span.len() > MOST_COLUMNS * 4;
             if drawing.is_some() && !too_large {
-                grid.push(&line, number, chunk);
+                grid.push(&line, number as u32, chunk);
                 too_large |= grid.width(grid.height() - 1) > MOST_COLUMNS;
             }
         }
-        number += 1;
     }
     report_unclosed(lines.open, chunk, &mut tree.problems);
     match drawing {
         Some(span) if too_large => {
-            let message = Message::new("rung-too-large.grid").with("rows", MOST_ROWS).with("columns", MOST_COLUMNS);
+            let message =
+                Message::new("rung-too-large.grid").with("rows", MOST_ROWS).with("columns", MOST_COLUMNS);
             tree.problems.push(Diagnostic::new("rung-too-large", span, message));
         }
         Some(_) => read_drawing(grid, chunk, target, habit, &mut tree),
@@ -73,7 +72,7 @@ fn read_drawing(mut grid: Grid, text: &str, target: &Target, habit: NameHabit, t
         report_text(&grid, &tokens, problems);
         return;
     }
-    let uprights = Uprights::find(&tokens, left);
+    let uprights = Uprights::find(&grid, &tokens, left, problems);
     uprights.report(&grid, &tokens, problems);
     let wiring = Tracer::new(&grid, &tokens, &uprights, problems).trace();
     let naming = Naming { grid: &grid, text, target, tokens: &mut tokens, left, problems };
@@ -99,13 +98,16 @@ fn left_column(grid: &Grid) -> usize {
 
 /// Lines of text without any drawing.
 fn report_text(grid: &Grid, tokens: &Tokens, problems: &mut Vec<Diagnostic>) {
-    for (row, line) in tokens.rows.iter().enumerate() {
-        let words = line.iter().any(|token| token.what == What::Word);
-        if let (true, Some(span)) = (words, grid.content(row)) {
-            problems.retain(|problem| problem.span.end <= span.start || span.end <= problem.span.start);
-            problems.push(Diagnostic::new("unreadable-cell", span, Message::new("unreadable-cell.text")));
-        }
-    }
+    let has_word = |line: &[Token]| line.iter().any(|token| token.what == What::Word);
+    let rows = (0..grid.height()).filter(|row| has_word(&tokens.rows[*row]));
+    let lines: Vec<Span> = rows.filter_map(|row| grid.content(row)).collect();
+    // One finding for a line, not one more for each of its characters.
+    problems.retain(|problem| {
+        let line = lines.partition_point(|line| line.end <= problem.span.start);
+        lines.get(line).is_none_or(|line| problem.span.end <= line.start)
+    });
+    let text = |span: &Span| Diagnostic::new("unreadable-cell", *span, Message::new("unreadable-cell.text"));
+    problems.extend(lines.iter().map(text));
 }
 
 fn report_unclosed(open: Option<OpenComment>, text: &str, problems: &mut Vec<Diagnostic>) {
@@ -125,17 +127,17 @@ fn report_unclosed(open: Option<OpenComment>, text: &str, problems: &mut Vec<Dia
 /// Adds the comments of a line; a comment that goes on from the line above is one with its beginning.
 fn add_comments(comments: &mut Vec<Span>, line: &[Span], continues: bool) {
     let mut line = line.iter();
-    if continues
-        && let (Some(open), Some(rest)) = (comments.last_mut(), line.next())
-    {
+    if continues && let (Some(open), Some(rest)) = (comments.last_mut(), line.next()) {
         open.end = rest.end;
     }
     comments.extend(line);
 }
 
 fn add_header(header: &mut Option<NetworkHeader>, line: &HeaderLine, text: &str) {
-    let number = line.number.and_then(|span| span.of(text).parse().ok().map(|value| Spanned::new(value, span)));
-    let header = header.get_or_insert(NetworkHeader { span: line.span, number: None, title: None, label: None });
+    let number =
+        line.number.and_then(|span| span.of(text).parse().ok().map(|value| Spanned::new(value, span)));
+    let header =
+        header.get_or_insert(NetworkHeader { span: line.span, number: None, title: None, label: None });
     header.span = header.span.to(line.span);
     header.number = header.number.or(number);
     header.title = header.title.or(line.title);

@@ -2,6 +2,9 @@
 
 mod bridge;
 
+mod bypass;
+pub use bypass::{Bypass, bypasses};
+
 use super::contract::{EdgeKind, Nodes};
 use super::{ElementId, Graph, VertexId};
 use crate::text::Span;
@@ -107,17 +110,7 @@ pub struct Bridge {
 pub fn reduce(graph: &Graph) -> Result<Shape, NotSeriesParallel> {
     let nodes = Nodes::of(graph);
     find_open_circuit(graph, &nodes)?;
-    let mut reduction = Reduction::new(&nodes);
-    for (number, edge) in nodes.edges.iter().enumerate() {
-        // Edges are numbered tail by tail, top to bottom.
-        let order = number as u32;
-        let label = match &edge.kind {
-            EdgeKind::Wire { .. } => Label::Wire(number as u32),
-            EdgeKind::Element(element) => Label::Element(*element),
-        };
-        let label = reduction.label(label);
-        reduction.insert(Link { tail: edge.tail, head: edge.head, order, label });
-    }
+    let mut reduction = Reduction::of(&nodes);
     reduction.run();
     reduction.shape(graph)
 }
@@ -215,6 +208,22 @@ impl<'a> Reduction<'a> {
             states,
             waiting: Vec::new(),
         }
+    }
+
+    /// All edges of `nodes` as links, nothing reduced yet but parallel ones.
+    fn of(nodes: &'a Nodes) -> Reduction<'a> {
+        let mut reduction = Reduction::new(nodes);
+        for (number, edge) in nodes.edges.iter().enumerate() {
+            // Edges are numbered tail by tail, top to bottom.
+            let order = number as u32;
+            let label = match &edge.kind {
+                EdgeKind::Wire { .. } => Label::Wire(number as u32),
+                EdgeKind::Element(element) => Label::Element(*element),
+            };
+            let label = reduction.label(label);
+            reduction.insert(Link { tail: edge.tail, head: edge.head, order, label });
+        }
+        reduction
     }
 
     fn label(&mut self, label: Label) -> LabelId {

@@ -2,7 +2,7 @@
 
 use super::grid::Grid;
 use super::scan::{Symbol, Tokens, What};
-use super::uprights::{Role, Uprights, is_drawn};
+use super::uprights::{Role, Uprights};
 use super::wires::{Link, Node, Wiring};
 use super::{Graph, Rung, VertexId, VertexKind};
 use crate::text::{Span, Spanned};
@@ -19,15 +19,18 @@ pub(super) fn build_rungs(
     names: &[Option<(usize, usize)>],
     left: usize,
 ) -> Vec<Rung> {
-    let has_rail = uprights.all.iter().any(|upright| {
-        upright.role == Role::LeftRail && upright.cells.iter().any(|cell| cell.right)
-    });
+    let has_rail = uprights
+        .all
+        .iter()
+        .any(|upright| upright.role == Role::LeftRail && upright.cells.iter().any(|cell| cell.right));
     let groups = row_groups(&tokens, uprights);
-    let Tokens { rows, symbols } = tokens;
+    let Tokens { rows, symbols, .. } = tokens;
     let mut symbols: Vec<Option<Symbol>> = symbols.into_iter().map(Some).collect();
     let mut rungs = Vec::with_capacity(groups.len());
     let mut links = wiring.links.as_slice();
-    for (first, last) in groups {
+    let mut rails = wiring.right_rail.as_slice();
+    let mut free_from = 0;
+    for (number, &(first, last)) in groups.iter().enumerate() {
         let count = links.iter().take_while(|link| link.row <= last).count();
         let (own, rest) = links.split_at(count);
         links = rest;
@@ -35,7 +38,7 @@ pub(super) fn build_rungs(
         // Without a left rail the leftmost wires of a rung are joined to it all the same.
         let edge = match has_rail {
             true => None,
-            false => group.iter().flatten().filter(|token| is_drawn(token)).map(|token| token.start).min(),
+            false => group.iter().flatten().filter(|token| token.is_drawn()).map(|token| token.start).min(),
         };
         let mut lines = (first, last);
         let numbers = group.iter().flatten().filter_map(|token| match token.what {
@@ -67,14 +70,20 @@ pub(super) fn build_rungs(
         for symbol in members {
             builder.place(symbol);
         }
+        // No line belongs to two rungs, whatever names stand between them.
+        let free_to = groups.get(number + 1).map_or(grid.height(), |next| next.0);
+        let lines = (lines.0.max(free_from).min(first), lines.1.min(free_to.saturating_sub(1)).max(last));
+        free_from = lines.1 + 1;
         let number = (first..=last).find_map(|row| margin_number(grid, &rows, row, left, text));
-        let rails = wiring.right_rail.iter().filter(|(row, _)| first <= *row && *row <= last);
+        let count = rails.iter().take_while(|(row, _)| *row <= last).count();
+        let (own_rails, rest) = rails.split_at(count);
+        rails = rest;
         rungs.push(Rung {
             graph: builder.graph,
             number,
             span: content(grid, lines.0).to(content(grid, lines.1)),
             lines: (grid.line(lines.0), grid.line(lines.1) + 1),
-            right_rail: rails.map(|(_, rail)| *rail).collect(),
+            right_rail: own_rails.iter().map(|(_, rail)| *rail).collect(),
         });
     }
     rungs
@@ -97,23 +106,22 @@ fn row_groups(tokens: &Tokens, uprights: &Uprights) -> Vec<(usize, usize)> {
         let first = symbol.row.saturating_sub(symbol.depth);
         reach[first] = reach[first].max(first + height.saturating_sub(1));
     }
-    let live = |row: usize| {
-        tokens.rows[row].iter().any(|token| matches!(token.what, What::Wire | What::Symbol(_)))
-    };
+    let live =
+        |row: usize| tokens.rows[row].iter().any(|token| matches!(token.what, What::Wire | What::Symbol(_)));
     let mut groups: Vec<(usize, usize)> = Vec::new();
     let mut reached = None;
-    for row in 0..tokens.rows.len() {
+    for (row, reaches) in reach.into_iter().enumerate() {
         let joined = reached.is_some_and(|reached| row <= reached);
         if joined {
             if let Some(group) = groups.last_mut() {
                 group.1 = row;
             }
-        } else if live(row) || reach[row] > row {
+        } else if live(row) || reaches > row {
             groups.push((row, row));
         } else {
             continue;
         }
-        reached = reached.max(Some(reach[row]));
+        reached = reached.max(Some(reaches));
     }
     groups
 }
@@ -192,7 +200,9 @@ impl Builder<'_> {
             return *vertex;
         }
         // Each symbol belongs to one rung, and is moved into its graph once.
-        let Some(symbol) = self.symbols.get_mut(number).and_then(Option::take) else { return Graph::LEFT_RAIL };
+        let Some(symbol) = self.symbols.get_mut(number).and_then(Option::take) else {
+            return Graph::LEFT_RAIL;
+        };
         let vertex = self.graph.add_element(symbol.element);
         self.vertices.insert((true, number), vertex);
         vertex

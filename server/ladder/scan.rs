@@ -51,6 +51,37 @@ pub(super) struct Symbol {
 pub(super) struct Tokens {
     pub(super) rows: Vec<Vec<Token>>,
     pub(super) symbols: Vec<Symbol>,
+    extents: Vec<Extent>,
+}
+
+/// How far the drawing reaches in a row.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Extent {
+    /// Start of the first and of the last token that is drawn.
+    pub(super) drawn: Option<(usize, usize)>,
+    /// Start of the first symbol, end of the last one.
+    pub(super) symbols: Option<(usize, usize)>,
+}
+
+impl Tokens {
+    /// How far the drawing reaches in `row`.
+    pub(super) fn extent(&self, row: usize) -> Extent {
+        self.extents.get(row).copied().unwrap_or_default()
+    }
+
+    /// The token that covers a column of a row, with its number.
+    pub(super) fn over(&self, row: usize, columns: std::ops::Range<usize>) -> Option<(usize, &Token)> {
+        let line = self.rows.get(row)?;
+        let number = line.partition_point(|token| token.end <= columns.start);
+        line.get(number).filter(|token| token.start < columns.end).map(|token| (number, token))
+    }
+}
+
+impl Token {
+    /// Whether it is part of the drawing, not a word in it.
+    pub(super) fn is_drawn(&self) -> bool {
+        !matches!(self.what, What::Word | What::Unreadable)
+    }
 }
 
 /// Reads the rows of a grid, in which function blocks have been found already.
@@ -71,47 +102,48 @@ impl Scanner<'_> {
         let mut blocks = blocks.iter().peekable();
         for row in 0..self.grid.height() {
             let mut tokens = Vec::new();
-            let mut unreadable: Option<(usize, usize)> = None;
             let mut column = 0;
             while column < self.grid.width(row) {
-                let character = self.grid.at(row, column);
-                let end = match character {
-                    ' ' => column + 1,
+                let token = match self.grid.at(row, column) {
+                    ' ' => None,
                     TAKEN => {
-                        while blocks.next_if(|b| (b.row, b.end) <= (row, column)).is_some() {}
-                        let Some(block) = blocks.peek() else { break };
-                        tokens.push(Token {
+                        while blocks.next_if(|block| (block.row, block.end) <= (row, column)).is_some() {}
+                        blocks.peek().map(|block| Token {
                             start: column,
                             end: block.end,
                             what: What::Symbol(block.symbol),
-                        });
-                        block.end
+                        })
                     }
-                    _ => match self.token(row, column, character) {
-                        Some(token) => {
-                            tokens.push(token);
-                            token.end
-                        }
-                        None => {
-                            let joined = unreadable.filter(|(_, end)| *end == column);
-                            self.flush(row, unreadable.filter(|(_, end)| *end != column));
-                            unreadable = Some((joined.map_or(column, |(start, _)| start), column + 1));
-                            column + 1
-                        }
-                    },
+                    character => {
+                        Some(self.token(row, column, character).unwrap_or_else(|| self.no_token(row, column)))
+                    }
                 };
-                column = end.max(column + 1);
+                column = token.map_or(column + 1, |token| token.end.max(column + 1));
+                tokens.extend(token);
             }
-            self.flush(row, unreadable);
             rows.push(tokens);
         }
-        Tokens { rows, symbols: self.symbols }
+        let extents = rows.iter().map(|line| extent(line)).collect();
+        Tokens { rows, symbols: self.symbols, extents }
     }
 
-    fn flush(&mut self, row: usize, unreadable: Option<(usize, usize)>) {
-        let Some((start, end)) = unreadable else { return };
+    /// Reports a run of cells that cannot be read. In the middle of a wire the wire goes on behind it, so that one
+    /// wrong character is one finding.
+    fn no_token(&mut self, row: usize, start: usize) -> Token {
+        let starts = |c: char| {
+            matches!(c, ' ' | TAKEN | '[' | ']' | '(' | '{' | '<' | '>' | '/' | '\\')
+                || Arms::of(c).is_line()
+                || c.is_alphanumeric()
+        };
+        let mut end = start + 1;
+        while end < self.grid.width(row) && !starts(self.grid.at(row, end)) {
+            end += 1;
+        }
         let span = self.grid.span(row, start, end);
         self.unreadable(span, Message::new("unreadable-cell.character").with("text", span.of(self.text)));
+        let wire = |column: usize| self.grid.arms(row, column).is_horizontal();
+        let bridged = start > 0 && wire(start - 1) && wire(end);
+        Token { start, end, what: if bridged { What::Wire } else { What::Unreadable } }
     }
 
     fn unreadable(&mut self, span: Span, message: Message) {
@@ -121,6 +153,9 @@ impl Scanner<'_> {
     /// The token that starts at a cell which is not blank; nothing if the cell cannot be read.
     fn token(&mut self, row: usize, column: usize, character: char) -> Option<Token> {
         let arms = Arms::of(character);
+        if let Some(end) = self.turned_contact_end(row, column) {
+            return Some(self.on_vertical(row, column, end));
+        }
         if arms.is_upright() {
             return Some(self.contact(row, column).unwrap_or_else(|| self.upright(row, column, arms)));
         }
@@ -147,7 +182,8 @@ impl Scanner<'_> {
         let first = at(column);
         let after_wire = column > 0 && Arms::of(at(column - 1)).is_horizontal();
         let named = first == '_' && !after_wire && at(column + 1).is_alphanumeric();
-        if !starts_word(first) && !named {
+        let address = first != '%' || at(column + 1).is_alphabetic();
+        if !(named || starts_word(first) && address) {
             return None;
         }
         if matches!(first, '\'' | '"') {
@@ -160,7 +196,8 @@ impl Scanner<'_> {
             // `K-5`, `T#-1s`, `E1.5+3`: a sign belongs to a number that goes on behind it.
             let signs = matches!(character, '-' | '+') && at(end + 1).is_ascii_digit() && {
                 let before = at(end - 1);
-                before == '#' || (end == column + 1 && matches!(first, 'K' | 'k' | 'E' | 'e'))
+                before == '#'
+                    || (end == column + 1 && matches!(first, 'K' | 'k' | 'E' | 'e'))
                     || (matches!(first, 'E' | 'e') && before.is_ascii_digit())
             };
             // A single hyphen inside a word is no wire, whatever becomes of the word.
@@ -193,12 +230,11 @@ impl Scanner<'_> {
     fn wire(&self, row: usize, column: usize) -> Token {
         let horizontal = |column: usize| self.grid.arms(row, column).is_horizontal();
         let corner = |column: usize| {
-            let bar = |row: usize| {
-                self.grid.arms(row, column).is_vertical() && !self.in_contact(row, column)
-            };
+            let bar = |row: usize| self.grid.arms(row, column).is_vertical() && !self.in_contact(row, column);
             (row > 0 && bar(row - 1)) || bar(row + 1)
         };
-        let junction = |column: usize| Token { start: column, end: column + 1, what: What::Upright(Arms::of('+')) };
+        let junction =
+            |column: usize| Token { start: column, end: column + 1, what: What::Upright(Arms::of('+')) };
         let open = |column: usize| matches!(self.grid.at(row, column), ' ');
         if (column == 0 || open(column - 1)) && corner(column) {
             return junction(column);
@@ -277,16 +313,18 @@ impl Scanner<'_> {
         [Some(column), column.checked_sub(2)].into_iter().flatten().any(|start| {
             start > 0
                 && self.leads(row, start - 1)
-                && self.contact_end(row, start).is_some_and(|end| {
-                    (column == start || column + 1 == end) && self.leads(row, end)
-                })
+                && self
+                    .contact_end(row, start)
+                    .is_some_and(|end| (column == start || column + 1 == end) && self.leads(row, end))
         })
     }
 
     /// Whether a wire, a junction or another element is at this cell, to which an element can be joined.
     fn leads(&self, row: usize, column: usize) -> bool {
         let arms = self.grid.arms(row, column);
-        arms.is_horizontal() || arms.is_junction() || matches!(self.grid.at(row, column), ')' | '(' | '[' | ']')
+        arms.is_horizontal()
+            || arms.is_junction()
+            || matches!(self.grid.at(row, column), ')' | '(' | '[' | ']')
     }
 
     /// Whether a vertical wire goes up or down from this cell.
@@ -318,7 +356,9 @@ impl Scanner<'_> {
             }
             if character == '[' && open != ']' && self.subscript_end(row, at).is_some() {
                 at = self.subscript_end(row, at)?;
-            } else if matches!(character, '[' | ']' | '(' | ')' | '{' | '}') || Arms::of(character).is_junction() {
+            } else if matches!(character, '[' | ']' | '(' | ')' | '{' | '}')
+                || Arms::of(character).is_junction()
+            {
                 break None;
             } else {
                 at += 1;
@@ -331,7 +371,44 @@ impl Scanner<'_> {
         };
         let inside = pieces(self.grid, row, column + 1, close, self.text);
         let reading = read(&inside, self.target);
+        if self.stands_on_vertical(row, column, close + 1) {
+            return Some(self.on_vertical(row, column, close + 1));
+        }
         Some(self.symbol(row, column, close + 1, reading))
+    }
+
+    /// One past the end of `| |` without wires beside it, but with a vertical wire above and below.
+    fn turned_contact_end(&self, row: usize, column: usize) -> Option<usize> {
+        let bar = |at: usize| self.grid.arms(row, at).is_vertical();
+        let marked = bar(column) && bar(column + 2) && contact_mark(self.grid.at(row, column + 1)).is_some();
+        let middle = column + 1;
+        let held = |row: usize| self.grid.arms(row, middle).is_upright() && !self.in_contact(row, middle);
+        let on = marked && row > 0 && held(row - 1) && held(row + 1) && !self.linked_raw(row, column);
+        (on && self.stands_on_vertical(row, column, column + 3)).then_some(column + 3)
+    }
+
+    /// Whether a vertical wire ends above and below the cells `start..end`, and no wire beside them.
+    fn stands_on_vertical(&self, row: usize, start: usize, end: usize) -> bool {
+        let beside = (start > 0 && self.leads(row, start - 1)) || self.leads(row, end);
+        let held = |row: usize| {
+            (start..end).any(|at| self.grid.arms(row, at).is_upright() && !self.in_contact(row, at))
+        };
+        !beside && row > 0 && held(row - 1) && held(row + 1)
+    }
+
+    /// Reports an element in the middle of a vertical wire, and reads it as a part of the wire.
+    fn on_vertical(&mut self, row: usize, start: usize, end: usize) -> Token {
+        let span = self.grid.span(row, start, end);
+        let mut problem =
+            Diagnostic::new("contact-on-vertical", span, Message::new("contact-on-vertical.element"));
+        for near in [row - 1, row + 1] {
+            if let Some(at) = (start..end).find(|at| self.grid.arms(near, *at).is_upright()) {
+                let wire = self.grid.span(near, at, at + 1);
+                problem = problem.related(wire, Message::new("contact-on-vertical.wire"));
+            }
+        }
+        self.problems.push(problem);
+        Token { start, end, what: What::Upright(Arms::of('|')) }
     }
 
     /// `>>LABEL`, `>NAME>` or `<RETURN>`.
@@ -352,7 +429,8 @@ impl Scanner<'_> {
             '>' if closed => (ElementKind::ConnectorIn(name), end + 1),
             _ => return None,
         };
-        let is_return = kind != ElementKind::Return || name.of(self.text).to_ascii_uppercase().starts_with("RET");
+        let is_return =
+            kind != ElementKind::Return || name.of(self.text).to_ascii_uppercase().starts_with("RET");
         let reading = Reading { kind, operands: Vec::new(), surplus: Vec::new(), wants: Wants::Nothing };
         is_return.then(|| self.symbol(row, column, end, reading))
     }
@@ -383,4 +461,15 @@ impl Scanner<'_> {
         self.symbols.push(Symbol { row, start, end, element, wants: reading.wants, depth: 0 });
         Token { start, end, what: What::Symbol(self.symbols.len() - 1) }
     }
+}
+
+fn extent(line: &[Token]) -> Extent {
+    let mut extent = Extent::default();
+    for token in line.iter().filter(|token| token.is_drawn()) {
+        extent.drawn = Some((extent.drawn.map_or(token.start, |(first, _)| first), token.start));
+        if let What::Symbol(_) = token.what {
+            extent.symbols = Some((extent.symbols.map_or(token.start, |(first, _)| first), token.end));
+        }
+    }
+    extent
 }

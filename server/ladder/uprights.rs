@@ -59,11 +59,39 @@ impl Uprights {
     }
 
     /// Finds the vertical wires of `tokens`. `left` is the leftmost column in which a line is drawn.
-    pub(super) fn find(tokens: &Tokens, left: usize) -> Uprights {
+    pub(super) fn find(
+        grid: &Grid,
+        tokens: &Tokens,
+        left: usize,
+        problems: &mut Vec<Diagnostic>,
+    ) -> Uprights {
+        let mut found = Uprights::linked(tokens);
+        super::ragged::mend(&mut found, grid, tokens, left, problems);
+        let right =
+            tokens.rows.iter().flatten().filter(|token| token.is_drawn()).map(|t| t.end).max().unwrap_or(0);
+        for upright in found.all.iter_mut().filter(|upright| !upright.cells.is_empty()) {
+            join(upright, tokens);
+            upright.role = role_of(upright, tokens, left, right);
+        }
+        found
+    }
+
+    /// Joins the upright `lower` to the end of `upper`.
+    pub(super) fn append(&mut self, upper: usize, lower: usize) {
+        let cells = std::mem::take(&mut self.all[lower].cells);
+        for cell in cells {
+            self.of_token[cell.row][cell.token] = (upper as u32, self.all[upper].cells.len() as u32);
+            self.all[upper].cells.push(cell);
+        }
+    }
+
+    /// Bars and junctions that touch from row to row.
+    fn linked(tokens: &Tokens) -> Uprights {
         let mut found = Uprights::default();
         for (row, line) in tokens.rows.iter().enumerate() {
             found.of_token.push(vec![(u32::MAX, 0); line.len()]);
-            let above = row.checked_sub(1).and_then(|above| tokens.rows.get(above)).map_or(&[][..], |line| line);
+            let above =
+                row.checked_sub(1).and_then(|above| tokens.rows.get(above)).map_or(&[][..], |line| line);
             let mut candidates = above.iter().enumerate().peekable();
             for (number, token) in line.iter().enumerate() {
                 let What::Upright(arms) = token.what else { continue };
@@ -82,11 +110,6 @@ impl Uprights {
                 cells.push(cell);
                 found.of_token[row][number] = (upright, cells.len() as u32 - 1);
             }
-        }
-        let right = tokens.rows.iter().flatten().filter(|t| is_drawn(t)).map(|t| t.end).max().unwrap_or(0);
-        for upright in &mut found.all {
-            join(upright, tokens);
-            upright.role = role_of(upright, tokens, left, right);
         }
         found
     }
@@ -115,11 +138,6 @@ fn arms(tokens: &Tokens, cell: &Cell) -> Arms {
         What::Upright(arms) => arms,
         _ => Arms::of(' '),
     }
-}
-
-/// Whether a token is part of the drawing, not a word in it.
-pub(super) fn is_drawn(token: &Token) -> bool {
-    !matches!(token.what, What::Word | What::Unreadable)
 }
 
 /// Decides at each cell which wires are joined. Two wires at a bar that goes on above and below only cross it.
@@ -154,8 +172,8 @@ fn role_of(upright: &Upright, tokens: &Tokens, left: usize, right: usize) -> Rol
     let any_left = upright.cells.iter().any(|cell| cell.left);
     let any_right = upright.cells.iter().any(|cell| cell.right);
     let nothing_beyond = || {
-        let beyond = |cell: &Cell| tokens.rows[cell.row][cell.token + 1..].iter().any(is_drawn);
-        !upright.cells.iter().any(beyond)
+        let last = |cell: &Cell| tokens.extent(cell.row).drawn.map(|(_, last)| last);
+        upright.cells.iter().all(|cell| last(cell) == Some(tokens.rows[cell.row][cell.token].start))
     };
     let looks_like_rail = |cell: &Cell| {
         let arms = arms(tokens, cell);
@@ -196,19 +214,23 @@ fn after_output(tokens: &Tokens, cell: &Cell) -> bool {
 fn stray_or_rail(upright: &Upright, tokens: &Tokens, nothing_beyond: bool) -> Role {
     let (first, last) = (&upright.cells[0], &upright.cells[upright.cells.len() - 1]);
     let column = tokens.rows[first.row][first.token].start;
-    let has_symbol = |line: &&Vec<Token>| line.iter().any(|token| matches!(token.what, What::Symbol(_)));
     // Names stand at most three lines away from their element.
     const NEAR: usize = 4;
-    let above = tokens.rows[first.row.saturating_sub(NEAR)..first.row].iter().rev().find(has_symbol);
-    let below = tokens.rows.iter().skip(last.row + 1).take(NEAR).find(has_symbol);
-    let within = || upright.cells.iter().map(|cell| &tokens.rows[cell.row]).filter(has_symbol);
-    let near = || above.into_iter().chain(below).chain(within()).flatten();
-    let symbols = || near().filter(|token| matches!(token.what, What::Symbol(_)));
-    if nothing_beyond && symbols().all(|token| token.end <= column) {
+    let symbols = |row: usize| tokens.extent(row).symbols;
+    let above = (first.row.saturating_sub(NEAR)..first.row).rev().find_map(symbols);
+    let below = (last.row + 1..last.row + 1 + NEAR).find_map(symbols);
+    let within = upright.cells.iter().filter_map(|cell| symbols(cell.row));
+    let (mut all_left, mut all_right) = (true, true);
+    for (start, end) in within.chain(above).chain(below) {
+        all_left &= end <= column;
+        all_right &= column < start;
+    }
+    if nothing_beyond && all_left {
         return Role::RightRail;
     }
-    let nothing_before = upright.cells.iter().all(|c| !tokens.rows[c.row][..c.token].iter().any(is_drawn));
-    if nothing_before && symbols().all(|token| column < token.start) {
+    let first_drawn = |cell: &Cell| tokens.extent(cell.row).drawn.map(|(first, _)| first);
+    let start = |cell: &Cell| Some(tokens.rows[cell.row][cell.token].start);
+    if all_right && upright.cells.iter().all(|cell| first_drawn(cell) == start(cell)) {
         return Role::LeftRail;
     }
     Role::Stray

@@ -5,6 +5,7 @@ use super::scan::{Token, Tokens, What};
 use super::uprights::{Cell, Role, Upright, Uprights};
 use super::{ElementKind, PinWire};
 use crate::text::{Diagnostic, Message, Span, Spanned};
+use rustc_hash::FxHashSet;
 
 /// An end of a wire.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -62,8 +63,8 @@ pub(super) struct Tracer<'a> {
     /// Its cells: they are the last ones of `wiring.cells`, from here on.
     start: usize,
     problems: &'a mut Vec<Diagnostic>,
-    /// Symbols that have been reported to stand on a vertical wire.
-    reported: Vec<usize>,
+    /// Elements that have been reported to stand on a vertical wire.
+    reported: FxHashSet<Span>,
 }
 
 impl<'a> Tracer<'a> {
@@ -74,7 +75,9 @@ impl<'a> Tracer<'a> {
         problems: &'a mut Vec<Diagnostic>,
     ) -> Tracer<'a> {
         let wiring = Wiring::default();
-        Tracer { grid, tokens, uprights, wiring, row: 0, end: 0, tail: None, start: 0, problems, reported: Vec::new() }
+        let on_vertical = problems.iter().filter(|problem| problem.code == "contact-on-vertical");
+        let reported = on_vertical.map(|problem| problem.span).collect();
+        Tracer { grid, tokens, uprights, wiring, row: 0, end: 0, tail: None, start: 0, problems, reported }
     }
 
     /// The wires of all rows.
@@ -200,20 +203,17 @@ impl<'a> Tracer<'a> {
         self.follow(Node::Upright(id));
         self.link(end);
         let beyond = if top { cell.row.checked_sub(1) } else { Some(cell.row + 1) };
-        let line = beyond.and_then(|row| self.tokens.rows.get(row)).map_or(&[][..], |line| line);
-        let over = line.iter().find(|other| other.start < token.end && token.start < other.end);
-        if let Some(What::Symbol(symbol)) = over.map(|over| over.what) {
+        let over = beyond.and_then(|row| self.tokens.over(row, token.start..token.end));
+        if let Some(What::Symbol(symbol)) = over.map(|(_, over)| over.what) {
             self.report_on_vertical(symbol, self.grid.span(cell.row, token.start, token.end));
         }
     }
 
     fn report_on_vertical(&mut self, symbol: usize, wire: Span) {
         let element = &self.tokens.symbols[symbol].element;
-        let known = |problem: &Diagnostic| problem.code == "contact-on-vertical" && problem.span == element.span;
-        if element.block().is_some() || self.reported.contains(&symbol) || self.problems.iter().any(known) {
+        if element.block().is_some() || !self.reported.insert(element.span) {
             return;
         }
-        self.reported.push(symbol);
         let message = Message::new("contact-on-vertical.element");
         let problem = Diagnostic::new("contact-on-vertical", element.span, message);
         self.problems.push(problem.related(wire, Message::new("contact-on-vertical.wire")));

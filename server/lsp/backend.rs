@@ -95,7 +95,9 @@ impl LanguageServer for Backend {
 
     async fn document_symbol(&self, params: DocumentSymbolParams) -> Result<Option<DocumentSymbolResponse>> {
         whole(params.text_document.uri, |_, place| {
-            let nodes = ide::symbols(place.document).into_iter().map(|node| to_proto::symbol(place, node));
+            let nodes = ide::symbols(place.document, Language::English)
+                .into_iter()
+                .map(|node| to_proto::symbol(place, node));
             DocumentSymbolResponse::Nested(nodes.collect())
         })
         .await
@@ -123,7 +125,7 @@ impl LanguageServer for Backend {
             return Ok(None);
         }
         whole(params.text_document.uri, move |_, place| {
-            let hints = ide::inlay_hints(place.document, place.span(params.range));
+            let hints = ide::inlay_hints(place.document, place.span(params.range), Language::English);
             hints.into_iter().map(|hint| to_proto::inlay_hint(place, hint)).collect()
         })
         .await
@@ -232,7 +234,7 @@ fn quick_fix(open: &Open, place: Place<'_>, fix: &ide::FixOf<'_>) -> CodeAction 
         kind: Some(CodeActionKind::QUICKFIX),
         diagnostics: Some(vec![to_proto::diagnostic(open, fix.diagnostic, place.encoding)]),
         edit: Some(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }),
-        is_preferred: Some(fix.preferred),
+        is_preferred: Some(fix.is_preferred),
         ..CodeAction::default()
     }
 }

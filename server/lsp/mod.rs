@@ -1,10 +1,11 @@
 //! The language server: the protocol around `ide` and `check`, and nothing about languages.
 //!
-//! A message goes through [`service`], which applies changes of state in the order of arrival and gives every request
+//! A message comes through [`frames`] to [`service`], which applies changes of state in the order of arrival and gives every request
 //! the snapshot of that moment; [`backend`] answers from the snapshot; [`publisher`] sends diagnostics.
 
 mod backend;
 mod capabilities;
+mod frames;
 mod publisher;
 mod service;
 mod settings;
@@ -31,7 +32,7 @@ pub async fn serve() -> u8 {
     });
     let Some(workspace) = workspace else { return 1 };
     let ordered = Ordered::new(service, workspace.clone());
-    Server::new(tokio::io::stdin(), tokio::io::stdout(), socket)
+    Server::new(frames::sound(tokio::io::stdin()), tokio::io::stdout(), socket)
         .concurrency_level(CONCURRENCY)
         .serve(ordered)
         .await;

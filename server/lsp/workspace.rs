@@ -3,7 +3,7 @@
 use super::publisher::Publisher;
 use super::settings::Settings;
 use crate::check::Severities;
-use crate::document::{Document, Edit};
+use crate::document::{Document, Edit, Notation};
 use crate::project::{Manifest, Project, decide};
 use crate::text::{Encoding, LineColumn};
 use rustc_hash::FxHashMap;
@@ -114,7 +114,8 @@ impl Workspace {
         let item = params.text_document;
         let mut state = self.state();
         let manifest = Arc::new(manifest_of(&item.uri));
-        let document = read(&item.uri, &item.text, &manifest, &state.snapshot.settings);
+        let is_ladder = item.language_id == "ladder";
+        let document = read(&item.uri, &item.text, &manifest, &state.snapshot.settings, is_ladder);
         let severities = Arc::new(manifest.severities());
         let open = Open { uri: item.uri.clone(), version: item.version, document, manifest, severities };
         let publisher =
@@ -176,7 +177,8 @@ impl Workspace {
         for open in opens {
             let manifest = Arc::new(manifest_of(&open.uri));
             let text = open.document.text();
-            let document = read(&open.uri, &text, &manifest, &state.snapshot.settings);
+            let is_ladder = open.document.notation() == Notation::Ladder;
+            let document = read(&open.uri, &text, &manifest, &state.snapshot.settings, is_ladder);
             let severities = Arc::new(manifest.severities());
             state.put(Open { document, manifest, severities, ..Open::clone(&open) });
         }
@@ -204,11 +206,13 @@ fn manifest_of(uri: &Uri) -> Manifest {
     project.map(|project| project.manifest).unwrap_or_default()
 }
 
-fn read(uri: &Uri, text: &str, manifest: &Manifest, settings: &Settings) -> Document {
+/// `is_ladder` is what the client says of the language: a text that has no file yet has no ending to tell by.
+fn read(uri: &Uri, text: &str, manifest: &Manifest, settings: &Settings, is_ladder: bool) -> Document {
     let name = uri.path().as_str();
-    let decided = guarded(|| decide(name, text, manifest, settings.target(), settings.notation()));
+    let notation = if is_ladder { Some(Notation::Ladder) } else { settings.notation() };
+    let decided = guarded(|| decide(name, text, manifest, settings.target(), notation));
     let (notation, target) = decided
-        .unwrap_or((crate::document::Notation::FxIl, crate::target::Target::of(crate::target::Model::Fx2n)));
+        .unwrap_or((Notation::FxIl, crate::target::Target::of(crate::target::Model::Fx2n)));
     guarded(|| Document::new(text, notation, target))
         .unwrap_or_else(|| Document::unread(text, notation, target))
 }

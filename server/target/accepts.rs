@@ -122,6 +122,12 @@ impl Accepts {
         })
     }
 
+    /// Its kinds as the manuals write them, in reading order: `K`, `H`, `KnX`, `X`, `D` …
+    pub fn names(self) -> Vec<&'static str> {
+        let named = NAMES.iter().filter(|(kind, _)| self.contains(*kind));
+        named.flat_map(|(_, names)| names.iter().copied()).collect()
+    }
+
     /// The set of this one device kind.
     pub const fn of_kind(kind: DeviceKind) -> Accepts {
         match kind {
@@ -141,3 +147,28 @@ impl Accepts {
         }
     }
 }
+
+/// Each kind with its names; integer constants have two.
+const NAMES: &[(Accepts, &[&str])] = &[
+    (Accepts::K, &["K", "H"]),
+    (Accepts::E, &["E"]),
+    (Accepts::TEXT, &["text"]),
+    (Accepts::X, &["X"]),
+    (Accepts::Y, &["Y"]),
+    (Accepts::M, &["M"]),
+    (Accepts::S, &["S"]),
+    (Accepts::KNX, &["KnX"]),
+    (Accepts::KNY, &["KnY"]),
+    (Accepts::KNM, &["KnM"]),
+    (Accepts::KNS, &["KnS"]),
+    (Accepts::T, &["T"]),
+    (Accepts::C, &["C"]),
+    (Accepts::D, &["D"]),
+    (Accepts::R, &["R"]),
+    (Accepts::V, &["V"]),
+    (Accepts::Z, &["Z"]),
+    (Accepts::WORD_BIT, &["D.b"]),
+    (Accepts::P, &["P"]),
+    (Accepts::I, &["I"]),
+    (Accepts::N, &["N"]),
+];

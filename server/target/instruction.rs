@@ -191,7 +191,8 @@ impl Form {
         if spec.optional {
             let driven = operands.first().and_then(Operand::device);
             let counts_wide = driven.is_some_and(|d| d.kind == DeviceKind::C && d.number >= 200);
-            return if counts_wide { DOUBLE } else { (0, WORD.1) };
+            // A preset of 0 is taken for 1, which is not what is written.
+            return if counts_wide { DOUBLE } else { (1, WORD.1) };
         }
         let range = if self.wide { spec.wide_range.or(spec.range) } else { spec.range };
         range.unwrap_or(if self.wide { DOUBLE } else { WORD })

@@ -18,6 +18,9 @@ pub use accepts::Accepts;
 mod instruction;
 pub use instruction::{Access, Form, Instruction, Opcode, OperandSpec, Role, Steps, Wide};
 
+mod flow;
+pub use flow::Flow;
+
 pub mod instructions;
 
 mod fx;

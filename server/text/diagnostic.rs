@@ -70,16 +70,29 @@ impl Diagnostic {
 
     /// The same finding in a text in which `by` bytes stand before this one's text.
     pub fn shifted(&self, by: usize) -> Diagnostic {
+        self.mapped(|span| span.shifted(by))
+    }
+
+    /// The same finding after a change in which the text from `old` on came to start at `new`; places before `old`
+    /// stay. Fixes are left out: they were made for the text as it was.
+    pub fn moved(&self, old: usize, new: usize) -> Diagnostic {
+        let place =
+            |offset: u32| if (offset as usize) < old { offset as usize } else { offset as usize - old + new };
+        let without_fixes = Diagnostic { fixes: Vec::new(), ..self.clone() };
+        without_fixes.mapped(|span| Span::new(place(span.start), place(span.end).max(place(span.start))))
+    }
+
+    fn mapped(&self, place: impl Fn(Span) -> Span) -> Diagnostic {
         let related =
-            self.related.iter().map(|r| Related { span: r.span.shifted(by), message: r.message.clone() });
+            self.related.iter().map(|r| Related { span: place(r.span), message: r.message.clone() });
         let fixes = self.fixes.iter().map(|fix| Fix {
             title: fix.title.clone(),
-            edits: fix.edits.iter().map(|edit| edit.shifted(by)).collect(),
+            edits: fix.edits.iter().map(|edit| TextEdit::new(place(edit.span), edit.text.clone())).collect(),
         });
         Diagnostic {
             code: self.code,
             severity: self.severity,
-            span: self.span.shifted(by),
+            span: place(self.span),
             message: self.message.clone(),
             related: related.collect(),
             fixes: fixes.collect(),

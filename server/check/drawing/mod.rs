@@ -1,6 +1,86 @@
 //! Drawing: wires, elements and rungs as they are drawn.
+//!
+//! Each finder looks at the drawing of a chunk. Only sound rungs are judged for what they mean: a rung with a loose
+//! end, a dead end or an unreadable cell has that mistake and no other.
 
-use super::Rule;
+mod drawn;
+use drawn::Drawn;
+
+mod picture;
+use picture::Picture;
+
+mod prune;
+
+mod dead_end;
+
+mod loose_end;
+
+mod coil_at_left_rail;
+mod contact_after_coil;
+mod contact_on_vertical;
+mod missing_operand;
+mod mixed_connection;
+mod open_circuit;
+mod ragged_drawing;
+mod ragged_rail;
+mod reverse_flow;
+mod rung_too_large;
+mod rung_without_output;
+mod short_circuit;
+mod stray_operand;
+mod unreadable_cell;
+mod upper_parallel;
+
+use super::{ChunkContext, Rule};
+use crate::ladder::{Graph, VertexId, VertexKind};
+use crate::text::{Diagnostic, Span};
 
 /// The rules of this group.
-pub(super) const RULES: &[&Rule] = &[];
+pub(super) const RULES: &[&Rule] = &[
+    &open_circuit::RULE,
+    &short_circuit::RULE,
+    &mixed_connection::RULE,
+    &upper_parallel::RULE,
+    &coil_at_left_rail::RULE,
+    &contact_after_coil::RULE,
+    &contact_on_vertical::RULE,
+    &rung_without_output::RULE,
+    &reverse_flow::RULE,
+    &unreadable_cell::RULE,
+    &missing_operand::RULE,
+    &stray_operand::RULE,
+    &ragged_rail::RULE,
+    &ragged_drawing::RULE,
+    &rung_too_large::RULE,
+];
+
+/// Finds the mistakes of one kind in a drawing.
+type Find = fn(&Drawn<'_>, &mut Vec<Diagnostic>);
+
+/// What judges a drawing after a fix: every finder but those whose findings do not touch the logic.
+const FINDERS: &[Find] = &[
+    open_circuit::find,
+    short_circuit::find,
+    mixed_connection::find,
+    upper_parallel::find,
+    coil_at_left_rail::find,
+    contact_after_coil::find,
+    rung_without_output::find,
+    reverse_flow::find,
+];
+
+/// Runs a finder on a chunk, if it is a drawing.
+fn run(find: Find, context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
+    if let Some(drawn) = Drawn::of(context) {
+        find(&drawn, found);
+    }
+}
+
+/// The first cell of a vertex: the top of a vertical wire, an element's symbol.
+fn first_cell(graph: &Graph, id: VertexId) -> Span {
+    let vertex = graph.vertex(id);
+    match vertex.kind {
+        VertexKind::Element(element) => graph.element(element).span,
+        _ => graph.cells(vertex.cells).first().copied().unwrap_or_default(),
+    }
+}

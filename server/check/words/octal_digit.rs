@@ -19,6 +19,12 @@
 //! OUT Y0
 //! END
 //! ```
+//!
+//! ```lad
+//! |  X9                Y0   |
+//!    ^^
+//! +--| |---------------( )--+
+//! ```
 
 use crate::check::{ChunkContext, Rule, Run};
 use crate::target::{Device, DeviceKind, Operand, OperandProblem};

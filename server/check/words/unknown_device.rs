@@ -17,9 +17,18 @@
 //! END
 //! ```
 
+//! Letters that look like digits are the usual slip, and are offered as a fix.
+//!
+//! ```fx
+//! LD XO
+//!    ^^
+//! OUT Y0
+//! END
+//! ```
+
 use crate::check::{ChunkContext, Rule, Run};
-use crate::target::{Operand, OperandProblem};
-use crate::text::{Diagnostic, Message, Severity};
+use crate::target::{Operand, OperandProblem, Target};
+use crate::text::{Diagnostic, Message, Severity, TextEdit};
 
 pub(super) const RULE: Rule = Rule {
     code: "unknown-device",
@@ -29,19 +38,43 @@ pub(super) const RULE: Rule = Rule {
 };
 
 fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
-    for operand in context.chunk.operations().flat_map(|operation| operation.operands) {
-        let unknown = match operand.value {
-            Operand::Invalid(OperandProblem::UnknownDevice | OperandProblem::Unreadable) => true,
-            Operand::Device(device) => {
-                context.target.is_fx() && context.target.ranges(device.kind).next().is_none()
-            }
-            _ => false,
-        };
-        if unknown {
-            let message = Message::new("unknown-device.found")
-                .with("word", operand.span.of(context.chunk.text()))
-                .with("target", context.target.title);
-            found.push(Diagnostic::new(RULE.code, operand.span, message));
+    // What stands behind an unknown word may be anything; the word itself is reported.
+    let known = context.chunk.operations().filter(|operation| operation.form.is_some());
+    for operand in known.flat_map(|operation| operation.operands) {
+        if !is_unknown(&operand.value, context.target) {
+            continue;
         }
+        let word = operand.span.of(context.chunk.text());
+        let message =
+            Message::new("unknown-device.found").with("word", word).with("target", context.target.title);
+        let mut diagnostic = Diagnostic::new(RULE.code, operand.span, message);
+        if let Some(plain) = with_digits(word, context.target) {
+            let title = Message::new("unknown-device.digits").with("device", &plain);
+            diagnostic = diagnostic.fix(title, vec![TextEdit::new(operand.span, plain)]);
+        }
+        found.push(diagnostic);
     }
+}
+
+fn is_unknown(operand: &Operand, target: &Target) -> bool {
+    match operand {
+        Operand::Invalid(problem) => {
+            matches!(problem, OperandProblem::UnknownDevice | OperandProblem::Unreadable)
+        }
+        _ => operand.device().is_some_and(|d| target.is_fx() && target.ranges(d.kind).next().is_none()),
+    }
+}
+
+/// The word with the letters O, I and L read as digits, if that makes a device of the target.
+fn with_digits(word: &str, target: &Target) -> Option<String> {
+    let mut letters = word.chars();
+    let first = letters.next()?;
+    let digit = |letter: char| match letter.to_ascii_uppercase() {
+        'O' => '0',
+        'I' | 'L' => '1',
+        other => other,
+    };
+    let plain: String = std::iter::once(first).chain(letters.map(digit)).collect();
+    let device = Operand::read(&plain, target.model).device()?;
+    (plain != word && device.range_on(target).is_some()).then_some(plain)
 }

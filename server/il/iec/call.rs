@@ -1,11 +1,12 @@
 //! Reads calls of function blocks and functions with their lists of parameters.
 
-use super::instruct::{BodyReader, Frame, FrameKind, List, condition};
+use super::body::{BodyReader, Frame, FrameKind, List};
+use super::instruct::condition;
 use super::lower::append;
 use super::token::{Region, Token, TokenKind};
 use super::{Direction, ItemKind, ListForm, OperandId, Parameter, ParameterValue, Run};
 use crate::target::iec::{Function, Written};
-use crate::text::{Message, Span};
+use crate::text::Span;
 
 impl BodyReader<'_> {
     /// `CAL instance`, with or without parameters.
@@ -97,15 +98,17 @@ impl BodyReader<'_> {
                 let Some(operand) = self.read_operand() else { return };
                 let parameter = self.positional(operand);
                 let formal = self.list_form() == Some(ListForm::Formal);
+                self.push_parameter(parameter);
                 if formal {
                     let found = self.reader.peek();
-                    self.reader.expected(found, ":=, =>");
+                    self.reader.expected(found, "`:=`, `=>`");
+                    self.skip_parameter();
+                } else {
+                    self.finish_parameter();
                 }
-                self.push_parameter(parameter);
-                self.finish_parameter();
             }
             _ => {
-                self.reader.expected(Some(token), "parameter, )");
+                self.reader.expected(Some(token), "parameter, `)`");
                 self.skip_parameter();
             }
         }
@@ -129,7 +132,7 @@ impl BodyReader<'_> {
             value: ParameterValue::Missing,
         };
         if self.list_form() == Some(ListForm::NonFormal) {
-            self.reader.expected(Some(sign), ", )");
+            self.reader.expected(Some(sign), "`,`, `)`");
         }
         if self.reader.kind(0) == Some(TokenKind::LeftParenthesis) && direction == Direction::In {
             return self.open_value(parameter);
@@ -141,7 +144,7 @@ impl BodyReader<'_> {
             }
             None => {
                 let found = self.reader.peek();
-                let expected = if direction == Direction::In { "operand, (" } else { "variable" };
+                let expected = if direction == Direction::In { "operand, `(`" } else { "variable" };
                 self.reader.expected(found, expected);
             }
         }
@@ -192,25 +195,21 @@ impl BodyReader<'_> {
                 self.reader.at += 1;
                 while self.reader.take(TokenKind::Newline).is_some() {}
                 match self.reader.peek() {
-                    Some(end) if end.kind == TokenKind::RightParenthesis => {
-                        if !formal {
-                            self.hint_layout(end.span);
-                        }
-                    }
+                    Some(end) if end.kind == TokenKind::RightParenthesis && formal => {}
+                    Some(end) if end.kind == TokenKind::RightParenthesis => self.hint_layout(end.span),
                     Some(_) if self.list_is_forgotten() => {}
                     Some(next)
                         if next.region == Region::Body && !next.kind.closes() && !next.kind.opens_unit() =>
                     {
-                        let comma = Message::new("syntax-error.expected-at-end").with("expected", ", )");
                         let before = self.last_word_before(self.reader.at);
-                        self.reader.problem("syntax-error", Span::at(before.end as usize), comma);
+                        self.reader.expected_at_end(before, "`,`, `)`");
                     }
                     _ => {}
                 }
             }
             kind if kind.opens_unit() || kind.closes() => {}
             _ => {
-                self.reader.expected(Some(next), ", )");
+                self.reader.expected(Some(next), "`,`, `)`");
                 self.skip_parameter();
             }
         }

@@ -3,12 +3,23 @@
 use super::declare::{Block, read_section, unclosed};
 use super::grammar::{self, Kinds, Mismatch};
 use super::lower::Lowering;
-use super::reader::Reader;
-use super::token::{Token, TokenKind};
+use super::reader::{Reader, list_of};
+use super::token::TokenKind;
 use super::{FileKeyword, ItemKind};
 use crate::text::Span;
 use chumsky::extra;
 use chumsky::prelude::*;
+
+/// What stands in a configuration.
+const STATEMENTS: [TokenKind; 7] = [
+    TokenKind::VarGlobal,
+    TokenKind::Resource,
+    TokenKind::Task,
+    TokenKind::Program,
+    TokenKind::VarAccess,
+    TokenKind::VarConfig,
+    TokenKind::EndConfiguration,
+];
 
 /// Reads a block from CONFIGURATION to END_CONFIGURATION.
 pub fn read_configuration(reader: &mut Reader, block: &Block) {
@@ -35,8 +46,7 @@ pub fn read_configuration(reader: &mut Reader, block: &Block) {
             }
             kind if kind.opens_section() => read_section(reader, block, at),
             _ => {
-                let words = "VAR_GLOBAL, RESOURCE, TASK, PROGRAM, VAR_ACCESS, VAR_CONFIG, END_CONFIGURATION";
-                reader.expected(block.tokens.get(at).copied(), words);
+                reader.expected(block.tokens.get(at).copied(), &list_of(STATEMENTS));
                 block.next_start(at, block.kinds.len()).max(at + 1)
             }
         };
@@ -61,13 +71,8 @@ fn name_at(reader: &mut Reader, block: &Block, at: usize) -> Option<Span> {
         reader.check_name(span);
         return Some(span);
     }
-    expected_at(reader, block, at, TokenKind::Word.name());
+    reader.expected_in(&block.tokens, at, TokenKind::Word.name());
     None
-}
-
-fn expected_at(reader: &mut Reader, block: &Block, at: usize, expected: &str) {
-    let mismatched: Option<Token> = block.tokens.get(at).copied();
-    reader.expected(mismatched, expected);
 }
 
 fn read_resource(reader: &mut Reader, block: &Block, start: usize) -> usize {
@@ -79,7 +84,7 @@ fn read_resource(reader: &mut Reader, block: &Block, start: usize) -> usize {
         on = name_at(reader, block, at);
         at += usize::from(on.is_some());
     } else {
-        expected_at(reader, block, at, TokenKind::On.name());
+        reader.expected_in(&block.tokens, at, &TokenKind::On.quoted());
     }
     reader.push_item(block.span((start..at).into()), 0, ItemKind::Resource { name, on });
     at

@@ -251,8 +251,7 @@ fn recover<'b>(
         let node = grammar.parse(&block.kinds[at..at + error.at]).into_output();
         if let Some(node) = node {
             let before = block.token_span(at + error.at - 1);
-            let message = Message::new("syntax-error.expected-at-end").with("expected", ";");
-            reader.problem("syntax-error", Span::at(before.end as usize), message);
+            reader.expected_at_end(before, &TokenKind::Semicolon.quoted());
             return (Some(node), at + error.at);
         }
     }
@@ -269,8 +268,7 @@ fn recover<'b>(
 fn salvage(kinds: &[TokenKind]) -> Option<DeclarationNode> {
     let mut names = Vec::new();
     let mut pairs = kinds.iter().enumerate().step_by(2);
-    loop {
-        let Some((index, TokenKind::Word)) = pairs.next() else { break };
+    while let Some((index, TokenKind::Word)) = pairs.next() {
         names.push(index);
         if kinds.get(index + 1) != Some(&TokenKind::Comma) {
             break;

@@ -16,6 +16,8 @@ pub use mention::{Mention, MentionRole, fold_case, same_name};
 
 mod token;
 
+mod scan;
+
 mod grammar;
 
 mod reader;
@@ -26,6 +28,8 @@ mod declare;
 
 mod configure;
 
+mod body;
+
 mod instruct;
 
 mod call;
@@ -35,6 +39,8 @@ pub use split::split;
 
 mod parse;
 pub use parse::parse;
+
+mod layout;
 
 mod format;
 pub use format::{FormatOptions, format_chunk};

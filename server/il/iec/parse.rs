@@ -1,7 +1,7 @@
 //! Text to tree.
 
 use super::IecTree;
-use super::instruct::BodyReader;
+use super::body::BodyReader;
 use super::reader::Reader;
 use crate::target::Target;
 

@@ -1,7 +1,8 @@
 //! What all parts of the parser share: the tokens of the chunk, the tree as it grows, and the problems found.
 
 use super::grammar::Mismatch;
-use super::token::{Region, Scanner, Token, TokenKind};
+use super::scan::Scanner;
+use super::token::{Region, Token, TokenKind};
 use super::{IecTree, Item, ItemKind, OperandId};
 use crate::target::{Model, Operand, iec};
 use crate::text::{Diagnostic, Message, Severity, Span, Spanned};
@@ -117,18 +118,15 @@ impl<'a> Reader<'a> {
 
     /// At `token` stands something else than what is expected; without a token, at the end of what was read.
     pub fn expected(&mut self, token: Option<Token>, expected: &str) {
-        let message = match token.filter(|token| token.kind != TokenKind::Newline) {
-            Some(token) => Message::new("syntax-error.expected")
-                .with("expected", expected)
-                .with("found", shortened(self.word(token.span))),
-            None => Message::new("syntax-error.expected-at-end").with("expected", expected),
+        let Some(found) = token.filter(|token| token.kind != TokenKind::Newline) else {
+            // The end of a line is shown at the word before it, where the missing one belongs.
+            let before = self.end_of_word_before(token);
+            return self.expected_at_end(before, expected);
         };
-        let span = match token {
-            Some(token) if token.kind != TokenKind::Newline => token.span,
-            // The end of a line or of a region is shown at the word before it, where the missing one belongs.
-            _ => self.end_of_word_before(token),
-        };
-        self.problem("syntax-error", span, message);
+        let message = Message::new("syntax-error.expected")
+            .with("expected", expected)
+            .with("found", shortened(self.word(found.span)));
+        self.problem("syntax-error", found.span, message);
     }
 
     fn end_of_word_before(&self, token: Option<Token>) -> Span {
@@ -141,15 +139,30 @@ impl<'a> Reader<'a> {
 
     /// What the grammar of declarations says about `tokens`, one of which it could not take.
     pub fn mismatch(&mut self, tokens: &[Token], mismatch: &Mismatch) {
-        let expected = list_of(mismatch.expected());
-        match tokens.get(mismatch.at) {
-            Some(token) => self.expected(Some(*token), &expected),
-            None => {
-                let end = tokens.last().map_or(0, |token| token.span.end as usize);
-                let message = Message::new("syntax-error.expected-at-end").with("expected", expected);
-                self.problem("syntax-error", Span::at(end), message);
+        self.expected_in(tokens, mismatch.at, &list_of(mismatch.expected()));
+    }
+
+    /// At index `at` of `tokens`, a piece of a declaration, stands something else than what is expected. If it is
+    /// the first word of a line, what is missing is missed at the end of the line before.
+    pub fn expected_in(&mut self, tokens: &[Token], at: usize, expected: &str) {
+        let token = tokens.get(at).copied();
+        let index =
+            token.map(|token| self.tokens.partition_point(|other| other.span.start < token.span.start));
+        let before =
+            at.checked_sub(1).and_then(|before| tokens.get(before.min(tokens.len().saturating_sub(1))));
+        match (token, before) {
+            (Some(_), Some(before)) if index.is_some_and(|index| self.starts_line(index)) => {
+                self.expected_at_end(before.span, expected);
             }
+            (Some(token), _) => self.expected(Some(token), expected),
+            (None, before) => self.expected_at_end(before.map_or(Span::at(0), |token| token.span), expected),
         }
+    }
+
+    /// Something is expected behind `before`, where a line or a text ends.
+    pub fn expected_at_end(&mut self, before: Span, expected: &str) {
+        let message = Message::new("syntax-error.expected-at-end").with("expected", expected);
+        self.problem("syntax-error", Span::at(before.end as usize), message);
     }
 
     /// Reports a declared name that breaks the rules for names: keywords, and underscores in wrong places.
@@ -181,11 +194,12 @@ impl<'a> Reader<'a> {
 }
 
 /// The names of kinds of tokens for a message, each once.
-pub fn list_of(kinds: impl Iterator<Item = TokenKind>) -> String {
-    let mut names: Vec<&'static str> = Vec::new();
+pub fn list_of(kinds: impl IntoIterator<Item = TokenKind>) -> String {
+    let mut names: Vec<String> = Vec::new();
     for kind in kinds {
-        if !names.contains(&kind.name()) {
-            names.push(kind.name());
+        let name = kind.quoted();
+        if !names.contains(&name) {
+            names.push(name);
         }
     }
     names.join(", ")

@@ -9,7 +9,8 @@
 //! that starts at a cut with an untouched chunk behind it, and going on until an old cut with an untouched chunk
 //! behind it appears, yields what cutting the whole file would.
 
-use super::token::{Region, Scanner, Token, TokenKind, ends_open_list, leaves_parentheses};
+use super::scan::{Scanner, ends_open_list, leaves_parentheses};
+use super::token::{Region, Token, TokenKind};
 use crate::target::iec::{Operator, OperatorRole};
 
 /// The ends of the chunks of `text`: the last one is `text.len()`; an empty text has none.
@@ -19,7 +20,7 @@ use crate::target::iec::{Operator, OperatorRole};
 /// assert_eq!(split("LD a\nST b\n(* then *)\nLD c\nST d\n"), [10, 31]);
 /// ```
 pub fn split(text: &str) -> Vec<usize> {
-    let mut cutter = Cutter { text, ends: Vec::new(), chunk: 0, ..Cutter::default() };
+    let mut cutter = Cutter { text, ..Cutter::default() };
     let mut line = Vec::new();
     let mut start = 0;
     for token in Scanner::new(text) {
@@ -65,8 +66,6 @@ enum Parenthesis {
 struct Cutter<'a> {
     text: &'a str,
     ends: Vec<usize>,
-    /// Where the current chunk starts.
-    chunk: usize,
     /// Whether anything but comments and blank lines stands in the chunk, above `candidate`.
     content: bool,
     /// Whether the last word of the chunk closed a section, a unit, a TYPE block or a configuration.
@@ -92,15 +91,19 @@ impl Cutter<'_> {
             Line::Blank if self.labelled => {}
             Line::Blank => self.candidate = None,
             Line::Comment => _ = self.candidate.get_or_insert(start),
-            Line::Label if !self.closed => {
-                self.candidate.get_or_insert(start);
+            Line::Label => {
+                let start = *self.candidate.get_or_insert(start);
+                if self.closed {
+                    self.cut(start);
+                }
                 self.labelled = true;
             }
             Line::Load | Line::Block => self.statement(start, true),
-            Line::Label | Line::Other => self.statement(start, self.closed),
+            Line::Other => self.statement(start, self.closed),
         }
-        if let Some(last) = line.iter().rev().find(|token| token.kind != TokenKind::Semicolon) {
-            self.closed = last.kind.closes() && (last.region == Region::Body || is_last_word(last));
+        if !line.is_empty() {
+            let last = line.iter().rev().find(|token| token.kind != TokenKind::Semicolon);
+            self.closed = last.is_some_and(|last| last.kind.closes() && is_last_word(last));
         }
         self.follow_parentheses(line);
     }
@@ -133,13 +136,18 @@ impl Cutter<'_> {
 
     /// A line that is neither comment nor lone label; a chunk starts with it, or with what stands above it, if `cuts`.
     fn statement(&mut self, start: usize, cuts: bool) {
-        let cut = self.candidate.take().unwrap_or(start);
-        if cuts && self.content {
-            self.ends.push(cut);
-            self.chunk = cut;
+        let start = self.candidate.take().unwrap_or(start);
+        if cuts {
+            self.cut(start);
         }
         self.content = true;
         self.labelled = false;
+    }
+
+    fn cut(&mut self, at: usize) {
+        if std::mem::take(&mut self.content) {
+            self.ends.push(at);
+        }
     }
 
     /// Parentheses that this line shows to be forgotten are closed before it.

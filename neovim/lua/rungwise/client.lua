@@ -1,0 +1,168 @@
+--- The language client: where the server is, what it is told, starting and restarting it.
+local M = {}
+
+M.filetypes = { 'ladder', 'plc-il' }
+M.root_markers = { 'rungwise.toml', '.git' }
+
+--- Last `rungwise/status` of each program, by URI: { uri, target, dialect, steps, capacity }.
+M.status = {}
+
+--- What the user set in `vim.g.rungwise`, see |rungwise-options|.
+function M.options()
+  return type(vim.g.rungwise) == 'table' and vim.g.rungwise or {}
+end
+
+--- Places of the server in the order in which they are tried.
+function M.server_candidates()
+  local root = vim.fn.fnamemodify(debug.getinfo(1, 'S').source:sub(2), ':p:h:h:h:h')
+  return vim.tbl_filter(function(path)
+    return path ~= nil and path ~= ''
+  end, {
+    M.options().server or '',
+    vim.env.RUNGWISE_SERVER or '',
+    'rungwise',
+    -- Beside the plugin, when it is used out of a clone in which the server was built.
+    root .. '/target/release/rungwise',
+  })
+end
+
+--- Program of the server. A path that the user gave is final: another server would hide that it is wrong.
+function M.server()
+  local given = M.options().server or vim.env.RUNGWISE_SERVER
+  if given and given ~= '' then
+    return vim.fn.expand(given)
+  end
+  for _, path in ipairs(M.server_candidates()) do
+    if vim.fn.executable(path) == 1 then
+      return path
+    end
+  end
+  return 'rungwise'
+end
+
+--- The settings that the server gets, the same as in every other editor. What is null is left to rungwise.toml.
+function M.settings()
+  local options = M.options()
+  local format = options.format or {}
+  local hints = options.inlayHints or {}
+  return {
+    target = options.target or vim.NIL,
+    dialect = options.dialect or vim.NIL,
+    format = { style = format.style or vim.NIL, width = format.width or vim.NIL },
+    inlayHints = { enabled = hints.enabled ~= false },
+  }
+end
+
+local function on_status(_, status)
+  if type(status) == 'table' and type(status.uri) == 'string' then
+    M.status[status.uri] = status
+    vim.cmd.redrawstatus({ bang = true })
+  end
+end
+
+--- The configuration as |vim.lsp.config()| takes it.
+function M.config()
+  local settings = M.settings()
+  return {
+    name = 'rungwise',
+    cmd = vim.list_extend({ M.server(), 'lsp' }, M.options().extra_args or {}),
+    filetypes = M.filetypes,
+    root_markers = M.root_markers,
+    init_options = settings,
+    settings = { rungwise = settings },
+    handlers = { ['rungwise/status'] = on_status },
+  }
+end
+
+--- Configuration in force: that of the plugin, with what the user added by `vim.lsp.config('rungwise', …)`.
+local function resolved()
+  local configured = vim.lsp.config and vim.lsp.config.rungwise
+  return vim.deepcopy(configured or M.config())
+end
+
+--- Starts the server for a buffer, or attaches the one that runs for its project.
+function M.start(buffer)
+  local config = resolved()
+  config.root_dir = config.root_dir or vim.fs.root(buffer, config.root_markers or M.root_markers)
+  return vim.lsp.start(config, { bufnr = buffer })
+end
+
+--- Clients of a buffer; of all buffers without one.
+function M.clients(buffer)
+  return vim.lsp.get_clients({ name = 'rungwise', bufnr = buffer })
+end
+
+--- Makes the server start by itself. Answers nil and the reason when there is no server.
+function M.enable()
+  local server = M.server()
+  if vim.fn.executable(server) == 0 then
+    return nil, ('no language server at "%s"; see :checkhealth rungwise'):format(server)
+  end
+  if vim.lsp.enable then
+    vim.lsp.enable('rungwise')
+    return true
+  end
+  -- Neovim 0.10 has no vim.lsp.enable.
+  vim.api.nvim_create_autocmd('FileType', {
+    group = vim.api.nvim_create_augroup('rungwise', { clear = true }),
+    pattern = M.filetypes,
+    callback = function(event)
+      M.start(event.buf)
+    end,
+  })
+  return true
+end
+
+local function stop(client)
+  -- Neovim 0.10 has functions where 0.11 has methods.
+  if vim.fn.has('nvim-0.11') == 1 then
+    client:stop(true)
+  else
+    client.stop(true)
+  end
+end
+
+--- Ends every Rungwise server and starts new ones for the same buffers.
+function M.restart()
+  local buffers = {}
+  local clients = M.clients()
+  for _, client in ipairs(clients) do
+    vim.list_extend(buffers, vim.lsp.get_buffers_by_client_id(client.id))
+    stop(client)
+  end
+  vim.wait(3000, function()
+    return #M.clients() == 0
+  end, 20)
+  if #clients == 0 then
+    buffers = { vim.api.nvim_get_current_buf() }
+  end
+  for _, buffer in ipairs(buffers) do
+    if vim.list_contains(M.filetypes, vim.bo[buffer].filetype) then
+      M.start(buffer)
+    end
+  end
+end
+
+--- Sends a request and calls back with (error, result).
+function M.request(client, method, params, callback, buffer)
+  if vim.fn.has('nvim-0.11') == 1 then
+    client:request(method, params, callback, buffer)
+  else
+    client.request(method, params, callback, buffer)
+  end
+end
+
+--- Tells every server about changed settings.
+function M.send_settings()
+  local settings = { rungwise = M.settings() }
+  for _, client in ipairs(M.clients()) do
+    client.settings = settings
+    if vim.fn.has('nvim-0.11') == 1 then
+      client:notify('workspace/didChangeConfiguration', { settings = settings })
+    else
+      client.notify('workspace/didChangeConfiguration', { settings = settings })
+    end
+  end
+end
+
+return M

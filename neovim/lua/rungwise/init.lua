@@ -1,0 +1,21 @@
+--- What users call from their configuration.
+local M = {}
+
+--- Text for the status line: target, dialect and program steps of the buffer; blank when nothing is known.
+function M.statusline()
+  local status = require('rungwise.client').status[vim.uri_from_bufnr(0)]
+  if not status then
+    return ''
+  end
+  local parts = { tostring(status.target):upper() }
+  if type(status.dialect) == 'string' and status.dialect ~= status.target and status.dialect ~= 'ladder' then
+    table.insert(parts, status.dialect:upper())
+  end
+  if type(status.steps) == 'number' then
+    local capacity = type(status.capacity) == 'number' and '/' .. status.capacity or ''
+    table.insert(parts, ('%d%s steps'):format(status.steps, capacity))
+  end
+  return table.concat(parts, ' · ')
+end
+
+return M

@@ -1,0 +1,117 @@
+//! What the rules about drawings look at: the rungs of a chunk, which of them are sound, and trials of fixes.
+
+use super::FINDERS;
+use crate::check::ChunkContext;
+use crate::document::Tree;
+use crate::ladder::{Element, ElementKind, Graph, LadderTree, Rung, VertexKind, parse_with};
+use crate::target::Target;
+use crate::text::{Diagnostic, Message, Span, TextEdit};
+use std::cell::Cell;
+
+/// A chunk of a ladder document.
+pub(super) struct Drawn<'a> {
+    pub(super) text: &'a str,
+    pub(super) tree: &'a LadderTree,
+    pub(super) target: &'static Target,
+    /// How many fixes may still be tried, for trying one costs as much as reading the chunk.
+    trials: Cell<u32>,
+    /// How many mistakes there are, once it has been counted.
+    mistakes: Cell<Option<usize>>,
+}
+
+/// Fixes that one rule tries in one chunk.
+const TRIALS_MAX: u32 = 12;
+/// Chunks larger than this get no tried fixes, so that a keystroke in them stays cheap.
+const TRIAL_BYTES_MAX: usize = 32 << 10;
+
+/// Codes of the reader after which a rung does not say what its author meant.
+const BREAKING: [&str; 2] = ["unreadable-cell", "contact-on-vertical"];
+
+impl<'a> Drawn<'a> {
+    /// The drawing of a chunk; nothing if it is no ladder.
+    pub(super) fn of(context: &ChunkContext<'a>) -> Option<Drawn<'a>> {
+        let Tree::Ladder(tree) = context.chunk.tree() else { return None };
+        let text = context.chunk.text();
+        let trials = if text.len() <= TRIAL_BYTES_MAX { TRIALS_MAX } else { 0 };
+        let target = context.target;
+        Some(Drawn { text, tree, target, trials: Cell::new(trials), mistakes: Cell::new(None) })
+    }
+
+    /// The rungs whose graph says what was drawn: no loose end, no junction without a way in or out, and no cell
+    /// that could not be read. Only these are judged further, for one mistake is one diagnostic.
+    pub(super) fn sound_rungs(&self) -> impl Iterator<Item = &'a Rung> {
+        let broken = self.breaking();
+        self.tree.rungs.iter().filter(move |rung| {
+            let first = broken.partition_point(|span| span.end <= rung.span.start);
+            let readable = broken.get(first).is_none_or(|span| rung.span.end <= span.start);
+            readable && is_wired(&rung.graph)
+        })
+    }
+
+    /// The cells that broke the reading, in order.
+    pub(super) fn breaking(&self) -> Vec<Span> {
+        let problems = self.tree.problems.iter().filter(|problem| BREAKING.contains(&problem.code));
+        problems.map(|problem| problem.span).collect()
+    }
+
+    /// What people call an element: its device or, without one, its symbol.
+    pub(super) fn name(&self, element: &Element) -> String {
+        match &element.kind {
+            ElementKind::Contact(_) | ElementKind::Coil(_) if !element.operands.is_empty() => {
+                element.operand_text(0, self.text).into_owned()
+            }
+            ElementKind::Block(block) => {
+                block.instance.or(block.type_name).unwrap_or(element.span).of(self.text).to_string()
+            }
+            _ => element.span.of(self.text).to_string(),
+        }
+    }
+
+    /// Adds `edits` as a fix if the drawing is better with them: fewer mistakes, and none of another kind.
+    pub(super) fn try_fix(
+        &self,
+        found: &mut Diagnostic,
+        title: Message,
+        edits: Option<Vec<TextEdit>>,
+    ) -> bool {
+        let Some(edits) = edits.filter(|edits| !edits.is_empty()) else { return false };
+        let Some(trials) = self.trials.get().checked_sub(1) else { return false };
+        self.trials.set(trials);
+        let before = self.mistakes.get().unwrap_or_else(|| self.count());
+        self.mistakes.set(Some(before));
+        let text = TextEdit::apply_all(&edits, self.text);
+        let tree = parse_with(&text, self.target, self.tree.names);
+        let after = self.untried(&text, &tree).count();
+        if after < before {
+            found.fixes.push(crate::text::Fix { title, edits });
+        }
+        after < before
+    }
+
+    /// Whether fixes can be tried at all.
+    pub(super) fn can_try(&self) -> bool {
+        self.trials.get() > 0
+    }
+
+    fn untried<'b>(&self, text: &'b str, tree: &'b LadderTree) -> Drawn<'b> {
+        Drawn { text, tree, target: self.target, trials: Cell::new(0), mistakes: Cell::new(None) }
+    }
+
+    /// The number of mistakes in the drawing.
+    fn count(&self) -> usize {
+        let plain = self.untried(self.text, self.tree);
+        let mut found = Vec::new();
+        for find in FINDERS {
+            find(&plain, &mut found);
+        }
+        found.len() + self.tree.problems.len()
+    }
+}
+
+fn is_wired(graph: &Graph) -> bool {
+    graph.vertices.iter().all(|vertex| match vertex.kind {
+        VertexKind::LooseEnd => false,
+        VertexKind::Junction => vertex.in_degree > 0 && vertex.out_degree > 0,
+        VertexKind::LeftRail | VertexKind::RightRail | VertexKind::Element(_) => true,
+    })
+}

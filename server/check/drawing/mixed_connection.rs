@@ -1,0 +1,79 @@
+//! # mixed-connection
+//!
+//! A bridge: the branches of this rung are neither in series nor in parallel, because a part of the way is shared
+//! by paths that come from different sides and go to different sides. The mark is on the vertical wire that makes
+//! it so.
+//!
+//! Instruction List has AND for series and OR for parallel and nothing for a bridge, so no PLC of this kind can run
+//! the rung; programming tools refuse it. Draw the paths apart: the contacts that they share are drawn twice.
+//!
+//! ```lad
+//! |   X0                    X1                       Y0  |
+//! +---| |---+---------------| |-----+----------------( )-+
+//! |         |   X2                  |                    |
+//! |         +---| |---+             |                    |
+//! |                   |             |                    |
+//!                                   ^
+//! |   X3              |     X4      |                    |
+//! +---| |-------------+-----| |-----+                    |
+//! ```
+//!
+//! ```lad
+//! |   X0        X1                               Y0  |
+//! +---| |-------| |-----------------+------------( )-+
+//! |   X0        X2          X4      |                |
+//! +---| |-------| |---+-----| |-----+                |
+//! |   X3              |                              |
+//! +---| |-------------+                              |
+//! ```
+
+use super::{Drawn, first_cell};
+use crate::check::{Rule, Run};
+use crate::ladder::reduce::{Bridge, NotSeriesParallel, reduce};
+use crate::ladder::{ElementId, Graph};
+use crate::text::{Diagnostic, Message, Severity, Span};
+
+pub(super) const RULE: Rule = Rule {
+    code: "mixed-connection",
+    severity: Severity::Error,
+    run: Run::Chunk(|context, found| super::run(find, context, found)),
+    source: include_str!("mixed_connection.rs"),
+};
+
+pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
+    for rung in drawn.sound_rungs() {
+        let graph = &rung.graph;
+        let Err(NotSeriesParallel::Bridge(bridge)) = reduce(graph) else { continue };
+        let names: Vec<String> = bridge.elements.iter().map(|id| drawn.name(graph.element(*id))).collect();
+        let message = match names.is_empty() {
+            true => Message::new("mixed-connection.wire"),
+            false => Message::new("mixed-connection.elements").with("elements", names.join(", ")),
+        };
+        let mut diagnostic = Diagnostic::new(RULE.code, vertical(graph, &bridge), message);
+        let mut relate = |elements: &[ElementId], key: &'static str| {
+            const SHOWN: usize = 8;
+            for id in elements.iter().take(SHOWN) {
+                let element = graph.element(*id);
+                let message = match key {
+                    "across" => Message::new("mixed-connection.across"),
+                    _ => Message::new("mixed-connection.beside"),
+                };
+                let related = crate::text::Related {
+                    span: element.span,
+                    message: message.with("element", drawn.name(element)),
+                };
+                diagnostic.related.push(related);
+            }
+        };
+        relate(&bridge.elements, "across");
+        relate(&bridge.beside, "beside");
+        found.push(diagnostic);
+    }
+}
+
+/// The middle cell of the bridge's vertical wire.
+fn vertical(graph: &Graph, bridge: &Bridge) -> Span {
+    let cell = bridge.vertical.get(bridge.vertical.len() / 2).or(bridge.wire.first()).copied();
+    cell.or_else(|| bridge.elements.first().map(|id| graph.element(*id).span))
+        .unwrap_or_else(|| first_cell(graph, bridge.from.or(bridge.to).unwrap_or(Graph::LEFT_RAIL)))
+}

@@ -1,0 +1,17 @@
+//! What the rules about IEC 61131-3 share: the types of operands, what can be called with which parameters, and the
+//! walk that follows the current result.
+
+mod view;
+pub(super) use view::{Place, Root, ValueType, View, bodies, folded, views};
+
+mod callee;
+pub(super) use callee::{Callee, Expected, Flow, Pin};
+
+mod fit;
+pub(super) use fit::{Fit, fit};
+
+mod current_result;
+pub(super) use current_result::{Guess, follow};
+
+mod arguments;
+pub(super) use arguments::out_of_range;

@@ -1,0 +1,60 @@
+//! # code-after-end
+//!
+//! Instructions stand behind `END`. The PLC never reaches them: the scan starts again at step 0. Mostly `END` was left
+//! where a program once ended, and the rungs added behind it do nothing on the machine. Subroutines stand before
+//! `END`, between it and `FEND`.
+//!
+//! ```fx
+//! LD X0
+//! OUT Y0
+//! END
+//! LD X1
+//! ^^^^^
+//! OUT Y1
+//! ```
+//!
+//! ```fx
+//! LD X0
+//! OUT Y0
+//! LD X1
+//! OUT Y1
+//! END
+//! ```
+
+use crate::check::statements::{Statement, statements};
+use crate::check::{ProgramContext, Rule, Run};
+use crate::target::Flow;
+use crate::text::{Diagnostic, Message, Severity};
+
+pub(super) const RULE: Rule = Rule {
+    code: "code-after-end",
+    severity: Severity::Warning,
+    run: Run::Program(check),
+    source: include_str!("code_after_end.rs"),
+};
+
+fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
+    let mut end: Option<Statement<'_>> = None;
+    let mut behind: Option<Statement<'_>> = None;
+    let mut count = 0;
+    for statement in statements(context.document) {
+        match (end, statement.flow()) {
+            (_, Some(Flow::Nothing)) => {}
+            (None, Some(Flow::ProgramEnd)) => end = Some(statement),
+            (None, _) => {}
+            (Some(_), _) => {
+                behind.get_or_insert(statement);
+                count += 1;
+            }
+        }
+    }
+    let (Some(end), Some(first)) = (end, behind) else { return };
+    let message = Message::new("code-after-end.found").with("count", count);
+    let mut diagnostic =
+        Diagnostic::new(RULE.code, first.span, message).related(end.span, Message::new("code-after-end.end"));
+    // Where nothing but END follows, the first one goes; else it moves, if the last instruction is no END itself.
+    if let Some(removal) = end.removal() {
+        diagnostic = diagnostic.fix(Message::new("code-after-end.remove-end"), vec![removal]);
+    }
+    found.push(diagnostic);
+}

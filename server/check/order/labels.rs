@@ -1,0 +1,112 @@
+//! The labels of a program and the jumps to them, once for all rules about labels.
+
+use crate::check::ProgramContext;
+use crate::check::statements::{Statement, StatementKind, is_fx_program};
+use crate::document::{Symbol, Use};
+use crate::target::{Device, DeviceKind, Flow, Operand};
+use crate::text::{Span, TextEdit};
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// The pointer that always means END.
+pub(super) const END_POINTER: Device = Device::new(DeviceKind::P, 63);
+
+/// The labels that see each other: those of an FX program, or of one POU.
+#[derive(Default)]
+pub(super) struct Labels {
+    /// Where labels stand, in order.
+    pub declared: Vec<Label>,
+    /// Where jumps and calls name them, in order.
+    pub jumps: Vec<Jump>,
+    /// A jump goes to a label that an index register chooses, so each may be meant.
+    pub any_may_be_meant: bool,
+    /// EI stands somewhere: interrupt routines are run by their inputs.
+    pub interrupts_allowed: bool,
+}
+
+/// A label at its place.
+pub(super) struct Label {
+    pub symbol: Symbol,
+    pub span: Span,
+    /// Takes it out.
+    pub removal: Option<TextEdit>,
+}
+
+/// A place that names a label.
+pub(super) struct Jump {
+    pub symbol: Symbol,
+    pub span: Span,
+}
+
+impl Labels {
+    /// The labels of the program; those of each POU apart.
+    pub fn of(context: &ProgramContext<'_>) -> Vec<Labels> {
+        if is_fx_program(context.document) { vec![Labels::of_fx(context)] } else { Labels::of_pous(context) }
+    }
+
+    /// Those that jumps name.
+    pub fn named(&self) -> FxHashSet<&Symbol> {
+        self.jumps.iter().map(|jump| &jump.symbol).collect()
+    }
+
+    /// Those that stand somewhere.
+    pub fn placed(&self) -> FxHashSet<&Symbol> {
+        self.declared.iter().map(|label| &label.symbol).collect()
+    }
+
+    fn of_fx(context: &ProgramContext<'_>) -> Labels {
+        let mut labels = Labels::default();
+        for statement in context.executed() {
+            match statement.kind {
+                StatementKind::Label(device) => labels.declared.push(Label {
+                    symbol: Symbol::Device(device),
+                    span: statement.word,
+                    removal: statement.removal(),
+                }),
+                StatementKind::Instruction(Flow::Jump | Flow::Call) => labels.add_jump(&statement),
+                StatementKind::Instruction(Flow::InterruptsAllowed) => labels.interrupts_allowed = true,
+                _ => {}
+            }
+        }
+        labels
+    }
+
+    fn add_jump(&mut self, statement: &Statement<'_>) {
+        let Some(operand) = statement.first else { return };
+        match operand.value {
+            Operand::Device(device) if device.kind == DeviceKind::P => {
+                self.jumps.push(Jump { symbol: Symbol::Device(device), span: operand.span });
+            }
+            Operand::Indexed { .. } => self.any_may_be_meant = true,
+            _ => {}
+        }
+    }
+
+    fn of_pous(context: &ProgramContext<'_>) -> Vec<Labels> {
+        let mut pous: FxHashMap<usize, Labels> = FxHashMap::default();
+        let mut pou = 0;
+        for at in context.document.chunks() {
+            pou += at.chunk.pou_starts();
+            for mention in at.chunk.mentions().iter().filter(|m| matches!(m.symbol, Symbol::Label(_))) {
+                let labels = pous.entry(pou).or_default();
+                let (symbol, span) = (mention.symbol.clone(), mention.span.shifted(at.start));
+                match mention.usage {
+                    Use::Declare => labels.declared.push(Label { symbol, span, removal: None }),
+                    Use::Jump => labels.jumps.push(Jump { symbol, span }),
+                    Use::Read | Use::Write | Use::ReadWrite => {}
+                }
+            }
+        }
+        let mut pous: Vec<(usize, Labels)> = pous.into_iter().collect();
+        pous.sort_by_key(|(pou, _)| *pou);
+        pous.into_iter().map(|(_, labels)| labels).collect()
+    }
+}
+
+/// The name of a label as people write it.
+pub(super) fn name_of(symbol: &Symbol) -> String {
+    match symbol {
+        Symbol::Device(device) => device.to_string(),
+        Symbol::Label(name) => name.to_string(),
+        _ => String::new(),
+    }
+}

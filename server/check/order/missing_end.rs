@@ -1,0 +1,67 @@
+//! # missing-end
+//!
+//! A program in instruction list has no `END`. The PLC would go on through its whole empty memory, so it refuses to run
+//! without it, and the maker's tools add none. The fix appends it.
+//!
+//! A drawing needs no `END`: it ends with its last rung. Only where `FEND` divides it into a main program and
+//! subroutines is the `END` asked for, as the end of the last part.
+//!
+//! ```fx
+//! LD X0
+//! OUT Y0
+//! ^^^^^^
+//! ```
+//!
+//! ```fx
+//! LD X0
+//! OUT Y0
+//! END
+//! ```
+
+use crate::check::statements::{StatementKind, statements};
+use crate::check::{ProgramContext, Rule, Run};
+use crate::document::Notation;
+use crate::target::Flow;
+use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
+
+pub(super) const RULE: Rule = Rule {
+    code: "missing-end",
+    severity: Severity::Error,
+    run: Run::Program(check),
+    source: include_str!("missing_end.rs"),
+};
+
+fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
+    let document = context.document;
+    let (mut last, mut last_main_end) = (None, None);
+    for statement in statements(document) {
+        match statement.kind {
+            StatementKind::Instruction(Flow::ProgramEnd) => return,
+            StatementKind::Instruction(Flow::MainEnd) => last_main_end = Some(statement.span),
+            _ => {}
+        }
+        last = Some(statement.span);
+    }
+    let is_list = document.notation() == Notation::FxIl;
+    let Some(span) = (if is_list { last } else { last_main_end }) else { return };
+    // A comment that is never closed has swallowed the END, if there is one.
+    let last_chunk = document.chunk_at(document.len());
+    let problems = last_chunk.iter().flat_map(|at| at.chunk.problems());
+    if problems.into_iter().any(|problem| problem.code == "unclosed-comment") {
+        return;
+    }
+    let diagnostic = Diagnostic::new(RULE.code, span, Message::new("missing-end.found"));
+    found.push(match is_list {
+        true => diagnostic.fix(Message::new("missing-end.append"), vec![appended(context)]),
+        false => diagnostic,
+    });
+}
+
+/// END on a line of its own at the end of the text.
+fn appended(context: &ProgramContext<'_>) -> TextEdit {
+    let document = context.document;
+    let text = document.chunk_at(document.len()).map_or("", |at| at.chunk.text());
+    let newline = if text.contains("\r\n") { "\r\n" } else { "\n" };
+    let before = if text.ends_with('\n') { "" } else { newline };
+    TextEdit::new(Span::at(document.len()), format!("{before}END{newline}"))
+}

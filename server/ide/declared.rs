@@ -1,0 +1,101 @@
+//! Declarations of IEC variables in words: the section, the text as written, the names of types.
+
+use super::names::{self, Thing};
+use crate::document::{DeclaredType, Document, Scopes, Tree, Use};
+use crate::il::iec::{IecTree, ItemKind, PouKind, SectionKind};
+use crate::target::iec::FunctionBlock;
+use crate::text::Span;
+
+/// The declaration of `thing` as written, with the keyword of its section: `VAR_INPUT Start AT %IX0.0 : BOOL`.
+pub(super) fn source(document: &Document, thing: &Thing) -> Option<String> {
+    let mut found = None;
+    names::visit(document, thing, |place| {
+        if place.usage == Use::Declare && found.is_none() {
+            found = Some((
+                place.chunk,
+                Span::new(
+                    place.span.start as usize - place.chunk_start,
+                    place.span.end as usize - place.chunk_start,
+                ),
+            ));
+        }
+    });
+    let (chunk, name) = found?;
+    let Tree::Iec(tree) = chunk.tree() else { return None };
+    let text = chunk.text();
+    let (keyword, span) = declaration_at(tree, name)?;
+    let written: Vec<&str> = span.of(text).split_whitespace().collect();
+    Some(format!("{keyword} {}", written.join(" ")).trim_start().to_string())
+}
+
+/// The section's keywords and all of the declaration in which the name at `name` is declared.
+fn declaration_at(tree: &IecTree, name: Span) -> Option<(String, Span)> {
+    for item in &tree.items {
+        let (keyword, declarations) = match item.kind {
+            ItemKind::Section { kind, constant, retain, declarations } => {
+                let constant = if constant { " CONSTANT" } else { "" };
+                let retain = match retain {
+                    Some(true) => " RETAIN",
+                    Some(false) => " NON_RETAIN",
+                    None => "",
+                };
+                (format!("{}{constant}{retain}", section_keyword(kind)), declarations)
+            }
+            ItemKind::Types { declarations } => ("TYPE".to_string(), declarations),
+            _ => continue,
+        };
+        let declaration = declarations
+            .of(&tree.declarations)
+            .iter()
+            .find(|declaration| declaration.names.of(&tree.names).contains(&name));
+        if let Some(declaration) = declaration {
+            return Some((keyword, declaration.span));
+        }
+    }
+    None
+}
+
+/// `VAR_INPUT`
+pub(super) fn section_keyword(kind: SectionKind) -> &'static str {
+    match kind {
+        SectionKind::Local => "VAR",
+        SectionKind::Input => "VAR_INPUT",
+        SectionKind::Output => "VAR_OUTPUT",
+        SectionKind::InOut => "VAR_IN_OUT",
+        SectionKind::External => "VAR_EXTERNAL",
+        SectionKind::Temporary => "VAR_TEMP",
+        SectionKind::Global => "VAR_GLOBAL",
+        SectionKind::Access => "VAR_ACCESS",
+        SectionKind::Config => "VAR_CONFIG",
+    }
+}
+
+/// `FUNCTION_BLOCK`
+pub(super) fn pou_keyword(kind: PouKind) -> &'static str {
+    match kind {
+        PouKind::Program => "PROGRAM",
+        PouKind::FunctionBlock => "FUNCTION_BLOCK",
+        PouKind::Function => "FUNCTION",
+    }
+}
+
+/// The name of a type as people write it.
+pub(super) fn type_name(declared: &DeclaredType, scopes: &Scopes) -> String {
+    match declared {
+        DeclaredType::Elementary(kind) => kind.name().to_string(),
+        DeclaredType::Named(name) => match (FunctionBlock::named(name), scopes.pou_named(name)) {
+            (_, Some(pou)) => pou.name.to_string(),
+            (Some(block), None) => block.name.to_string(),
+            (None, None) => name.to_string(),
+        },
+        DeclaredType::Array(element) => format!("ARRAY OF {}", type_name(element, scopes)),
+        DeclaredType::Enumeration(values) => format!("({})", values.join(", ")),
+        DeclaredType::Structure(_) => "STRUCT".to_string(),
+        DeclaredType::Unknown => "?".to_string(),
+    }
+}
+
+/// Whether callers see variables of this section.
+pub(super) fn is_parameter(kind: SectionKind) -> bool {
+    matches!(kind, SectionKind::Input | SectionKind::Output | SectionKind::InOut)
+}

@@ -1,0 +1,134 @@
+//! Names in drawings: a longer name takes blanks or wire beside it, a shorter one leaves some, so that everything else
+//! of its line stays in its column.
+
+use crate::document::Document;
+use crate::text::{Encoding, LineColumn, Message, Span, TextEdit, cell_width};
+
+/// What may be shortened and lengthened.
+const WIRES: &[char] = &['-', '─', '━', '═', '_'];
+
+/// The edits that put `new` at all of `places`, which are sorted, one edit for each line.
+pub(super) fn edits(document: &Document, places: &[Span], new: &str) -> Result<Vec<TextEdit>, Message> {
+    let line_of = |span: &Span| document.position(span.start as usize, Encoding::Utf8).line;
+    let mut edits = Vec::new();
+    for run in places.chunk_by(|left, right| line_of(left) == line_of(right)) {
+        let line = line_of(&run[0]);
+        let start = document.offset(LineColumn { line, column: 0 }, Encoding::Utf8);
+        let end = document.offset(LineColumn { line, column: u32::MAX }, Encoding::Utf8);
+        let old = document.slice(Span::new(start, end));
+        let inside: Vec<Span> = run
+            .iter()
+            .map(|span| Span::new(span.start as usize - start, span.end as usize - start))
+            .collect();
+        let Some(redrawn) = redrawn(&old, &inside, new) else {
+            return Err(Message::new("rename.drawing").with("name", new).with("line", line + 1));
+        };
+        edits.push(smallest(&old, &redrawn, start));
+    }
+    Ok(edits)
+}
+
+/// `line` with `new` at `places`; nothing if there is no room. From right to left, so that offsets stay valid.
+fn redrawn(line: &str, places: &[Span], new: &str) -> Option<String> {
+    let mut result = line.to_string();
+    for place in places.iter().rev() {
+        result = replaced(&result, *place, new)?;
+    }
+    Some(result)
+}
+
+fn replaced(line: &str, place: Span, new: &str) -> Option<String> {
+    let (head, old, tail) =
+        (line.get(..place.start as usize)?, line.get(place.range())?, line.get(place.end as usize..)?);
+    let (old_width, new_width) = (width(old), width(new));
+    // A label before its colon, and a name with nothing drawn behind it, move nothing.
+    let is_free = tail.trim().is_empty() || (head.trim().is_empty() && tail.trim_start().starts_with(':'));
+    if is_free || old_width == new_width {
+        let tail = if tail.trim().is_empty() { "" } else { tail };
+        return Some(format!("{head}{new}{tail}"));
+    }
+    let closing = closing_length(head, tail);
+    let (closed, behind) = tail.split_at(closing);
+    if new_width < old_width {
+        let fill = filler(closed, behind);
+        let padding: String = std::iter::repeat_n(fill, old_width - new_width).collect();
+        return Some(match fill {
+            // Without wire behind the bracket the blanks go inside of it.
+            ' ' if closing > 0 => format!("{head}{new}{padding}{closed}{behind}"),
+            _ => format!("{head}{new}{closed}{padding}{behind}"),
+        });
+    }
+    let missing = new_width - old_width;
+    if let Some(behind) = shortened_start(behind, missing) {
+        return Some(format!("{head}{new}{closed}{behind}"));
+    }
+    let opening = opening_length(head, tail);
+    let (before, open) = head.split_at(head.len() - opening);
+    let before = shortened_end(before, missing)?;
+    Some(format!("{before}{open}{new}{tail}"))
+}
+
+/// How much of `tail` belongs to the bracket or arrow in which the name stands.
+fn closing_length(head: &str, tail: &str) -> usize {
+    let Some(open) = last_open(head) else {
+        return if head.ends_with('>') && tail.starts_with('>') { 1 } else { 0 };
+    };
+    let close = if open == '[' { ']' } else { ')' };
+    tail.find(close).map_or(0, |end| end + 1)
+}
+
+/// How much of the end of `head` belongs to the bracket or arrow in which the name stands.
+fn opening_length(head: &str, tail: &str) -> usize {
+    match last_open(head) {
+        Some(open) => head.rfind(open).map_or(0, |start| head.len() - start),
+        None if head.ends_with('>') && tail.starts_with('>') => 1,
+        None => head.len() - head.trim_end_matches('>').len(),
+    }
+}
+
+/// The bracket in which the end of `head` stands.
+fn last_open(head: &str) -> Option<char> {
+    let last = head.rfind(['[', '(', ']', ')', '|', '+', '-'])?;
+    head[last..].chars().next().filter(|c| matches!(c, '[' | '('))
+}
+
+/// What fills the room that a shorter name leaves.
+fn filler(closed: &str, behind: &str) -> char {
+    match behind.chars().next() {
+        Some(wire) if !closed.is_empty() && WIRES.contains(&wire) => wire,
+        _ => ' ',
+    }
+}
+
+/// `text` with `count` cells less at its start, all of them blanks or wire of which at least one is left.
+fn shortened_start(text: &str, count: usize) -> Option<&str> {
+    let fill = text.chars().next().filter(|first| *first == ' ' || WIRES.contains(first))?;
+    let run = text.chars().take_while(|character| *character == fill).count();
+    // At the end of a line no blank need be left.
+    let needed = if text.trim().is_empty() { count } else { count + 1 };
+    (run >= needed).then(|| text.get(count * fill.len_utf8()..)).flatten()
+}
+
+/// The same at the end of `text`.
+fn shortened_end(text: &str, count: usize) -> Option<&str> {
+    let fill = text.chars().next_back().filter(|last| *last == ' ' || WIRES.contains(last))?;
+    let run = text.chars().rev().take_while(|character| *character == fill).count();
+    (run > count).then(|| text.get(..text.len() - count * fill.len_utf8())).flatten()
+}
+
+fn width(text: &str) -> usize {
+    text.chars().map(cell_width).sum()
+}
+
+/// The one edit that makes `new` of `old`, which starts at `start`, without what both have in common at their ends.
+fn smallest(old: &str, new: &str, start: usize) -> TextEdit {
+    let head: usize = old
+        .chars()
+        .zip(new.chars())
+        .take_while(|(left, right)| left == right)
+        .map(|(c, _)| c.len_utf8())
+        .sum();
+    let tails = old[head..].chars().rev().zip(new[head..].chars().rev());
+    let tail: usize = tails.take_while(|(left, right)| left == right).map(|(c, _)| c.len_utf8()).sum();
+    TextEdit::new(Span::new(start + head, start + old.len() - tail), &new[head..new.len() - tail])
+}

@@ -1,0 +1,291 @@
+-- The tests in a real Neovim. Run by neovim/run.sh as
+--   nvim --headless --clean --cmd 'set runtimepath^=PLUGIN' -c 'luafile tests.lua'
+-- in a copy of the fixtures, with the environment variable RUNGWISE_SERVER set.
+
+local report = dofile(vim.env.RUNGWISE_TESTS .. '/neovim/report.lua')
+local check, finish = report.check, report.finish
+local TIMEOUT_MS = 15000
+local LADDER = 'three_mistakes.lad'
+local THREE = { 'mixed-connection', 'open-circuit', 'short-circuit' }
+local expected = vim.json.decode(table.concat(vim.fn.readfile('expected.json'), '\n'))
+
+local function until_true(what, probe)
+  if not vim.wait(TIMEOUT_MS, probe, 20) then
+    error(('waited %d ms for %s; diagnostics: %s'):format(TIMEOUT_MS, what, vim.inspect(vim.tbl_map(function(d)
+      return ('%s %d:%d %s'):format(d.code, d.lnum, d.col, d.message)
+    end, vim.diagnostic.get(0)))), 0)
+  end
+end
+
+--- Opens a file as it is on the disk; without wiping, a buffer that an earlier test changed would come back changed.
+local function open(name)
+  if vim.fn.bufexists(name) == 1 then
+    vim.cmd('silent bwipeout! ' .. name)
+  end
+  vim.cmd('silent edit ' .. name)
+  until_true('the client', function()
+    return #vim.lsp.get_clients({ bufnr = 0, name = 'rungwise' }) == 1
+  end)
+  return vim.lsp.get_clients({ bufnr = 0, name = 'rungwise' })[1]
+end
+
+local function errors()
+  return vim.diagnostic.get(0, { severity = vim.diagnostic.severity.ERROR })
+end
+
+local function codes()
+  local found = vim.tbl_map(function(d)
+    return d.code
+  end, errors())
+  table.sort(found)
+  return found
+end
+
+--- Waits for exactly these errors, and that they stay.
+local function until_codes(wanted)
+  local function same()
+    return vim.deep_equal(codes(), wanted)
+  end
+  until_true('exactly ' .. (#wanted > 0 and table.concat(wanted, ', ') or 'no errors'), same)
+  vim.wait(200)
+  assert(same(), 'the errors changed afterwards: ' .. table.concat(codes(), ', '))
+end
+
+local function assert_cells(name)
+  for _, d in ipairs(errors()) do
+    local cells = assert(expected[name][d.code], 'not expected: ' .. tostring(d.code))
+    local inside = d.lnum >= cells.lines[1] and d.lnum <= cells.lines[2] and d.col >= cells.columns[1] and d.col <= cells.columns[2]
+    assert(inside, ('%s at %d:%d'):format(d.code, d.lnum, d.col))
+    assert(d.end_lnum > d.lnum or d.end_col > d.col, d.code .. ' marks no cell')
+  end
+end
+
+--- Types keys as a person does, mappings included.
+local function type_keys(keys)
+  vim.api.nvim_feedkeys(vim.api.nvim_replace_termcodes(keys, true, false, true), 'mtx', false)
+end
+
+--- Puts the cursor on a word: line from 1, column from 0.
+local function put_cursor(pattern)
+  vim.fn.cursor(1, 1)
+  assert(vim.fn.search(pattern, 'c') > 0, pattern .. ' is not in the buffer')
+end
+
+local function request(client, method, params)
+  params = params or vim.lsp.util.make_position_params(0, client.offset_encoding)
+  local answer = assert(client:request_sync(method, params, TIMEOUT_MS, 0), method .. ': no answer')
+  assert(not answer.err, vim.inspect(answer.err))
+  return answer.result
+end
+
+local function buffer_text()
+  return table.concat(vim.api.nvim_buf_get_lines(0, 0, -1, false), '\n')
+end
+
+check('files get their types and options', function()
+  open('conveyor_fx.il')
+  assert(vim.bo.filetype == 'plc-il', vim.bo.filetype)
+  assert(vim.bo.commentstring == '// %s')
+  open(LADDER)
+  assert(vim.bo.filetype == 'ladder', vim.bo.filetype)
+  assert(vim.wo.virtualedit == 'block' and not vim.wo.wrap and vim.bo.expandtab)
+  put_cursor('X10')
+  assert(vim.fn.expand('<cword>') == 'X10')
+end)
+
+check('the server offers positions in bytes, and one client serves all buffers', function()
+  local client = open(LADDER)
+  assert(client.offset_encoding == 'utf-8', client.offset_encoding)
+  open('conveyor_fx.il')
+  assert(#vim.lsp.get_clients({ name = 'rungwise' }) == 1)
+end)
+
+check('a short circuit, an open circuit and a bridge are the three errors of a ladder, at their cells', function()
+  open(LADDER)
+  until_codes(THREE)
+  assert_cells(LADDER)
+end)
+
+check('drawing the missing wire clears the open circuit and nothing else; undo brings it back', function()
+  open(LADDER)
+  until_codes(THREE)
+  vim.fn.cursor(13, 17)
+  type_keys('R----<Esc>')
+  assert(vim.fn.getline(13):sub(1, 21) == '+---| |-------------+', vim.fn.getline(13))
+  until_codes({ 'mixed-connection', 'short-circuit' })
+  assert_cells(LADDER)
+  type_keys('u')
+  until_codes(THREE)
+end)
+
+check('taking the bypass wire away clears the short circuit and nothing else', function()
+  open(LADDER)
+  until_codes(THREE)
+  vim.api.nvim_buf_set_text(0, 5, 16, 5, 17, { ' ' })
+  vim.api.nvim_buf_set_text(0, 6, 0, 6, 17, { '|' .. (' '):rep(16) })
+  until_codes({ 'mixed-connection', 'open-circuit' })
+end)
+
+check('an instruction list gets its errors at their words, and loses them by correct words', function()
+  open('mistakes_fx.il')
+  until_codes({ 'octal-digit', 'unknown-instruction' })
+  assert_cells('mistakes_fx.il')
+  put_cursor('MOVE')
+  type_keys('cwMOV<Esc>')
+  until_codes({ 'octal-digit' })
+  put_cursor('X8')
+  type_keys('cwX7<Esc>')
+  until_codes({})
+end)
+
+check('clean programs have no errors', function()
+  for _, name in ipairs({ 'conveyor_fx.il', 'mixer_iec.il', 'ragged.lad' }) do
+    open(name)
+    until_codes({})
+  end
+end)
+
+check('hover explains instructions and devices', function()
+  local client = open('conveyor_fx.il')
+  for _, word in ipairs({ 'MOV', 'T0' }) do
+    put_cursor('\\<' .. word .. '\\>')
+    local result = request(client, 'textDocument/hover')
+    assert(vim.inspect(result.contents):find(word, 1, true), vim.inspect(result))
+  end
+  open(LADDER)
+  put_cursor('X11')
+  assert(vim.inspect(request(client, 'textDocument/hover').contents):find('X11', 1, true))
+end)
+
+check('completion by CTRL-X CTRL-O offers instructions', function()
+  open('conveyor_fx.il')
+  assert(vim.bo.omnifunc == 'v:lua.vim.lsp.omnifunc', vim.bo.omnifunc)
+  local client = vim.lsp.get_clients({ bufnr = 0 })[1]
+  vim.api.nvim_buf_set_lines(0, 9, 9, false, { 'MO' })
+  vim.fn.cursor(10, 2)
+  local params = vim.lsp.util.make_position_params(0, client.offset_encoding)
+  params.position.character = 2
+  local result = request(client, 'textDocument/completion', params)
+  local labels = vim.tbl_map(function(item)
+    return item.label
+  end, result.items or result)
+  assert(vim.list_contains(labels, 'MOV'), 'no MOV among ' .. #labels .. ' items')
+end)
+
+check('formatting straightens a ladder, once and for all', function()
+  open('ragged.lad')
+  vim.lsp.buf.format({ timeout_ms = TIMEOUT_MS })
+  local once = buffer_text()
+  local rails = {}
+  for _, line in ipairs(vim.split(once, '\n')) do
+    if line:match('^[|+]') then
+      rails[vim.fn.strdisplaywidth(line)] = true
+    end
+  end
+  assert(vim.tbl_count(rails) == 1, once)
+  for _, name in ipairs({ 'X0', 'X1', 'X2', 'Y0', 'T0', 'K50', 'MOV K10 D0', 'END' }) do
+    assert(once:find(name, 1, true), name .. ' is lost:\n' .. once)
+  end
+  until_codes({})
+  vim.lsp.buf.format({ timeout_ms = TIMEOUT_MS })
+  assert(buffer_text() == once, 'a second run changes something')
+end)
+
+check('rename changes every use of a variable', function()
+  open('mixer_iec.il')
+  local uses = select(2, buffer_text():gsub('Motor', ''))
+  put_cursor('ST \\zsMotor')
+  vim.lsp.buf.rename('Pump')
+  until_true('the new name', function()
+    return select(2, buffer_text():gsub('Pump', '')) == uses
+  end)
+  assert(not buffer_text():find('Motor', 1, true), buffer_text())
+  until_codes({})
+end)
+
+check('the definition of a variable is found', function()
+  open('mixer_iec.il')
+  until_codes({})
+  put_cursor('ST \\zsMotor')
+  vim.lsp.buf.definition()
+  until_true('the jump', function()
+    return vim.fn.line('.') == vim.fn.search('Motor AT', 'nw')
+  end)
+end)
+
+check(':RungwiseCheck shows a summary', function()
+  open('conveyor_fx.il')
+  until_codes({})
+  local said
+  local notify = vim.notify
+  vim.notify = function(message)
+    said = message
+  end
+  vim.cmd('RungwiseCheck')
+  vim.wait(TIMEOUT_MS, function()
+    return said ~= nil
+  end)
+  vim.notify = notify
+  assert(said and said:match('^Rungwise: .*step'), tostring(said))
+end)
+
+check('the status line shows target and steps, and follows :RungwiseTarget', function()
+  open('conveyor_fx.il')
+  local function statusline()
+    return require('rungwise').statusline()
+  end
+  until_true('FX2N', function()
+    return statusline():match('^FX2N · FX · 15/%d+ steps$')
+  end)
+  vim.cmd('RungwiseTarget fx3u')
+  until_true('FX3U', function()
+    return statusline():match('^FX3U ')
+  end)
+  vim.cmd('RungwiseTarget auto')
+  until_true('FX2N', function()
+    return statusline():match('^FX2N ')
+  end)
+end)
+
+check(':RungwiseRestart leaves one client, which knows the open programs', function()
+  local before = open(LADDER).id
+  vim.cmd('RungwiseRestart')
+  until_true('another client', function()
+    local clients = vim.lsp.get_clients({ name = 'rungwise' })
+    return #clients == 1 and clients[1].id ~= before
+  end)
+  until_codes(THREE)
+end)
+
+check(':RungwiseLog opens the log', function()
+  vim.cmd('RungwiseLog')
+  assert(vim.api.nvim_buf_get_name(0):match('lsp%.log$'), vim.api.nvim_buf_get_name(0))
+  vim.cmd('tabclose')
+end)
+
+check(':checkhealth rungwise finds the server', function()
+  vim.cmd('silent checkhealth rungwise')
+  local text = buffer_text()
+  assert(text:find('version %d+%.%d+%.%d+'), text)
+  assert(not text:find('ERROR', 1, true), text)
+  vim.cmd('bwipeout')
+end)
+
+check(':help rungwise opens, and every link in it leads somewhere', function()
+  vim.cmd('help rungwise')
+  assert(vim.bo.filetype == 'help')
+  assert(buffer_text():find('PLC programs as text', 1, true))
+  local links = {}
+  for link in buffer_text():gmatch('|([^|%s]+)|') do
+    -- The drawings of the page are full of bars that are no links.
+    if link:find('%a') then
+      links[link] = true
+    end
+  end
+  for link in pairs(links) do
+    assert(#vim.fn.getcompletion(link, 'help') > 0, 'no help for ' .. link)
+  end
+  vim.cmd('helpclose')
+end)
+
+finish()

@@ -1,0 +1,87 @@
+// The workbench as a person sees it: keys, mouse, and what stands on the page.
+
+import { join } from 'node:path';
+
+const SHORT_MS = 15_000;
+const LONG_MS = 60_000;
+
+export class Workbench {
+  constructor(page, artefacts) {
+    this.page = page;
+    this.artefacts = artefacts;
+  }
+
+  async load(url) {
+    await this.page.goto(url, { timeout: LONG_MS });
+    await this.page.waitForSelector('.monaco-workbench', { timeout: LONG_MS });
+    await this.page.waitForSelector('.explorer-folders-view .monaco-list-row', { timeout: LONG_MS });
+  }
+
+  /** Opens a file by a double click in the explorer. */
+  async openFile(name) {
+    await this.page.locator('.explorer-folders-view .monaco-list-row', { hasText: name }).first().dblclick();
+    await this.page.waitForSelector(`.tab.active[data-resource-name="${name}"]`, { timeout: SHORT_MS });
+    await this.page.waitForSelector('.editor-instance .view-line', { timeout: SHORT_MS });
+  }
+
+  /** Puts the cursor at a line and column, both from 1, by the "go to line" box. */
+  async goTo(line, column) {
+    await this.page.keyboard.press('Control+g');
+    await this.page.waitForSelector('.quick-input-widget:visible', { timeout: SHORT_MS });
+    await this.page.keyboard.type(`${line}:${column}`);
+    await this.page.keyboard.press('Enter');
+    await this.page.waitForSelector('.quick-input-widget', { state: 'hidden', timeout: SHORT_MS });
+    await this.status(`Ln ${line}, Col ${column}`);
+  }
+
+  /** Runs a command by its title in the palette. */
+  async command(title) {
+    await this.page.keyboard.press('F1');
+    await this.page.waitForSelector('.quick-input-widget:visible', { timeout: SHORT_MS });
+    await this.page.keyboard.type(title);
+    await this.page.locator('.quick-input-list .monaco-list-row', { hasText: title }).first().waitFor({ timeout: SHORT_MS });
+    await this.page.keyboard.press('Enter');
+    await this.page.waitForSelector('.quick-input-widget', { state: 'hidden', timeout: SHORT_MS });
+  }
+
+  /** Waits for a text in the status bar. */
+  async status(text) {
+    await this.page.locator('.statusbar-item', { hasText: text }).first().waitFor({ timeout: SHORT_MS });
+  }
+
+  /** What the Problems panel lists, a line of text for each. */
+  problems() {
+    return this.page.locator('.markers-panel .monaco-list-row').allInnerTexts();
+  }
+
+  errorSquiggles() {
+    return this.page.locator('.editor-instance .squiggly-error').count();
+  }
+
+  /** Text of the editor as it is drawn, line by line. */
+  async editorLines() {
+    const lines = await this.page.locator('.editor-instance .view-lines .view-line').evaluateAll((nodes) =>
+      nodes.map((node) => [Number.parseFloat(node.style.top), node.textContent]).sort((a, b) => a[0] - b[0]).map((x) => x[1]));
+    // The editor draws blanks as no-break spaces.
+    return lines.map((line) => line.replaceAll('\u00a0', ' '));
+  }
+
+  /** Polls until `probe` gives something true. */
+  async until(what, probe, timeoutMs = SHORT_MS) {
+    const end = Date.now() + timeoutMs;
+    let last;
+    while (Date.now() < end) {
+      last = await probe();
+      if (last) {
+        return last;
+      }
+      await this.page.waitForTimeout(20);
+    }
+    await this.screenshot('failure');
+    throw new Error(`waited ${timeoutMs} ms for ${what}`);
+  }
+
+  async screenshot(name) {
+    await this.page.screenshot({ path: join(this.artefacts, `vscode-${name}.png`) });
+  }
+}

@@ -1,0 +1,50 @@
+/** Entry of the extension: wires settings, status bar, commands and the language server together. */
+
+import * as vscode from 'vscode';
+import { registerCommands } from './commands';
+import { currentSettings } from './configuration';
+import { ServerController } from './server';
+import type { ProgramStatus, ServerState } from './status';
+import { StatusBar } from './statusBar';
+
+/** What other extensions and the tests may use. */
+export interface RungwiseApi {
+  /** Version of the running server; `undefined` while there is none. */
+  serverVersion(): string | undefined;
+  serverState(): ServerState;
+  /** Last status of a program by its URI. */
+  programStatus(uri: string): ProgramStatus | undefined;
+  /** Text of the status bar item. */
+  statusBarText(): string;
+}
+
+let server: ServerController | undefined;
+
+export async function activate(context: vscode.ExtensionContext): Promise<RungwiseApi> {
+  const output = vscode.window.createOutputChannel('Rungwise', { log: true });
+  const statusBar = new StatusBar();
+  const controller = new ServerController(context, output, statusBar);
+  server = controller;
+  context.subscriptions.push(output, statusBar, controller, ...registerCommands(controller, output, statusBar));
+  context.subscriptions.push(
+    vscode.workspace.onDidChangeConfiguration(async (event) => {
+      if (event.affectsConfiguration('rungwise.server')) {
+        await controller.restart();
+      } else if (event.affectsConfiguration('rungwise')) {
+        await controller.sendSettings(currentSettings());
+      }
+    }),
+  );
+  await controller.start();
+  return {
+    serverVersion: () => controller.version,
+    serverState: () => statusBar.serverState,
+    programStatus: (uri) => statusBar.programStatus(uri),
+    statusBarText: () => statusBar.text,
+  };
+}
+
+export async function deactivate(): Promise<void> {
+  await server?.stop();
+  server = undefined;
+}

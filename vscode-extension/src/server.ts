@@ -1,0 +1,228 @@
+/** The life of the language server: finding, probing, starting, crashes, restarts and the end. */
+
+import * as fs from 'node:fs';
+import * as os from 'node:os';
+import * as vscode from 'vscode';
+import {
+  CloseAction,
+  ErrorAction,
+  ExecuteCommandRequest,
+  LanguageClient,
+  RevealOutputChannelOn,
+  TransportKind,
+  type CloseHandlerResult,
+  type Executable,
+  type LanguageClientOptions,
+} from 'vscode-languageclient/node';
+import { currentServerArguments, currentSettings, serverPathSetting } from './configuration';
+import { CRASH_WINDOW_MS, CrashPolicy } from './crashPolicy';
+import { brokenServerMessage, crashedServerMessage, missingServerMessage } from './failure';
+import { probeServer } from './probe';
+import { locateServer, type ServerLocation } from './serverPath';
+import { configurationChange, type ServerSettings } from './settings';
+import { parseStatus } from './status';
+import type { StatusBar } from './statusBar';
+
+const STOP_TIMEOUT_MS = 2_000;
+const DOCUMENTS = [
+  { scheme: 'file', language: 'ladder' },
+  { scheme: 'file', language: 'plc-il' },
+  { scheme: 'untitled', language: 'ladder' },
+  { scheme: 'untitled', language: 'plc-il' },
+];
+
+export class ServerController implements vscode.Disposable {
+  private client: LanguageClient | undefined;
+  private readonly watcher = vscode.workspace.createFileSystemWatcher('**/{rungwise.toml,*.lad,*.il}');
+  private readonly crashes = new CrashPolicy();
+  /** Starts and stops run one after another; two restarts in a row must not leave two servers. */
+  private queue: Promise<void> = Promise.resolve();
+  private runningVersion: string | undefined;
+
+  constructor(
+    private readonly context: vscode.ExtensionContext,
+    private readonly output: vscode.LogOutputChannel,
+    private readonly statusBar: StatusBar,
+  ) {}
+
+  /** Version of the running server; `undefined` while there is none. */
+  get version(): string | undefined {
+    return this.runningVersion;
+  }
+
+  /** Starts the server. Never rejects: failures are shown to the user. */
+  start(): Promise<void> {
+    return this.enqueue(() => this.startNow());
+  }
+
+  stop(): Promise<void> {
+    return this.enqueue(() => this.stopNow());
+  }
+
+  restart(): Promise<void> {
+    return this.enqueue(async () => {
+      this.output.info('restarting the server');
+      this.crashes.reset();
+      await this.stopNow();
+      await this.startNow();
+    });
+  }
+
+  /** Sends changed settings; without a server there is nothing to do, as a start sends them anyway. */
+  async sendSettings(settings: ServerSettings): Promise<void> {
+    await this.client?.sendNotification('workspace/didChangeConfiguration', configurationChange(settings));
+  }
+
+  /** Runs a command of the server. Rejects when there is no server or it answers with an error. */
+  async executeCommand(command: string, args: readonly unknown[]): Promise<unknown> {
+    if (this.client === undefined || !this.client.isRunning()) {
+      throw new Error('the language server is not running');
+    }
+    return this.client.sendRequest(ExecuteCommandRequest.type, { command, arguments: [...args] });
+  }
+
+  dispose(): void {
+    this.watcher.dispose();
+    void this.stop();
+  }
+
+  private enqueue(step: () => Promise<void>): Promise<void> {
+    this.queue = this.queue.then(step).catch((error: unknown) => {
+      this.output.error(String(error));
+    });
+    return this.queue;
+  }
+
+  private async startNow(): Promise<void> {
+    this.statusBar.setServerState('starting');
+    const location = this.locate();
+    if (location.kind === 'missing') {
+      this.fail(missingServerMessage(location), `tried: ${location.tried.join(', ')}`);
+      return;
+    }
+    const probe = await probeServer(location.file);
+    if (probe.kind === 'failed') {
+      this.fail(brokenServerMessage(location.file, probe.reason), probe.reason);
+      return;
+    }
+    this.output.info(`server ${location.file} (${location.origin}), version ${probe.version}`);
+    const client = this.createClient(location.file);
+    this.client = client;
+    try {
+      await client.start();
+      this.runningVersion = probe.version;
+      this.statusBar.setServerState('running');
+    } catch (error) {
+      this.client = undefined;
+      const reason = error instanceof Error ? error.message : String(error);
+      this.fail(brokenServerMessage(location.file, reason), reason);
+    }
+  }
+
+  private async stopNow(): Promise<void> {
+    const client = this.client;
+    this.client = undefined;
+    this.runningVersion = undefined;
+    if (client !== undefined) {
+      // A server that hangs must not keep the user from a new one, hence the bound; an error here is the old server's.
+      await client.dispose(STOP_TIMEOUT_MS).catch((error: unknown) => this.output.warn(`stopping: ${String(error)}`));
+    }
+    this.statusBar.clearPrograms();
+    this.statusBar.setServerState('stopped');
+  }
+
+  private locate(): ServerLocation {
+    return locateServer({
+      setting: serverPathSetting(),
+      environment: process.env,
+      extensionFolder: this.context.extensionPath,
+      workspaceFolder: vscode.workspace.workspaceFolders?.[0]?.uri.fsPath,
+      homeFolder: os.homedir(),
+      platform: process.platform,
+      isExecutable,
+    });
+  }
+
+  private createClient(file: string): LanguageClient {
+    const program: Executable = { command: file, args: currentServerArguments(), transport: TransportKind.stdio };
+    const options: LanguageClientOptions = {
+      documentSelector: DOCUMENTS,
+      outputChannel: this.output,
+      traceOutputChannel: this.output,
+      revealOutputChannelOn: RevealOutputChannelOn.Never,
+      initializationOptions: currentSettings,
+      synchronize: { fileEvents: this.watcher },
+      errorHandler: {
+        error: () => ({ action: ErrorAction.Continue, handled: true }),
+        closed: () => this.serverClosed(),
+      },
+      // The failure is shown once, by `startNow`.
+      initializationFailedHandler: () => false,
+    };
+    // The identifier makes the client read the setting `rungwise.trace.server`.
+    const client = new LanguageClient('rungwise', 'Rungwise', program, options);
+    client.onNotification('rungwise/status', (value: unknown) => {
+      const status = parseStatus(value);
+      if (status !== undefined) {
+        this.statusBar.setProgramStatus(status);
+      }
+    });
+    return client;
+  }
+
+  /**
+   * The server ended without being asked to. The client is never told to restart by itself: a start of our own looks
+   * for the program anew and can say why it does not run, for instance after it was deleted or replaced.
+   */
+  private serverClosed(): CloseHandlerResult {
+    const ended: CloseHandlerResult = { action: CloseAction.DoNotRestart, handled: true };
+    if (this.runningVersion === undefined) {
+      // It ended while it was starting, which `startNow` reports.
+      return ended;
+    }
+    this.runningVersion = undefined;
+    const decision = this.crashes.decide(performance.now());
+    if (decision.kind === 'give-up') {
+      this.fail(crashedServerMessage(decision.crashes, CRASH_WINDOW_MS / 60_000));
+      return ended;
+    }
+    this.output.warn(`the server ended unexpectedly, starting it again in ${decision.delayMs} ms`);
+    this.statusBar.setServerState('starting');
+    void this.enqueue(async () => {
+      await new Promise((resolve) => setTimeout(resolve, decision.delayMs));
+      await this.stopNow();
+      await this.startNow();
+    });
+    return ended;
+  }
+
+  private fail(message: string, detail: string = message): void {
+    this.runningVersion = undefined;
+    this.statusBar.setServerState('failed');
+    this.output.error(detail);
+    void this.showFailure(message);
+  }
+
+  private async showFailure(message: string): Promise<void> {
+    const settings = 'Open Settings';
+    const log = 'Show Log';
+    const retry = 'Try Again';
+    const choice = await vscode.window.showErrorMessage(message, settings, log, retry);
+    if (choice === settings) {
+      await vscode.commands.executeCommand('workbench.action.openSettings', 'rungwise.server');
+    } else if (choice === log) {
+      this.output.show();
+    } else if (choice === retry) {
+      await this.restart();
+    }
+  }
+}
+
+function isExecutable(file: string): boolean {
+  try {
+    fs.accessSync(file, fs.constants.X_OK);
+    return fs.statSync(file).isFile();
+  } catch {
+    return false;
+  }
+}

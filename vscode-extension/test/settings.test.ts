@@ -1,0 +1,80 @@
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { test } from 'node:test';
+import { configurationChange, readServerSettings, serverArguments, TARGETS } from '../src/settings';
+
+interface Property {
+  default: unknown;
+  enum?: string[];
+  minimum?: number;
+  maximum?: number;
+}
+
+const manifest = JSON.parse(readFileSync('package.json', 'utf8')) as {
+  contributes: { configuration: { properties: Record<string, Property> } };
+};
+const properties = manifest.contributes.configuration.properties;
+
+test('what the user did not set is left to rungwise.toml', () => {
+  assert.deepEqual(readServerSettings(() => undefined), {
+    target: null,
+    dialect: null,
+    format: { style: null, width: null },
+    inlayHints: { enabled: true },
+  });
+});
+
+test('a default of package.json, set by hand, means what it says', () => {
+  const settings = readServerSettings((name) => properties[`rungwise.${name}`]?.default);
+  assert.deepEqual(settings, {
+    target: null,
+    dialect: null,
+    format: { style: 'iec', width: 48 },
+    inlayHints: { enabled: true },
+  });
+});
+
+test('values are passed on', () => {
+  const values: Record<string, unknown> = {
+    target: 'fx3u',
+    dialect: 'iec',
+    'format.style': 'unicode',
+    'format.width': 60,
+    'inlayHints.enabled': false,
+  };
+  assert.deepEqual(readServerSettings((name) => values[name]), {
+    target: 'fx3u',
+    dialect: 'iec',
+    format: { style: 'unicode', width: 60 },
+    inlayHints: { enabled: false },
+  });
+});
+
+test('wrong values count as unset, widths are kept in range', () => {
+  const read = (values: Record<string, unknown>) => readServerSettings((name) => values[name]);
+  assert.equal(read({ target: 'S7' }).target, null);
+  assert.equal(read({ target: 7 }).target, null);
+  assert.equal(read({ target: 'FX2N' }).target, 'fx2n');
+  assert.equal(read({ 'format.style': 'ascii' }).format.style, null);
+  assert.equal(read({ 'format.width': 3 }).format.width, 24);
+  assert.equal(read({ 'format.width': 1e9 }).format.width, 400);
+  assert.equal(read({ 'format.width': Number.NaN }).format.width, null);
+});
+
+test('the choices and bounds of package.json are those of the code', () => {
+  assert.deepEqual(properties['rungwise.target']?.enum, ['auto', ...TARGETS]);
+  const width = properties['rungwise.format.width'];
+  const read = (value: unknown) => readServerSettings((name) => (name === 'format.width' ? value : undefined)).format.width;
+  assert.equal(read(-1), width?.minimum);
+  assert.equal(read(100_000), width?.maximum);
+});
+
+test('a change is wrapped as the protocol asks', () => {
+  const settings = readServerSettings(() => undefined);
+  assert.deepEqual(configurationChange(settings), { settings: { rungwise: settings } });
+});
+
+test('extra arguments follow the verb, what is no text is left out', () => {
+  assert.deepEqual(serverArguments(['--lang', 'en', 3]), ['lsp', '--lang', 'en']);
+  assert.deepEqual(serverArguments('--lang'), ['lsp']);
+});
