@@ -1,5 +1,7 @@
 //! Ladder graphs made up for tests: random rungs with elements of every kind, and all small shapes.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on has failed")]
+
 use proptest::prelude::*;
 use rungwise::ladder::{
     Block, CoilKind, CompareOperator, ContactKind, Element, ElementKind, Graph, Pin, PinWire, VertexId,

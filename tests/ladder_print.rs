@@ -1,5 +1,7 @@
 //! Ladder graphs: their shape, their drawing, and what drawing and reading make of them.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on has failed")]
+
 use crate::ladder_generate::{Generated, Part, all_rungs, generate, large_rung, rung};
 use expect_test::{Expect, expect};
 use proptest::prelude::*;
@@ -895,6 +897,16 @@ fn comments_behind_lines_stay_behind_them() {
 }
 
 #[test]
+fn rails_between_rungs_follow_the_page_only_if_a_rung_does() {
+    let typed = "|  X0   Y0  |\n|--| |--( )-|\n|           |\n|  X1   Y1  |\n|--| |--( )-|\n|  |\n";
+    let formatted = format(typed, fx(), &Style::default());
+    check_alignment(&formatted);
+    assert_eq!(formatted.lines().count(), typed.lines().count());
+    let in_doubt = "  |  X0        |\n  |--| |--     |\n  |            |\n";
+    assert_eq!(format(in_doubt, fx(), &Style::default()), in_doubt);
+}
+
+#[test]
 fn rung_numbers_stay_in_the_margin() {
     let typed = "  1 |--[X0]---(Y0)\n\n 12 |--[X1]---(Y1)\n\n    |--[X2]---(Y2)\n";
     let formatted = format(typed, fx(), &Style::default());
@@ -910,6 +922,37 @@ fn rung_numbers_stay_in_the_margin() {
     "#]]
     .assert_eq(&formatted);
     assert_eq!(format(&formatted, fx(), &Style::default()), formatted);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, max_shrink_iters: 2000, ..ProptestConfig::default() })]
+
+    #[test]
+    fn scribbles_are_formatted_without_harm(text in "([|+\\-X0Y1\\[\\]()/ │├┤┼─>名O;*\\n]|--| \\|--|--\\( \\)--|  X0 |\\(\\* |\\*\\)|\\r\\n|\\t){0,120}") {
+        for kind in STYLES {
+            let once = format(&text, fx(), &style(kind));
+            prop_assert_eq!(format(&once, fx(), &style(kind)), once.clone());
+            let letters = |text: &str| text.chars().filter(|c| c.is_alphanumeric()).count();
+            prop_assert_eq!(letters(&once), letters(&text), "{}", once);
+        }
+    }
+
+    #[test]
+    fn damaged_rungs_are_formatted_without_harm(part in rung(10), at in any::<prop::sample::Index>(), new in "[|+\\- X(\\[]") {
+        let mut text: Vec<char> = drawn(&generate(&part, fx()), &style(StyleKind::Iec)).chars().collect();
+        let at = at.index(text.len());
+        if text[at] != '\n' {
+            text[at] = new.chars().next().unwrap();
+        }
+        let text: String = text.into_iter().collect();
+        let once = format(&text, fx(), &style(StyleKind::Unicode));
+        prop_assert_eq!(format(&once, fx(), &style(StyleKind::Unicode)), once.clone());
+        let (before, after) = (parse(&text, fx()), parse(&once, fx()));
+        prop_assert_eq!(before.rungs.len(), after.rungs.len());
+        for (before, after) in before.rungs.iter().zip(&after.rungs) {
+            prop_assert_eq!(before.graph.logic_text(&text), after.graph.logic_text(&once), "{}\n{}", text, once);
+        }
+    }
 }
 
 #[test]

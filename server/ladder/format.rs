@@ -243,10 +243,13 @@ impl<'t> Lines<'t> {
     fn with_rungs(&self, tree: &LadderTree, drawn: &[Option<Vec<String>>], page: &Page) -> String {
         let mut text = String::new();
         let mut line = 0;
+        // Between rungs that stay as drawn, rails stay where those rungs have theirs.
+        let redrawn = drawn.iter().any(Option::is_some);
+        let rails = redrawn.then_some(page);
         for (rung, drawing) in tree.rungs.iter().zip(drawn) {
             let first = (rung.lines.0 as usize).clamp(line, self.lines.len());
             let end = (rung.lines.1 as usize).clamp(first, self.lines.len());
-            self.lines[line..first].iter().for_each(|line| push_line_between(&mut text, line, page));
+            self.lines[line..first].iter().for_each(|line| push_line_between(&mut text, line, rails));
             match drawing {
                 Some(drawing) => {
                     self.push_drawing(&mut text, rung, drawing, page, &self.lines[first..end]);
@@ -259,7 +262,7 @@ impl<'t> Lines<'t> {
             }
             line = end;
         }
-        self.lines[line..].iter().for_each(|line| push_line_between(&mut text, line, page));
+        self.lines[line..].iter().for_each(|line| push_line_between(&mut text, line, rails));
         text
     }
 
@@ -294,15 +297,16 @@ impl<'t> Lines<'t> {
 
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
-/// A line that belongs to no rung: kept but for blanks at its end; rails without anything between follow the page.
-fn push_line_between(text: &mut String, line: &str, page: &Page) {
+/// A line that belongs to no rung: kept but for blanks at its end; rails without anything between follow the page
+/// if there is one.
+fn push_line_between(text: &mut String, line: &str, page: Option<&Page>) {
     let content = line.trim_end_matches(['\n', '\r']);
     let ending = &line[content.len()..];
     let content = content.trim_end_matches([' ', '\t']);
     let rails = content.split([' ', '\t']).filter(|word| !word.is_empty()).collect::<Vec<_>>();
     let is_rail = |word: &&str| matches!(*word, "|" | "||" | "│" | "││" | "┃" | "!");
-    match rails.as_slice() {
-        [left, right] if is_rail(left) && is_rail(right) && left == right => {
+    match (rails.as_slice(), page) {
+        ([left, right], Some(page)) if is_rail(left) && is_rail(right) && left == right => {
             text.extend(std::iter::repeat_n(' ', page.margin as usize));
             let rail = if page.kind == StyleKind::Unicode { '│' } else { '|' };
             text.push(rail);
