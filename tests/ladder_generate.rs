@@ -139,7 +139,8 @@ impl Builder {
                 (ElementKind::Coil(CoilKind::Plain), vec![self.output(*n)])
             }
             Leaf::Timer(n) => {
-                let device = if n % 2 == 0 { format!("T{}", n % 256) } else { format!("C{}", n % 256) };
+                let device =
+                    if n.is_multiple_of(2) { format!("T{}", n % 256) } else { format!("C{}", n % 256) };
                 (ElementKind::Coil(CoilKind::Plain), vec![device, format!("K{n}")])
             }
             Leaf::Box(which, n) => return self.instruction(*which, *n),
@@ -176,17 +177,20 @@ impl Builder {
     fn block(&mut self, n: u16) -> Element {
         let pin = |builder: &mut Builder, name: &str, wire: PinWire, row: u32| Pin {
             name: Some(builder.word(name)),
-            negated: n % 5 == 0 && wire == PinWire::Power,
+            negated: n.is_multiple_of(5) && wire == PinWire::Power,
             row,
             wire,
         };
         let instance = Some(self.word(&format!("timer{n}")));
-        let type_name = Some(self.word(if n % 2 == 0 { "TON" } else { "CTU_LONG_NAME" }));
+        let type_name = Some(self.word(if n.is_multiple_of(2) { "TON" } else { "CTU_LONG_NAME" }));
         let inputs = vec![pin(self, "IN", PinWire::Power, 2), pin(self, "PT", PinWire::Operand(0), 3)];
-        let elapsed = if n % 3 == 0 { PinWire::Open } else { PinWire::Operand(1) };
+        let elapsed = if n.is_multiple_of(3) { PinWire::Open } else { PinWire::Operand(1) };
         let outputs = vec![pin(self, "Q", PinWire::Power, 2), pin(self, "ET", elapsed, 3)];
-        let operands =
-            if n % 3 == 0 { vec!["D0".to_string()] } else { vec!["D0".to_string(), "D1".to_string()] };
+        let operands = if n.is_multiple_of(3) {
+            vec!["D0".to_string()]
+        } else {
+            vec!["D0".to_string(), "D1".to_string()]
+        };
         let block = Block { instance, type_name, rows: Vec::new(), inputs, outputs };
         self.finish(ElementKind::Block(Box::new(block)), &operands)
     }
@@ -194,7 +198,7 @@ impl Builder {
     fn bit(&self, n: u16) -> String {
         match self.model {
             Model::Iec => NAMES[n as usize % NAMES.len()].to_string(),
-            _ if n % 3 == 0 => format!("X{:o}", n % 128),
+            _ if n.is_multiple_of(3) => format!("X{:o}", n % 128),
             _ if n % 3 == 1 => format!("M{}", n % 1024),
             _ => format!("T{}", n % 256),
         }
@@ -203,16 +207,16 @@ impl Builder {
     fn output(&self, n: u16) -> String {
         match self.model {
             Model::Iec => NAMES[n as usize % NAMES.len()].to_string(),
-            _ if n % 2 == 0 => format!("Y{:o}", n % 128),
+            _ if n.is_multiple_of(2) => format!("Y{:o}", n % 128),
             _ => format!("M{}", n % 1024),
         }
     }
 
     fn number(&self, n: u16) -> String {
         match self.model {
-            Model::Iec if n % 2 == 0 => format!("{n}"),
+            Model::Iec if n.is_multiple_of(2) => format!("{n}"),
             Model::Iec => NAMES[n as usize % NAMES.len()].to_string(),
-            _ if n % 2 == 0 => format!("K{n}"),
+            _ if n.is_multiple_of(2) => format!("K{n}"),
             _ => format!("D{}", n % 8000),
         }
     }
@@ -302,6 +306,18 @@ pub fn rung(size: u32) -> impl Strategy<Value = Part> {
     (start, outputs).prop_map(|(start, outputs)| match start {
         Some(start) => Part::Series(vec![start, outputs]),
         None => outputs,
+    })
+}
+
+/// A random rung of some dozens to 200 elements: several conditions side by side, then several in a row, then outputs.
+pub fn large_rung() -> impl Strategy<Value = Part> {
+    let some = || prop::collection::vec(condition(24), 4..12);
+    (some(), some(), rung(24)).prop_map(|(beside, row, rest)| {
+        let beside = beside.into_iter().map(|part| Part::Series(vec![part.clone(), part]));
+        // A line that starts at a connector starts nowhere else.
+        let mut rest = if let Part::Series(parts) = rest { parts } else { vec![rest] };
+        rest.retain(|part| !matches!(part, Part::Leaf(Leaf::ConnectorIn(_))));
+        Part::Series([vec![Part::Parallel(beside.collect())], row, rest].concat())
     })
 }
 

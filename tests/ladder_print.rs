@@ -1,6 +1,6 @@
 //! Ladder graphs: their shape, their drawing, and what drawing and reading make of them.
 
-use crate::ladder_generate::{Generated, Leaf, Part, all_rungs, generate, rung};
+use crate::ladder_generate::{Generated, Part, all_rungs, generate, large_rung, rung};
 use expect_test::{Expect, expect};
 use proptest::prelude::*;
 use rungwise::ladder::reduce::{NotSeriesParallel, Shape, reduce};
@@ -308,12 +308,11 @@ fn deep_nests_are_refused_and_wide_ones_drawn() {
 
 #[test]
 fn long_series_and_wide_parallels_take_linear_time() {
-    let long: Vec<_> =
-        (0..200_000u32).map(|n| (if n == 0 { 0 } else { n + 1 }, Some(n % 8), n + 2)).collect();
-    let graph = contacts_between(200_002, &[long, vec![(200_001, None, 1)]].concat());
+    let long: Vec<_> = (0..50_000u32).map(|n| (if n == 0 { 0 } else { n + 1 }, Some(n % 8), n + 2)).collect();
+    let graph = contacts_between(50_002, &[long, vec![(50_001, None, 1)]].concat());
     let Shape::Series(parts) = reduce(&graph).unwrap() else { panic!() };
-    assert_eq!(parts.len(), 200_000);
-    let wide: Vec<_> = (0..200_000u32).map(|n| (0, Some(n % 8), 2)).collect();
+    assert_eq!(parts.len(), 50_000);
+    let wide: Vec<_> = (0..50_000u32).map(|n| (0, Some(n % 8), 2)).collect();
     let graph = contacts_between(3, &[wide, vec![(2, Some(0), 1)]].concat());
     assert!(reduce(&graph).is_ok());
     assert!(graph.same_logic("", &graph.clone(), ""));
@@ -749,10 +748,10 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 10, max_shrink_iters: 500, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 12, max_shrink_iters: 500, ..ProptestConfig::default() })]
 
     #[test]
-    fn large_rungs_read_back_as_drawn(part in rung(200)) {
+    fn large_rungs_read_back_as_drawn(part in large_rung()) {
         check_reading_back(&part, fx());
     }
 }
@@ -794,6 +793,8 @@ fn rungs_in_doubt_stay_as_drawn() {
         "|        Y0\n|--| |---( )\n",
         // A bridge.
         "|  X0        X1    Y0\n|--| |--+---| |-+--( )\n|       |       |\n|       +---+   |\n|  X2       | X3|\n|--| |------+-| |-+\n",
+        // A name that is nobody's.
+        "|  X0      X7    Y0\n|--| |-----------( )\n",
         // A character that is no drawing.
         "|  X0    Y0\n|--| |-§-( )\n",
     ] {
@@ -820,6 +821,53 @@ fn outputs_never_change_their_order() {
     assert!(tree.problems.is_empty(), "{:?}", tree.problems);
     assert!(reduce(&tree.rungs[0].graph).is_ok());
     assert_eq!(format(text, fx(), &Style::default()), text);
+}
+
+#[test]
+fn lines_without_output_run_on_to_the_right_rail() {
+    let typed = "\
+|   X0                 |
++---| |---+---[INV]----+
+|         |            |
+|         +------------+
+|         |   X1       |
+|         +---|/|------+
+";
+    check_styles(
+        typed,
+        fx(),
+        [
+            expect![[r#"
+        |   X0                                         |
+        +---| |---+--[INV]-----------------------------+
+        |         |                                    |
+        |         +------------------------------------+
+        |         |   X1                               |
+        |         +---|/|------------------------------+
+    "#]],
+            expect![[r#"
+        +--[X0]--+--[INV]------------------------------+
+        |        |                                     |
+        |        +-------------------------------------+
+        |        |                                     |
+        |        +--[/X1]------------------------------+
+    "#]],
+            expect![[r#"
+        │   X0                                         │
+        ├───┤ ├───┬──[INV]─────────────────────────────┤
+        │         │                                    │
+        │         ├────────────────────────────────────┤
+        │         │   X1                               │
+        │         └───┤/├──────────────────────────────┤
+    "#]],
+        ],
+    );
+}
+
+#[test]
+fn a_byte_order_mark_before_a_rung_stays() {
+    let formatted = format("\u{feff}|--[X0]---(Y0)\n", fx(), &style(StyleKind::Brackets));
+    assert_eq!(formatted, format!("\u{feff}+--[X0]{}(Y0)-+\n", "-".repeat(35)));
 }
 
 #[test]

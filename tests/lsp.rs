@@ -252,7 +252,7 @@ fn hover_completion_and_navigation_answer() {
     let hover = client.request("textDocument/hover", at(URI, 5, 4));
     assert!(hover["result"]["contents"]["value"].as_str().expect("Markdown").contains("100 ms"), "{hover}");
 
-    let items = client.request("textDocument/completion", at(URI, 3, 1))["result"].clone();
+    let items = client.request("textDocument/completion", at(URI, 3, 0))["result"].clone();
     let labels: Vec<&str> =
         items.as_array().expect("items").iter().filter_map(|item| item["label"].as_str()).collect();
     assert!(labels.contains(&"OUT") && labels.contains(&"MOV"), "{labels:?}");

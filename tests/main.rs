@@ -1,6 +1,7 @@
 //! Every test of the package that needs no private item, one module for each subject.
 
 mod document;
+mod grammar;
 mod ide;
 mod il_fx;
 mod il_iec;

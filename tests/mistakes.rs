@@ -13,7 +13,8 @@ const WITHOUT_FILE: &[&str] = &[];
 fn drawings(folder: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(folder);
     let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let mut files: Vec<PathBuf> = files.filter(|path| path.extension().is_some_and(|end| end == "lad")).collect();
+    let mut files: Vec<PathBuf> =
+        files.filter(|path| path.extension().is_some_and(|end| end == "lad")).collect();
     files.sort();
     files
 }
@@ -49,8 +50,10 @@ fn each_file_has_its_mistake_and_no_other() {
 
 #[test]
 fn each_rule_about_drawings_has_a_file() {
-    let files: BTreeSet<String> =
-        drawings("mistakes").iter().map(|path| path.file_stem().unwrap().to_str().unwrap().to_string()).collect();
+    let files: BTreeSet<String> = drawings("mistakes")
+        .iter()
+        .map(|path| path.file_stem().unwrap().to_str().unwrap().to_string())
+        .collect();
     let group = Path::new(env!("CARGO_MANIFEST_DIR")).join("server/check/drawing");
     let rules: BTreeSet<String> = RULES
         .iter()
@@ -64,7 +67,9 @@ fn each_rule_about_drawings_has_a_file() {
 #[test]
 fn the_other_drawings_are_clean_and_canonical() {
     let mut wrong = Vec::new();
-    for (folder, model) in [("motor", Model::Fx2n), ("traffic-lights", Model::Fx1s), ("tank-level", Model::Fx2n)] {
+    for (folder, model) in
+        [("motor", Model::Fx2n), ("traffic-lights", Model::Fx1s), ("tank-level", Model::Fx2n)]
+    {
         for path in drawings(folder) {
             let target = Target::of(model);
             wrong.extend(findings(&path, target).into_iter().map(|(_, _, line)| format!("{folder}: {line}")));

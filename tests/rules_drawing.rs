@@ -1,8 +1,9 @@
 //! Rules about drawings where a page is too small to show them.
 
+use proptest::prelude::*;
 use rungwise::check::{self, Severities};
 use rungwise::document::{Document, Notation};
-use rungwise::ladder::{self, Style};
+use rungwise::ladder;
 use rungwise::target::{Model, Target};
 use rungwise::text::{Diagnostic, Language, Severity, TextEdit};
 
@@ -24,4 +25,335 @@ fn places(text: &str, found: &[Diagnostic]) -> Vec<String> {
         format!("{} {line}:{column}", diagnostic.code)
     };
     found.iter().filter(|diagnostic| diagnostic.severity != Severity::Hint).map(place).collect()
+}
+
+/// Sound drawings of every structure that the rules look at.
+const SOUND: &[&str] = &[
+    "\
+|   X0        X1                           Y0  |
++---| |---+---|/|--------------------------( )-+
+|   Y0    |                                    |
++---| |---+                                    |
+",
+    "\
+|   X0        X1        X3                 Y0  |
++---| |---+---| |---+---| |---+------------( )-+
+|         |   X2    |         |            Y1  |
+|         +---| |---+         +------------( )-+
+|         |   X4    |         |                |
+|         +---| |---+         +--[MOV K1 D0]---+
+",
+    "\
+|   X0                                     T0 K50|
++---| |---+--------------------------------( )---+
+|         |   X1                             Y0  |
+|         +---| |---+------------------------( )-+
+|                   |                        Y1  |
+|                   +------------------------( )-+
+",
+    "\
+┌   X0        X1                           Y0  ┐
+├───┤ ├───┬───┤/├──────────────────────────( )─┤
+│   Y0    │                                    │
+├───┤ ├───┘                                    │
+",
+];
+
+/// Every mark of `text` that is wire: not a bar of a contact, not a rail in a row of names.
+fn wire_cells(text: &str) -> Vec<(usize, char)> {
+    let characters: Vec<(usize, char)> = text.char_indices().collect();
+    let wire = |at: usize| matches!(characters[at].1, '-' | '+' | '─' | '┬' | '┘');
+    let vertical = |at: usize| {
+        let near = |at: Option<usize>| at.and_then(|at| characters.get(at)).is_none_or(|c| c.1 == ' ');
+        characters[at].1 == '|' && near(at.checked_sub(1)) && near(Some(at + 1)) && near(Some(at + 2))
+    };
+    (0..characters.len()).filter(|at| wire(*at) || vertical(*at)).map(|at| characters[at]).collect()
+}
+
+fn same_logic(one: &str, other: &str) -> bool {
+    let read = |text: &str| ladder::parse(text, Target::of(Model::Fx2n));
+    let (a, b) = (read(one), read(other));
+    a.rungs.len() == b.rungs.len()
+        && a.rungs.iter().zip(&b.rungs).all(|(a, b)| a.graph.same_logic(one, &b.graph, other))
+}
+
+#[test]
+fn a_missing_wire_cell_is_found_and_mended() {
+    let mut several = Vec::new();
+    let (mut silent, mut worse, mut mended, mut cuts) = (Vec::new(), Vec::new(), 0, 0);
+    for text in SOUND {
+        assert_eq!(places(text, &found(text)), [""; 0], "{text}");
+        for (offset, wire) in wire_cells(text) {
+            let mut cut = text.to_string();
+            cut.replace_range(offset..offset + wire.len_utf8(), " ");
+            cuts += 1;
+            let findings = found(&cut);
+            let graver =
+                |found: &[Diagnostic]| found.iter().filter(|d| d.severity == Severity::Error).count();
+            if graver(&findings) == 0 && !same_logic(text, &cut) {
+                silent.push(cut.clone());
+            }
+            if graver(&findings) > 1 {
+                several.push(format!("{cut}{:?}", places(&cut, &findings)));
+            }
+            for fix in findings.iter().flat_map(|diagnostic| &diagnostic.fixes) {
+                let fixed = TextEdit::apply_all(&fix.edits, &cut);
+                if graver(&found(&fixed)) >= graver(&findings) && graver(&findings) > 0 {
+                    worse.push(format!("{cut}{}\n{fixed}", fix.title.render(Language::English)));
+                }
+                mended += usize::from(same_logic(text, &fixed));
+            }
+        }
+    }
+    assert!(silent.is_empty(), "{} cuts are not found:\n{}", silent.len(), silent.join("\n"));
+    assert!(worse.is_empty(), "{} fixes do not mend:\n{}", worse.len(), worse.join("\n"));
+    assert!(several.is_empty(), "{} cuts are found more than once:\n{}", several.len(), several.join("\n"));
+    assert!(mended * 10 > cuts * 9, "{mended} of {cuts} cuts are mended by a fix");
+}
+
+/// Drawings with what must be reported in them, in order.
+const MISTAKEN: &[(&str, &[&str])] = &[
+    // A contact that hangs in the air is one mistake.
+    (
+        "\
+|   X0                                     Y0  |
++---| |------------------------------------( )-+
+|                 X1                           |
+|              ---| |---                       |
+",
+        &["open-circuit 4:24"],
+    ),
+    // Two ends that are far apart are two.
+    (
+        "\
+|   X0                                     Y0  |
++---| |---+--------------------------------( )-+
+|   X1    |                                Y1  |
++---| |   +-----------------            ---( )-+
+|                  X2                      Y2  |
++------------      | |---------------------( )-+
+",
+        &["open-circuit 4:7", "open-circuit 4:28", "open-circuit 6:13"],
+    ),
+    // A stub on a vertical wire, beside a sound branch.
+    (
+        "\
+|   X0                                     Y0  |
++---| |---+--------------------------------( )-+
+|         |                                Y1  |
+|         +--------------------------------( )-+
+|         |                                    |
+|         +----                                |
+",
+        &["open-circuit 6:15"],
+    ),
+    // Power from the lower line could reach Y0 only backwards through X1, whose right side leads nowhere else.
+    (
+        "\
+|   X0                                     Y0  |
++---| |---+--------------------------------( )-+
+|         |   X1                               |
+|         +---| |---+                          |
+|   X2              |                          |
++---| |-------------+                          |
+",
+        &["reverse-flow 4:15"],
+    ),
+    // Both ways out of the dead part lead to the same place: nothing could flow back, a connection is lacking.
+    (
+        "\
+|   X0                                     Y0  |
++---| |-----------------+------------------( )-+
+|             X1        |                      |
+|         +---| |-------+                      |
+|         |   X2        |                      |
+|         +---| |-------+                      |
+",
+        &["open-circuit 4:11"],
+    ),
+    // A wire past the outputs is a short circuit and nothing else.
+    (
+        "\
+|   X0        X1                           Y0  |
++---| |---+---| |--------------------------( )-+
+|         |                                    |
+|         +------------------------------------+
+",
+        &["short-circuit 4:12"],
+    ),
+    // From rail to rail.
+    ("+----------------------------------------------+\n", &["short-circuit 1:2"]),
+    // A wire past two branches, the lower of them with a bend.
+    (
+        "\
+|   X0        X1        X3                 Y0  |
++---| |---+---| |---+---| |---+------------( )-+
+|         |   X2    |         |                |
+|         +---| |---+         |                |
+|         |                   |                |
+|         +-------------------+                |
+",
+        &["short-circuit 6:12"],
+    ),
+    // A branch without an output beside one that has it.
+    (
+        "\
+|   X0        X1                           Y0  |
++---| |---+---| |--------------------------( )-+
+|         |   X2                               |
+|         +---| |------------------------------+
+",
+        &["rung-without-output 4:15"],
+    ),
+    // Instructions that need no condition.
+    (
+        "+--[FEND]--------------------------------------+\n\n+--[END]---------------------------------------+\n",
+        &[],
+    ),
+    // An output with a condition only in one of its feeds is fed by the rail: the contact is bypassed.
+    (
+        "\
+|   X0                                     Y0  |
++---| |---+--------------------------------( )-+
+|         |                                    |
++---------+                                    |
+",
+        &["short-circuit 4:2"],
+    ),
+    // A join above the line.
+    (
+        "\
+|   X1                                         |
++---| |---+                                    |
+|   X0    |                                Y0  |
++---| |---+--------------------------------( )-+
+",
+        &["upper-parallel 2:11"],
+    ),
+    // A bend is no branch.
+    (
+        "\
+|   X0                                         |
++---| |---+                                    |
+|         |                                Y0  |
+|         +--------------------------------( )-+
+",
+        &[],
+    ),
+    // Contacts after an output in two branches are one mistake of that output.
+    (
+        "\
+|   X0        Y0        X1                 Y1  |
++---| |-------( )---+---| |----------------( )-+
+|                   |   X2                 Y2  |
+|                   +---| |----------------( )-+
+",
+        &["contact-after-coil 2:25"],
+    ),
+    // What touches an unreadable cell is not reported as a loose end as well; the rest of the rung is.
+    (
+        "\
+|   X0                                     Y0  |
++---| |-&----+-----------------------------( )-+
+|   X1       |                                 |
++---| |--    +---                              |
+",
+        &["unreadable-cell 2:9", "open-circuit 4:9", "open-circuit 4:17"],
+    ),
+];
+
+#[test]
+fn each_mistake_is_found_once_at_its_cell() {
+    let mut wrong = Vec::new();
+    for (text, expected) in MISTAKEN {
+        let found = places(text, &found(text));
+        if found != *expected {
+            wrong.push(format!("{text}expected {expected:?}\nfound    {found:?}\n"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn iec_allows_unconditional_outputs_and_contacts_behind_them() {
+    let text = "\
+|                                          Y0  |
++------------------------------------------( )-+
+
+|   X0        Y1        X1                 Y2  |
++---| |-------( )-------| |----------------( )-+
+";
+    let errors = |model| places(text, &found_for(text, model));
+    assert_eq!(errors(Model::Fx2n), ["coil-at-left-rail 2:44", "contact-after-coil 5:25"]);
+    assert!(!errors(Model::Iec).iter().any(|place| place.contains("coil")), "{:?}", errors(Model::Iec));
+}
+
+#[test]
+fn findings_name_devices_and_point_at_what_belongs_to_them() {
+    let text = SOUND[1]
+        .replacen("+---| |---+         +--[MOV", "+---------+         +--[MOV", 1)
+        .replacen("X4", "  ", 1);
+    let findings = found(&text);
+    assert_eq!(places(&text, &findings), ["short-circuit 6:12"]);
+    let message = findings[0].message.render(Language::English);
+    assert_eq!(message, "short circuit: this wire bypasses X1, X2");
+    let related: Vec<String> =
+        findings[0].related.iter().map(|related| related.message.render(Language::English)).collect();
+    assert_eq!(related, ["X1 has no effect", "X2 has no effect"]);
+    let [fix] = &findings[0].fixes[..] else { panic!("{:?}", findings[0].fixes) };
+    let fixed = TextEdit::apply_all(&fix.edits, &text);
+    assert_eq!(places(&fixed, &found(&fixed)), [""; 0], "{fixed}");
+}
+
+/// A rung of `rows` branches with `contacts` contacts each; in `open` ones the lower branches end a cell too early.
+fn large(rows: usize, contacts: usize, open: bool) -> String {
+    let mut text = String::new();
+    for row in 0..rows {
+        let names: String = (0..contacts).map(|number| format!("   M{:<4}", (row + number) % 1000)).collect();
+        let wires = "---| |--".repeat(contacts);
+        let last = if open && row > 0 { ' ' } else { '-' };
+        let (bar, name, output) = match row {
+            0 => (' ', "Y0", "------------( )-+"),
+            _ => ('|', "  ", "                |"),
+        };
+        text += &format!("|{names} {bar}           {name}   |\n");
+        text += &format!("+{wires}{last}+{output}\n");
+    }
+    text
+}
+
+#[test]
+fn large_rungs_are_judged_whole() {
+    let tall = large(500, 2, false);
+    assert_eq!(places(&tall, &found(&tall)), ["rung-too-large 50:5"]);
+    let many = large(1000, 10, false);
+    assert_eq!(places(&many, &found(&many)), ["rung-too-large 50:5"]);
+    let open = large(500, 2, true);
+    let findings = found(&open);
+    let open = places(&open, &findings);
+    let ends = (open.len(), open[0].as_str(), open[498].as_str());
+    assert_eq!(ends, (499, "open-circuit 4:17", "open-circuit 1000:17"));
+    let wide = large(1, 1200, false);
+    assert_eq!(places(&wide, &found(&wide)), ["rung-too-large 2:93"]);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    /// Whatever is typed: no panic, and all spans and fixes lie within the text.
+    #[test]
+    fn any_drawing_is_judged(rows in proptest::collection::vec("[-+|/ ()XY0S\\[\\]&─│┼]{0,24}", 0..9)) {
+        let text: String = rows.iter().map(|row| format!("|{row}\n")).collect();
+        let findings = found(&text);
+        for diagnostic in &findings {
+            let related = diagnostic.related.iter().map(|related| related.span);
+            let edits = diagnostic.fixes.iter().flat_map(|fix| &fix.edits).map(|edit| edit.span);
+            for span in std::iter::once(diagnostic.span).chain(related).chain(edits) {
+                prop_assert!(text.get(span.range()).is_some(), "{span:?} in {text:?}");
+            }
+            for fix in &diagnostic.fixes {
+                found(&TextEdit::apply_all(&fix.edits, &text));
+            }
+        }
+    }
 }

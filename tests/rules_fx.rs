@@ -17,7 +17,8 @@ fn told(text: &str, target: &'static Target) -> Vec<String> {
 }
 
 fn fx(name: &str) -> &'static Target {
-    Target::named(name).unwrap()
+    // A name that is none becomes a target on which no FX program is clean.
+    Target::named(name).unwrap_or(Target::of(Model::Iec))
 }
 
 /// A program of these lines with END behind.

@@ -114,7 +114,10 @@ impl<'a> Statement<'a> {
 pub(super) fn line_before(text: &str, word: Span, line: &str) -> TextEdit {
     let head = text.get(..word.start as usize).unwrap_or("");
     let start = head.rfind(['\n', '\r']).map_or(0, |newline| newline + 1);
-    let newline = if text.contains("\r\n") { "\r\n" } else { "\n" };
+    // The line end of the line before tells the habit of the file, or else that of this line.
+    let tail = text.get(word.start as usize..).unwrap_or("");
+    let own = tail.find('\n').is_some_and(|newline| tail[..newline].ends_with('\r'));
+    let newline = if head[..start].ends_with("\r\n") || own { "\r\n" } else { "\n" };
     // Behind something else on the same line, such as a label, a new line begins right before the word.
     let is_first = head[start..].chars().all(|c| c.is_whitespace() || c.is_ascii_digit() || c == '\u{feff}');
     match is_first {
@@ -174,7 +177,9 @@ fn of_element<'a>(at: ChunkRef<'a>, element: &'a Element) -> Option<Statement<'a
         Some(form) => StatementKind::Instruction(form.instruction.flow()),
         None => StatementKind::Unknown,
     };
-    Some(statement(at, kind, operation.symbol, element.span, operation.operands.first().copied()))
+    let last = operation.operands.last().filter(|_| operation.is_word);
+    let span = last.map_or(operation.symbol, |operand| operation.symbol.to(operand.span));
+    Some(statement(at, kind, operation.symbol, span, operation.operands.first().copied()))
 }
 
 fn statement<'a>(

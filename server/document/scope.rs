@@ -131,6 +131,16 @@ impl Scopes {
         self.pous.get(*self.pou_numbers.get(&folded(name))?)
     }
 
+    /// Whether `name` is a declared data type.
+    pub fn is_type(&self, name: &str) -> bool {
+        self.types.contains_key(&folded(name))
+    }
+
+    /// The folded names of the data types, in no order.
+    pub fn type_names(&self) -> impl Iterator<Item = &str> {
+        self.types.keys().map(SmolStr::as_str)
+    }
+
     /// The variable called `name` in POU number `pou`, or else the global one.
     pub fn variable(&self, pou: Option<usize>, name: &str) -> Option<&Variable> {
         let name = folded(name);
@@ -278,6 +288,13 @@ impl Scopes {
                 self.globals.entry(name).or_insert(variable);
             }
         }
+    }
+}
+
+impl DeclaredType {
+    /// The type that record `id` of `tree`, which was read from `text`, declares.
+    pub fn of(text: &str, tree: &IecTree, id: TypeId) -> DeclaredType {
+        declared_type(text, tree, id)
     }
 }
 

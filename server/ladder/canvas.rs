@@ -121,16 +121,11 @@ impl Canvas {
         Some(())
     }
 
-    /// The lines without trailing blanks.
+    /// The lines; they end at the right rail, so never in a blank.
     pub fn into_lines(self) -> Vec<String> {
-        let unicode = self.unicode;
-        let line = |cells: &Vec<Cell>| {
-            let characters = cells.iter().filter(|cell| !cell.half);
-            let text: String = characters
-                .map(|cell| cell.character.unwrap_or_else(|| wire_character(cell.arms, unicode)))
-                .collect();
-            text.trim_end_matches(' ').to_string()
-        };
+        let character =
+            |cell: &Cell| cell.character.unwrap_or_else(|| wire_character(cell.arms, self.unicode));
+        let line = |cells: &Vec<Cell>| cells.iter().filter(|cell| !cell.half).map(character).collect();
         self.cells.iter().map(line).collect()
     }
 }

@@ -69,8 +69,8 @@ impl Naming<'_> {
         for (number, word) in words.iter().enumerate() {
             // What takes no name says nothing about names, and the first of two words hangs over its element's side.
             let takes = |symbol: usize| self.tokens.symbols[symbol].wants != Wants::Nothing;
-            let in_phrase =
-                words.get(number + 1).is_some_and(|next| next.row == word.row && word.end + 1 == next.start);
+            let next = words.get(number + 1).filter(|next| next.row == word.row);
+            let in_phrase = next.is_some_and(|next| word.end + 1 == next.start);
             match (word.below, word.above) {
                 (Candidate::One(symbol, _), Candidate::None) if takes(symbol) => habit.above += 1,
                 (Candidate::None, Candidate::One(symbol, _)) if takes(symbol) && !in_phrase => {

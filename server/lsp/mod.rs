@@ -1,7 +1,8 @@
 //! The language server: the protocol around `ide` and `check`, and nothing about languages.
 //!
-//! A message comes through [`frames`] to [`service`], which applies changes of state in the order of arrival and gives every request
-//! the snapshot of that moment; [`backend`] answers from the snapshot; [`publisher`] sends diagnostics.
+//! A message comes through [`frames`] to [`service`], which applies changes of state in the order of arrival and
+//! gives every request the snapshot of that moment; [`backend`] answers from the snapshot; [`publisher`] sends
+//! diagnostics.
 
 mod backend;
 mod capabilities;

@@ -2,5 +2,38 @@
 
 use super::Rule;
 
+mod undeclared_variable;
+
+mod duplicate_declaration;
+
+mod unknown_type;
+
+mod unknown_function_block;
+
+mod unknown_parameter;
+
+mod constant_written;
+
+mod address_overlap;
+
+mod unused_variable;
+
+mod recursive_pou;
+
+mod missing_task;
+
+mod guess;
+
 /// The rules of this group.
-pub(super) const RULES: &[&Rule] = &[];
+pub(super) const RULES: &[&Rule] = &[
+    &undeclared_variable::RULE,
+    &duplicate_declaration::RULE,
+    &unknown_type::RULE,
+    &unknown_function_block::RULE,
+    &unknown_parameter::RULE,
+    &constant_written::RULE,
+    &address_overlap::RULE,
+    &unused_variable::RULE,
+    &recursive_pou::RULE,
+    &missing_task::RULE,
+];

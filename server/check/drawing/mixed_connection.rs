@@ -13,18 +13,18 @@
 //! |         |   X2                  |                    |
 //! |         +---| |---+             |                    |
 //! |                   |             |                    |
-//!                                   ^
+//!                     ^
 //! |   X3              |     X4      |                    |
 //! +---| |-------------+-----| |-----+                    |
 //! ```
 //!
 //! ```lad
-//! |   X0        X1                               Y0  |
-//! +---| |-------| |-----------------+------------( )-+
-//! |   X0        X2          X4      |                |
-//! +---| |-------| |---+-----| |-----+                |
-//! |   X3              |                              |
-//! +---| |-------------+                              |
+//! |   X0      X1                             Y0  |
+//! +---| |-----| |-------------+--------------( )-+
+//! |   X0      X2        X4    |                  |
+//! +---| |-----| |---+---| |---+                  |
+//! |   X3            |                            |
+//! +---| |-----------+                            |
 //! ```
 
 use super::{Drawn, first_cell};
@@ -73,7 +73,8 @@ pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
 
 /// The middle cell of the bridge's vertical wire.
 fn vertical(graph: &Graph, bridge: &Bridge) -> Span {
-    let cell = bridge.vertical.get(bridge.vertical.len() / 2).or(bridge.wire.first()).copied();
+    let cell =
+        bridge.vertical.get(bridge.vertical.len().saturating_sub(1) / 2).or(bridge.wire.first()).copied();
     cell.or_else(|| bridge.elements.first().map(|id| graph.element(*id).span))
         .unwrap_or_else(|| first_cell(graph, bridge.from.or(bridge.to).unwrap_or(Graph::LEFT_RAIL)))
 }

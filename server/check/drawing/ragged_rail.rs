@@ -25,6 +25,7 @@ use crate::check::{Rule, Run};
 use crate::ladder::{Page, Style, format_chunk, parse_with};
 use crate::text::{Diagnostic, Fix, Message, Severity, Span, Spanned, TextEdit};
 use rustc_hash::FxHashMap;
+use std::cmp::Reverse;
 
 pub(super) const RULE: Rule = Rule {
     code: "ragged-rail",
@@ -50,13 +51,13 @@ fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
     found.push(diagnostic);
 }
 
-/// The column in which most rows have their rail; of several the widest, to which no row has to be shortened.
+/// The column in which most rows have their rail; of several the one that comes first in the drawing.
 fn usual_column(rails: &[Spanned<u32>]) -> Option<u32> {
-    let mut counts: FxHashMap<u32, u32> = FxHashMap::default();
-    for rail in rails {
-        *counts.entry(rail.value).or_default() += 1;
+    let mut counts: FxHashMap<u32, (usize, Reverse<usize>)> = FxHashMap::default();
+    for (number, rail) in rails.iter().enumerate() {
+        counts.entry(rail.value).or_insert((0, Reverse(number))).0 += 1;
     }
-    counts.into_iter().max_by_key(|(column, count)| (*count, *column)).map(|(column, _)| column)
+    counts.into_iter().max_by_key(|(_, count)| *count).map(|(column, _)| column)
 }
 
 /// The block as the formatter draws it, if the rail is straight there.

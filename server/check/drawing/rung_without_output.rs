@@ -1,8 +1,19 @@
 //! # rung-without-output
 //!
-//! The contacts of a rung lead to no output. The PLC would do nothing with them, so the maker's tools refuse such a
-//! rung; mostly the output was forgotten, or the instruction that follows stands without contacts, as `END` and `FEND`
-//! do.
+//! The contacts of a rung lead to no output, or a line of it reaches the right rail without an output on its way. The
+//! PLC would evaluate the condition and do nothing with it, so the maker's tools refuse such a rung; mostly the output
+//! was forgotten or deleted, or the instruction that follows stands without contacts, as `END` and `FEND` do.
+//!
+//! ```lad
+//! |   X0        X1                               |
+//! +---| |-------| |------------------------------+
+//!               ^^^
+//! ```
+//!
+//! ```lad
+//! |   X0      X1                             Y0  |
+//! +---| |-----| |----------------------------( )-+
+//! ```
 //!
 //! ```fx
 //! LD X0
@@ -16,19 +27,6 @@
 //! AND X1
 //! OUT Y0
 //! END
-//! ```
-//!
-//! In a drawing a line reaches the right rail without an output on its way.
-//!
-//! ```lad
-//! |   X0        X1                               |
-//! +---| |-------| |------------------------------+
-//!               ^^^
-//! ```
-//!
-//! ```lad
-//! |   X0        X1                           Y0  |
-//! +---| |-------| |--------------------------( )-+
 //! ```
 
 use super::Drawn;
@@ -72,6 +70,7 @@ fn of_list(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     }
 }
 
+/// Lines of a drawing, marked at the element after which an output is missing.
 pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
     for rung in drawn.sound_rungs() {
         let graph = &rung.graph;
@@ -81,7 +80,7 @@ pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
             continue;
         }
         for element in elements {
-            let message = Message::new("rung-without-output.found").with("element", drawn.name(element));
+            let message = Message::new("rung-without-output.drawn").with("element", drawn.name(element));
             found.push(Diagnostic::new(RULE.code, element.span, message));
         }
     }

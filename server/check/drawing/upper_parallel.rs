@@ -23,6 +23,7 @@
 
 use super::{Drawn, first_cell};
 use crate::check::{Rule, Run};
+use crate::ladder::reduce::{NotSeriesParallel, reduce};
 use crate::ladder::{ArcId, Graph, Page, Rung, Style, VertexId, VertexKind, format_chunk};
 use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
 use rustc_hash::FxHashSet;
@@ -37,8 +38,13 @@ pub(super) const RULE: Rule = Rule {
 pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
     let lines = Lines::of(drawn.text);
     for rung in drawn.sound_rungs() {
-        for upper in uppers(rung, &lines) {
-            let graph = &rung.graph;
+        let graph = &rung.graph;
+        let uppers = uppers(rung, &lines);
+        // Where a bridge is drawn, above and below say nothing.
+        if uppers.is_empty() || matches!(reduce(graph), Err(NotSeriesParallel::Bridge(_))) {
+            continue;
+        }
+        for upper in uppers {
             let message = match upper.element {
                 Some(id) => {
                     Message::new("upper-parallel.element").with("element", drawn.name(graph.element(id)))

@@ -2,7 +2,7 @@
 //! walk that follows the current result.
 
 mod view;
-pub(super) use view::{Place, Root, ValueType, View, bodies, folded, views};
+pub(super) use view::{Place, Root, ValueType, View, folded, views};
 
 mod callee;
 pub(super) use callee::{Callee, Expected, Flow, Pin};
@@ -11,7 +11,13 @@ mod fit;
 pub(super) use fit::{Fit, fit};
 
 mod current_result;
-pub(super) use current_result::{Guess, follow};
+pub(super) use current_result::follow;
+
+mod words;
+pub(super) use words::{misplaced_words, operand_counts, unknown_instructions, unreadable_operands};
+
+mod initial;
+pub(super) use initial::initial_values;
 
 mod arguments;
 pub(super) use arguments::out_of_range;

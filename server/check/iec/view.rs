@@ -202,6 +202,11 @@ impl<'a> View<'a> {
         near.into_iter().any(|problem| problem.severity == Severity::Error)
     }
 
+    /// Whether the reader has reported something that starts where `span` does.
+    pub fn has_problem_at(&self, span: Span) -> bool {
+        self.tree.problems.binary_search_by_key(&span.start, |problem| problem.span.start).is_ok()
+    }
+
     /// How many blanks and tabs stand before the first word of the line of `offset`.
     pub fn indentation(&self, offset: u32) -> &'a str {
         let head = self.text.get(..offset as usize).unwrap_or("");
@@ -262,19 +267,6 @@ pub fn views<'a>(context: &ProgramContext<'a>) -> impl Iterator<Item = (usize, V
             _ => None,
         }
     })
-}
-
-/// The IEC chunks of a document, together for each POU; chunks outside of any come first, as do those that the
-/// header of the POU follows.
-pub fn bodies<'a>(context: &ProgramContext<'a>) -> Vec<Vec<(usize, View<'a>)>> {
-    let mut bodies: Vec<Vec<(usize, View<'a>)>> = Vec::new();
-    for (start, view) in views(context) {
-        match bodies.last_mut().filter(|body| body.first().is_some_and(|(_, first)| first.pou == view.pou)) {
-            Some(body) => body.push((start, view)),
-            None => bodies.push(vec![(start, view)]),
-        }
-    }
-    bodies
 }
 
 /// A name without letter case.

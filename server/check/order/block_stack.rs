@@ -65,6 +65,9 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     }
 }
 
+/// More of the blocks below help nobody.
+const MOST_RELATED: usize = 8;
+
 /// Blocks that nothing joins. The upper one is marked, since that is where an output or a contact is missing.
 fn open_blocks(text: &str, tree: &FxTree, begun: &[usize], output: usize) -> Diagnostic {
     let upper = begun.last().copied().unwrap_or(output);
@@ -74,7 +77,7 @@ fn open_blocks(text: &str, tree: &FxTree, begun: &[usize], output: usize) -> Dia
         .with("output", driven.span.of(text))
         .with("missing", begun.len() - 1);
     let mut diagnostic = Diagnostic::new(RULE.code, line.mnemonic, message);
-    for &other in &begun[..begun.len() - 1] {
+    for &other in begun[..begun.len() - 1].iter().take(MOST_RELATED) {
         let other = tree.lines[other].span;
         diagnostic =
             diagnostic.related(other, Message::new("block-stack.other").with("block", other.of(text)));

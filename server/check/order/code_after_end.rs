@@ -20,6 +20,18 @@
 //! OUT Y1
 //! END
 //! ```
+//!
+//! ```lad
+//! |  X0        Y0  |
+//! +--| |-------( )-+
+//!
+//! |                |
+//! +--------[END]---+
+//!
+//! |  X1        Y1  |
+//! +--| |-------( )-+
+//!    ^^^
+//! ```
 
 use crate::check::statements::{Statement, statements};
 use crate::check::{ProgramContext, Rule, Run};

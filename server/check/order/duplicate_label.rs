@@ -32,6 +32,32 @@
 //! OUT Y2
 //! END
 //! ```
+//!
+//! ```lad
+//! P1:
+//! |  X0        Y0  |
+//! +--| |-------( )-+
+//!
+//! P1:
+//! ^^
+//! |  X1        Y1  |
+//! +--| |-------( )-+
+//! ```
+//!
+//! In IEC programs a label belongs to its POU.
+//!
+//! ```iec
+//! PROGRAM Main
+//! VAR a : BOOL; END_VAR
+//! LD a
+//! JMPC there
+//! there: LD a
+//! ST a
+//! there: LDN a
+//! ^^^^^
+//! ST a
+//! END_PROGRAM
+//! ```
 
 use super::labels::{END_POINTER, Labels, name_of};
 use crate::check::{ProgramContext, Rule, Run};

@@ -17,6 +17,22 @@
 //! OUT Y0
 //! END
 //! ```
+//!
+//! ```lad
+//! |  X0            |
+//! +--| |--[CALL P1]+
+//!
+//! |                |
+//! +--------[FEND]--+
+//!           ^^^^
+//!
+//! P1:
+//! |  X1        Y1  |
+//! +--| |-------( )-+
+//!
+//! |                |
+//! +--------[SRET]--+
+//! ```
 
 use crate::check::statements::{StatementKind, statements};
 use crate::check::{ProgramContext, Rule, Run};

@@ -22,6 +22,22 @@
 //! OUT Y1
 //! END
 //! ```
+//!
+//! ```lad
+//! |  X0            |
+//! +--| |------->>P3
+//!                ^^
+//! ```
+//!
+//! ```iec
+//! PROGRAM Main
+//! VAR a : BOOL; END_VAR
+//! LD a
+//! JMPC nowhere
+//!      ^^^^^^^
+//! ST a
+//! END_PROGRAM
+//! ```
 
 use super::labels::{END_POINTER, Labels, name_of};
 use crate::check::{ProgramContext, Rule, Run};

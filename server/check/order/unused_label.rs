@@ -23,6 +23,15 @@
 //! OUT Y1
 //! END
 //! ```
+//!
+//! ```iec
+//! PROGRAM Main
+//! VAR a : BOOL; END_VAR
+//! there: LD a
+//! ^^^^^
+//! ST a
+//! END_PROGRAM
+//! ```
 
 use super::labels::{END_POINTER, Labels, name_of};
 use crate::check::{ProgramContext, Rule, Run};

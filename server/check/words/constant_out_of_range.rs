@@ -26,6 +26,39 @@
 //! +--| |--------(T0 K32768)--+
 //!                   ^^^^^^
 //! ```
+//!
+//! In IEC programs a constant takes the type of what it meets or initialises, and must fit it:
+//!
+//! ```iec
+//! PROGRAM Main
+//! VAR
+//!     Small : SINT := 200;
+//!                     ^^^
+//!     Level : INT;
+//! END_VAR
+//!     LD Level
+//!     ADD 40000
+//!         ^^^^^
+//!     ST Level
+//!     LD SINT#128
+//!        ^^^^^^^^
+//!     ST Small
+//! END_PROGRAM
+//! ```
+//!
+//! ```iec
+//! PROGRAM Main
+//! VAR
+//!     Small : SINT := 127;
+//!     Level : INT;
+//! END_VAR
+//!     LD Level
+//!     ADD 30000
+//!     ST Level
+//!     LD SINT#12
+//!     ST Small
+//! END_PROGRAM
+//! ```
 
 use crate::check::{ChunkContext, Rule, Run};
 use crate::target::{Constant, Form, Operand, Wide};

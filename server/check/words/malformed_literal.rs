@@ -27,7 +27,44 @@
 //! +--| |---[MOV H1G D0]-----+
 //!               ^^^
 //! ```
+//!
+//! In IEC programs the units of a duration descend and only the first may overflow, real numbers have a digit on both
+//! sides of the point, and bases are 2, 8 and 16:
+//!
+//! ```iec
+//! PROGRAM Main
+//! VAR
+//!     Delay : TIME := T#1h90m;
+//!                     ^^^^^^^
+//!     Bits : WORD;
+//!     Speed : REAL;
+//! END_VAR
+//!     LD 2#1021
+//!        ^^^^^^
+//!     ST Bits
+//!     LD 1E3
+//!        ^^^
+//!     ST Speed
+//!     LD %IZ0
+//!        ^^^^
+//! END_PROGRAM
+//! ```
+//!
+//! ```iec
+//! PROGRAM Main
+//! VAR
+//!     Delay : TIME := T#2h30m;
+//!     Bits : WORD;
+//!     Speed : REAL;
+//! END_VAR
+//!     LD 2#1011
+//!     ST Bits
+//!     LD 1.0E3
+//!     ST Speed
+//! END_PROGRAM
+//! ```
 
+use crate::check::iec::{View, unreadable_operands};
 use crate::check::{ChunkContext, Rule, Run};
 use crate::target::{Operand, OperandProblem};
 use crate::text::{Diagnostic, Message, Severity, Span};
@@ -40,6 +77,9 @@ pub(super) const RULE: Rule = Rule {
 };
 
 fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
+    if let Some(view) = View::of(context) {
+        return unreadable_operands(&view, found);
+    }
     for operand in context.chunk.operations().flat_map(|operation| operation.operands) {
         if operand.value == Operand::Invalid(OperandProblem::MalformedConstant) {
             found.push(fx_constant(operand.span, operand.span.of(context.chunk.text())));

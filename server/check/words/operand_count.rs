@@ -33,7 +33,47 @@
 //! +--| |---[MOV K10]--------+
 //!           ^^^
 //! ```
+//!
+//! A function in IEC programs takes the current result as its first input, so one operand less than it has inputs
+//! stands behind its name; and `NOT` works on the current result alone.
+//!
+//! ```iec
+//! PROGRAM Main
+//! VAR
+//!     Value : INT;
+//!     Ready : BOOL;
+//! END_VAR
+//!     LD Value
+//!     ABS Value
+//!         ^^^^^
+//!     LIMIT 5
+//!     ^^^^^
+//!     LD Ready
+//!     NOT Ready
+//!         ^^^^^
+//!     ST
+//!     ^^
+//! END_PROGRAM
+//! ```
+//!
+//! ```iec
+//! PROGRAM Main
+//! VAR
+//!     Value : INT;
+//!     Ready : BOOL;
+//! END_VAR
+//!     LD Value
+//!     ABS
+//!     ST Value
+//!     LD 0
+//!     LIMIT Value, 100
+//!     ST Value
+//!     LDN Ready
+//!     ST Ready
+//! END_PROGRAM
+//! ```
 
+use crate::check::iec::{View, operand_counts};
 use crate::check::{ChunkContext, Rule, Run};
 use crate::document::{Operation, Tree};
 use crate::target::{DeviceKind, Form, Operand, OperandSpec};
@@ -47,13 +87,18 @@ pub(super) const RULE: Rule = Rule {
 };
 
 fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
+    if let Some(view) = View::of(context) {
+        return operand_counts(&view, found);
+    }
     // What belongs to a drawn contact or coil is decided by the drawing, whose rules report it.
     let is_drawn = matches!(context.chunk.tree(), Tree::Ladder(_));
+    let mut problems: Vec<u32> = context.chunk.problems().iter().map(|problem| problem.span.start).collect();
+    problems.sort_unstable();
     for operation in context.chunk.operations().filter(|operation| operation.is_word || !is_drawn) {
         let Some(form) = operation.form else { continue };
         let (least, most) = places(form, operation.operands.first().map(|operand| &operand.value));
         let count = operation.operands.len();
-        if count < least && !has_problem_behind(context, &operation) {
+        if count < least && !has_problem_behind(context.chunk.text(), &problems, &operation) {
             found.push(too_few(form, &operation));
         } else if count > most {
             found.push(too_many(context, form, &operation, most));
@@ -71,14 +116,12 @@ fn places(form: Form, first: Option<&Operand>) -> (usize, usize) {
 }
 
 /// Whether the reader has already reported something on the line, such as a comma with nothing behind it.
-fn has_problem_behind(context: &ChunkContext<'_>, operation: &Operation<'_>) -> bool {
-    let text = context.chunk.text();
+/// `problems` are the places of all that it reported, in order.
+fn has_problem_behind(text: &str, problems: &[u32], operation: &Operation<'_>) -> bool {
     let start = operation.symbol.start;
     let length = text.get(start as usize..).and_then(|rest| rest.find('\n')).unwrap_or(text.len());
-    context.chunk.problems().iter().any(|problem| {
-        let at = problem.span.start;
-        at >= start && ((at - start) as usize) < length
-    })
+    let next = problems.get(problems.partition_point(|&problem| problem < start));
+    next.is_some_and(|&next| ((next - start) as usize) < length)
 }
 
 fn too_few(form: Form, operation: &Operation<'_>) -> Diagnostic {

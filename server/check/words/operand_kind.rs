@@ -42,7 +42,47 @@
 //!    ^^
 //! +--| |---------------( )--+
 //! ```
+//!
+//! In IEC programs operators work with groups of types, logic with `ANY_BIT` and arithmetic with `ANY_NUM` and times;
+//! the instance of a block is no value, and only variables can be written.
+//!
+//! ```iec
+//! PROGRAM Main
+//! VAR
+//!     Level : INT;
+//!     Ready : BOOL;
+//!     Delay : TON;
+//! END_VAR
+//!     LD Ready
+//!     AND Level
+//!         ^^^^^
+//!     LD Delay
+//!        ^^^^^
+//!     ST TRUE
+//!        ^^^^
+//!     LDN Level
+//!         ^^^^^
+//!     S Level
+//!       ^^^^^
+//! END_PROGRAM
+//! ```
+//!
+//! ```iec
+//! PROGRAM Main
+//! VAR
+//!     Level : INT;
+//!     Ready : BOOL;
+//!     Delay : TON;
+//! END_VAR
+//!     LD Level
+//!     GT 5
+//!     AND Ready
+//!     AND Delay.Q
+//!     S Ready
+//! END_PROGRAM
+//! ```
 
+use crate::check::iec::{View, initial_values, misplaced_words};
 use crate::check::{ChunkContext, Rule, Run};
 use crate::document::Operation;
 use crate::target::{Accepts, Access, Constant, DeviceKind, Form, Opcode, Operand, Target, Wide};
@@ -56,6 +96,11 @@ pub(super) const RULE: Rule = Rule {
 };
 
 fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
+    if let Some(view) = View::of(context) {
+        // What the operators take is judged on the way of the current result, by `no-current-result`.
+        initial_values(&view, found);
+        return misplaced_words(&view, found);
+    }
     if !context.target.is_fx() {
         return;
     }

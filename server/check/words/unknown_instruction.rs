@@ -26,7 +26,29 @@
 //! +--| |---[MVO K10 D0]----+
 //!           ^^^
 //! ```
+//!
+//! In IEC programs an instruction is an operator, a function, standard or declared, or an input operator of a block.
+//!
+//! ```iec
+//! PROGRAM Main
+//! VAR Start, Motor : BOOL; END_VAR
+//!     LD Start
+//!     OUT Motor
+//!     ^^^
+//!     dbg Motor
+//!     ^^^
+//! END_PROGRAM
+//! ```
+//!
+//! ```iec
+//! PROGRAM Main
+//! VAR Start, Motor : BOOL; END_VAR
+//!     LD Start
+//!     ST Motor
+//! END_PROGRAM
+//! ```
 
+use crate::check::iec::{View, unknown_instructions};
 use crate::check::{ChunkContext, Rule, Run};
 use crate::target::instructions::suggestions;
 use crate::text::{Diagnostic, Message, Severity, TextEdit};
@@ -39,6 +61,9 @@ pub(super) const RULE: Rule = Rule {
 };
 
 fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
+    if let Some(view) = View::of(context) {
+        return unknown_instructions(&view, found);
+    }
     if !context.target.is_fx() {
         return;
     }

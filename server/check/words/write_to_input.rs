@@ -38,6 +38,19 @@
 //!    ^^^^^^
 //! END_PROGRAM
 //! ```
+//!
+//! and for variables that lie there:
+//!
+//! ```iec
+//! PROGRAM Main
+//! VAR
+//!     Start AT %IX0.0 : BOOL;
+//! END_VAR
+//!     LD TRUE
+//!     S Start
+//!       ^^^^^
+//! END_PROGRAM
+//! ```
 
 use crate::check::{ChunkContext, Rule, Run};
 use crate::document::Symbol;
@@ -65,6 +78,13 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
             }
             Symbol::Direct(address) if address.location == Location::Input => {
                 found.push(diagnostic("write-to-input.address"));
+            }
+            Symbol::Variable(name) => {
+                let variable = context.scopes.variable(context.pou, name);
+                let address = variable.and_then(|variable| variable.address);
+                if address.is_some_and(|address| address.location == Location::Input) {
+                    found.push(diagnostic("write-to-input.located"));
+                }
             }
             _ => {}
         }

@@ -25,6 +25,9 @@ mod conversions;
 mod blocks;
 pub use blocks::FunctionBlock;
 
+mod suggest;
+pub use suggest::{nearest, suggestions};
+
 /// What `find` knows about `word` in upper case. Names here are ASCII and at most 32 bytes long; other words are
 /// not looked up, so no look-up allocates.
 fn folded<T>(word: &str, find: impl FnOnce(&str) -> Option<T>) -> Option<T> {

@@ -113,6 +113,11 @@ impl Operator {
         })
     }
 
+    /// The words of [`Operator::all_written`], in no order.
+    pub fn all_words() -> impl Iterator<Item = &'static str> {
+        WRITTEN.keys().map(String::as_str)
+    }
+
     /// The type of the current result after this operator met a current result of type `current` and an operand of
     /// type `operand`; nothing if it takes no such pair.
     ///

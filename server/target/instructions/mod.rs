@@ -10,6 +10,7 @@ mod steps;
 pub(super) use steps::steps;
 
 mod suggest;
+pub(super) use suggest::distance;
 pub use suggest::suggestions;
 
 mod contacts;

@@ -64,7 +64,7 @@ pub fn suggestions(word: &str, model: Model) -> Vec<String> {
 
 /// How many letters must be inserted, left out, replaced or swapped with their neighbour to get from one word to the
 /// other (optimal string alignment).
-fn distance(left: &[u8], right: &[u8]) -> usize {
+pub(in crate::target) fn distance(left: &[u8], right: &[u8]) -> usize {
     let mut before_last: Vec<usize> = Vec::new();
     let mut last: Vec<usize> = (0..=right.len()).collect();
     for (row, &letter) in left.iter().enumerate() {

@@ -1,0 +1,134 @@
+//! # duplicate-declaration
+//!
+//! A name is declared twice where it may stand for one thing only: two variables of a program unit, in whichever
+//! sections; two program units, types, tasks or instances; two members of a structure. Which of the two a use means
+//! nobody can tell, and their types or addresses may differ.
+//!
+//! The first declaration holds for the other rules; the later ones are reported.
+//!
+//! ```iec
+//! PROGRAM Gate
+//! VAR_INPUT
+//!     Open : BOOL;
+//! END_VAR
+//! VAR
+//!     Motor AT %QX0.0 : BOOL;
+//!     open : BOOL;
+//!     ^^^^
+//! END_VAR
+//!     LD Open
+//!     ST Motor
+//! END_PROGRAM
+//! ```
+//!
+//! ```iec
+//! PROGRAM Gate
+//! VAR_INPUT
+//!     Open : BOOL;
+//! END_VAR
+//! VAR
+//!     Motor AT %QX0.0 : BOOL;
+//! END_VAR
+//!     LD Open
+//!     ST Motor
+//! END_PROGRAM
+//! ```
+
+use crate::check::iec::{View, folded, views};
+use crate::check::{ProgramContext, Rule, Run};
+use crate::il::iec::{ItemKind, Run as Records, SectionKind, TypeSpec};
+use crate::text::{Diagnostic, Message, Severity, Span};
+use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
+
+pub(super) const RULE: Rule = Rule {
+    code: "duplicate-declaration",
+    severity: Severity::Error,
+    run: Run::Program(check),
+    source: include_str!("duplicate_declaration.rs"),
+};
+
+/// Names that must differ from each other, with their places.
+#[derive(Default)]
+struct Names(FxHashMap<SmolStr, Span>);
+
+impl Names {
+    fn add(&mut self, view: &View<'_>, start: usize, span: Span, found: &mut Vec<Diagnostic>) {
+        let name = span.of(view.text);
+        let at = span.shifted(start);
+        match self.0.get(&folded(name)) {
+            Some(first) => {
+                let message = Message::new("duplicate-declaration.found").with("name", name);
+                let diagnostic = Diagnostic::new(RULE.code, at, message);
+                found.push(diagnostic.related(*first, Message::new("duplicate-declaration.first")));
+            }
+            None => _ = self.0.insert(folded(name), at),
+        }
+    }
+}
+
+fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
+    let (mut units, mut types, mut globals) = (Names::default(), Names::default(), Names::default());
+    let (mut variables, mut runtime) = (Names::default(), Names::default());
+    for (start, view) in views(context) {
+        for item in &view.tree.items {
+            match item.kind {
+                ItemKind::Pou { name, .. } => {
+                    variables = Names::default();
+                    if let Some(name) = name {
+                        units.add(&view, start, name, found);
+                    }
+                }
+                ItemKind::Section { kind, declarations, .. } => {
+                    let names = match kind {
+                        SectionKind::Global => &mut globals,
+                        // Their names are paths to variables that are declared elsewhere.
+                        SectionKind::Access | SectionKind::Config => continue,
+                        _ => &mut variables,
+                    };
+                    each_name(&view, declarations, |name| names.add(&view, start, name, found));
+                }
+                ItemKind::Types { declarations } => {
+                    each_name(&view, declarations, |name| types.add(&view, start, name, found));
+                }
+                ItemKind::Configuration { .. } | ItemKind::Resource { .. } => runtime = Names::default(),
+                ItemKind::Task(index) => {
+                    if let Some(name) = view.tree.tasks.get(index as usize).and_then(|task| task.name) {
+                        runtime.add(&view, start, name, found);
+                    }
+                }
+                ItemKind::Instance(index) => {
+                    if let Some(name) = view.tree.instances.get(index as usize).and_then(|one| one.name) {
+                        runtime.add(&view, start, name, found);
+                    }
+                }
+                _ => {}
+            }
+        }
+        inside_types(&view, start, found);
+    }
+}
+
+fn each_name(view: &View<'_>, declarations: Records, mut take: impl FnMut(Span)) {
+    for declaration in declarations.of(&view.tree.declarations) {
+        declaration.names.of(&view.tree.names).iter().for_each(|name| take(*name));
+    }
+}
+
+/// The members of structures and the values of enumerations.
+fn inside_types(view: &View<'_>, start: usize, found: &mut Vec<Diagnostic>) {
+    for written in &view.tree.types {
+        let mut names = Names::default();
+        match written.value {
+            TypeSpec::Structure { fields } => {
+                each_name(view, fields, |name| names.add(view, start, name, found));
+            }
+            TypeSpec::Enumeration { values } => {
+                for name in values.of(&view.tree.names) {
+                    names.add(view, start, *name, found);
+                }
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! # unused-variable
+//!
+//! A variable is declared and never named again in its program unit. Either it is left over, or the name that should
+//! have been used is another one: an interlock that was declared and then forgotten is worth a look.
+//!
+//! Variables with an address are left out, because a list of the terminals is useful by itself; so are units
+//! without instructions.
+//!
+//! ```iec
+//! PROGRAM Saw
+//! VAR
+//!     Start AT %IX0.0 : BOOL;
+//!     Motor AT %QX0.0 : BOOL;
+//!     Guard : BOOL;
+//!     ^^^^^
+//! END_VAR
+//!     LD Start
+//!     ST Motor
+//! END_PROGRAM
+//! ```
+//!
+//! ```iec
+//! PROGRAM Saw
+//! VAR
+//!     Start AT %IX0.0 : BOOL;
+//!     Motor AT %QX0.0 : BOOL;
+//!     Guard : BOOL;
+//! END_VAR
+//!     LD Start
+//!     AND Guard
+//!     ST Motor
+//! END_PROGRAM
+//! ```
+
+use crate::check::iec::folded;
+use crate::check::{ProgramContext, Rule, Run};
+use crate::document::{ChunkRef, Symbol, Tree, Use};
+use crate::il::iec::{Declaration, IecTree, ItemKind, SectionKind};
+use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
+use rustc_hash::FxHashSet;
+
+pub(super) const RULE: Rule = Rule {
+    code: "unused-variable",
+    severity: Severity::Hint,
+    run: Run::Program(check),
+    source: include_str!("unused_variable.rs"),
+};
+
+/// A name that is declared, perhaps the only one of its declaration.
+struct Declared<'a> {
+    name: &'a str,
+    span: Span,
+    removal: Option<TextEdit>,
+}
+
+#[derive(Default)]
+struct Unit<'a> {
+    declared: Vec<Declared<'a>>,
+    used: FxHashSet<&'a str>,
+    has_body: bool,
+}
+
+fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
+    let mut unit = Unit::default();
+    let mut globals = Unit::default();
+    for at in context.document.chunks() {
+        if at.chunk.pou_starts() > 0 {
+            std::mem::take(&mut unit).report(found);
+        }
+        match at.chunk.tree() {
+            Tree::Iec(tree) => {
+                unit.has_body |= tree.items.iter().any(|item| is_instruction(&item.kind));
+                sections(at, tree, &mut unit, &mut globals);
+            }
+            _ => unit.has_body = true,
+        }
+        for mention in at.chunk.mentions() {
+            if let Symbol::Variable(name) = &mention.symbol
+                && mention.usage != Use::Declare
+            {
+                unit.used.insert(name);
+                globals.used.insert(name);
+            }
+        }
+    }
+    unit.report(found);
+    // A file of globals alone is used by other files.
+    globals.has_body = !context.document.scopes().pous.is_empty();
+    globals.report(found);
+}
+
+fn is_instruction(kind: &ItemKind) -> bool {
+    matches!(
+        kind,
+        ItemKind::Operation { .. }
+            | ItemKind::Open { .. }
+            | ItemKind::Call { .. }
+            | ItemKind::Function { .. }
+            | ItemKind::InputOperator { .. }
+            | ItemKind::Jump { .. }
+            | ItemKind::Return { .. }
+    )
+}
+
+fn sections<'a>(at: ChunkRef<'a>, tree: &'a IecTree, unit: &mut Unit<'a>, globals: &mut Unit<'a>) {
+    let text = at.chunk.text();
+    for item in &tree.items {
+        let ItemKind::Section { kind, declarations, .. } = item.kind else { continue };
+        for declaration in declarations.of(&tree.declarations).iter().filter(|one| one.address.is_none()) {
+            let names = declaration.names.of(&tree.names);
+            for name in names {
+                let removal = if names.len() == 1 { removal(text, declaration, at.start) } else { None };
+                let declared = Declared { name: name.of(text), span: name.shifted(at.start), removal };
+                match kind {
+                    SectionKind::Global => globals.declared.push(declared),
+                    SectionKind::Access | SectionKind::Config => {}
+                    // An import counts as a use of the global variable.
+                    _ => unit.declared.push(declared),
+                }
+            }
+        }
+    }
+}
+
+/// Takes out the line of a declaration that has it for itself.
+fn removal(text: &str, declaration: &Declaration, start: usize) -> Option<TextEdit> {
+    let (from, to) = (declaration.span.start as usize, declaration.span.end as usize);
+    let line = text.get(..from)?.rfind('\n').map_or(0, |newline| newline + 1);
+    let end = to + text.get(to..)?.find('\n')? + 1;
+    let alone = text.get(line..from)?.trim().is_empty() && text.get(to..end)?.trim() == ";";
+    alone.then(|| TextEdit::new(Span::new(line, end).shifted(start), ""))
+}
+
+impl Unit<'_> {
+    fn report(self, found: &mut Vec<Diagnostic>) {
+        if !self.has_body {
+            return;
+        }
+        for declared in self.declared {
+            if self.used.contains(folded(declared.name).as_str()) {
+                continue;
+            }
+            let message = Message::new("unused-variable.found").with("name", declared.name);
+            let diagnostic = Diagnostic::new(RULE.code, declared.span, message);
+            found.push(match declared.removal {
+                Some(edit) => diagnostic.fix(Message::new("unused-variable.remove"), vec![edit]),
+                None => diagnostic,
+            });
+        }
+    }
+}
