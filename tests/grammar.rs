@@ -24,8 +24,10 @@ fn groups() -> Vec<Group> {
         .flat_map(|kind| [Some(kind.name()), kind.long_name()].into_iter().flatten())
         .map(str::to_string)
         .collect();
-    let keywords = KEYWORDS.iter().map(|word| word.to_string()).filter(|word| !types.contains(word)).collect();
-    let mnemonics = instructions::all().flat_map(instructions::forms_of).map(|form| form.mnemonic()).collect();
+    let keywords =
+        KEYWORDS.iter().map(|word| word.to_string()).filter(|word| !types.contains(word)).collect();
+    let mnemonics =
+        instructions::all().flat_map(instructions::forms_of).map(|form| form.mnemonic()).collect();
     let operators: BTreeSet<String> = Operator::all_written().map(|written| written.word()).collect();
     let functions = Function::families().map(|function| function.name.to_string());
     let functions = functions.filter(|name| !operators.contains(name)).collect();
@@ -56,7 +58,8 @@ impl Group {
 
     /// Vim takes only words as keywords; spellings with signs are patterns of `plc-il.vim`.
     fn vim(&self) -> String {
-        let words = self.sorted().into_iter().filter(|word| word.chars().all(|c| c.is_alphanumeric() || c == '_'));
+        let words =
+            self.sorted().into_iter().filter(|word| word.chars().all(|c| c.is_alphanumeric() || c == '_'));
         let conversions = Function::all().map(|function| function.name).filter(|name| name.contains("TO_"));
         let conversions: BTreeSet<&str> = conversions.filter(|_| self.pattern.is_some()).collect();
         let words: Vec<&str> = words.chain(conversions).collect();
@@ -81,7 +84,9 @@ fn textmate_words_are_those_of_the_tables() {
 fn vim_words_are_those_of_the_tables() {
     check("neovim/syntax/rungwise_keywords.vim", |text| {
         let lines = text.lines().map(|line| {
-            let group = groups().into_iter().find(|group| line.starts_with(&format!("syntax keyword {} ", group.vim)));
+            let group = groups()
+                .into_iter()
+                .find(|group| line.starts_with(&format!("syntax keyword {} ", group.vim)));
             group.map_or(line.to_string(), |group| group.vim())
         });
         lines.map(|line| line + "\n").collect()
@@ -91,7 +96,8 @@ fn vim_words_are_those_of_the_tables() {
 #[test]
 fn groups_are_whole() {
     let groups = groups();
-    let has = |key: &str, word: &str| groups.iter().any(|group| group.key == key && group.words.contains(word));
+    let has =
+        |key: &str, word: &str| groups.iter().any(|group| group.key == key && group.words.contains(word));
     for (key, word) in [
         ("fx-mnemonics", "DMOVP"),
         ("fx-mnemonics", "ANDD>="),
@@ -114,5 +120,8 @@ fn check(name: &str, renew: impl Fn(&str) -> String) {
     if std::env::var_os("RUNGWISE_UPDATE").is_some() {
         std::fs::write(&path, &renewed).unwrap();
     }
-    assert!(renewed == text, "{name} is behind the tables; write it by: RUNGWISE_UPDATE=1 cargo test grammar");
+    assert!(
+        renewed == text,
+        "{name} is behind the tables; write it by: RUNGWISE_UPDATE=1 cargo test grammar"
+    );
 }

@@ -180,6 +180,12 @@ impl Document {
         LineColumn { line: line as u32, column }
     }
 
+    /// The line, from 0, in which `offset` lies, with the offset of its start and its text, line end included.
+    pub fn line_at(&self, offset: usize) -> (usize, usize, String) {
+        let line = self.rope.byte_to_line(offset.min(self.len()));
+        (line, self.rope.line_to_byte(line), self.rope.line(line).to_string())
+    }
+
     /// The byte offset of a position; positions past the end of a line or of the text are moved there.
     pub fn offset(&self, position: LineColumn, encoding: Encoding) -> usize {
         let line = position.line as usize;

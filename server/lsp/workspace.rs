@@ -211,8 +211,8 @@ fn read(uri: &Uri, text: &str, manifest: &Manifest, settings: &Settings, is_ladd
     let name = uri.path().as_str();
     let notation = if is_ladder { Some(Notation::Ladder) } else { settings.notation() };
     let decided = guarded(|| decide(name, text, manifest, settings.target(), notation));
-    let (notation, target) = decided
-        .unwrap_or((Notation::FxIl, crate::target::Target::of(crate::target::Model::Fx2n)));
+    let (notation, target) =
+        decided.unwrap_or((Notation::FxIl, crate::target::Target::of(crate::target::Model::Fx2n)));
     guarded(|| Document::new(text, notation, target))
         .unwrap_or_else(|| Document::unread(text, notation, target))
 }
