@@ -1,5 +1,7 @@
 //! Editor features: a program with `$0` for the cursor, and the answer drawn as text.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 use expect_test::{Expect, expect};
 use proptest::prelude::*;
 use rungwise::document::{Document, Notation, Tree};
@@ -1323,9 +1325,9 @@ fn rename_keeps_the_drawing() {
         ladder,
         "X1",
         &expect![[r#"
-        |  X1                   Y0 |
-        +---| |-----------------( )+
-    "#]],
+            |   X1                  Y0 |
+            +---| |-----------------( )+
+        "#]],
     );
     check_rename(
         "+--[X0]-------------(Y0)-+\n".replace("X0", "$0X0").as_str(),
@@ -1341,6 +1343,35 @@ fn rename_keeps_the_drawing() {
         "X1",
         &expect![[r#"
         +--[X1]-------------(Y0)-+
+    "#]],
+    );
+}
+
+#[test]
+fn a_short_name_stays_over_its_element() {
+    let text = "\
+PROGRAM p
+|  $0A_rather_long_name             B  |
++--------| |---------------------( )-+
+END_PROGRAM
+";
+    check_rename(
+        text,
+        tank,
+        "A",
+        &expect![[r#"
+        PROGRAM p
+        |          A                      B  |
+        +--------| |---------------------( )-+
+        END_PROGRAM
+    "#]],
+    );
+    check_rename(
+        &text.replace("---| |-", "-| |---"),
+        tank,
+        "A",
+        &expect![[r#"
+        refused: `A` does not fit into the drawing of line 2; redraw the rung with more room there first
     "#]],
     );
 }
@@ -1368,22 +1399,162 @@ fn renaming_a_drawing_keeps_its_logic() {
     }
 }
 
+const TANK: &str = "\
+PROGRAM Tank
+VAR
+    Level_low AT %IX0.0 : BOOL;
+    Pump AT %QX0.0 : BOOL;
+    Run_on : TON;
+END_VAR
+NETWORK 1 'Pump'
+               Run_on
+              +-------+
+   Level_low  |  TON  |   Pump
++----| |------|IN    Q|---( )---+
+        T#5s--|PT   ET|         |
+              +-------+
+END_PROGRAM
+";
+
+fn tank(text: &str) -> Document {
+    Document::new(text, Notation::Ladder, Target::of(Model::Iec))
+}
+
+#[test]
+fn ladder_of_iec_variables() {
+    check_hover(
+        &marked(TANK, "$0Level_low  |"),
+        tank,
+        &expect![[r#"
+        10:4 `Level_low`
+        ```iec
+        VAR Level_low AT %IX0.0 : BOOL
+        ```
+
+        - Declared: line 3
+        - Read: line 10
+    "#]],
+    );
+    check_hover(
+        &marked(TANK, "T#$05s"),
+        tank,
+        &expect![[r#"
+        12:9 `T#5s`
+        `T#5s` = 5 s
+    "#]],
+    );
+    check_places(
+        &marked(TANK, "$0Pump\n+"),
+        tank,
+        ide::definition,
+        &expect![[r#"
+        4:5 `Pump`
+    "#]],
+    );
+    let (document, offset) = at_cursor(&marked(TANK, "T$0ON  |"), tank);
+    assert!(ide::hover(&document, offset, EN).unwrap().markdown.starts_with("### TON"));
+    check_rename(
+        &marked(TANK, "$0Run_on"),
+        tank,
+        "Delay_1",
+        &expect![[r#"
+        PROGRAM Tank
+        VAR
+            Level_low AT %IX0.0 : BOOL;
+            Pump AT %QX0.0 : BOOL;
+            Delay_1 : TON;
+        END_VAR
+        NETWORK 1 'Pump'
+                       Delay_1
+                      +-------+
+           Level_low  |  TON  |   Pump
+        +----| |------|IN    Q|---( )---+
+                T#5s--|PT   ET|         |
+                      +-------+
+        END_PROGRAM
+    "#]],
+    );
+    check_rename(
+        &marked(TANK, "$0Level_low"),
+        tank,
+        "Level",
+        &expect![[r#"
+            PROGRAM Tank
+            VAR
+                Level AT %IX0.0 : BOOL;
+                Pump AT %QX0.0 : BOOL;
+                Run_on : TON;
+            END_VAR
+            NETWORK 1 'Pump'
+                           Run_on
+                          +-------+
+                 Level    |  TON  |   Pump
+            +----| |------|IN    Q|---( )---+
+                    T#5s--|PT   ET|         |
+                          +-------+
+            END_PROGRAM
+        "#]],
+    );
+    check_rename(
+        &marked(TANK, "$0Level_low"),
+        tank,
+        "Level_of_the_tank_is_low",
+        &expect![[r#"
+        refused: `Level_of_the_tank_is_low` does not fit into the drawing of line 10; redraw the rung with more room there first
+    "#]],
+    );
+    check_completions(
+        &marked(TANK, "$0Pump\n+"),
+        tank,
+        5,
+        &expect![[r#"
+        Level_low | VAR BOOL |    Level_low  |  TON  |   Level_lowPump
+        Pump | VAR BOOL |    Level_low  |  TON  |   PumpPump
+        Run_on | VAR TON |    Level_low  |  TON  |   Run_onPump
+        %IX0.0 |  |    Level_low  |  TON  |   %IX0.0Pump
+        %QX0.0 |  |    Level_low  |  TON  |   %QX0.0Pump
+    "#]],
+    );
+    check_completions(
+        &marked(TANK, "Run_on : $0"),
+        tank,
+        2,
+        &expect![[r#"
+        BOOL | data type |     Run_on : BOOLTON;
+        BYTE | data type |     Run_on : BYTETON;
+        …
+    "#]],
+    );
+    check_outline(
+        &tank(TANK),
+        &expect![[r#"
+        Program Tank [PROGRAM] 1-14
+          Section VAR [] 2-6
+            Variable Level_low [BOOL] 3-3
+            Variable Pump [BOOL] 4-4
+            Variable Run_on [TON] 5-5
+          Network Network 1: Pump [] 7-13
+            Rung Rung 1 [Run_on, Pump] 8-13
+    "#]],
+    );
+}
+
 #[test]
 fn outlines() {
     let program = "; Start\n; and stop\nLD X0\nOUT Y0\nSTL S20\nOUT Y1\nLD X1\nSET S21\nSTL S21\nOUT Y2\nRET\nLD X2\nCALL P1\nFEND\nP1\nLD X3\nOUT Y3\nSRET\nEND\n";
     check_outline(
         &fx(program),
         &expect![[r#"
-        Rung Rung 1: Start [Y0] 3-4
-        Step Step S20 [] 5-8
-          Rung Rung 2 [Y1] 5-6
-          Rung Rung 3 [S21] 7-8
-        Step Step S21 [] 9-10
-          Rung Rung 4 [Y2] 9-10
-        Rung Rung 5 [] 12-13
-        Label Subroutine P1 [] 15-17
-          Rung Rung 6 [Y3] 15-17
-    "#]],
+            Rung Rung 1: Start [Y0] 3-4
+            Step Step S20 [] 5-8
+              Rung Rung 2 [Y1] 5-6
+              Rung Rung 3 [S21] 7-8
+            Step Step S21 [] 9-10
+              Rung Rung 4 [Y2] 9-10
+            Rung Rung 5 [CALL P1] 12-13
+            Label Subroutine P1 [] 15-17
+              Rung Rung 6 [Y3] 15-17
+        "#]],
     );
     check_outline(
         &ladder(&format!("NETWORK 3 'Drive'\n{MOTOR}\nL1:\n| X5   Y5|\n+-| |--( )-+\n")),
@@ -1420,19 +1591,18 @@ fn folding() {
     check_folds(
         &fx(program),
         &expect![[r#"
-        1-2 Comment
-        3-4 Region
-        5-6 Region
-        6-9 Region
-        7-8 Region
-        10-13 Region
-        11-12 Region
-        14-15 Region
-        14-15 Region
-        16-18 Region
-        16-17 Region
-        19-20 Comment
-    "#]],
+            1-2 Comment
+            3-4 Region
+            5-6 Region
+            6-9 Region
+            7-8 Region
+            10-13 Region
+            11-12 Region
+            14-15 Region
+            16-18 Region
+            16-17 Region
+            19-20 Comment
+        "#]],
     );
     check_folds(
         &ladder(&format!("NETWORK 3 'Drive'\n{MOTOR}\nL1:\n| X5   Y5|\n+-| |--( )-+\n")),
@@ -1487,19 +1657,17 @@ fn highlighting() {
     check_tokens(
         &ladder("NETWORK 1 'x'\n|   X0      |\n+---| |--(Y0)+\n"),
         &expect![[r#"
-        1:1 `NETWORK` Keyword
-        1:9 `1` Number
-        1:11 `'` Keyword
-        1:12 `x` Text
-        1:13 `'` Keyword
-        2:5 `X0` Device
-        3:2 `---` Wire
-        3:5 `| |` Element
-        3:8 `--` Wire
-        3:10 `(` Element
-        3:11 `Y0` Device!
-        3:13 `)` Element
-    "#]],
+            1:1 `NETWORK` Keyword
+            1:9 `1` Number
+            1:11 `'x'` Text
+            2:5 `X0` Device
+            3:2 `---` Wire
+            3:5 `| |` Element
+            3:8 `--` Wire
+            3:10 `(` Element
+            3:11 `Y0` Device!
+            3:13 `)` Element
+        "#]],
     );
     check_tokens(
         &iec(
@@ -1593,7 +1761,7 @@ fn formatting_changes_what_is_not_canonical_and_nothing_else() {
     let document = fx(&(lines + "ld X1\nOUT Y0\n"));
     let touched: usize = ide::format(&document, STYLE).iter().map(|edit| edit.span.len()).sum();
     assert!(0 < touched && touched < 20, "{touched} bytes are replaced");
-    let document = ladder("|X0   Y0|\n+-| |--( )+\n");
+    let document = ladder("|X0   Y0  |\n+-| |--( )+\n");
     let formatted = TextEdit::apply_all(&ide::format(&document, STYLE), &document.text());
     assert!(formatted.lines().all(|line| line.len() == 48), "{formatted}");
 }

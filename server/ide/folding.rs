@@ -19,6 +19,7 @@ pub(super) fn of(document: &Document) -> Vec<Fold> {
     folding.end_network(document.len());
     let mut folds = folding.folds;
     folds.sort_by_key(|fold| (fold.span.start, std::cmp::Reverse(fold.span.end)));
+    folds.dedup();
     folds
 }
 

@@ -42,7 +42,12 @@ pub(super) fn rename(document: &Document, offset: usize, new: &str) -> Result<Ve
     let mut edits: Vec<TextEdit> = plain.map(|(span, _)| TextEdit::new(*span, written.as_str())).collect();
     edits.extend(drawing::edits(document, &drawn, &written)?);
     edits.sort_by_key(|edit| edit.span);
-    Ok(edits)
+    match drawing::still_say_the_same(document, &edits, &drawn) {
+        Ok(()) => Ok(edits),
+        Err(span) => {
+            Err(Message::new("rename.drawing").with("name", written).with("line", line_of(document, span)))
+        }
+    }
 }
 
 /// Why the name cannot be changed, whatever the new one is.

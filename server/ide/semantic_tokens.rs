@@ -79,7 +79,7 @@ fn of_ladder(chunk: &Chunk, tree: &LadderTree, tokens: &mut Vec<Token>) {
     if let Some(header) = &tree.header {
         tokens.push(token(header.span, TokenKind::Keyword));
         tokens.extend(header.number.map(|number| token(number.span, TokenKind::Number)));
-        tokens.extend(header.title.map(|title| token(title, TokenKind::Text)));
+        tokens.extend(header.title.map(|title| token(quoted(title, chunk.text()), TokenKind::Text)));
         tokens
             .extend(header.label.map(|label| Token { modification: true, ..token(label, TokenKind::Label) }));
     }
@@ -91,6 +91,15 @@ fn of_ladder(chunk: &Chunk, tree: &LadderTree, tokens: &mut Vec<Token>) {
         }
     }
     mark_changes(chunk, tokens);
+}
+
+/// `title` with the quotes around it.
+fn quoted(title: Span, text: &str) -> Span {
+    let is_quote = |byte: Option<&u8>| matches!(byte, Some(b'\'' | b'"'));
+    let bytes = text.as_bytes();
+    let starts = title.start > 0 && is_quote(bytes.get(title.start as usize - 1));
+    let ends = is_quote(bytes.get(title.end as usize));
+    Span { start: title.start - u32::from(starts), end: title.end + u32::from(ends) }
 }
 
 /// The operands say what they are, the mentions whether they are written or declared.

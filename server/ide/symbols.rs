@@ -1,7 +1,7 @@
 //! The outline: program units with their variables, networks, steps, labels, rungs with the outputs they drive.
 
 use super::{SymbolKind, SymbolNode, declared};
-use crate::document::{Chunk, ChunkRef, Document, Tree};
+use crate::document::{Chunk, ChunkRef, Document, Operation, Tree};
 use crate::il::fx::{FxTree, LineKind};
 use crate::il::iec::{IecTree, ItemKind, PouKind, Run};
 use crate::ladder::LadderTree;
@@ -267,6 +267,19 @@ fn outputs(chunk: &Chunk, span: Span) -> String {
             if !names.contains(&name) {
                 names.push(name);
             }
+        }
+    }
+    if names.is_empty() {
+        // Calls, jumps and their like drive no device.
+        let inside = |operation: &Operation<'_>| {
+            span.start <= operation.symbol.start && operation.symbol.end <= span.end
+        };
+        let drives = |operation: &Operation<'_>| {
+            operation.form.is_some_and(|form| form.instruction.role == Role::Output)
+        };
+        for operation in chunk.operations().filter(|operation| inside(operation) && drives(operation)) {
+            let words = operation.operands.iter().fold(operation.symbol, |all, operand| all.to(operand.span));
+            names.push(words.of(chunk.text()).to_string());
         }
     }
     names.join(", ")

@@ -1,7 +1,7 @@
 //! Names in drawings: a longer name takes blanks or wire beside it, a shorter one leaves some, so that everything else
 //! of its line stays in its column.
 
-use crate::document::Document;
+use crate::document::{Chunk, Document, Mention, Tree};
 use crate::text::{Encoding, LineColumn, Message, Span, TextEdit, cell_width};
 
 /// What may be shortened and lengthened.
@@ -28,6 +28,44 @@ pub(super) fn edits(document: &Document, places: &[Span], new: &str) -> Result<V
     Ok(edits)
 }
 
+/// Whether the drawings touched by `edits` still say the same, but for the renamed places. Names belong to elements
+/// by their columns, so only reading them again can tell.
+pub(super) fn still_say_the_same(
+    document: &Document,
+    edits: &[TextEdit],
+    places: &[Span],
+) -> Result<(), Span> {
+    let mut next = 0;
+    while let Some(at) = edits.get(next).and_then(|edit| document.chunk_at(edit.span.start as usize)) {
+        let end = at.start + at.chunk.len();
+        let inside: Vec<TextEdit> = edits[next..]
+            .iter()
+            .take_while(|edit| (edit.span.start as usize) < end)
+            .map(|edit| {
+                let (start, end) = (edit.span.start as usize - at.start, edit.span.end as usize - at.start);
+                TextEdit::new(Span::new(start, end), edit.text.as_str())
+            })
+            .collect();
+        let first = edits[next].span;
+        next += inside.len().max(1);
+        if !matches!(at.chunk.tree(), Tree::Ladder(_)) {
+            continue;
+        }
+        let redrawn = TextEdit::apply_all(&inside, at.chunk.text());
+        let redrawn = Chunk::read(&redrawn, document.notation(), document.target());
+        let is_renamed = |mention: &Mention| places.binary_search(&mention.span.shifted(at.start)).is_ok();
+        let pairs = at.chunk.mentions().iter().zip(redrawn.mentions());
+        let same = |(old, new): (&Mention, &Mention)| {
+            (old.usage, old.count) == (new.usage, new.count) && (old.symbol == new.symbol || is_renamed(old))
+        };
+        let counts = |chunk: &Chunk| (chunk.mentions().len(), chunk.problems().len(), chunk.size().rungs);
+        if counts(at.chunk) != counts(&redrawn) || !pairs.into_iter().all(same) {
+            return Err(first);
+        }
+    }
+    Ok(())
+}
+
 /// `line` with `new` at `places`; nothing if there is no room. From right to left, so that offsets stay valid.
 fn redrawn(line: &str, places: &[Span], new: &str) -> Option<String> {
     let mut result = line.to_string();
@@ -50,13 +88,7 @@ fn replaced(line: &str, place: Span, new: &str) -> Option<String> {
     let closing = closing_length(head, tail);
     let (closed, behind) = tail.split_at(closing);
     if new_width < old_width {
-        let fill = filler(closed, behind);
-        let padding: String = std::iter::repeat_n(fill, old_width - new_width).collect();
-        return Some(match fill {
-            // Without wire behind the bracket the blanks go inside of it.
-            ' ' if closing > 0 => format!("{head}{new}{padding}{closed}{behind}"),
-            _ => format!("{head}{new}{closed}{padding}{behind}"),
-        });
+        return Some(padded(head, new, (closed, behind), old_width - new_width));
     }
     let missing = new_width - old_width;
     if let Some(behind) = shortened_start(behind, missing) {
@@ -92,11 +124,15 @@ fn last_open(head: &str) -> Option<char> {
     head[last..].chars().next().filter(|c| matches!(c, '[' | '('))
 }
 
-/// What fills the room that a shorter name leaves.
-fn filler(closed: &str, behind: &str) -> char {
-    match behind.chars().next() {
-        Some(wire) if !closed.is_empty() && WIRES.contains(&wire) => wire,
-        _ => ' ',
+/// A name with `room` cells left over: wire goes on where it follows, else blanks.
+fn padded(head: &str, new: &str, (closed, behind): (&str, &str), room: usize) -> String {
+    let fill = |fill: char, count: usize| std::iter::repeat_n(fill, count).collect::<String>();
+    match behind.chars().next().filter(|first| WIRES.contains(first)) {
+        Some(wire) => format!("{head}{new}{closed}{}{behind}", fill(wire, room)),
+        // Without wire behind the bracket the blanks go inside of it.
+        None if !closed.is_empty() => format!("{head}{new}{}{closed}{behind}", fill(' ', room)),
+        // Above an element the middle stays where it was, since columns decide whose name it is.
+        None => format!("{head}{}{new}{}{behind}", fill(' ', room / 2), fill(' ', room - room / 2)),
     }
 }
 
