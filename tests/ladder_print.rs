@@ -898,7 +898,7 @@ fn comments_behind_lines_stay_behind_them() {
 
 #[test]
 fn rails_between_rungs_follow_the_page_only_if_a_rung_does() {
-    let typed = "|  X0   Y0  |\n|--| |--( )-|\n|           |\n|  X1   Y1  |\n|--| |--( )-|\n|  |\n";
+    let typed = "|  X0   Y0  |\n|--| |--( )-|\n|           |\n|  X1   Y1  |\n|--| |--( )-|\n|           |\n";
     let formatted = format(typed, fx(), &Style::default());
     check_alignment(&formatted);
     assert_eq!(formatted.lines().count(), typed.lines().count());
