@@ -925,7 +925,7 @@ fn rung_numbers_stay_in_the_margin() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, max_shrink_iters: 2000, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 300, max_shrink_iters: 2000, ..ProptestConfig::default() })]
 
     #[test]
     fn scribbles_are_formatted_without_harm(text in "([|+\\-X0Y1\\[\\]()/ │├┤┼─>名O;*\\n]|--| \\|--|--\\( \\)--|  X0 |\\(\\* |\\*\\)|\\r\\n|\\t){0,120}") {

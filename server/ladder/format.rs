@@ -6,7 +6,9 @@
 
 use super::reduce::reduce;
 use super::symbol::width;
-use super::{Drawing, LadderTree, NameHabit, Rung, Style, StyleKind, parse, parse_with, split};
+use super::{
+    Drawing, Element, ElementKind, LadderTree, NameHabit, Rung, Style, StyleKind, parse, parse_with, split,
+};
 use crate::target::Target;
 use crate::text::Span;
 
@@ -195,9 +197,39 @@ fn drawing(
     if doubtful || line_comments(chunk, tree, rung, lines).is_none() {
         return None;
     }
+    // A name on a line of another rung would be drawn here and stay there.
+    if !rung
+        .graph
+        .elements
+        .iter()
+        .flat_map(words_of)
+        .all(|word| start <= word.start as usize && word.end as usize <= end)
+    {
+        return None;
+    }
     let shape = reduce(&rung.graph).ok()?;
     let drawing = Drawing::new(&shape, &rung.graph, chunk, kind)?;
     keeps_order(rung, &drawing).then_some(drawing)
+}
+
+/// Where the words of an element stand.
+fn words_of(element: &Element) -> Vec<Span> {
+    let mut words: Vec<Span> = element.operands.iter().map(|operand| operand.span).collect();
+    words.extend(element.name_lines.iter().chain(&element.notes));
+    match &element.kind {
+        ElementKind::Block(block) => {
+            let pins = block.inputs.iter().chain(&block.outputs);
+            words.extend(
+                block.instance.into_iter().chain(block.type_name).chain(pins.filter_map(|pin| pin.name)),
+            );
+        }
+        ElementKind::Instruction { mnemonic: word, .. }
+        | ElementKind::Jump(word)
+        | ElementKind::ConnectorOut(word)
+        | ElementKind::ConnectorIn(word) => words.push(*word),
+        _ => {}
+    }
+    words
 }
 
 /// Whether outputs and function blocks, which act in the order in which they are drawn, keep that order.
