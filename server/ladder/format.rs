@@ -197,19 +197,42 @@ fn drawing(
     if doubtful || line_comments(chunk, tree, rung, lines).is_none() {
         return None;
     }
-    // A name on a line of another rung would be drawn here and stay there.
-    if !rung
-        .graph
-        .elements
-        .iter()
-        .flat_map(words_of)
-        .all(|word| start <= word.start as usize && word.end as usize <= end)
-    {
+    if !keeps_words(chunk, tree, rung, (start, end)) {
         return None;
     }
     let shape = reduce(&rung.graph).ok()?;
     let drawing = Drawing::new(&shape, &rung.graph, chunk, kind)?;
     keeps_order(rung, &drawing).then_some(drawing)
+}
+
+/// Whether the lines of a rung, at these bytes, hold all its words and no letter that is not drawn again.
+fn keeps_words(chunk: &str, tree: &LadderTree, rung: &Rung, (start, end): (usize, usize)) -> bool {
+    let elements = &rung.graph.elements;
+    let words: Vec<Span> = elements.iter().flat_map(words_of).collect();
+    // A name on a line of another rung would be drawn here and stay there.
+    if !words.iter().all(|word| start <= word.start as usize && word.end as usize <= end) {
+        return false;
+    }
+    let boxes = elements.iter().filter_map(Element::block).flat_map(|block| block.rows.iter().copied());
+    let symbols = elements.iter().map(|element| element.span).chain(boxes);
+    let number = rung.number.map(|number| number.span);
+    let mut known: Vec<Span> =
+        words.into_iter().chain(symbols).chain(number).chain(tree.comments.clone()).collect();
+    known.sort_unstable();
+    let negated = elements
+        .iter()
+        .filter_map(Element::block)
+        .any(|block| block.inputs.iter().chain(&block.outputs).any(|pin| pin.negated));
+    let mut known = known.into_iter().peekable();
+    let mut known_end = 0;
+    chunk.get(start..end).unwrap_or("").char_indices().all(|(offset, character)| {
+        let offset = start + offset;
+        while let Some(span) = known.next_if(|span| span.start as usize <= offset) {
+            known_end = known_end.max(span.end as usize);
+        }
+        let circle = negated && matches!(character, 'O' | 'o');
+        offset < known_end || circle || !character.is_alphanumeric()
+    })
 }
 
 /// Where the words of an element stand.
