@@ -306,6 +306,15 @@ fn positions_outside_of_the_text_are_moved_inside() {
 }
 
 #[test]
+fn lines_end_as_in_the_protocol() {
+    let text = "a\u{2028}b\u{2029}c\u{85}d\u{b}e\u{c}f\rg\r\nh\ni";
+    let document = Document::new(text, Notation::FxIl, rungwise::target::Target::ALL[2]);
+    let line = |word: &str| document.position(text.find(word).unwrap(), Encoding::Utf16).line;
+    assert_eq!([line("f"), line("g"), line("h"), line("i")], [0, 1, 2, 3]);
+    assert_eq!(document.line_count(), 4);
+}
+
+#[test]
 fn a_snapshot_keeps_its_text() {
     let mut document =
         Document::new("LD X0\nOUT Y0\nEND\n", Notation::FxIl, rungwise::target::Target::ALL[2]);

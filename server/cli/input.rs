@@ -3,7 +3,7 @@
 use crate::document::Document;
 use crate::project::{MANIFEST_NAME, Manifest, Project, is_program_file, open_document, program_files};
 use crate::target::Target;
-use crate::text::{Encoding, Language};
+use crate::text::{Encoding, Language, LineColumn};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -80,7 +80,7 @@ fn files_at(path: &Path) -> Result<Vec<(PathBuf, Arc<Manifest>)>, String> {
         return Ok(vec![(path.to_path_buf(), manifest)]);
     }
     if path.join(MANIFEST_NAME).is_file() {
-        let project = Project::read(path).map_err(|reason| format!("{}: {reason}", path.display()))?;
+        let project = Project::read(path);
         let manifest = usable(&project)?;
         let files = project.files().map_err(|reason| format!("{}: {reason}", path.display()))?;
         return Ok(files.into_iter().map(|file| (file, manifest.clone())).collect());
@@ -100,13 +100,9 @@ fn manifest_for(path: &Path) -> Result<Arc<Manifest>, String> {
 fn usable(project: &Project) -> Result<Arc<Manifest>, String> {
     let Some(error) = &project.error else { return Ok(Arc::new(project.manifest.clone())) };
     let path = project.root.join(MANIFEST_NAME);
-    let text = std::fs::read_to_string(&path).unwrap_or_default();
-    let before = text.get(..error.span.start as usize).unwrap_or("");
-    let line = before.matches('\n').count() + 1;
-    let column =
-        crate::text::column_of_offset(before.rsplit('\n').next().unwrap_or(""), usize::MAX, Encoding::Utf32)
-            + 1;
-    Err(format!("{}:{line}:{column}: {}", path.display(), error.message.render(Language::English)))
+    let LineColumn { line, column } = project.position(error.span.start, Encoding::Utf32);
+    let reason = error.message.render(Language::English);
+    Err(format!("{}:{}:{}: {reason}", path.display(), line + 1, column + 1))
 }
 
 fn read_program(
