@@ -4,7 +4,7 @@ use crate::document::Document;
 use crate::project::{MANIFEST_NAME, Manifest, Project, is_program_file, open_document, program_files};
 use crate::target::Target;
 use crate::text::{Encoding, Language, LineColumn};
-use std::io::{IsTerminal, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ pub(super) struct Program {
     pub damaged: bool,
 }
 
-/// The programs at `paths`, or nothing after complaints about what cannot be read.
+/// The programs at `paths`, or nothing after complaints about what cannot be read or that there are none.
 pub(super) fn programs(paths: &[PathBuf], target: Option<&'static Target>) -> Option<Vec<Program>> {
     let mut programs = Vec::new();
     let mut failed = false;
@@ -44,17 +44,32 @@ pub(super) fn programs(paths: &[PathBuf], target: Option<&'static Target>) -> Op
             }
         }
     }
+    if programs.is_empty() && !failed {
+        complain("no-programs", "there are no .lad or .il files here", "give a file, a folder or a project");
+        return None;
+    }
     (!failed).then_some(programs)
 }
 
-/// Writes `text` to standard output. A reader that went away, as `head` does, is no failure.
+/// Writes `text` to standard output. A reader that went away, as `head` does, is no failure; where nothing can be
+/// written for another reason, as on a full disk, the process ends, lest half a result pass for a whole one.
 pub(super) fn say(text: &str) {
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+    let mut output = std::io::stdout().lock();
+    let Err(reason) = output.write_all(text.as_bytes()).and_then(|()| output.flush()) else { return };
+    if reason.kind() != ErrorKind::BrokenPipe {
+        complain("unwritable-output", &reason.to_string(), "make room, or send the result elsewhere");
+        std::process::exit(2);
+    }
 }
 
 /// An error on standard error: `error[code]: reason`, and a sentence that helps.
 pub(super) fn complain(code: &str, reason: &str, help: &str) {
     let _ = writeln!(std::io::stderr(), "error[{code}]: {reason}\n  help: {help}");
+}
+
+/// A warning on standard error, of the same form; it changes no exit code.
+pub(super) fn caution(code: &str, reason: &str, help: &str) {
+    let _ = writeln!(std::io::stderr(), "warning[{code}]: {reason}\n  help: {help}");
 }
 
 /// Whether standard output takes colours: a terminal, and no `NO_COLOR`.
