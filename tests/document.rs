@@ -74,6 +74,34 @@ fn samples() -> Vec<Document> {
     files.iter().map(read).collect()
 }
 
+/// The examples once more as other systems write them, and programs in which the two notations meet.
+fn nasty_samples() -> Vec<Document> {
+    let mut nasty = Vec::new();
+    for sample in samples() {
+        let (text, notation, target) = (sample.text(), sample.notation(), sample.target());
+        nasty.push(Document::new(&text.replace('\n', "\r\n"), notation, target));
+        nasty.push(Document::new(&format!("\u{feff}{text}"), notation, target));
+    }
+    for text in MIXED {
+        nasty.push(open_document("mixed.lad", text, &Manifest::default(), None, None));
+        nasty.push(open_document("mixed.il", text, &Manifest::default(), None, None));
+    }
+    nasty
+}
+
+/// Drawings below, between and above declarations, comments around all of them.
+const MIXED: &[&str] = &[
+    "PROGRAM lamp\nVAR\n  a : BOOL; (* x *)\n  b AT %QX0.0 : BOOL;\nEND_VAR\n\nNETWORK 1 'first'\n(* why *)\n\
+     |   a        b  |\n+--| |------( )-+\n\nL1:\n|   b        a  |\n+--|/|--+---( )-+\n|   a   |       |\n\
+     +--| |--+       |\n\nEND_PROGRAM\nFUNCTION_BLOCK f\nVAR_INPUT x : BOOL; END_VAR\n+--[x]--(y)--+\n\
+     END_FUNCTION_BLOCK\n",
+    "+--[X0]--(Y0)--+\n(* open\n\nPROGRAM p\n*)\n+--[X1]--(Y1)--+\n\n\n// end\n[END]\n",
+    "电机 := 1\r\n+--[😀]--(Y0)--+\r\n\u{2028}\u{85}|\u{b} X0 |\u{c}\r\r\n\r+--[X0]--(Y0)--+\r",
+    "LD X0\rOUT Y0\r\nLD X1 // 😀\n\nP0\nLD '\nOUT Y1\n(* (* *)\nEND\n",
+    "TYPE t : STRUCT a : BOOL; END_STRUCT; END_TYPE\nPROGRAM p VAR x : t; END_VAR\nLD x.a\nAND( x.a\nOR x.a\n)\n\
+     ST x.a\nCAL f(\n a := 1,\n b => c)\nl: JMP l\nEND_PROGRAM\nVAR_GLOBAL g : INT; END_VAR\n",
+];
+
 /// What a document says, whatever way it came to be.
 fn check_same(incremental: &Document, edits: &str) {
     let scratch = Document::new(&incremental.text(), incremental.notation(), incremental.target());
@@ -100,6 +128,107 @@ fn edits() -> impl Strategy<Value = Vec<(usize, usize, usize)>> {
     )
 }
 
+/// Where an edit hurts.
+#[derive(Clone, Copy, Debug)]
+enum Sore {
+    Start,
+    End,
+    /// So many bytes before or behind the start of a chunk, chunks in thousandths.
+    Boundary(usize, isize),
+    /// Between the two bytes of a line end, lines in thousandths.
+    InLineEnd(usize),
+    /// From a chunk's start to the end of the text.
+    Rest(usize),
+    Everything,
+}
+
+impl Sore {
+    /// The bytes to replace, on character boundaries.
+    fn range_in(self, document: &Document, removed: usize) -> std::ops::Range<usize> {
+        let text = document.text();
+        let starts: Vec<usize> = document.chunks().map(|at| at.start).collect();
+        let boundary = |place: usize| starts.get(starts.len() * place / 1000).copied().unwrap_or(0);
+        let (start, removed) = match self {
+            Sore::Start => (0, removed),
+            Sore::End => (text.len().saturating_sub(removed), removed),
+            Sore::Boundary(place, by) => (boundary(place).saturating_add_signed(by), removed),
+            Sore::InLineEnd(place) => {
+                let from = boundary(place);
+                (text[from..].find("\r\n").map_or(from, |at| from + at + 1), removed)
+            }
+            Sore::Rest(place) => (boundary(place), text.len()),
+            Sore::Everything => (0, text.len()),
+        };
+        let inside = |offset: usize| {
+            let mut offset = offset.min(text.len());
+            while !text.is_char_boundary(offset) {
+                offset -= 1;
+            }
+            offset
+        };
+        let start = inside(start);
+        start..inside(start + removed).max(start)
+    }
+}
+
+fn nasty_edits() -> impl Strategy<Value = Vec<(Sore, usize, usize)>> {
+    let place = prop_oneof![
+        1 => Just(Sore::Start),
+        1 => Just(Sore::End),
+        8 => (0..1000usize, -2..3isize).prop_map(|(place, by)| Sore::Boundary(place, by)),
+        2 => (0..1000usize).prop_map(Sore::InLineEnd),
+        1 => (0..1000usize).prop_map(Sore::Rest),
+        1 => Just(Sore::Everything),
+    ];
+    let removed = prop_oneof![3 => Just(0usize), 3 => Just(1usize), 1 => 2..5usize, 1 => 5..200usize];
+    prop::collection::vec((place, removed, 0..NASTY_PIECES.len()), 1..4)
+}
+
+/// Pieces that change what stands far away, and line ends of every kind.
+const NASTY_PIECES: &[&str] = &[
+    "",
+    "\n",
+    "\r",
+    "\r\n",
+    "\n\n\n",
+    "(*",
+    "*)",
+    "(* x *)\n",
+    "{",
+    "}",
+    "'",
+    "😀",
+    "\u{feff}",
+    "\u{2028}",
+    "|",
+    "+",
+    "-",
+    "|      |\n",
+    "+--[X0]--(Y0)--+\n",
+    "|   a        b  |\n+--| |------( )-+\n",
+    "NETWORK 3 'x'\n",
+    "L2:\n",
+    "PROGRAM q\n",
+    "END_PROGRAM\n",
+    "VAR\n",
+    "VAR_GLOBAL\n",
+    "END_VAR\n",
+    "  c : INT;\n",
+    "TYPE\n",
+    "END_TYPE\n",
+    "CONFIGURATION c\n",
+    "LD X0\nOUT Y0\n",
+    "AND(\n",
+    ")\n",
+    "ORB\n",
+    "MPP\n",
+    "P1\n",
+    "LADDER DIAGRAM:\n",
+    "LDmicro0.1\n",
+    "PROGRAM\n",
+    "END\n",
+];
+
 fn apply(document: &mut Document, (place, removed, piece): (usize, usize, usize)) {
     let start = document.len() * place / 1000;
     let edit = Edit { range: Some(start..start + removed), text: PIECES[piece].to_string() };
@@ -107,7 +236,7 @@ fn apply(document: &mut Document, (place, removed, piece): (usize, usize, usize)
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: std::env::var("N").map_or(400, |n| n.parse().unwrap()), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn incremental_equals_from_scratch(sample in 0..1000usize, edits in edits()) {
@@ -117,6 +246,29 @@ proptest! {
         check::all(&document, &Severities::default());
         for edit in &edits {
             apply(&mut document, *edit);
+            check_same(&document, &format!("{edits:?}"));
+        }
+    }
+
+    #[test]
+    fn edits_where_it_hurts(sample in 0..1000usize, groups in prop::collection::vec(nasty_edits(), 1..6)) {
+        let samples = NASTY_SAMPLES.with(|samples| samples.clone());
+        let mut document = samples[sample % samples.len()].clone();
+        let mut model = document.text();
+        check::all(&document, &Severities::default());
+        for group in &groups {
+            // All edits of a group are placed in the text as it is when each comes, as a client does.
+            let mut edits = Vec::new();
+            let mut trial = document.clone();
+            for (place, removed, piece) in group {
+                let range = place.range_in(&trial, *removed);
+                let edit = Edit { range: Some(range.clone()), text: NASTY_PIECES[*piece].to_string() };
+                model.replace_range(range, NASTY_PIECES[*piece]);
+                trial.apply(std::slice::from_ref(&edit));
+                edits.push(edit);
+            }
+            document.apply(&edits);
+            prop_assert_eq!(document.text(), model.clone());
             check_same(&document, &format!("{edits:?}"));
         }
     }
@@ -138,6 +290,7 @@ proptest! {
 }
 
 thread_local! {
+    static NASTY_SAMPLES: std::rc::Rc<Vec<Document>> = std::rc::Rc::new(nasty_samples());
     static SAMPLES: std::rc::Rc<Vec<Document>> = std::rc::Rc::new(samples());
 }
 
@@ -150,6 +303,15 @@ fn positions_outside_of_the_text_are_moved_inside() {
     assert_eq!(offset(0, 10, Encoding::Utf16), "LD X0 // 电".len());
     assert_eq!(offset(0, 10, Encoding::Utf8), "LD X0 // ".len(), "inside of a character counts as its start");
     assert_eq!(offset(1, 3, Encoding::Utf32), "LD X0 // 电机\r\nOUT".len());
+}
+
+#[test]
+fn lines_end_as_in_the_protocol() {
+    let text = "a\u{2028}b\u{2029}c\u{85}d\u{b}e\u{c}f\rg\r\nh\ni";
+    let document = Document::new(text, Notation::FxIl, rungwise::target::Target::ALL[2]);
+    let line = |word: &str| document.position(text.find(word).unwrap(), Encoding::Utf16).line;
+    assert_eq!([line("f"), line("g"), line("h"), line("i")], [0, 1, 2, 3]);
+    assert_eq!(document.line_count(), 4);
 }
 
 #[test]

@@ -93,6 +93,33 @@ fn positions_are_counted_as_the_client_counts() {
     }
 }
 
+#[test]
+fn notifications_before_initialize_and_after_shutdown_change_nothing() {
+    let mut client = Client::spawn();
+    client.open(URI, "plc-il", "LD X8\nOUT Y0\nEND\n");
+    let published = |message: &Value| message["method"] == json!("textDocument/publishDiagnostics");
+    client.request("initialize", json!({"processId": null, "capabilities": {}}));
+    client.notify("initialized", json!({}));
+    assert_eq!(client.request("textDocument/hover", at(URI, 0, 0))["result"], Value::Null);
+    client.request("shutdown", Value::Null);
+    client.open(URI, "plc-il", "LD X8\nOUT Y0\nEND\n");
+    assert!(client.stays_silent(Duration::from_millis(300), published));
+    assert_eq!(client.request("shutdown", Value::Null)["error"]["code"], json!(-32600), "a second shutdown");
+    client.notify("exit", Value::Null);
+    assert_eq!(client.exit_status().code(), Some(0));
+}
+
+#[test]
+fn a_client_that_hangs_up_still_gets_the_answers_it_asked_for() {
+    let mut client = opened(&"LD X0\nOUT M5\n".repeat(5_000));
+    let document = json!({"textDocument": {"uri": URI}});
+    let asked: Vec<i64> =
+        (0..5).map(|_| client.ask("textDocument/semanticTokens/full", document.clone())).collect();
+    client.hang_up();
+    asked.into_iter().for_each(|id| assert!(client.answer(id)["result"].is_object()));
+    assert_eq!(client.exit_status().code(), Some(1));
+}
+
 // Order
 
 #[test]
@@ -218,6 +245,50 @@ fn closing_a_document_clears_its_diagnostics() {
     });
     assert_eq!(message["params"]["uri"], json!(URI));
     assert_eq!(client.request("textDocument/hover", at(URI, 0, 0))["result"], Value::Null);
+}
+
+/// The last diagnostics of a document, once nothing more comes.
+fn settled(client: &mut Client) -> (usize, Value) {
+    let published = |message: &Value| {
+        message["method"] == json!("textDocument/publishDiagnostics")
+            && message["params"]["uri"] == json!(URI)
+    };
+    let mut count = 0;
+    let mut last = client.wait_for("any diagnostics", published);
+    while !client.stays_silent(Duration::from_millis(1500), published) {
+        last = client.wait_for("the next diagnostics", published);
+        count += 1;
+    }
+    (count, last["params"].clone())
+}
+
+#[test]
+fn a_document_closed_and_opened_at_once_keeps_its_diagnostics() {
+    // Long enough for the first check to be under way when the second opening comes.
+    let text = "LD X8\nOUT M5\n".repeat(3_000);
+    let mut client = opened(&text);
+    for version in 2..6 {
+        client.notify("textDocument/didClose", json!({"textDocument": {"uri": URI}}));
+        client.notify(
+            "textDocument/didOpen",
+            json!({"textDocument": {"uri": URI, "languageId": "plc-il", "version": version, "text": text}}),
+        );
+    }
+    let (_, last) = settled(&mut client);
+    assert_eq!(last["version"], json!(5));
+    assert_eq!(last["diagnostics"].as_array().expect("an array").len(), 1000);
+}
+
+#[test]
+fn a_document_opened_twice_is_published_by_one_voice() {
+    let mut client = opened(&"LD X8\nOUT M5\n".repeat(3_000));
+    client.diagnostics(URI, 1);
+    client.change(URI, 2, (0, 0), (0, 0), "// x\n");
+    client.diagnostics(URI, 2);
+    client.open(URI, "plc-il", &"LD X0\nOUT M5\n".repeat(3_000));
+    let (count, last) = settled(&mut client);
+    assert!(count < 8, "{count} messages about one document");
+    assert_eq!(codes(last["diagnostics"].as_array().expect("an array")), ["missing-end"]);
 }
 
 #[test]
@@ -367,4 +438,125 @@ fn a_change_of_settings_reads_open_documents_anew() {
     });
     let found = message["params"]["diagnostics"].as_array().expect("an array").clone();
     assert_eq!(codes(&found), ["device-out-of-range"]);
+}
+
+#[test]
+fn settings_of_a_wrong_kind_do_not_spoil_the_others() {
+    let options = json!({"target": "fx1s", "format": null, "inlayHints": {"enabled": null},
+        "diagnostics": 7, "dialect": null});
+    let mut client = Client::start_with(json!({}), options);
+    client.open(URI, "plc-il", "LD M2000\nOUT Y0\nEND\n");
+    assert_eq!(codes(&client.diagnostics(URI, 1)), ["device-out-of-range"]);
+    // A client without any settings says null; what `initialize` said stays in force.
+    client.notify("workspace/didChangeConfiguration", json!({"settings": null}));
+    client.notify("workspace/didChangeConfiguration", json!({"settings": {"rungwise": null}}));
+    client.change(URI, 2, (0, 4), (0, 8), "2001");
+    assert_eq!(codes(&client.diagnostics(URI, 2)), ["device-out-of-range"]);
+}
+
+#[test]
+fn a_program_typed_into_an_empty_document_is_read_as_what_it_becomes() {
+    let mut client = opened("");
+    let dialect =
+        |client: &mut Client| client.wait_for_method("rungwise/status")["params"]["dialect"].clone();
+    assert_eq!(dialect(&mut client), json!("fx"));
+    client.change(URI, 2, (0, 0), (0, 0), "PROGRAM p\nVAR a : BOOL; END_VAR\nLD a\nST a\nEND_PROGRAM\n");
+    assert!(client.diagnostics(URI, 2).is_empty());
+    assert_eq!(dialect(&mut client), json!("iec"));
+}
+
+#[test]
+fn a_long_program_is_read_as_what_it_became_when_it_is_saved() {
+    let mut client = opened(&"// still to be written\n".repeat(300));
+    let program = format!("PROGRAM p\nVAR a : BOOL; END_VAR\n{}END_PROGRAM\n", "LD a\nST a\n".repeat(9_000));
+    client.change(URI, 2, (0, 0), (0, 0), &program);
+    client.notify("textDocument/didSave", json!({"textDocument": {"uri": URI}}));
+    client.wait_for("the status", |message| {
+        message["method"] == json!("rungwise/status") && message["params"]["dialect"] == json!("iec")
+    });
+}
+
+// Projects
+
+fn project(manifest: &str) -> (tempfile::TempDir, String, String) {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("rungwise.toml"), manifest).expect("written");
+    let uri = |name: &str| format!("file://{}", folder.path().join(name).display());
+    let (program, manifest) = (uri("a.il"), uri("rungwise.toml"));
+    (folder, program, manifest)
+}
+
+#[test]
+fn a_manifest_that_changes_on_disk_changes_what_is_found() {
+    let (folder, program, _) = project("target = \"fx1s\"\n");
+    let mut client = Client::start();
+    client.open(&program, "plc-il", "LD M2000\nOUT Y0\nEND\n");
+    assert_eq!(codes(&client.diagnostics(&program, 1)), ["device-out-of-range"]);
+    std::fs::write(folder.path().join("rungwise.toml"), "target = \"fx3u\"\n").expect("written");
+    client.notify("workspace/didChangeWatchedFiles", json!({"changes": []}));
+    client.wait_for("cleared diagnostics", |message| {
+        message["method"] == json!("textDocument/publishDiagnostics")
+            && message["params"]["uri"] == json!(program)
+            && message["params"]["diagnostics"] == json!([])
+    });
+}
+
+#[test]
+fn a_mistake_in_the_manifest_is_shown_where_it_is_until_it_is_mended() {
+    let (folder, program, manifest) = project("# Line\ntarget = \"fx9\"\n");
+    let mut client = Client::start();
+    client.open(&program, "plc-il", "LD X0\nOUT Y0\nEND\n");
+    let message = client.wait_for_method("window/showMessage");
+    assert!(message["params"]["message"].as_str().is_some_and(|text| text.contains("fx9")), "{message}");
+    let about = |wanted: Value| {
+        move |message: &Value| {
+            message["method"] == json!("textDocument/publishDiagnostics")
+                && message["params"]["uri"] == wanted
+        }
+    };
+    let shown = client.wait_for("the mistake", about(json!(manifest)));
+    let found = &shown["params"]["diagnostics"][0];
+    assert_eq!(found["range"]["start"], json!({"line": 1, "character": 10}), "{shown}");
+    client.open(&program.replace("a.il", "b.il"), "plc-il", "LD X0\nOUT Y0\nEND\n");
+    client.diagnostics(&program.replace("a.il", "b.il"), 1);
+    let told = |message: &Value| message["method"] == json!("window/showMessage");
+    assert!(client.stays_silent(Duration::from_millis(200), told), "each mistake is told once");
+    std::fs::write(folder.path().join("rungwise.toml"), "target = \"fx3u\"\n").expect("written");
+    client.notify("workspace/didChangeWatchedFiles", json!({"changes": []}));
+    let shown = client.wait_for("the clearing", about(json!(manifest)));
+    assert_eq!(shown["params"]["diagnostics"], json!([]));
+}
+
+#[test]
+fn a_client_that_can_is_asked_to_watch_manifests() {
+    let capabilities = json!({"workspace": {"didChangeWatchedFiles": {"dynamicRegistration": true}}});
+    let mut client = Client::start_with(capabilities, Value::Null);
+    let asked = client.wait_for_method("client/registerCapability")["params"].clone();
+    let registration = &asked["registrations"][0];
+    assert_eq!(registration["method"], json!("workspace/didChangeWatchedFiles"));
+    assert_eq!(registration["registerOptions"]["watchers"][0]["globPattern"], json!("**/rungwise.toml"));
+    let asks = |message: &Value| message["method"] == json!("client/registerCapability");
+    assert!(Client::start().stays_silent(Duration::from_millis(200), asks));
+}
+
+#[test]
+fn thousands_of_edits_do_not_grow_the_memory() {
+    let mut client = opened(&"LD X0\nAND X1\nOUT M5\n".repeat(300));
+    let mut version = 1;
+    let mut edit = |client: &mut Client, rounds: usize| {
+        for round in 0..rounds {
+            version += 1;
+            let line = (round * 37 % 900) as u32;
+            client.change(URI, version, (line, 0), (line, 0), "// x\n");
+            version += 1;
+            client.change(URI, version, (line, 0), (line + 1, 0), "");
+        }
+        client.request("textDocument/hover", at(URI, 0, 0));
+        client.diagnostics(URI, version);
+    };
+    edit(&mut client, 1_000);
+    let Some(before) = client.resident_kib() else { return };
+    edit(&mut client, 4_000);
+    let after = client.resident_kib().expect("as before");
+    assert!(after < before + 16 * 1024, "{before} KiB became {after} KiB");
 }

@@ -128,7 +128,11 @@ impl Client {
             match self.messages.recv_timeout(left) {
                 Ok(message) if wanted(&message) => return message,
                 Ok(message) => self.kept.push(message),
-                Err(_) => panic!("{what} did not come; there were: {:?}", self.kept),
+                Err(_) => {
+                    let short = |message: &Value| message.to_string().chars().take(300).collect::<String>();
+                    let kept: Vec<String> = self.kept.iter().map(short).collect();
+                    panic!("{what} did not come; there were:\n{}", kept.join("\n"))
+                }
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Every test of the package that needs no private item, one module for each subject.
 
+mod cli;
 mod document;
 mod grammar;
 mod ide;

@@ -1,6 +1,6 @@
 //! `rungwise check`
 
-use super::input::{Program, complain, programs, say};
+use super::input::{Program, caution, programs, say};
 use super::{Format, Outcome, paths_or_here, render};
 use crate::check;
 use crate::ide;
@@ -32,6 +32,10 @@ enum Deny {
     Hint,
 }
 
+/// So many findings of a file are drawn, the others are listed. Nobody reads more, and what is no program at all would
+/// make drawings of a thousand times its size.
+const MOST_DRAWN: usize = 200;
+
 /// The numbers under a result.
 #[derive(Default)]
 struct Summary {
@@ -47,9 +51,9 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     let Some(programs) = programs(&paths_or_here(&arguments.paths), arguments.target) else {
         return Outcome::Unusable;
     };
-    if programs.is_empty() {
-        complain("no-programs", "there are no .lad or .il files here", "give a file, a folder or a project");
-        return Outcome::Unusable;
+    for program in programs.iter().filter(|program| program.damaged) {
+        let reason = format!("{}: not UTF-8, what cannot be read counts as \u{fffd}", program.path.display());
+        caution("not-utf-8", &reason, "save the file as UTF-8");
     }
     let checked: Vec<(Program, Vec<Diagnostic>)> = programs
         .into_iter()
@@ -116,8 +120,12 @@ fn say_text(checked: &[(Program, Vec<Diagnostic>)], summary: &Summary) {
     let colours = render::Colours::new(super::input::coloured());
     for (program, diagnostics) in checked {
         let name = program.path.display().to_string();
-        for diagnostic in diagnostics {
+        let (drawn, listed) = diagnostics.split_at(diagnostics.len().min(MOST_DRAWN));
+        for diagnostic in drawn {
             say(&render::diagnostic(&name, &program.document, diagnostic, &colours));
+        }
+        for diagnostic in listed {
+            say(&render::headline(&name, &program.document, diagnostic, &colours));
         }
     }
     say(&format!("{}\n", summary.sentence()));

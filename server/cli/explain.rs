@@ -34,10 +34,10 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
 /// Every page under `word`: a rule; an FX instruction and an IEC operator, function or block of the same name.
 fn pages(word: &str) -> Vec<String> {
     let rule = Rule::named(&word.to_ascii_lowercase()).map(Rule::page);
-    let instruction = Form::named(word).map(|form| crate::ide::instruction_page(form));
+    let instruction = Form::named(word).map(crate::ide::instruction_page);
     let operator = Operator::written(word).map(|written| crate::ide::operator_page(written.operator));
-    let function = Function::named(word).map(|function| crate::ide::function_page(&function));
-    let block = FunctionBlock::named(word).map(|block| crate::ide::block_page(block));
+    let function = Function::named(word).map(crate::ide::function_page);
+    let block = FunctionBlock::named(word).map(crate::ide::block_page);
     [rule, instruction, operator, function, block].into_iter().flatten().collect()
 }
 

@@ -87,6 +87,10 @@ fn style_of(program: &Program, name: Option<StyleName>) -> Style {
 /// Writes beside the file and then renames, so that a full disk or a pulled plug never leaves half a program.
 fn write_whole(path: &std::path::Path, text: &str) -> std::io::Result<()> {
     let path = path.canonicalize()?;
+    // Renaming would replace a file that its owner locked.
+    if std::fs::metadata(&path)?.permissions().readonly() {
+        return Err(std::io::Error::new(std::io::ErrorKind::PermissionDenied, "the file is read-only"));
+    }
     let mut name = path.file_name().unwrap_or_default().to_os_string();
     name.push(".rungwise-new");
     let beside = path.with_file_name(name);

@@ -3,8 +3,8 @@
 use crate::document::Document;
 use crate::project::{MANIFEST_NAME, Manifest, Project, is_program_file, open_document, program_files};
 use crate::target::Target;
-use crate::text::{Encoding, Language};
-use std::io::{IsTerminal, Write};
+use crate::text::{Encoding, Language, LineColumn};
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ pub(super) struct Program {
     pub damaged: bool,
 }
 
-/// The programs at `paths`, or nothing after complaints about what cannot be read.
+/// The programs at `paths`, or nothing after complaints about what cannot be read or that there are none.
 pub(super) fn programs(paths: &[PathBuf], target: Option<&'static Target>) -> Option<Vec<Program>> {
     let mut programs = Vec::new();
     let mut failed = false;
@@ -44,17 +44,32 @@ pub(super) fn programs(paths: &[PathBuf], target: Option<&'static Target>) -> Op
             }
         }
     }
+    if programs.is_empty() && !failed {
+        complain("no-programs", "there are no .lad or .il files here", "give a file, a folder or a project");
+        return None;
+    }
     (!failed).then_some(programs)
 }
 
-/// Writes `text` to standard output. A reader that went away, as `head` does, is no failure.
+/// Writes `text` to standard output. A reader that went away, as `head` does, is no failure; where nothing can be
+/// written for another reason, as on a full disk, the process ends, lest half a result pass for a whole one.
 pub(super) fn say(text: &str) {
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+    let mut output = std::io::stdout().lock();
+    let Err(reason) = output.write_all(text.as_bytes()).and_then(|()| output.flush()) else { return };
+    if reason.kind() != ErrorKind::BrokenPipe {
+        complain("unwritable-output", &reason.to_string(), "make room, or send the result elsewhere");
+        std::process::exit(2);
+    }
 }
 
 /// An error on standard error: `error[code]: reason`, and a sentence that helps.
 pub(super) fn complain(code: &str, reason: &str, help: &str) {
     let _ = writeln!(std::io::stderr(), "error[{code}]: {reason}\n  help: {help}");
+}
+
+/// A warning on standard error, of the same form; it changes no exit code.
+pub(super) fn caution(code: &str, reason: &str, help: &str) {
+    let _ = writeln!(std::io::stderr(), "warning[{code}]: {reason}\n  help: {help}");
 }
 
 /// Whether standard output takes colours: a terminal, and no `NO_COLOR`.
@@ -80,7 +95,7 @@ fn files_at(path: &Path) -> Result<Vec<(PathBuf, Arc<Manifest>)>, String> {
         return Ok(vec![(path.to_path_buf(), manifest)]);
     }
     if path.join(MANIFEST_NAME).is_file() {
-        let project = Project::read(path).map_err(|reason| format!("{}: {reason}", path.display()))?;
+        let project = Project::read(path);
         let manifest = usable(&project)?;
         let files = project.files().map_err(|reason| format!("{}: {reason}", path.display()))?;
         return Ok(files.into_iter().map(|file| (file, manifest.clone())).collect());
@@ -100,13 +115,9 @@ fn manifest_for(path: &Path) -> Result<Arc<Manifest>, String> {
 fn usable(project: &Project) -> Result<Arc<Manifest>, String> {
     let Some(error) = &project.error else { return Ok(Arc::new(project.manifest.clone())) };
     let path = project.root.join(MANIFEST_NAME);
-    let text = std::fs::read_to_string(&path).unwrap_or_default();
-    let before = text.get(..error.span.start as usize).unwrap_or("");
-    let line = before.matches('\n').count() + 1;
-    let column =
-        crate::text::column_of_offset(before.rsplit('\n').next().unwrap_or(""), usize::MAX, Encoding::Utf32)
-            + 1;
-    Err(format!("{}:{line}:{column}: {}", path.display(), error.message.render(Language::English)))
+    let LineColumn { line, column } = project.position(error.span.start, Encoding::Utf32);
+    let reason = error.message.render(Language::English);
+    Err(format!("{}:{}:{}: {reason}", path.display(), line + 1, column + 1))
 }
 
 fn read_program(

@@ -6,6 +6,7 @@ mod fmt;
 mod input;
 mod render;
 
+use crate::text::Language;
 use clap::{Parser, Subcommand, ValueEnum};
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -17,6 +18,10 @@ use std::process::ExitCode;
 struct Arguments {
     #[command(subcommand)]
     verb: Verb,
+    /// The language of messages: en.
+    // The catalogue has one language, so there is nobody to hand the choice to.
+    #[arg(long = "lang", value_name = "LANGUAGE", global = true, default_value = "en", value_parser = language_named)]
+    _language: Language,
 }
 
 #[derive(Subcommand)]
@@ -110,6 +115,13 @@ impl From<Outcome> for ExitCode {
             Outcome::Findings => ExitCode::from(1),
             Outcome::Unusable => ExitCode::from(2),
         }
+    }
+}
+
+fn language_named(name: &str) -> Result<Language, String> {
+    match name {
+        "en" => Ok(Language::English),
+        _ => Err("messages are in en only".to_string()),
     }
 }
 

@@ -43,14 +43,19 @@ impl Colours {
     }
 }
 
-/// `path:line:column: severity[code]: message`, the rung with carets, related places and fixes.
-pub(super) fn diagnostic(path: &str, document: &Document, found: &Diagnostic, colours: &Colours) -> String {
-    let at = document.position(found.span.start as usize, Encoding::Utf32);
-    let (colour, off, dim) = (colours.of(found.severity), colours.off, colours.dim);
+/// `path:line:column: severity[code]: message`
+pub(super) fn headline(path: &str, document: &Document, found: &Diagnostic, colours: &Colours) -> String {
+    let LineColumn { line, column } = document.position(found.span.start as usize, Encoding::Utf32);
+    let (colour, off) = (colours.of(found.severity), colours.off);
     let message = found.message.render(Language::English);
     let word = severity_word(found.severity);
-    let mut text =
-        format!("{path}:{}:{}: {colour}{word}[{}]{off}: {message}\n", at.line + 1, at.column + 1, found.code);
+    format!("{path}:{}:{}: {colour}{word}[{}]{off}: {message}\n", line + 1, column + 1, found.code)
+}
+
+/// The headline, the rung with carets, related places and fixes.
+pub(super) fn diagnostic(path: &str, document: &Document, found: &Diagnostic, colours: &Colours) -> String {
+    let (colour, off, dim) = (colours.of(found.severity), colours.off, colours.dim);
+    let mut text = headline(path, document, found, colours);
     let (first, last) = shown_lines(document, found.span);
     let gutter = (last + 1).to_string().len();
     for line in first..=last {

@@ -12,11 +12,13 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 pub struct Chunk {
     text: Box<str>,
     tree: Tree,
-    line_breaks: u32,
     mentions: OnceLock<Box<[Mention]>>,
     size: OnceLock<Size>,
-    found: Mutex<Option<(u64, Arc<[Diagnostic]>)>>,
+    found: Kept,
 }
+
+/// Diagnostics and the key under which they hold.
+pub(super) type Kept = Mutex<Option<(u64, Arc<[Diagnostic]>)>>;
 
 /// What a chunk says.
 #[derive(Clone, PartialEq, Debug)]
@@ -43,7 +45,6 @@ impl Chunk {
         Chunk {
             text: text.into(),
             tree,
-            line_breaks: text.bytes().filter(|&byte| byte == b'\n').count() as u32,
             mentions: OnceLock::new(),
             size: OnceLock::new(),
             found: Mutex::new(None),
@@ -68,11 +69,6 @@ impl Chunk {
     /// Whether it has no text; no document contains such a chunk.
     pub fn is_empty(&self) -> bool {
         self.text.is_empty()
-    }
-
-    /// Number of line feeds in it.
-    pub fn line_breaks(&self) -> u32 {
-        self.line_breaks
     }
 
     /// What the reader could not read.
@@ -102,11 +98,7 @@ impl Chunk {
 }
 
 /// The value kept under `key`, or a new one. A panic elsewhere leaves the slot usable: it holds a whole value or none.
-pub(super) fn kept(
-    slot: &Mutex<Option<(u64, Arc<[Diagnostic]>)>>,
-    key: u64,
-    make: impl FnOnce() -> Vec<Diagnostic>,
-) -> Arc<[Diagnostic]> {
+pub(super) fn kept(slot: &Kept, key: u64, make: impl FnOnce() -> Vec<Diagnostic>) -> Arc<[Diagnostic]> {
     let lock = || slot.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((kept_key, value)) = &*lock()
         && *kept_key == key

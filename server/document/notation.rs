@@ -92,7 +92,7 @@ fn drawing_words(text: &str) -> impl Iterator<Item = &str> {
         })
         .take(2000)
         .flat_map(|line| line.split(|c: char| !(c.is_alphanumeric() || "_.%#".contains(c))))
-        .filter(|word| word.chars().count() > 1 || word.chars().any(|c| !c.is_ascii()))
+        .filter(|word| word.chars().count() > 1 || !word.is_ascii())
 }
 
 fn is_declaration_keyword(word: &str) -> bool {

@@ -15,7 +15,7 @@ pub struct Page {
     bytes: usize,
     size: OnceLock<Size>,
     names: OnceLock<Names>,
-    found: Mutex<Option<(u64, Arc<[Diagnostic]>)>>,
+    found: chunk::Kept,
 }
 
 impl Page {

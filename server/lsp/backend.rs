@@ -1,7 +1,6 @@
 //! The handlers: a few lines each, from the snapshot of the request to the answer of `ide`.
 
 use super::capabilities;
-use super::settings::Settings;
 use super::to_proto::{self, Place};
 use super::workspace::{Open, SNAPSHOT, Snapshot, Workspace};
 use crate::check;
@@ -9,7 +8,7 @@ use crate::ide;
 use crate::text::{Diagnostic, Language, Message};
 use serde_json::{Value, json};
 use std::collections::HashMap;
-use std::hash::{BuildHasher, Hash, Hasher};
+use std::hash::BuildHasher;
 use std::sync::Arc;
 use tower_lsp::LanguageServer;
 use tower_lsp::jsonrpc::{Error, Result};
@@ -28,11 +27,22 @@ impl Backend {
 
 impl LanguageServer for Backend {
     async fn initialize(&self, params: InitializeParams) -> Result<InitializeResult> {
-        let settings = Settings::read(params.initialization_options.as_ref());
-        let encoding = capabilities::encoding_for(&params.capabilities);
-        let result = capabilities::offered(&params.capabilities, encoding, settings.pulls());
-        self.workspace.initialise(encoding, settings);
-        Ok(result)
+        // The workspace took what these say when the message was read.
+        let Snapshot { encoding, settings, .. } = self.workspace.snapshot();
+        Ok(capabilities::offered(&params.capabilities, encoding, settings.pulls()))
+    }
+
+    async fn initialized(&self, _: InitializedParams) {
+        if !self.workspace.watches() {
+            return;
+        }
+        let client = self.workspace.client.clone();
+        // The client may answer late or never; no handler waits for it.
+        tokio::spawn(async move {
+            if let Err(reason) = client.register_capability(vec![capabilities::watched_manifests()]).await {
+                tracing::warn!("the client does not watch manifests: {reason}");
+            }
+        });
     }
 
     async fn shutdown(&self) -> Result<()> {
@@ -121,7 +131,7 @@ impl LanguageServer for Backend {
     }
 
     async fn inlay_hint(&self, params: InlayHintParams) -> Result<Option<Vec<InlayHint>>> {
-        if !SNAPSHOT.with(|snapshot| snapshot.settings.inlay_hints.enabled) {
+        if !SNAPSHOT.with(|snapshot| snapshot.settings.inlay_hints) {
             return Ok(None);
         }
         whole(params.text_document.uri, move |_, place| {
@@ -275,9 +285,8 @@ fn report(
     items: Vec<tower_lsp::ls_types::Diagnostic>,
     previous: Option<String>,
 ) -> DocumentDiagnosticReportResult {
-    let mut hasher = rustc_hash::FxBuildHasher.build_hasher();
-    serde_json::to_string(&items).unwrap_or_default().hash(&mut hasher);
-    let result_id = format!("{:016x}", hasher.finish());
+    let hash = rustc_hash::FxBuildHasher.hash_one(serde_json::to_string(&items).unwrap_or_default());
+    let result_id = format!("{hash:016x}");
     let report = if previous.as_deref() == Some(result_id.as_str()) {
         DocumentDiagnosticReport::Unchanged(RelatedUnchangedDocumentDiagnosticReport {
             related_documents: None,

@@ -22,6 +22,22 @@ pub(super) fn encoding_for(client: &ClientCapabilities) -> Encoding {
     }
 }
 
+/// Whether the client takes registrations of watched files.
+pub(super) fn can_watch(client: &ClientCapabilities) -> bool {
+    let watching =
+        client.workspace.as_ref().and_then(|workspace| workspace.did_change_watched_files.as_ref());
+    watching.is_some_and(|watching| watching.dynamic_registration == Some(true))
+}
+
+/// Asks for `workspace/didChangeWatchedFiles` about manifests.
+pub(super) fn watched_manifests() -> Registration {
+    Registration {
+        id: "rungwise-manifests".to_string(),
+        method: "workspace/didChangeWatchedFiles".to_string(),
+        register_options: Some(serde_json::json!({"watchers": [{"globPattern": "**/rungwise.toml"}]})),
+    }
+}
+
 /// The answer to `initialize`. `pulls` is the setting that turns pushed diagnostics off.
 pub(super) fn offered(client: &ClientCapabilities, encoding: Encoding, pulls: bool) -> InitializeResult {
     let can_pull = client.text_document.as_ref().is_some_and(|document| document.diagnostic.is_some());

@@ -7,6 +7,7 @@
 mod backend;
 mod capabilities;
 mod frames;
+mod manifests;
 mod publisher;
 mod service;
 mod settings;

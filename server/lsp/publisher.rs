@@ -12,6 +12,7 @@ use crate::text::{Diagnostic, Encoding};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
+use tokio::task::JoinHandle;
 use tower_lsp::Client;
 use tower_lsp::ls_types::Uri;
 
@@ -24,6 +25,7 @@ const PAUSE: Duration = Duration::from_millis(120);
 /// Sends what it is given to a task, which sees the newest only.
 pub(super) struct Publisher {
     sender: watch::Sender<Order>,
+    task: JoinHandle<()>,
 }
 
 #[derive(Clone, Default)]
@@ -46,20 +48,35 @@ struct Task {
 }
 
 impl Publisher {
-    pub(super) fn start(client: Client, encoding: Encoding, settings: &Settings) -> Publisher {
+    /// `before` is the end of the publisher that the document had when it was open before: what that one still has
+    /// to say, the clearing at last, must not come after the first word of this one.
+    pub(super) fn start(
+        client: Client,
+        encoding: Encoding,
+        settings: &Settings,
+        before: Option<JoinHandle<()>>,
+    ) -> Publisher {
         let (sender, receiver) = watch::channel(Order::Nothing);
         let pushes = !settings.pulls();
         let task = Task { client, encoding, pushes, batch: None, batch_took: Duration::ZERO, status: None };
-        tokio::spawn(task.run(receiver));
-        Publisher { sender }
+        let task = tokio::spawn(async move {
+            if let Some(before) = before {
+                // One that failed has nothing to say any more either.
+                let _ = before.await;
+            }
+            task.run(receiver).await;
+        });
+        Publisher { sender, task }
     }
 
     pub(super) fn publish(&self, open: Arc<Open>) {
         self.sender.send_replace(Order::Publish(open));
     }
 
-    pub(super) fn close(self, uri: Uri) {
+    /// Clears what was published; the handle ends when that is done.
+    pub(super) fn close(self, uri: Uri) -> JoinHandle<()> {
         self.sender.send_replace(Order::Close(uri));
+        self.task
     }
 }
 
@@ -85,9 +102,11 @@ impl Task {
             let mut diagnostics = self.carried(&open);
             diagnostics.extend(realtime);
             self.push(&open, diagnostics).await;
-            if tokio::time::timeout(PAUSE, receiver.changed()).await.is_ok() {
-                receiver.mark_changed();
-                return;
+            match tokio::time::timeout(PAUSE, receiver.changed()).await {
+                Ok(Ok(())) => return receiver.mark_changed(),
+                // Nobody is there any more to give orders.
+                Ok(Err(_)) => return,
+                Err(_) => {}
             }
         }
         let started = Instant::now();
@@ -137,8 +156,12 @@ impl Task {
         }
     }
 
-    async fn tell_status(&mut self, open: &Open) {
-        let status = StatusNotification::of(open);
+    async fn tell_status(&mut self, open: &Arc<Open>) {
+        let open = open.clone();
+        // As a check it counts on a thread of its own, where a failure does not end the publisher.
+        let Ok(status) = tokio::task::spawn_blocking(move || StatusNotification::of(&open)).await else {
+            return;
+        };
         if self.status.as_ref() != Some(&status) {
             self.client.send_notification::<super::status::StatusMethod>(status.clone()).await;
             self.status = Some(status);

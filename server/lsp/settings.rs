@@ -2,84 +2,78 @@
 
 use crate::document::Notation;
 use crate::ide::Style;
-use crate::project::{FormatStyle, Manifest};
+use crate::project::{FormatStyle, MOST_WIDTH, Manifest};
 use crate::target::Target;
-use serde::Deserialize;
+use serde_json::Value;
 
 /// What the user set in the editor. Everything may be left out.
-#[derive(Clone, PartialEq, Debug, Default, Deserialize)]
-#[serde(default, rename_all = "camelCase")]
+#[derive(Clone, Debug)]
 pub(super) struct Settings {
-    /// `fx2n` …; empty or `auto` leaves it to the project and the content.
-    pub target: Option<String>,
-    /// `fx`, `iec`; empty or `auto` leaves it to the project and the content.
-    pub dialect: Option<String>,
-    pub format: Format,
-    pub inlay_hints: InlayHints,
-    pub diagnostics: Diagnostics,
+    /// `target`: `fx2n` …; anything else leaves it to the project and the content.
+    target: Option<&'static Target>,
+    /// `dialect`: `fx`, `iec`; anything else leaves it to the project and the content.
+    notation: Option<Notation>,
+    /// `format.style`: `iec`, `brackets`, `unicode`; anything else leaves it to the project.
+    style: Option<FormatStyle>,
+    /// `format.width`, in cells; else the project's.
+    width: Option<u32>,
+    /// `inlayHints.enabled`
+    pub inlay_hints: bool,
+    /// `diagnostics.mode` is `pull` and not `push`. A client that shows both kinds would show everything twice.
+    pulls: bool,
 }
 
-#[derive(Clone, PartialEq, Debug, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Format {
-    pub style: Option<String>,
-    pub width: Option<u32>,
-}
-
-#[derive(Clone, PartialEq, Debug, Deserialize)]
-#[serde(default)]
-pub(super) struct InlayHints {
-    pub enabled: bool,
-}
-
-impl Default for InlayHints {
-    fn default() -> InlayHints {
-        InlayHints { enabled: true }
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings { target: None, notation: None, style: None, width: None, inlay_hints: true, pulls: false }
     }
-}
-
-#[derive(Clone, PartialEq, Debug, Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Diagnostics {
-    /// `push` (the default) or `pull`. A client that shows both kinds would show everything twice.
-    pub mode: Option<String>,
 }
 
 impl Settings {
     /// From `initializationOptions`, or from the `settings` of `didChangeConfiguration`, where the part under
-    /// `rungwise` counts. What cannot be read is ignored, as no user can see an answer to a notification.
-    pub(super) fn read(value: Option<&serde_json::Value>) -> Settings {
-        let Some(value) = value else { return Settings::default() };
-        let own = value.get("rungwise").unwrap_or(value);
-        serde_json::from_value(own.clone()).unwrap_or_else(|reason| {
-            tracing::warn!("settings could not be read: {reason}");
-            Settings::default()
+    /// `rungwise` counts; `None` if there are no settings. Each setting is read by itself: one of a wrong kind, and
+    /// many clients send `null` for what is not set, does not spoil the others.
+    pub(super) fn read(value: Option<&Value>) -> Option<Settings> {
+        let value = value?;
+        let own = value.get("rungwise").unwrap_or(value).as_object()?;
+        let part = |section: &str, name: &str| own.get(section).and_then(|section| section.get(name));
+        let word = |value: Option<&Value>| value.and_then(Value::as_str).map(str::to_ascii_lowercase);
+        let notation = match word(own.get("dialect")).as_deref() {
+            Some("fx") => Some(Notation::FxIl),
+            Some("iec") => Some(Notation::IecIl),
+            _ => None,
+        };
+        let style = match word(part("format", "style")).as_deref() {
+            Some("iec") => Some(FormatStyle::Iec),
+            Some("brackets") => Some(FormatStyle::Brackets),
+            Some("unicode") => Some(FormatStyle::Unicode),
+            _ => None,
+        };
+        let width = part("format", "width").and_then(Value::as_u64);
+        Some(Settings {
+            target: word(own.get("target")).and_then(|name| Target::named(&name)),
+            notation,
+            style,
+            width: width.map(|width| width.min(u64::from(MOST_WIDTH)) as u32),
+            inlay_hints: part("inlayHints", "enabled").and_then(Value::as_bool).unwrap_or(true),
+            pulls: word(part("diagnostics", "mode")).as_deref() == Some("pull"),
         })
     }
 
     pub(super) fn target(&self) -> Option<&'static Target> {
-        self.target.as_deref().and_then(Target::named)
+        self.target
     }
 
     pub(super) fn notation(&self) -> Option<Notation> {
-        match self.dialect.as_deref() {
-            Some("fx") => Some(Notation::FxIl),
-            Some("iec") => Some(Notation::IecIl),
-            _ => None,
-        }
+        self.notation
     }
 
     pub(super) fn style(&self, manifest: &Manifest) -> Style {
-        let kind = match self.format.style.as_deref() {
-            Some("iec") => FormatStyle::Iec,
-            Some("brackets") => FormatStyle::Brackets,
-            Some("unicode") => FormatStyle::Unicode,
-            _ => manifest.format.style,
-        };
-        Style { kind, width: self.format.width.unwrap_or(manifest.format.width) }
+        let width = self.width.unwrap_or(manifest.format.width);
+        Style { kind: self.style.unwrap_or(manifest.format.style), width }
     }
 
     pub(super) fn pulls(&self) -> bool {
-        self.diagnostics.mode.as_deref() == Some("pull")
+        self.pulls
     }
 }

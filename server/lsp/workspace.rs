@@ -1,22 +1,31 @@
 //! The state of the server: settings and open documents, changed in message order, read through snapshots.
 
+use super::capabilities;
+use super::manifests::Manifests;
 use super::publisher::Publisher;
 use super::settings::Settings;
 use crate::check::Severities;
 use crate::document::{Document, Edit, Notation};
 use crate::project::{Manifest, Project, decide};
+use crate::target::{Model, Target};
 use crate::text::{Encoding, LineColumn};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
+use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use tokio::task::JoinHandle;
 use tower_lsp::Client;
 use tower_lsp::ls_types::{
     DidChangeConfigurationParams, DidChangeTextDocumentParams, DidCloseTextDocumentParams,
-    DidOpenTextDocumentParams, DidSaveTextDocumentParams, LSPAny, TextDocumentContentChangeEvent, Uri,
+    DidOpenTextDocumentParams, DidSaveTextDocumentParams, InitializeParams, LSPAny,
+    TextDocumentContentChangeEvent, TextDocumentItem, Uri,
 };
+
+/// A document up to this size is looked at after each edit for what it is; a longer one when it is saved.
+const UNDECIDED_BYTES: usize = 4096;
 
 tokio::task_local! {
     /// The state at the moment when the request was read.
@@ -45,6 +54,7 @@ pub(super) struct Open {
 pub(super) struct Workspace {
     pub client: Client,
     state: Mutex<State>,
+    initialised: AtomicBool,
     shut_down: AtomicBool,
 }
 
@@ -52,6 +62,10 @@ pub(super) struct Workspace {
 struct State {
     snapshot: Snapshot,
     publishers: FxHashMap<Uri, Publisher>,
+    /// Publishers of closed documents that are not done yet.
+    closing: FxHashMap<Uri, JoinHandle<()>>,
+    manifests: Manifests,
+    watches: bool,
 }
 
 impl Snapshot {
@@ -59,11 +73,22 @@ impl Snapshot {
     pub(super) fn open(&self, uri: &Uri) -> Option<&Arc<Open>> {
         self.documents.get(uri)
     }
+
+    /// How many documents are open.
+    #[cfg(test)]
+    pub(super) fn len(&self) -> usize {
+        self.documents.len()
+    }
 }
 
 impl Workspace {
     pub(super) fn new(client: Client) -> Workspace {
-        Workspace { client, state: Mutex::default(), shut_down: AtomicBool::new(false) }
+        Workspace {
+            client,
+            state: Mutex::default(),
+            initialised: AtomicBool::new(false),
+            shut_down: AtomicBool::new(false),
+        }
     }
 
     pub(super) fn snapshot(&self) -> Snapshot {
@@ -74,24 +99,44 @@ impl Workspace {
         self.shut_down.load(Ordering::Relaxed)
     }
 
-    pub(super) fn note_method(&self, method: &str) {
-        if method == "shutdown" {
-            self.shut_down.store(true, Ordering::Relaxed);
+    /// Whether the client wants to be asked to watch files.
+    pub(super) fn watches(&self) -> bool {
+        self.state().watches
+    }
+
+    /// Takes from a message what it says about the life of the server. What `initialize` says is in force before the
+    /// next message is read, although its answer is made later.
+    pub(super) fn note_lifecycle(&self, method: &str, params: Option<&LSPAny>) {
+        match method {
+            "initialize" if !self.initialised.load(Ordering::Relaxed) => {
+                if let Ok(params) = InitializeParams::deserialize(params.unwrap_or(&Value::Null)) {
+                    self.initialise(&params);
+                }
+            }
+            "shutdown" if self.initialised.load(Ordering::Relaxed) => {
+                self.shut_down.store(true, Ordering::Relaxed);
+            }
+            _ => {}
         }
     }
 
-    /// Takes what `initialize` says.
-    pub(super) fn initialise(&self, encoding: Encoding, settings: Settings) {
+    fn initialise(&self, params: &InitializeParams) {
         let mut state = self.state();
-        state.snapshot.encoding = encoding;
-        state.snapshot.settings = Arc::new(settings);
+        state.snapshot.encoding = capabilities::encoding_for(&params.capabilities);
+        let settings = Settings::read(params.initialization_options.as_ref());
+        state.snapshot.settings = Arc::new(settings.unwrap_or_default());
+        state.watches = capabilities::can_watch(&params.capabilities);
+        self.initialised.store(true, Ordering::Relaxed);
     }
 
     /// Applies a notification that changes state; false for every other message.
     ///
     /// A notification that cannot be read changes nothing: the client would not look at an answer, the log has it.
+    /// Before `initialize` and after `shutdown` they are dropped, as the protocol wants.
     pub(super) fn apply(&self, method: &str, params: Option<&LSPAny>) -> bool {
+        let runs = self.initialised.load(Ordering::Relaxed) && !self.was_shut_down();
         match method {
+            _ if !runs => return is_change_of_state(method),
             "textDocument/didOpen" => self.with(params, Workspace::open),
             "textDocument/didChange" => self.with(params, Workspace::change),
             "textDocument/didClose" => self.with(params, Workspace::close),
@@ -111,17 +156,23 @@ impl Workspace {
     }
 
     fn open(&self, params: DidOpenTextDocumentParams) {
-        let item = params.text_document;
+        let TextDocumentItem { uri, language_id, version, text } = params.text_document;
         let mut state = self.state();
-        let manifest = Arc::new(manifest_of(&item.uri));
-        let is_ladder = item.language_id == "ladder";
-        let document = read(&item.uri, &item.text, &manifest, &state.snapshot.settings, is_ladder);
+        let manifest = Arc::new(self.manifest_of(&mut state, &uri).0);
+        let is_ladder = language_id == "ladder";
+        let (notation, target) = decided(&uri, &text, &manifest, &state.snapshot.settings, is_ladder);
+        let document = read(&text, notation, target);
+        // A document that is opened a second time was closed in the client's eyes.
+        if let Some(publisher) = state.publishers.remove(&uri) {
+            let task = publisher.close(uri.clone());
+            state.closing.insert(uri.clone(), task);
+        }
+        let before = state.closing.remove(&uri);
+        let snapshot = &state.snapshot;
+        let publisher = Publisher::start(self.client.clone(), snapshot.encoding, &snapshot.settings, before);
+        state.publishers.insert(uri.clone(), publisher);
         let severities = Arc::new(manifest.severities());
-        let open = Open { uri: item.uri.clone(), version: item.version, document, manifest, severities };
-        let publisher =
-            Publisher::start(self.client.clone(), state.snapshot.encoding, &state.snapshot.settings);
-        state.publishers.insert(item.uri, publisher);
-        state.put(open);
+        state.put(Open { uri, version, document, manifest, severities });
     }
 
     fn change(&self, params: DidChangeTextDocumentParams) {
@@ -131,6 +182,7 @@ impl Workspace {
             return;
         };
         let mut open = Open::clone(open);
+        let was_short = open.document.len() <= UNDECIDED_BYTES;
         open.version = params.text_document.version;
         for change in params.content_changes {
             let edit = edit_of(&open.document, change, state.snapshot.encoding);
@@ -145,6 +197,9 @@ impl Workspace {
                 .or_else(|| guarded(|| Document::new(&spliced(&open.document, &edit), notation, target)))
                 .unwrap_or_else(|| Document::unread(&spliced(&open.document, &edit), notation, target));
         }
+        if was_short || open.document.len() <= UNDECIDED_BYTES {
+            open.decide_again(&state.snapshot.settings);
+        }
         state.put(open);
     }
 
@@ -153,20 +208,25 @@ impl Workspace {
         let uri = params.text_document.uri;
         Arc::make_mut(&mut state.snapshot.documents).remove(&uri);
         if let Some(publisher) = state.publishers.remove(&uri) {
-            publisher.close(uri);
+            state.closing.retain(|_, task| !task.is_finished());
+            let task = publisher.close(uri.clone());
+            state.closing.insert(uri, task);
         }
     }
 
     fn save(&self, params: DidSaveTextDocumentParams) {
-        let state = self.state();
-        let uri = params.text_document.uri;
-        if let (Some(publisher), Some(open)) = (state.publishers.get(&uri), state.snapshot.open(&uri)) {
-            publisher.publish(open.clone());
+        let mut state = self.state();
+        if let Some(open) = state.snapshot.open(&params.text_document.uri) {
+            let mut open = Open::clone(open);
+            open.decide_again(&state.snapshot.settings);
+            state.put(open);
         }
     }
 
     fn configure(&self, params: DidChangeConfigurationParams) {
-        self.state().snapshot.settings = Arc::new(Settings::read(Some(&params.settings)));
+        // A client without settings says so with `null`; what `initialize` said stays in force.
+        let Some(settings) = Settings::read(Some(&params.settings)) else { return };
+        self.state().snapshot.settings = Arc::new(settings);
         self.reread_projects();
     }
 
@@ -174,14 +234,27 @@ impl Workspace {
     fn reread_projects(&self) {
         let mut state = self.state();
         let opens: Vec<Arc<Open>> = state.snapshot.documents.values().cloned().collect();
+        let mut seen = FxHashSet::default();
         for open in opens {
-            let manifest = Arc::new(manifest_of(&open.uri));
-            let text = open.document.text();
-            let is_ladder = open.document.notation() == Notation::Ladder;
-            let document = read(&open.uri, &text, &manifest, &state.snapshot.settings, is_ladder);
-            let severities = Arc::new(manifest.severities());
-            state.put(Open { document, manifest, severities, ..Open::clone(&open) });
+            let (manifest, place) = self.manifest_of(&mut state, &open.uri);
+            seen.extend(place);
+            let mut open = Open::clone(&open);
+            if *open.manifest != manifest {
+                open.severities = Arc::new(manifest.severities());
+                open.manifest = Arc::new(manifest);
+            }
+            open.decide_again(&state.snapshot.settings);
+            state.put(open);
         }
+        state.manifests.forget_others(&self.client, &seen);
+    }
+
+    /// The manifest for a document, and where it is. What is wrong with it is told to the user.
+    fn manifest_of(&self, state: &mut State, uri: &Uri) -> (Manifest, Option<Uri>) {
+        let project = uri.to_file_path().and_then(|path| Project::of(&path));
+        let Some(project) = project else { return (Manifest::default(), None) };
+        let place = state.manifests.note(&self.client, &project, state.snapshot.encoding);
+        (project.manifest, place)
     }
 
     /// A panic while the lock was held leaves whole values behind it: each is put in one assignment.
@@ -201,18 +274,38 @@ impl State {
     }
 }
 
-fn manifest_of(uri: &Uri) -> Manifest {
-    let project = uri.to_file_path().and_then(|path| Project::of(&path));
-    project.map(|project| project.manifest).unwrap_or_default()
+impl Open {
+    /// Decides anew in which language and for which target the document is written, and reads it anew if that
+    /// changed: what is typed into an empty file says what it is only after some lines.
+    fn decide_again(&mut self, settings: &Settings) {
+        let text = self.document.text();
+        let is_ladder = self.document.notation() == Notation::Ladder;
+        let (notation, target) = decided(&self.uri, &text, &self.manifest, settings, is_ladder);
+        if (notation, target.name) != (self.document.notation(), self.document.target().name) {
+            self.document = read(&text, notation, target);
+        }
+    }
+}
+
+fn is_change_of_state(method: &str) -> bool {
+    method.starts_with("textDocument/did") || method.starts_with("workspace/didChange")
 }
 
 /// `is_ladder` is what the client says of the language: a text that has no file yet has no ending to tell by.
-fn read(uri: &Uri, text: &str, manifest: &Manifest, settings: &Settings, is_ladder: bool) -> Document {
+fn decided(
+    uri: &Uri,
+    text: &str,
+    manifest: &Manifest,
+    settings: &Settings,
+    is_ladder: bool,
+) -> (Notation, &'static Target) {
     let name = uri.path().as_str();
     let notation = if is_ladder { Some(Notation::Ladder) } else { settings.notation() };
-    let decided = guarded(|| decide(name, text, manifest, settings.target(), notation));
-    let (notation, target) =
-        decided.unwrap_or((Notation::FxIl, crate::target::Target::of(crate::target::Model::Fx2n)));
+    guarded(|| decide(name, text, manifest, settings.target(), notation))
+        .unwrap_or((Notation::FxIl, Target::of(Model::Fx2n)))
+}
+
+fn read(text: &str, notation: Notation, target: &'static Target) -> Document {
     guarded(|| Document::new(text, notation, target))
         .unwrap_or_else(|| Document::unread(text, notation, target))
 }

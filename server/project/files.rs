@@ -3,6 +3,7 @@
 use super::{Manifest, ManifestError};
 use crate::document::{Document, Notation, detect_ladder_target, detect_notation};
 use crate::target::{Model, Target};
+use crate::text::{Encoding, LineColumn, Message, Span, column_of_offset};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -18,29 +19,38 @@ pub struct Project {
     pub manifest: Manifest,
     /// Why it could not be read.
     pub error: Option<ManifestError>,
+    /// The text of the manifest.
+    source: String,
 }
 
 impl Project {
-    /// The project whose manifest stands in `folder`.
-    ///
-    /// # Errors
-    /// Where the manifest is missing or no UTF-8 text. A manifest with mistakes gives a project with `error`.
-    pub fn read(folder: &Path) -> io::Result<Project> {
-        let text = std::fs::read_to_string(folder.join(MANIFEST_NAME))?;
-        let (manifest, error) = match Manifest::read(&text) {
-            Ok(manifest) => (manifest, None),
-            Err(error) => (Manifest::default(), Some(error)),
-        };
-        Ok(Project { root: folder.to_path_buf(), manifest, error })
+    /// The project whose manifest stands in `folder`. A manifest that cannot be read or has mistakes gives a project
+    /// with `error` and the default settings.
+    pub fn read(folder: &Path) -> Project {
+        let text = std::fs::read_to_string(folder.join(MANIFEST_NAME)).map_err(|reason| ManifestError {
+            message: Message::new("manifest.unreadable").with("reason", reason),
+            span: Span::default(),
+        });
+        let (manifest, error) =
+            match text.as_ref().map_err(ManifestError::clone).and_then(|text| Manifest::read(text)) {
+                Ok(manifest) => (manifest, None),
+                Err(error) => (Manifest::default(), Some(error)),
+            };
+        Project { root: folder.to_path_buf(), manifest, error, source: text.unwrap_or_default() }
+    }
+
+    /// The position of byte `offset` in the manifest.
+    pub fn position(&self, offset: u32, encoding: Encoding) -> LineColumn {
+        let before = self.source.get(..offset as usize).unwrap_or("");
+        let start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let line = before.matches('\n').count() as u32;
+        LineColumn { line, column: column_of_offset(&before[start..], usize::MAX, encoding) }
     }
 
     /// The project to which `path` belongs: the nearest manifest in its folder or above.
     pub fn of(path: &Path) -> Option<Project> {
         let start = if path.is_dir() { path } else { path.parent()? };
-        start
-            .ancestors()
-            .find(|folder| folder.join(MANIFEST_NAME).is_file())
-            .and_then(|root| Project::read(root).ok())
+        start.ancestors().find(|folder| folder.join(MANIFEST_NAME).is_file()).map(Project::read)
     }
 
     /// The program files in order of execution: those that the manifest lists, else all in the folder, by name.
@@ -60,17 +70,20 @@ pub fn is_program_file(path: &Path) -> bool {
     path.extension().is_some_and(|end| end.eq_ignore_ascii_case("lad") || end.eq_ignore_ascii_case("il"))
 }
 
-/// The program files below `folder`, by name; hidden folders and links to folders are passed over.
+/// The program files below `folder`, by name; what is hidden, and links to folders, are passed over.
 pub fn program_files(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut entries: Vec<_> = std::fs::read_dir(folder)?.collect::<Result<_, _>>()?;
     entries.sort_by_key(|entry| entry.file_name());
     let mut files = Vec::new();
     for entry in entries {
         let path = entry.path();
-        let hidden = entry.file_name().to_string_lossy().starts_with('.');
-        if entry.file_type()?.is_dir() && !hidden {
+        // Beside the folders of tools these are the lock files of editors and what other systems put into archives.
+        if entry.file_name().to_string_lossy().starts_with('.') {
+            continue;
+        }
+        if entry.file_type()?.is_dir() {
             files.extend(program_files(&path)?);
-        } else if is_program_file(&path) {
+        } else if is_program_file(&path) && !path.is_dir() {
             files.push(path);
         }
     }

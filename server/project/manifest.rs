@@ -32,6 +32,9 @@ pub struct Manifest {
     pub port: Option<String>,
 }
 
+/// Nobody reads wider ladder; a width beyond it is a slip of the finger that would fill the memory.
+pub const MOST_WIDTH: u32 = 1000;
+
 /// What the formatter writes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -125,6 +128,9 @@ impl Manifest {
         };
         if let Some(word) = self.target.as_deref().filter(|word| Target::named(word).is_none()) {
             return fail("manifest.target", word);
+        }
+        if self.format.width > MOST_WIDTH {
+            return fail("manifest.width", &self.format.width.to_string());
         }
         if let Some(word) = self.dialect.as_deref().filter(|word| dialect_named(word).is_none()) {
             return fail("manifest.dialect", word);

@@ -1,7 +1,7 @@
 //! Projects: the manifest `rungwise.toml` and the files that belong to it.
 
 mod manifest;
-pub use manifest::{FormatSettings, FormatStyle, Manifest, ManifestError, TaskSettings};
+pub use manifest::{FormatSettings, FormatStyle, MOST_WIDTH, Manifest, ManifestError, TaskSettings};
 
 mod files;
 pub use files::{MANIFEST_NAME, Project, decide, is_program_file, open_document, program_files};

@@ -57,6 +57,9 @@ pub(super) const RULE: Rule = Rule {
 /// More uses than this are not listed beside the first one.
 const MOST_RELATED: usize = 8;
 
+/// Near names are looked for so many times in a POU; who misses more has another trouble than misspellings.
+const MOST_GUESSED: usize = 100;
+
 /// The names without a declaration in one POU.
 #[derive(Default)]
 struct Unit<'a> {
@@ -157,7 +160,8 @@ impl Unit<'_> {
             })
             .collect();
         let types = types_of(&views, &self.uses.keys().cloned().collect());
-        for name in &self.order {
+        let gap = self.gap();
+        for (number, name) in self.order.iter().enumerate() {
             let Some((first, others)) = self.uses.get(name).and_then(|uses| uses.split_first()) else {
                 continue;
             };
@@ -169,7 +173,8 @@ impl Unit<'_> {
             }
             let declared = own.variables.iter().map(|variable| variable.name.as_str());
             let globals = scopes.globals.values().map(|variable| variable.name.as_str());
-            for near in nearest(word, declared.chain(globals)) {
+            let candidates = declared.chain(globals).filter(|_| number < MOST_GUESSED);
+            for near in nearest(word, candidates) {
                 let edits = std::iter::once(first)
                     .chain(others)
                     .map(|span| TextEdit::new(*span, near.clone()))
@@ -178,8 +183,9 @@ impl Unit<'_> {
                 diagnostic = diagnostic.fix(title, edits);
             }
             if let Some(kind) = types.get(name)
-                && let Some(edit) = self.declaration(word, kind)
+                && let Some(gap) = &gap
             {
+                let edit = gap.declaration(word, kind);
                 let title = Message::new("undeclared-variable.declare").with("name", word).with("type", kind);
                 diagnostic = diagnostic.fix(title, vec![edit]);
             }
@@ -194,8 +200,9 @@ impl Unit<'_> {
         at.chunk.text().get(start..end).unwrap_or("")
     }
 
-    /// Inserts a declaration: at the end of the last plain VAR section, or in a new one behind the header.
-    fn declaration(&self, name: &str, kind: &str) -> Option<TextEdit> {
+    /// Where a declaration can be inserted: at the end of the last plain VAR section, or in a new one behind the
+    /// header.
+    fn gap(&self) -> Option<Gap> {
         let mut header = None;
         let mut section = None;
         for at in &self.chunks {
@@ -210,25 +217,41 @@ impl Unit<'_> {
                 }
             }
         }
-        let Some((at, span)) = section else {
-            let text = format!("\nVAR\n    {name} : {kind};\nEND_VAR");
-            return header.map(|end| TextEdit::new(Span::at(end), text));
-        };
+        let Some((at, span)) = section else { return header.map(Gap::Header) };
         let text = at.chunk.text();
         let end = (span.end as usize).checked_sub("END_VAR".len())?;
         if !text.get(end..)?.get(.."END_VAR".len())?.eq_ignore_ascii_case("END_VAR") {
             return None;
         }
         let line = text.get(..end)?.rfind('\n').map_or(0, |newline| newline + 1);
-        let own_line = text.get(line..end)?.trim().is_empty();
-        Some(match own_line {
-            true => {
-                let before = text.get(..line)?.trim_end().rsplit('\n').next().unwrap_or("");
-                let indent = &before[..before.len() - before.trim_start().len()];
-                let indent = if indent.is_empty() { "    " } else { indent };
-                TextEdit::new(Span::at(at.start + line), format!("{indent}{name} : {kind};\n"))
+        if !text.get(line..end)?.trim().is_empty() {
+            return Some(Gap::InLine(at.start + end));
+        }
+        let before = text.get(..line)?.trim_end().rsplit('\n').next().unwrap_or("");
+        let indent = &before[..before.len() - before.trim_start().len()];
+        let indent = if indent.is_empty() { "    " } else { indent };
+        Some(Gap::Line(at.start + line, indent.to_string()))
+    }
+}
+
+/// A place for one more declaration, by its offset in the document.
+enum Gap {
+    /// Behind the header of a POU without a section.
+    Header(usize),
+    /// Before an END_VAR that stands alone in its line; declarations are indented like this.
+    Line(usize, String),
+    /// Before an END_VAR that does not.
+    InLine(usize),
+}
+
+impl Gap {
+    fn declaration(&self, name: &str, kind: &str) -> TextEdit {
+        match self {
+            Gap::Header(end) => {
+                TextEdit::new(Span::at(*end), format!("\nVAR\n    {name} : {kind};\nEND_VAR"))
             }
-            false => TextEdit::new(Span::at(at.start + end), format!("{name} : {kind}; ")),
-        })
+            Gap::Line(line, indent) => TextEdit::new(Span::at(*line), format!("{indent}{name} : {kind};\n")),
+            Gap::InLine(end) => TextEdit::new(Span::at(*end), format!("{name} : {kind}; ")),
+        }
     }
 }

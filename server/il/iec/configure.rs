@@ -123,7 +123,7 @@ fn read_statement<'b, T: Clone>(
         let tokens: SimpleSpan<usize> = extra.span();
         (node, tokens.end)
     });
-    let kinds = &block.kinds[start..];
+    let kinds = &block.kinds[start..block.reach(start, block.kinds.len())];
     let (found, errors) =
         counted.clone().then_ignore(just(TokenKind::Semicolon)).lazy().parse(kinds).into_output_errors();
     if let Some((node, length)) = found {

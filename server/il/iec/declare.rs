@@ -11,20 +11,26 @@ use chumsky::extra;
 use chumsky::prelude::*;
 
 /// The tokens of a section, a TYPE block or a configuration, without ends of lines.
+#[derive(Default)]
 pub struct Block {
     pub tokens: Vec<Token>,
     /// The kinds of `tokens`, which is all that the grammar sees.
     pub kinds: Vec<TokenKind>,
     /// Whether each token is the first of its line.
     pub starts_line: Vec<bool>,
+    /// Index of the last semicolon.
+    last_semicolon: Option<usize>,
 }
+
+/// How many tokens the grammar is shown where no semicolon follows any more.
+const MOST_UNFINISHED: usize = 1024;
 
 type Grammar<'s> = Boxed<'s, 's, Kinds<'s>, DeclarationNode, extra::Err<Mismatch>>;
 
 impl Block {
     /// All tokens from the next one on that stand in the same region; they are consumed.
     pub fn take(reader: &mut Reader) -> Block {
-        let mut block = Block { tokens: Vec::new(), kinds: Vec::new(), starts_line: Vec::new() };
+        let mut block = Block::default();
         let Some(first) = reader.peek() else { return block };
         while let Some(token) = reader.peek().filter(|token| token.region == first.region) {
             let starts_line = reader.starts_line(reader.at);
@@ -43,6 +49,7 @@ impl Block {
                 }
             }
         }
+        block.last_semicolon = block.kinds.iter().rposition(|kind| *kind == TokenKind::Semicolon);
         block
     }
 
@@ -52,6 +59,23 @@ impl Block {
 
     pub fn token_span(&self, index: usize) -> Span {
         self.span((index..index + 1).into())
+    }
+
+    /// Index behind the semicolon that ends the declaration or statement starting at `from`. The grammar walks through
+    /// all that it is shown, so it is shown no more than this, lest a long section take a time that is quadratic.
+    pub fn reach(&self, from: usize, end: usize) -> usize {
+        let finished = self.last_semicolon.is_some_and(|last| from <= last && last < end);
+        let most = if finished { end } else { end.min(from + MOST_UNFINISHED) };
+        let mut structures = 0usize;
+        for index in from..most {
+            match self.kinds[index] {
+                TokenKind::Struct => structures += 1,
+                TokenKind::EndStruct => structures = structures.saturating_sub(1),
+                TokenKind::Semicolon if structures == 0 => return index + 1,
+                _ => {}
+            }
+        }
+        most
     }
 
     /// Index of the first token at or after `from` with which a declaration can start over, which is behind the
@@ -157,7 +181,7 @@ pub fn read_types(reader: &mut Reader, block: &Block) {
 
 /// Reads `: type` behind the name of a function, the next token; both are consumed if they are there.
 pub fn read_result(reader: &mut Reader) -> Option<TypeId> {
-    let mut block = Block { tokens: Vec::new(), kinds: Vec::new(), starts_line: Vec::new() };
+    let mut block = Block::default();
     // `NAME : STRING [ 80 ]` is as long as it gets.
     for token in reader.tokens[reader.at..].iter().take(8) {
         if token.kind == TokenKind::Newline {
@@ -208,12 +232,13 @@ fn read_declarations<'b>(
             at += 1;
             continue;
         }
-        if block.nests_too_deep(at, end) {
+        let reach = block.reach(at, end);
+        if block.nests_too_deep(at, reach) {
             reader.problem("syntax-error", block.token_span(at), Message::new("syntax-error.too-deep"));
             at = block.next_start(at, end);
             continue;
         }
-        let (node, errors) = terminated.parse(&block.kinds[at..end]).into_output_errors();
+        let (node, errors) = terminated.parse(&block.kinds[at..reach]).into_output_errors();
         let (node, next) = match node {
             Some(node) => {
                 for error in &errors {
