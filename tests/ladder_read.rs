@@ -1206,7 +1206,7 @@ fn the_rail_beside_the_names_may_be_left_of_the_rail_beside_the_wires() {
 ",
         "L X0 [MOV K1 D0] R
         --
-        L X1 (PM0) R",
+        L X1 (P M0) R",
     );
 }
 
@@ -1273,7 +1273,7 @@ fn one_slip_is_one_problem() {
     // Remarks behind the rail.
     let drawing = "|   X0      Y0  |   starts it\n+---| |-----( )-+ see  page 3\n";
     let tree = parse(drawing, fx());
-    let expected = "L X0 (Y0) R\n! unreadable-cell: starts it\n! unreadable-cell: see  page 3\n";
+    let expected = "L X0 (Y0) R\n! stray-operand: starts it\n! stray-operand: see  page 3\n";
     assert_eq!(dump(&tree, drawing), expected);
     let edits: Vec<TextEdit> = tree.problems.iter().flat_map(|problem| problem.fixes[0].edits.clone()).collect();
     let mended = TextEdit::apply_all(&edits, drawing);
