@@ -1265,6 +1265,13 @@ fn one_slip_is_one_problem() {
           ^^ stray-operand
 ",
     );
+    check_problems(
+        "
+|   X0     X1                  Y0  |
++---| |----X1------------------( )-+
+           ^^ stray-operand
+",
+    );
     let drawing = "+---X1----[X0]--(Y0)--\n";
     let problems = parse(drawing, fx()).problems;
     let mended = TextEdit::apply_all(&problems[0].fixes[0].edits, drawing);

@@ -140,7 +140,12 @@ impl Naming<'_> {
         };
         let unreadable = |row: usize| {
             let over = self.tokens.over(row, token.start..token.end);
-            over.is_some_and(|(_, over)| over.what == What::Unreadable)
+            // A word in the wire has been bridged.
+            let bridged = |over: &Token| {
+                let mut shared = token.start.max(over.start)..token.end.min(over.end);
+                over.what == What::Wire && shared.any(|column| !self.grid.arms(row, column).is_horizontal())
+            };
+            over.is_some_and(|(_, over)| over.what == What::Unreadable || bridged(over))
         };
         beside.into_iter().flatten().any(turned)
             || unreadable(row + 1)
