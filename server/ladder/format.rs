@@ -7,7 +7,9 @@
 use super::reduce::reduce;
 use super::ragged::TWO_READINGS;
 use super::symbol::width;
-use super::{Drawing, LadderTree, NameHabit, Rung, Style, StyleKind, parse, parse_with, split};
+use super::{
+    Drawing, Element, ElementKind, LadderTree, NameHabit, Rung, Style, StyleKind, parse, parse_with, split,
+};
 use crate::target::Target;
 use crate::text::{Diagnostic, Span};
 
@@ -198,9 +200,62 @@ fn drawing(
     if doubtful || line_comments(chunk, tree, rung, lines).is_none() {
         return None;
     }
+    if !keeps_words(chunk, tree, rung, (start, end)) {
+        return None;
+    }
     let shape = reduce(&rung.graph).ok()?;
     let drawing = Drawing::new(&shape, &rung.graph, chunk, kind)?;
     keeps_order(rung, &drawing).then_some(drawing)
+}
+
+/// Whether the lines of a rung, at these bytes, hold all its words and no letter that is not drawn again.
+fn keeps_words(chunk: &str, tree: &LadderTree, rung: &Rung, (start, end): (usize, usize)) -> bool {
+    let elements = &rung.graph.elements;
+    let words: Vec<Span> = elements.iter().flat_map(words_of).collect();
+    // A name on a line of another rung would be drawn here and stay there.
+    if !words.iter().all(|word| start <= word.start as usize && word.end as usize <= end) {
+        return false;
+    }
+    let boxes = elements.iter().filter_map(Element::block).flat_map(|block| block.rows.iter().copied());
+    let symbols = elements.iter().map(|element| element.span).chain(boxes);
+    let number = rung.number.map(|number| number.span);
+    let mut known: Vec<Span> =
+        words.into_iter().chain(symbols).chain(number).chain(tree.comments.clone()).collect();
+    known.sort_unstable();
+    let negated = elements
+        .iter()
+        .filter_map(Element::block)
+        .any(|block| block.inputs.iter().chain(&block.outputs).any(|pin| pin.negated));
+    let mut known = known.into_iter().peekable();
+    let mut known_end = 0;
+    chunk.get(start..end).unwrap_or("").char_indices().all(|(offset, character)| {
+        let offset = start + offset;
+        while let Some(span) = known.next_if(|span| span.start as usize <= offset) {
+            known_end = known_end.max(span.end as usize);
+        }
+        let circle = negated && matches!(character, 'O' | 'o');
+        offset < known_end || circle || !character.is_alphanumeric()
+    })
+}
+
+/// Where the words of an element stand.
+fn words_of(element: &Element) -> Vec<Span> {
+    let mut words: Vec<Span> = element.operands.iter().map(|operand| operand.span).collect();
+    words.extend(element.name_lines.iter().chain(&element.notes));
+    match &element.kind {
+        ElementKind::Block(block) => {
+            let pins = block.inputs.iter().chain(&block.outputs);
+            words.extend(
+                block.instance.into_iter().chain(block.type_name).chain(pins.filter_map(|pin| pin.name)),
+            );
+        }
+        ElementKind::Instruction { mnemonic: word, .. }
+        | ElementKind::Jump(word)
+        | ElementKind::ConnectorOut(word)
+        | ElementKind::ConnectorIn(word) => words.push(*word),
+        _ => {}
+    }
+    words
 }
 
 /// Whether outputs and function blocks, which act in the order in which they are drawn, keep that order.
