@@ -969,3 +969,46 @@ fn formatting_takes_time_in_proportion_to_the_document() {
     let (small, large) = (time(400), time(4000));
     assert!(large < 40.0 * small.max(0.005), "400 rungs {small:.3} s, 4000 rungs {large:.3} s");
 }
+
+#[test]
+fn rung_numbers_beside_the_names_are_kept_as_written() {
+    let typed = "\
+0000 |  X0           Y0  |
+     |--] [----------( )-|
+     |                   |
+   7 |  X1           Y1  |
+     |--] [----------( )-|
+";
+    let expected = expect![[r#"
+             |   X0                       Y0  |
+        0000 +---| |----------------------( )-+
+             |                                |
+             |   X1                       Y1  |
+           7 +---| |----------------------( )-+
+    "#]];
+    let narrow = Style { kind: StyleKind::Iec, width: 34 };
+    let formatted = format(typed, fx(), &narrow);
+    expected.assert_eq(&formatted);
+    assert_eq!(format(&formatted, fx(), &narrow), formatted);
+}
+
+#[test]
+fn a_drawing_with_one_reading_is_straightened() {
+    let typed = "\
+|   X0      X1   Y0  |
++---| |---+-| |--( )-+
+|   Y0   |           |
++---| |--+           |
+";
+    let expected = expect![[r#"
+        |   X0        X1             Y0  |
+        +---| |---+---| |------------( )-+
+        |   Y0    |                      |
+        +---| |---+                      |
+    "#]];
+    expected.assert_eq(&format(typed, fx(), &Style { kind: StyleKind::Iec, width: 34 }));
+    // With two readings the drawing is left to its author.
+    let two = typed.replace("---+-| |", "-+-+-| |");
+    assert!(parse(&two, fx()).problems.iter().any(|problem| problem.code == "ragged-drawing"));
+    assert_eq!(format(&two, fx(), &Style { kind: StyleKind::Iec, width: 34 }), two);
+}

@@ -5,15 +5,18 @@
 //! read again, and taken only if the logic is the same.
 
 use super::reduce::reduce;
+use super::ragged::TWO_READINGS;
 use super::symbol::width;
 use super::{
     Drawing, Element, ElementKind, LadderTree, NameHabit, Rung, Style, StyleKind, parse, parse_with, split,
 };
 use crate::target::Target;
-use crate::text::Span;
+use crate::text::{Diagnostic, Span};
 
-/// Problems that redrawing mends. Every other one means that the rung may not say what its author meant.
-const MENDED: [&str; 2] = ["ragged-rail", "tab-character"];
+/// Whether redrawing mends a problem. Every other one means that the rung may not say what its author meant.
+fn is_mended(problem: &Diagnostic) -> bool {
+    problem.code == "ragged-rail" || (problem.code == "ragged-drawing" && problem.message.key() != TWO_READINGS)
+}
 
 /// What all rungs of a document share.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -193,7 +196,7 @@ fn drawing(
     // An empty span marks the place between two cells.
     let inside = |span: Span| (span.start as usize) < end && (span.end.max(span.start + 1) as usize) > start;
     let doubtful =
-        tree.problems.iter().any(|problem| !MENDED.contains(&problem.code) && inside(problem.span));
+        tree.problems.iter().any(|problem| !is_mended(problem) && inside(problem.span));
     if doubtful || line_comments(chunk, tree, rung, lines).is_none() {
         return None;
     }
@@ -271,6 +274,7 @@ fn keeps_order(rung: &Rung, drawing: &Drawing) -> bool {
 
 /// The lines of a chunk.
 struct Lines<'t> {
+    text: &'t str,
     lines: Vec<&'t str>,
     /// Offset of each line and of the end.
     starts: Vec<usize>,
@@ -285,7 +289,7 @@ impl<'t> Lines<'t> {
             offset += line.len();
             starts.push(offset);
         }
-        Lines { lines, starts }
+        Lines { text: chunk, lines, starts }
     }
 
     /// The bytes of lines from the first of `range` to before the second.
@@ -330,14 +334,15 @@ impl<'t> Lines<'t> {
         };
         let ended = before.last().is_some_and(|line| line.ends_with('\n'));
         let margin = page.margin as usize;
-        let mut number = rung.number.map(|number| number.value.to_string());
+        // As it was written: leading zeros are kept.
+        let mut number = rung.number.map(|number| number.span.of(self.text));
         for (row, line) in drawing.iter().enumerate() {
             let leaves_rail = line.starts_with(['+', '├']) || !line.starts_with(['|', '│']);
             match number.take_if(|_| leaves_rail || row + 1 == drawing.len()) {
                 Some(number) => {
                     let blanks = margin.saturating_sub(number.len() + 1);
                     text.extend(std::iter::repeat_n(' ', blanks));
-                    text.push_str(&number);
+                    text.push_str(number);
                     text.push(' ');
                 }
                 None => text.extend(std::iter::repeat_n(' ', margin)),
