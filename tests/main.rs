@@ -1,5 +1,13 @@
 //! Every test of the package that needs no private item, one module for each subject.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a test that fails says so by a panic"
+)]
+
 mod cli;
 mod document;
 mod grammar;
