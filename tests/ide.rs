@@ -1729,7 +1729,11 @@ fn hints_of_a_drawing_stand_behind_its_lines() {
     let hints = ide::inlay_hints(&document, Span::new(0, text.len()), EN);
     let drawn: Vec<(&str, &str)> =
         hints.iter().map(|hint| (text[..hint.offset].lines().last().unwrap(), hint.label.as_str())).collect();
-    let expected = [("|   X0    T0 K50 |", "= 5 s"), ("|   X1    T1 K7  |   ", "= 700 ms"), ("--[X2]--(T2 K8)", "= 800 ms")];
+    let expected = [
+        ("|   X0    T0 K50 |", "= 5 s"),
+        ("|   X1    T1 K7  |   ", "= 700 ms"),
+        ("--[X2]--(T2 K8)", "= 800 ms"),
+    ];
     assert_eq!(drawn, expected);
     for hint in &hints {
         assert!(text[hint.offset..].is_empty() || text[hint.offset..].starts_with(['\r', '\n']));

@@ -1282,7 +1282,8 @@ fn one_slip_is_one_problem() {
     let tree = parse(drawing, fx());
     let expected = "L X0 (Y0) R\n! stray-operand: starts it\n! stray-operand: see  page 3\n";
     assert_eq!(dump(&tree, drawing), expected);
-    let edits: Vec<TextEdit> = tree.problems.iter().flat_map(|problem| problem.fixes[0].edits.clone()).collect();
+    let edits: Vec<TextEdit> =
+        tree.problems.iter().flat_map(|problem| problem.fixes[0].edits.clone()).collect();
     let mended = TextEdit::apply_all(&edits, drawing);
     assert_eq!(mended, "|   X0      Y0  |   // starts it\n+---| |-----( )-+ // see  page 3\n");
     check(&mended, "L X0 (Y0) R");

@@ -21,7 +21,9 @@ pub(super) fn within(document: &Document, span: Span, language: Language) -> Vec
                 let old = hints.len();
                 of_chunk(chunk, start, document.target(), language, &mut hints);
                 if document.notation() == Notation::Ladder {
-                    hints[old..].iter_mut().for_each(|hint| hint.offset = line_end(chunk, start, hint.offset));
+                    hints[old..]
+                        .iter_mut()
+                        .for_each(|hint| hint.offset = line_end(chunk, start, hint.offset));
                 }
             }
             start += chunk.len();

@@ -4,8 +4,8 @@
 //! in its midst, or outputs that would change their order stays exactly as it was drawn. What was redrawn is
 //! read again, and taken only if the logic is the same.
 
-use super::reduce::reduce;
 use super::ragged::TWO_READINGS;
+use super::reduce::reduce;
 use super::symbol::width;
 use super::{
     Drawing, Element, ElementKind, LadderTree, NameHabit, Rung, Style, StyleKind, parse, parse_with, split,
@@ -15,7 +15,8 @@ use crate::text::{Diagnostic, Span};
 
 /// Whether redrawing mends a problem. Every other one means that the rung may not say what its author meant.
 fn is_mended(problem: &Diagnostic) -> bool {
-    problem.code == "ragged-rail" || (problem.code == "ragged-drawing" && problem.message.key() != TWO_READINGS)
+    problem.code == "ragged-rail"
+        || (problem.code == "ragged-drawing" && problem.message.key() != TWO_READINGS)
 }
 
 /// What all rungs of a document share.
@@ -195,8 +196,7 @@ fn drawing(
     let (start, end) = lines.bytes(rung.lines);
     // An empty span marks the place between two cells.
     let inside = |span: Span| (span.start as usize) < end && (span.end.max(span.start + 1) as usize) > start;
-    let doubtful =
-        tree.problems.iter().any(|problem| !is_mended(problem) && inside(problem.span));
+    let doubtful = tree.problems.iter().any(|problem| !is_mended(problem) && inside(problem.span));
     if doubtful || line_comments(chunk, tree, rung, lines).is_none() {
         return None;
     }

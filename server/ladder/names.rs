@@ -477,7 +477,8 @@ impl Naming<'_> {
                 prose = true;
                 let title = Message::new("stray-operand.comment");
                 let problem = Diagnostic::new("stray-operand", line, Message::new("stray-operand.behind"));
-                self.problems.push(problem.fix(title, vec![TextEdit::new(Span::at(line.start as usize), "// ")]));
+                self.problems
+                    .push(problem.fix(title, vec![TextEdit::new(Span::at(line.start as usize), "// ")]));
                 continue;
             }
             let span = self.grid.span(word.row, word.start, word.end);

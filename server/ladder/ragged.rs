@@ -66,9 +66,7 @@ pub(super) fn mend(
 
 fn related(message: Message, span: Span, junctions: &[Span]) -> Diagnostic {
     let problem = Diagnostic::new("ragged-drawing", span, message);
-    junctions
-        .iter()
-        .fold(problem, |problem, span| problem.related(*span, Message::new(JUNCTION)))
+    junctions.iter().fold(problem, |problem, span| problem.related(*span, Message::new(JUNCTION)))
 }
 
 fn join(uprights: &mut Uprights, end: &End, other: usize) {

@@ -190,8 +190,9 @@ impl Scanner<'_> {
         let from = start - cell(start > 1 && wire(start - 2));
         let to = end + cell(wire(end + 1));
         let edit = TextEdit::new(self.grid.span(row, from, to), format!("[{word}]"));
-        let problem = Diagnostic::new("stray-operand", span, Message::new("stray-operand.in-wire").with("text", word))
-            .fix(Message::new("stray-operand.contact").with("text", word), vec![edit]);
+        let problem =
+            Diagnostic::new("stray-operand", span, Message::new("stray-operand.in-wire").with("text", word))
+                .fix(Message::new("stray-operand.contact").with("text", word), vec![edit]);
         self.problems.push(problem);
         Token { start, end, what: What::Wire }
     }
