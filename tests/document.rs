@@ -378,6 +378,7 @@ fn the_target_of_a_lone_ladder() {
     assert_eq!(target("  X0   Y0  \n--|P|--(S)--"), fx);
     assert_eq!(target("--[P X0]--(S Y0)--[MOV K1 D0]--"), fx);
     assert_eq!(target("--[P X0]--(S motor)--"), iec);
+    assert_eq!(target("--[a]--[/b]--(c)--"), iec);
     // Slips in devices and mnemonics are no names.
     for slip in ["[X8]", "[XO]", "[M1O]", "[Y19]", "[MOVX K1 D0]"] {
         assert_eq!(target(&format!("--[X0]--{slip}--(Y0)--")), fx, "{slip}");

@@ -1647,3 +1647,10 @@ fn reading_is_not_quadratic() {
         );
     }
 }
+
+#[test]
+fn a_parenthesis_in_the_wrong_place_is_one_problem() {
+    let tree = parse("LD (a\nAND a\nST a\n", iec());
+    let codes: Vec<&str> = tree.problems.iter().map(|problem| problem.code).collect();
+    assert_eq!(codes, ["syntax-error"]);
+}

@@ -1298,3 +1298,10 @@ fn one_slip_is_one_problem() {
 ",
     );
 }
+
+#[test]
+fn contacts_by_their_mnemonics() {
+    check("--[LD X0]--[ANI X1]--[ANDP X2]--[ LDF X3 ]--(Y0)--", "L X0 /X1 ^X2 vX3 (Y0) R");
+    // An unknown mnemonic is no device.
+    check("--[X0]--(OTE Y0)--", "L X0 [?OTE Y0] R");
+}

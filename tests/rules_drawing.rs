@@ -419,3 +419,10 @@ fn a_torn_bracket_is_one_mistake() {
         assert_eq!(places(text, &found(text)), [place], "{text}");
     }
 }
+
+#[test]
+fn mnemonics_of_other_makers_are_one_mistake_each() {
+    let text = "|--[XIC X0]---[XIO X1]---(OTE Y0)---|\n";
+    let expected = ["unknown-instruction 1:5", "unknown-instruction 1:16", "unknown-instruction 1:27"];
+    assert_eq!(places(text, &found(text)), expected);
+}

@@ -105,7 +105,8 @@ fn operand_words(line: &str) -> impl Iterator<Item = &str> {
         let start = word.as_ptr() as usize - line.as_ptr() as usize;
         let (before, after) = (&line[..start], &line[start + word.len()..]);
         let beside = |sign: Option<char>| sign.is_some_and(|sign| "()[]{}|!┤├│┃".contains(sign));
-        let single = word.len() == 1 && (beside(before.chars().next_back()) || beside(after.chars().next()));
+        let mark = word.len() == 1 && "SRLUPNsrlupn".contains(word);
+        let single = mark && (beside(before.chars().next_back()) || beside(after.chars().next()));
         let mnemonic = before.trim_end().ends_with(['[', '(', '{']) && after.trim_start().starts_with(part);
         !(word.is_empty() || single || mnemonic)
     })

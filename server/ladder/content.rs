@@ -109,6 +109,11 @@ pub(super) fn read_brackets(pieces: &[Piece], target: &Target) -> Reading {
             contact_kind(mark).unwrap_or(ContactKind::NormallyOpen),
             vec![read_operand(operand, target)],
         ),
+        // `[ANI X1]`: an instruction list written into contacts.
+        [word, operand] if contact_mnemonic(word).is_some() => contact(
+            contact_mnemonic(word).unwrap_or(ContactKind::NormallyOpen),
+            vec![read_operand(operand, target)],
+        ),
         [word] if word.text.eq_ignore_ascii_case("INV") => {
             Reading::new(ElementKind::Invert, Vec::new(), Wants::Nothing)
         }
@@ -139,7 +144,19 @@ pub(super) fn read_parentheses(pieces: &[Piece], target: &Target) -> Reading {
     if let Some(kind) = coil_kind(first, rest.is_empty()) {
         return coil(kind, read_operands(rest, target));
     }
-    read_instruction(pieces, target).unwrap_or_else(|| coil(CoilKind::Plain, read_operands(pieces, target)))
+    if let Some(instruction) = read_instruction(pieces, target) {
+        return instruction;
+    }
+    // `(OTE Y0)`: a word of letters before an operand is meant for a mnemonic.
+    if target.is_fx()
+        && !rest.is_empty()
+        && first.text.len() > 1
+        && first.text.chars().all(char::is_alphabetic)
+    {
+        let kind = ElementKind::Instruction { form: None, mnemonic: first.span };
+        return Reading::new(kind, read_operands(rest, target), Wants::Nothing);
+    }
+    coil(CoilKind::Plain, read_operands(pieces, target))
 }
 
 /// `{…}`, a box of the LDmicro export.
@@ -219,6 +236,24 @@ fn contact_kind(mark: &Piece) -> Option<ContactKind> {
     let mut characters = mark.text.chars();
     let kind = super::glyph::contact_mark(characters.next()?);
     if characters.next().is_none() { kind } else { None }
+}
+
+/// The contact that an instruction in series draws.
+fn contact_mnemonic(word: &Piece) -> Option<ContactKind> {
+    const MNEMONICS: [(&str, ContactKind); 10] = [
+        ("LD", ContactKind::NormallyOpen),
+        ("AND", ContactKind::NormallyOpen),
+        ("LDI", ContactKind::NormallyClosed),
+        ("ANI", ContactKind::NormallyClosed),
+        ("LDN", ContactKind::NormallyClosed),
+        ("ANDN", ContactKind::NormallyClosed),
+        ("LDP", ContactKind::Rising),
+        ("ANDP", ContactKind::Rising),
+        ("LDF", ContactKind::Falling),
+        ("ANDF", ContactKind::Falling),
+    ];
+    let found = MNEMONICS.iter().find(|(name, _)| name.eq_ignore_ascii_case(word.text));
+    found.map(|(_, kind)| *kind)
 }
 
 /// The kind that the first word in parentheses gives a coil; `alone` if nothing follows it.

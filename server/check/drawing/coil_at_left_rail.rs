@@ -73,7 +73,10 @@ fn unconditional(graph: &Graph) -> Vec<VertexId> {
                 VertexKind::Junction => stack.push(head),
                 VertexKind::Element(element) => {
                     found.push(head);
-                    if graph.element(element).is_output() {
+                    // What is not known may well be a condition.
+                    let unknown =
+                        matches!(graph.element(element).kind, ElementKind::Instruction { form: None, .. });
+                    if graph.element(element).is_output() && !unknown {
                         stack.push(head);
                     }
                 }

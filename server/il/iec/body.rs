@@ -217,7 +217,9 @@ impl<'a> BodyReader<'a> {
     }
 
     pub fn open(&mut self, kind: FrameKind, open: Span, token: usize) {
-        if self.partners[token].is_none() {
+        // A parenthesis that should not be there need not be closed.
+        let reported = self.reader.tree.problems.last().is_some_and(|problem| problem.span == open);
+        if self.partners[token].is_none() && !reported {
             self.reader.problem("unclosed-parenthesis", open, Message::new("unclosed-parenthesis.open"));
         }
         self.frames.push(Frame { kind, open, token });
