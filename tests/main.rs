@@ -1,7 +1,16 @@
 //! Every test of the package that needs no private item, one module for each subject.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "tests fail so"
+)]
+
 mod cli;
 mod document;
+mod extremes;
 mod grammar;
 mod ide;
 mod il_fx;

@@ -153,7 +153,7 @@ fn marks(above: &str, line: &str, start: usize) -> Vec<Span> {
     cells.push(above.len());
     let mut spans = Vec::new();
     let mut column = 0;
-    for run in line.split_inclusive(|c| c == ' ') {
+    for run in line.split_inclusive(' ') {
         let carets = run.trim_end().len();
         if carets > 0 {
             let byte = |cell: usize| start + cells.get(cell).copied().unwrap_or(above.len());

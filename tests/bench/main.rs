@@ -3,6 +3,13 @@
 //! Each figure is a median and a 95th percentile of many rounds, with a ratio to a calibration (a fixed piece of
 //! arithmetic) run beside it, so that figures of different machines and hours can be compared.
 
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    reason = "a measurement that cannot go on stops, and its figures go to standard output"
+)]
+
 #[path = "../lsp_client.rs"]
 #[allow(dead_code, reason = "the tests use all of it")]
 mod lsp_client;
@@ -21,7 +28,7 @@ struct Figures(Vec<Duration>);
 impl Figures {
     fn of(rounds: usize, mut event: impl FnMut(usize) -> Duration) -> Figures {
         // The first rounds warm caches and are not counted.
-        (0..rounds / 10 + 1).for_each(|round| drop(event(round)));
+        (0..rounds / 10 + 1).for_each(|round| _ = event(round));
         let mut durations: Vec<Duration> = (0..rounds).map(|round| event(rounds / 10 + 1 + round)).collect();
         durations.sort();
         Figures(durations)
