@@ -125,12 +125,3 @@ fn many_undeclared_variables_are_found_in_linear_time() {
     };
     check_linear("undeclared variables", text, judge);
 }
-
-#[test]
-fn a_hover_in_a_long_line_takes_linear_time() {
-    let hover = |text: &str| {
-        let document = open(Notation::FxIl, text);
-        assert!(ide::hover(&document, 4, Language::English).is_some());
-    };
-    check_linear("hover", |count| format!("LD {}\n", "X0 ".repeat(count * 8)), hover);
-}
