@@ -365,3 +365,22 @@ fn edits_of_an_empty_text_and_to_an_empty_text() {
         assert_eq!(document.text(), "OUT Y0\n");
     }
 }
+
+#[test]
+fn the_target_of_a_lone_ladder() {
+    use rungwise::document::detect_ladder_target;
+    let target = |drawing: &str| detect_ladder_target(drawing).name;
+    let fx = target("--[X0]--(Y0)--");
+    let iec = target("--[start]--(motor)--");
+    assert_ne!(fx, iec);
+    // Single letters are names where no symbol is around them.
+    assert_eq!(target("  a    b   \n--|P|--(S)--"), iec);
+    assert_eq!(target("  X0   Y0  \n--|P|--(S)--"), fx);
+    assert_eq!(target("--[P X0]--(S Y0)--[MOV K1 D0]--"), fx);
+    assert_eq!(target("--[P X0]--(S motor)--"), iec);
+    // Slips in devices and mnemonics are no names.
+    for slip in ["[X8]", "[XO]", "[M1O]", "[Y19]", "[MOVX K1 D0]"] {
+        assert_eq!(target(&format!("--[X0]--{slip}--(Y0)--")), fx, "{slip}");
+    }
+    assert_eq!(target("--[X0]--(Y0)--  // a remark"), fx);
+}

@@ -1722,6 +1722,25 @@ fn hints_behind_presets() {
 }
 
 #[test]
+fn hints_of_a_drawing_stand_behind_its_lines() {
+    // In the line a hint would push the right rail away.
+    let text = "|   X0    T0 K50 |\r\n+---| |----( )--+\r\n|   X1    T1 K7  |   \n+---| |----( )--+\n--[X2]--(T2 K8)";
+    let document = ladder(text);
+    let hints = ide::inlay_hints(&document, Span::new(0, text.len()), EN);
+    let drawn: Vec<(&str, &str)> =
+        hints.iter().map(|hint| (text[..hint.offset].lines().last().unwrap(), hint.label.as_str())).collect();
+    let expected = [
+        ("|   X0    T0 K50 |", "= 5 s"),
+        ("|   X1    T1 K7  |   ", "= 700 ms"),
+        ("--[X2]--(T2 K8)", "= 800 ms"),
+    ];
+    assert_eq!(drawn, expected);
+    for hint in &hints {
+        assert!(text[hint.offset..].is_empty() || text[hint.offset..].starts_with(['\r', '\n']));
+    }
+}
+
+#[test]
 fn status_counts_what_the_program_is() {
     let status = ide::status(&fx("LD X0\nOUT T0 K50\nLD T0\nOUT Y0\nEND\n"));
     assert_eq!((status.target, status.dialect), ("fx2n", "fx"));

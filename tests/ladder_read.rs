@@ -1194,3 +1194,107 @@ fn check_tree(tree: &LadderTree, text: &str) {
         problem.fixes.iter().flat_map(|fix| &fix.edits).map(|edit| edit.span).for_each(inside);
     }
 }
+
+#[test]
+fn the_rail_beside_the_names_may_be_left_of_the_rail_beside_the_wires() {
+    check(
+        "
+|   X0             |
++---| |---[MOV K1 D0]-+
+|   X1          |
++---| |--(PLS M0)-+
+",
+        "L X0 [MOV K1 D0] R
+        --
+        L X1 (P M0) R",
+    );
+}
+
+#[test]
+fn operands_of_a_block_may_stand_a_blank_beside_their_wire() {
+    check_on(
+        iec(),
+        "
+|               C1
+|            +--------+
+|   pulse    |  CTU   |   full
++---| |------|CU     Q|---( )--
+|      10 ---|PV    CV|-- count
+|            +--------+
+",
+        "L pulse C1:CTU.CU
+        C1:CTU.Q (full) R
+        block C1:CTU CU=wire PV=10 =>Q=wire =>CV=count",
+    );
+}
+
+#[test]
+fn presets_above_below_and_beside() {
+    let coil = "L X0 (T0 K50) R";
+    check("|   X0      K50  |\n|---| |----(T0)--|\n", coil);
+    check("|   X0      T0  |\n|---| |-----( )-|\n|           K50 |\n", coil);
+    check("|   X0      T0     |\n|---| |-----( ) K50|\n", coil);
+    check("|   X0           |\n|---| |-----(T0)K50\n", coil);
+    check("|   X0      T0   |\n|           K50  |\n|---| |-----( )--|\n", coil);
+    // A coil that counts nothing takes none.
+    check("|   X0      K50  |\n|---| |----(M0)--|\n", "L X0 (M0) R\n! stray-operand: K50");
+}
+
+#[test]
+fn one_slip_is_one_problem() {
+    // A box, a contact and a coil without their end.
+    check_problems(
+        "
+|   X0
++---| |--[MOV K1
+         ^ unreadable-cell
+",
+    );
+    check_problems(
+        "
+|   X0                         Y0  |
++---| |--[X1 ------------------( )-+
+         ^ unreadable-cell
+",
+    );
+    // A name in the wire, where an element belongs.
+    check_problems(
+        "
+|   X0                         Y0  |
++---| |---X1-------------------( )-+
+          ^^ stray-operand
+",
+    );
+    check_problems(
+        "
+|   X0     X1                  Y0  |
++---| |----X1------------------( )-+
+           ^^ stray-operand
+",
+    );
+    let drawing = "+---X1----[X0]--(Y0)--\n";
+    let problems = parse(drawing, fx()).problems;
+    let mended = TextEdit::apply_all(&problems[0].fixes[0].edits, drawing);
+    assert_eq!(mended, "+--[X1]---[X0]--(Y0)--\n");
+    check(&mended, "L X1 X0 (Y0) R");
+    // Remarks behind the rail.
+    let drawing = "|   X0      Y0  |   starts it\n+---| |-----( )-+ see  page 3\n";
+    let tree = parse(drawing, fx());
+    let expected = "L X0 (Y0) R\n! stray-operand: starts it\n! stray-operand: see  page 3\n";
+    assert_eq!(dump(&tree, drawing), expected);
+    let edits: Vec<TextEdit> =
+        tree.problems.iter().flat_map(|problem| problem.fixes[0].edits.clone()).collect();
+    let mended = TextEdit::apply_all(&edits, drawing);
+    assert_eq!(mended, "|   X0      Y0  |   // starts it\n+---| |-----( )-+ // see  page 3\n");
+    check(&mended, "L X0 (Y0) R");
+    // A wire that misses its junctions at both ends.
+    check_problems(
+        "
+|   X0                         Y0  |
++---| |----+-------------------( )-+
+|   X1    |                        |
+          ^ ragged-drawing
++---| |----+                       |
+",
+    );
+}

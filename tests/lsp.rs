@@ -215,6 +215,26 @@ fn a_keystroke_clears_what_it_mends() {
 }
 
 #[test]
+fn findings_about_the_whole_program_move_along_while_typing() {
+    // Long enough that whole-program rules wait for a pause in typing.
+    let text = format!("{}P5\nLD X0\nOUT Y0\nP5\nLD X1\nOUT Y1\nEND\n", "LD X0\nOUT M5\n".repeat(20_000));
+    let mut client = opened(&text);
+    let line_of = |diagnostics: &[Value]| {
+        let found = diagnostics.iter().find(|diagnostic| diagnostic["code"] == json!("duplicate-label"));
+        found.map(|found| found["range"]["start"]["line"].as_i64().expect("a line"))
+    };
+    let message = client.wait_for("the finding", |message| {
+        message["params"]["diagnostics"].as_array().is_some_and(|found| line_of(found).is_some())
+    });
+    let line = line_of(message["params"]["diagnostics"].as_array().expect("an array")).expect("a line");
+    for version in 2..8 {
+        client.change(URI, version, (4, 0), (4, 0), "// a new line\n");
+        // Whichever publication of this version comes first has the finding at its new line.
+        assert_eq!(line_of(&client.diagnostics(URI, version)), Some(line + version - 1), "version {version}");
+    }
+}
+
+#[test]
 fn closing_a_document_clears_its_diagnostics() {
     let mut client = opened("LD X8\nOUT Y0\nEND\n");
     assert_eq!(client.diagnostics(URI, 1).len(), 1);
@@ -362,6 +382,9 @@ fn outline_folding_tokens_and_hints_answer() {
         client.request("textDocument/semanticTokens/full", document.clone())["result"]["data"].clone();
     assert_eq!(tokens.as_array().expect("numbers").len() % 5, 0);
     assert!(tokens.as_array().expect("numbers").len() >= 5 * 13, "{tokens}");
+    // Themes leave operators grey, and in an instruction list half of all words are mnemonics.
+    let legend = &client.initialised["capabilities"]["semanticTokensProvider"]["legend"]["tokenTypes"];
+    assert_eq!(legend[tokens[3].as_u64().expect("a type") as usize], "keyword", "{tokens}");
     let mut params = document;
     params["range"] = json!({"start": {"line": 0, "character": 0}, "end": {"line": 9, "character": 0}});
     let hints = client.request("textDocument/inlayHint", params)["result"].clone();

@@ -5,7 +5,7 @@
     clippy::expect_used,
     clippy::panic,
     clippy::print_stdout,
-    reason = "tests fail so"
+    reason = "a test that fails says so by a panic"
 )]
 
 mod cli;

@@ -365,3 +365,57 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn tabs_are_reported_once_and_all_expanded() {
+    let text = "(* a\tcomment *)\n|\tX0\t\tY0\t|\r\n+-------| |-------------( )-----+\r\n\r\n|\t名\tY1\t|\t\n+-------[X1]------------( )-----+";
+    let document = Document::new(text, Notation::Ladder, Target::of(Model::Fx2n));
+    let all = check::all(&document, &Severities::default());
+    let tabs: Vec<&Diagnostic> = all.iter().filter(|found| found.code == "tab-in-drawing").collect();
+    let [tab] = tabs[..] else { panic!("{tabs:?}") };
+    assert_eq!((tab.severity, tab.span.of(text), tab.span.start), (Severity::Hint, "\t", 17));
+    let mended = TextEdit::apply_all(&tab.fixes[0].edits, text);
+    let expected = "(* a    comment *)\n|       X0              Y0      |\r\n+-------| |-------------( )-----+\r\n\r\n\
+        |       名      Y1      |       \n+-------[X1]------------( )-----+";
+    assert_eq!(mended, expected);
+    // The same is read from it.
+    let codes = |text: &str| {
+        let document = Document::new(text, Notation::Ladder, Target::of(Model::Fx2n));
+        let all = check::all(&document, &Severities::default());
+        all.iter().map(|found| found.code).filter(|code| *code != "tab-in-drawing").collect::<Vec<_>>()
+    };
+    assert_eq!(codes(&mended), codes(text));
+    // In comments, declarations and behind everything else a tab moves nothing.
+    for quiet in [
+        "(*\ta *)\n--[X0]--(Y0)--\n",
+        "--[X0]--(Y0)--\t\n",
+        "PROGRAM p\nVAR\n\ta : BOOL;\nEND_VAR\n--[a]--(a)--\nEND_PROGRAM\n",
+    ] {
+        assert!(!found_in_all(quiet).contains(&"tab-in-drawing"), "{quiet}");
+    }
+    let list = Document::new("LD\tX0\nOUT\tY0\nEND\n", Notation::FxIl, Target::of(Model::Fx2n));
+    assert!(check::all(&list, &Severities::default()).is_empty());
+}
+
+fn found_in_all(text: &str) -> Vec<&'static str> {
+    let document = Document::new(text, Notation::Ladder, Target::of(Model::Iec));
+    check::all(&document, &Severities::default()).iter().map(|found| found.code).collect()
+}
+
+#[test]
+fn a_name_in_the_wire_is_one_mistake() {
+    // The contact that is meant there is a condition.
+    let text = "|                          |\n+---X0-----X1-------(Y0)---+\n";
+    assert_eq!(places(text, &found(text)), ["stray-operand 2:5", "stray-operand 2:12"]);
+}
+
+#[test]
+fn a_torn_bracket_is_one_mistake() {
+    for (text, place) in [
+        ("|   X0      Y0\n+---| |-----( -\n", "unreadable-cell 2:13"),
+        ("|   X0\n+---| |--[MOV K1 ---------+\n", "unreadable-cell 2:10"),
+        ("+---[ ----- [X0]-------(Y0)-+\n", "unreadable-cell 1:5"),
+    ] {
+        assert_eq!(places(text, &found(text)), [place], "{text}");
+    }
+}

@@ -63,10 +63,8 @@ pub(super) fn diagnostic(path: &str, document: &Document, found: &Diagnostic, co
         let content = document.slice(span);
         let content = content.trim_end_matches(['\n', '\r']);
         text += &format!("{dim}{:>gutter$} |{off} {}\n", line + 1, visible(content)).replace(" \n", "\n");
-        for (mark, sign) in marks(found) {
-            if let Some(carets) = carets(span, content, mark, sign) {
-                text += &format!("{dim}{:>gutter$} |{off} {colour}{carets}{off}\n", "");
-            }
+        if let Some(carets) = carets(span, content, found) {
+            text += &format!("{dim}{:>gutter$} |{off} {colour}{carets}{off}\n", "");
         }
     }
     for related in &found.related {
@@ -112,8 +110,20 @@ fn line_span(document: &Document, line: u32) -> Span {
     )
 }
 
-/// The marks under one line, or nothing if `mark` does not touch it. An empty mark gets one sign.
-fn carets(line: Span, content: &str, mark: Span, sign: char) -> Option<String> {
+/// The marks under one line, the diagnostic's own above those of related places; nothing if none touches it.
+fn carets(line: Span, content: &str, found: &Diagnostic) -> Option<String> {
+    let mut signs: Vec<char> = Vec::new();
+    for (mark, sign) in marks(found) {
+        let Some((start, width)) = cells(line, content, mark) else { continue };
+        signs.resize(signs.len().max(start + width), ' ');
+        let free = |cell: &&mut char| **cell == ' ';
+        signs[start..start + width].iter_mut().filter(free).for_each(|cell| *cell = sign);
+    }
+    (!signs.is_empty()).then(|| signs.into_iter().collect())
+}
+
+/// First cell and width of a mark in a line that it touches. An empty mark is one cell wide.
+fn cells(line: Span, content: &str, mark: Span) -> Option<(usize, usize)> {
     let content_end = line.start + content.len() as u32;
     if mark.end < line.start
         || mark.start > content_end
@@ -125,8 +135,7 @@ fn carets(line: Span, content: &str, mark: Span, sign: char) -> Option<String> {
     let to = mark.end.min(content_end) - line.start;
     let width = |text: &str| visible(text).chars().map(cell_width).sum::<usize>();
     let before = width(content.get(..from as usize).unwrap_or(content));
-    let under = width(content.get(from as usize..to as usize).unwrap_or("")).max(1);
-    Some(format!("{}{}", " ".repeat(before), sign.to_string().repeat(under)))
+    Some((before, width(content.get(from as usize..to as usize).unwrap_or("")).max(1)))
 }
 
 /// Tabs as the grid counts them from column 0, control characters as a replacement, so that carets line up.

@@ -60,19 +60,23 @@ pub fn detect_notation(text: &str) -> Notation {
     if balance < 0 { Notation::IecIl } else { Notation::FxIl }
 }
 
-/// The target of a ladder that stands alone: FX devices only mean an FX2N, other names IEC.
+/// The target of a ladder that stands alone: FX devices only mean an FX2N, other names IEC. A mistyped device (`X8`,
+/// `MO`) or mnemonic is still meant for the FX, so that it is reported and not taken for a variable.
 pub fn detect_ladder_target(text: &str) -> &'static Target {
     let header = text.lines().any(|line| line.split_whitespace().next().is_some_and(is_declaration_keyword));
-    let named = |word: &str| word.chars().any(|c| c.is_alphabetic());
     let foreign = || {
-        drawing_words(text).filter(|word| named(word)).any(|word| {
-            Form::named(word).is_none() && matches!(Operand::read(word, Model::Fx3u), Operand::Invalid(_))
+        drawing_words(text).any(|word| {
+            word.chars().any(char::is_alphabetic)
+                && Form::named(word).is_none()
+                && matches!(Operand::read(word, Model::Fx3u), Operand::Invalid(_))
+                && !resembles_device(word)
         })
     };
     if header || foreign() { Target::of(Model::Iec) } else { Target::of(Model::Fx2n) }
 }
 
-/// The words of a drawing that can be operands: comments, network headers and the letters of symbols left out.
+/// The words of a drawing that can be operands: comments, network headers, the letters of symbols and the mnemonics
+/// of boxes left out.
 fn drawing_words(text: &str) -> impl Iterator<Item = &str> {
     let mut in_comment = false;
     text.lines()
@@ -91,8 +95,30 @@ fn drawing_words(text: &str) -> impl Iterator<Item = &str> {
             !(starts_inside || opens.is_some() || closes.is_some() || aside || head.trim_end().ends_with(':'))
         })
         .take(2000)
-        .flat_map(|line| line.split(|c: char| !(c.is_alphanumeric() || "_.%#".contains(c))))
-        .filter(|word| word.chars().count() > 1 || !word.is_ascii())
+        .flat_map(operand_words)
+}
+
+fn operand_words(line: &str) -> impl Iterator<Item = &str> {
+    let part = |c: char| c.is_alphanumeric() || "_.%#".contains(c);
+    let line = line.split("//").next().unwrap_or("");
+    line.split(move |c: char| !part(c)).filter(move |word| {
+        let start = word.as_ptr() as usize - line.as_ptr() as usize;
+        let (before, after) = (&line[..start], &line[start + word.len()..]);
+        let beside = |sign: Option<char>| sign.is_some_and(|sign| "()[]{}|!┤├│┃".contains(sign));
+        let single = word.len() == 1 && (beside(before.chars().next_back()) || beside(after.chars().next()));
+        let mnemonic = before.trim_end().ends_with(['[', '(', '{']) && after.trim_start().starts_with(part);
+        !(word.is_empty() || single || mnemonic)
+    })
+}
+
+/// Whether a word that names no device looks like a slip in one: a digit that its kind does not have, or a letter
+/// that looks like a digit.
+fn resembles_device(word: &str) -> bool {
+    let Some(rest) = word.strip_prefix(|c: char| "XYMSTCDKxymstcdk".contains(c)) else { return false };
+    let lookalike = |c: char| c.is_ascii_digit() || matches!(c, 'O' | 'o' | 'I' | 'l');
+    let like_number = !rest.is_empty() && rest.chars().all(lookalike);
+    let with_digit = rest.contains(|c: char| c.is_ascii_digit());
+    like_number && (with_digit || (word.starts_with(['X', 'Y', 'M']) && rest == "O"))
 }
 
 fn is_declaration_keyword(word: &str) -> bool {

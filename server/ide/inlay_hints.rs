@@ -1,7 +1,8 @@
-//! What a preset or a hexadecimal constant amounts to, behind it.
+//! What a preset or a hexadecimal constant amounts to, behind it; in a drawing behind its line, for a hint in the line
+//! would push the rest of the drawing out of its columns.
 
 use super::{InlayHint, devices};
-use crate::document::{Chunk, Document};
+use crate::document::{Chunk, Document, Notation};
 use crate::target::{Constant, Operand, Target};
 use crate::text::{Language, Message, Span};
 
@@ -17,13 +18,25 @@ pub(super) fn within(document: &Document, span: Span, language: Language) -> Vec
         }
         for chunk in page.chunks() {
             if start <= last && start + chunk.len() >= first {
+                let old = hints.len();
                 of_chunk(chunk, start, document.target(), language, &mut hints);
+                if document.notation() == Notation::Ladder {
+                    hints[old..]
+                        .iter_mut()
+                        .for_each(|hint| hint.offset = line_end(chunk, start, hint.offset));
+                }
             }
             start += chunk.len();
         }
     }
     hints.retain(|hint| first <= hint.offset && hint.offset <= last);
     hints
+}
+
+/// The end of the line in which `offset` stands, both counted as the chunk's `start` is.
+fn line_end(chunk: &Chunk, start: usize, offset: usize) -> usize {
+    let rest = chunk.text().get(offset - start..).unwrap_or("");
+    offset + rest.find(['\r', '\n']).unwrap_or(rest.len())
 }
 
 fn of_chunk(chunk: &Chunk, start: usize, target: &Target, language: Language, hints: &mut Vec<InlayHint>) {

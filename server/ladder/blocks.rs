@@ -234,9 +234,9 @@ fn outside(
     while is_wire(distance, grid) {
         distance += 1;
     }
-    // An operand may stand one blank away from the edge of a named pin.
+    // An operand may stand one blank away from the edge of a named pin, or from the end of its wire.
     let wired = distance > first;
-    if !wired && named && at(distance, grid) == ' ' {
+    if (wired || named) && at(distance, grid) == ' ' {
         distance += 1;
     }
     let word = word_beside(grid, row, column(distance), side, text);

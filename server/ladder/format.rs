@@ -4,14 +4,20 @@
 //! in its midst, or outputs that would change their order stays exactly as it was drawn. What was redrawn is
 //! read again, and taken only if the logic is the same.
 
+use super::ragged::TWO_READINGS;
 use super::reduce::reduce;
 use super::symbol::width;
-use super::{Drawing, LadderTree, NameHabit, Rung, Style, StyleKind, parse, parse_with, split};
+use super::{
+    Drawing, Element, ElementKind, LadderTree, NameHabit, Rung, Style, StyleKind, parse, parse_with, split,
+};
 use crate::target::Target;
-use crate::text::Span;
+use crate::text::{Diagnostic, Span};
 
-/// Problems that redrawing mends. Every other one means that the rung may not say what its author meant.
-const MENDED: [&str; 2] = ["ragged-rail", "tab-character"];
+/// Whether redrawing mends a problem. Every other one means that the rung may not say what its author meant.
+fn is_mended(problem: &Diagnostic) -> bool {
+    problem.code == "ragged-rail"
+        || (problem.code == "ragged-drawing" && problem.message.key() != TWO_READINGS)
+}
 
 /// What all rungs of a document share.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -190,14 +196,66 @@ fn drawing(
     let (start, end) = lines.bytes(rung.lines);
     // An empty span marks the place between two cells.
     let inside = |span: Span| (span.start as usize) < end && (span.end.max(span.start + 1) as usize) > start;
-    let doubtful =
-        tree.problems.iter().any(|problem| !MENDED.contains(&problem.code) && inside(problem.span));
+    let doubtful = tree.problems.iter().any(|problem| !is_mended(problem) && inside(problem.span));
     if doubtful || line_comments(chunk, tree, rung, lines).is_none() {
+        return None;
+    }
+    if !keeps_words(chunk, tree, rung, (start, end)) {
         return None;
     }
     let shape = reduce(&rung.graph).ok()?;
     let drawing = Drawing::new(&shape, &rung.graph, chunk, kind)?;
     keeps_order(rung, &drawing).then_some(drawing)
+}
+
+/// Whether the lines of a rung, at these bytes, hold all its words and no letter that is not drawn again.
+fn keeps_words(chunk: &str, tree: &LadderTree, rung: &Rung, (start, end): (usize, usize)) -> bool {
+    let elements = &rung.graph.elements;
+    let words: Vec<Span> = elements.iter().flat_map(words_of).collect();
+    // A name on a line of another rung would be drawn here and stay there.
+    if !words.iter().all(|word| start <= word.start as usize && word.end as usize <= end) {
+        return false;
+    }
+    let boxes = elements.iter().filter_map(Element::block).flat_map(|block| block.rows.iter().copied());
+    let symbols = elements.iter().map(|element| element.span).chain(boxes);
+    let number = rung.number.map(|number| number.span);
+    let mut known: Vec<Span> =
+        words.into_iter().chain(symbols).chain(number).chain(tree.comments.clone()).collect();
+    known.sort_unstable();
+    let negated = elements
+        .iter()
+        .filter_map(Element::block)
+        .any(|block| block.inputs.iter().chain(&block.outputs).any(|pin| pin.negated));
+    let mut known = known.into_iter().peekable();
+    let mut known_end = 0;
+    chunk.get(start..end).unwrap_or("").char_indices().all(|(offset, character)| {
+        let offset = start + offset;
+        while let Some(span) = known.next_if(|span| span.start as usize <= offset) {
+            known_end = known_end.max(span.end as usize);
+        }
+        let circle = negated && matches!(character, 'O' | 'o');
+        offset < known_end || circle || !character.is_alphanumeric()
+    })
+}
+
+/// Where the words of an element stand.
+fn words_of(element: &Element) -> Vec<Span> {
+    let mut words: Vec<Span> = element.operands.iter().map(|operand| operand.span).collect();
+    words.extend(element.name_lines.iter().chain(&element.notes));
+    match &element.kind {
+        ElementKind::Block(block) => {
+            let pins = block.inputs.iter().chain(&block.outputs);
+            words.extend(
+                block.instance.into_iter().chain(block.type_name).chain(pins.filter_map(|pin| pin.name)),
+            );
+        }
+        ElementKind::Instruction { mnemonic: word, .. }
+        | ElementKind::Jump(word)
+        | ElementKind::ConnectorOut(word)
+        | ElementKind::ConnectorIn(word) => words.push(*word),
+        _ => {}
+    }
+    words
 }
 
 /// Whether outputs and function blocks, which act in the order in which they are drawn, keep that order.
@@ -216,6 +274,7 @@ fn keeps_order(rung: &Rung, drawing: &Drawing) -> bool {
 
 /// The lines of a chunk.
 struct Lines<'t> {
+    text: &'t str,
     lines: Vec<&'t str>,
     /// Offset of each line and of the end.
     starts: Vec<usize>,
@@ -230,7 +289,7 @@ impl<'t> Lines<'t> {
             offset += line.len();
             starts.push(offset);
         }
-        Lines { lines, starts }
+        Lines { text: chunk, lines, starts }
     }
 
     /// The bytes of lines from the first of `range` to before the second.
@@ -275,14 +334,15 @@ impl<'t> Lines<'t> {
         };
         let ended = before.last().is_some_and(|line| line.ends_with('\n'));
         let margin = page.margin as usize;
-        let mut number = rung.number.map(|number| number.value.to_string());
+        // As it was written: leading zeros are kept.
+        let mut number = rung.number.map(|number| number.span.of(self.text));
         for (row, line) in drawing.iter().enumerate() {
             let leaves_rail = line.starts_with(['+', '├']) || !line.starts_with(['|', '│']);
             match number.take_if(|_| leaves_rail || row + 1 == drawing.len()) {
                 Some(number) => {
                     let blanks = margin.saturating_sub(number.len() + 1);
                     text.extend(std::iter::repeat_n(' ', blanks));
-                    text.push_str(&number);
+                    text.push_str(number);
                     text.push(' ');
                 }
                 None => text.extend(std::iter::repeat_n(' ', margin)),

@@ -241,14 +241,19 @@ impl Line {
             while comments.next_if(|comment| comment.end as usize <= offset).is_some() {}
             let commented = comments.peek().is_some_and(|comment| comment.start as usize <= offset);
             let first = column;
-            let width = match character {
-                '\t' => 8 - column % 8,
-                _ => display_width(character),
-            };
-            column += width;
+            column = column_after(first, character);
+            let width = column - first;
             let shown = if commented { ' ' } else { character };
             (width > 0).then_some((first, offset, shown))
         })
+    }
+}
+
+/// The displayed column behind a character in `column`, from 0: a tab goes on to the next multiple of 8.
+pub fn column_after(column: u32, character: char) -> u32 {
+    match character {
+        '\t' => column + 8 - column % 8,
+        _ => column + display_width(character),
     }
 }
 

@@ -11,6 +11,7 @@ mod reader;
 pub use reader::{parse, parse_with};
 
 mod lines;
+pub use lines::column_after;
 
 mod glyph;
 

@@ -140,7 +140,12 @@ impl Naming<'_> {
         };
         let unreadable = |row: usize| {
             let over = self.tokens.over(row, token.start..token.end);
-            over.is_some_and(|(_, over)| over.what == What::Unreadable)
+            // A word in the wire has been bridged.
+            let bridged = |over: &Token| {
+                let mut shared = token.start.max(over.start)..token.end.min(over.end);
+                over.what == What::Wire && shared.any(|column| !self.grid.arms(row, column).is_horizontal())
+            };
+            over.is_some_and(|(_, over)| over.what == What::Unreadable || bridged(over))
         };
         beside.into_iter().flatten().any(turned)
             || unreadable(row + 1)
@@ -224,6 +229,7 @@ impl Naming<'_> {
             counts[owner] += 1;
         }
         self.second_operands(words, &mut counts, names_below);
+        self.presets(words, &mut counts);
         for word in words.iter_mut().filter(|word| word.owner.is_none()) {
             // Against the habit, but there is only one reading.
             let other = if names_below { word.below } else { word.above };
@@ -253,6 +259,50 @@ impl Naming<'_> {
                     counts[owner] -= 1;
                 }
             }
+        }
+    }
+
+    /// The preset of a timer or counter that has none may stand on the other side of its coil, or behind it.
+    fn presets(&self, words: &mut [Word], counts: &mut [usize]) {
+        if !self.target.is_fx() {
+            return;
+        }
+        let read = |word: &Word| {
+            let span = self.grid.span(word.row, word.start, word.end);
+            Operand::read(span.of(self.text), self.target.model)
+        };
+        let mut devices: rustc_hash::FxHashMap<usize, Operand> = rustc_hash::FxHashMap::default();
+        for word in words.iter() {
+            if let Some(owner) = word.owner.filter(|owner| counts[*owner] == 1) {
+                devices.insert(owner, read(word));
+            }
+        }
+        for word in words.iter_mut().filter(|word| word.owner.is_none()) {
+            let preset = read(word);
+            let waits = |symbol: &usize| {
+                let element = &self.tokens.symbols[*symbol].element;
+                let inside = element.operands.first().map(|operand| operand.value);
+                let device = inside.or_else(|| devices.get(symbol).copied());
+                matches!(element.kind, ElementKind::Coil(_))
+                    && element.operands.len() < 2
+                    && counts[*symbol] < 2 - element.operands.len()
+                    && device.is_some_and(|device| is_preset(&device, &preset))
+            };
+            let sides = [word.above.symbol(), word.below.symbol(), self.symbol_before(word)];
+            if let Some(symbol) = sides.into_iter().flatten().find(waits) {
+                word.owner = Some(symbol);
+                counts[symbol] += 1;
+            }
+        }
+    }
+
+    /// The symbol on the left of a word, at most two blanks away.
+    fn symbol_before(&self, word: &Word) -> Option<usize> {
+        let line = self.tokens.rows.get(word.row)?;
+        let before = line[..line.partition_point(|token| token.start < word.start)].last()?;
+        match before.what {
+            What::Symbol(symbol) if before.end + 2 >= word.start => Some(symbol),
+            _ => None,
         }
     }
 
@@ -291,7 +341,15 @@ impl Naming<'_> {
         let place = if first.row < symbol.row { OperandPlace::Above } else { OperandPlace::Below };
         let mut surplus = Vec::new();
         match symbol.wants {
-            Wants::Nothing => surplus = operands,
+            Wants::Nothing => match (&symbol.element.kind, &symbol.element.operands[..], &operands[..]) {
+                // `(T0)` with its preset outside.
+                (ElementKind::Coil(_), [device], [preset])
+                    if target.is_fx() && is_preset(&device.value, &preset.value) =>
+                {
+                    symbol.element.operands.push(*preset);
+                }
+                _ => surplus = operands,
+            },
             Wants::Instance => {
                 if let ElementKind::Block(block) = &mut symbol.element.kind {
                     surplus = name_instance(block, operands);
@@ -344,6 +402,20 @@ impl Naming<'_> {
         }
         let prose = count > 2 && !tokens.iter().any(inner);
         prose.then(|| self.grid.span(word.row, words[from].start, last))
+    }
+
+    /// The text behind everything that is drawn, from `word` on: a remark beside the right rail.
+    fn text_behind(&self, word: &Word, words: &[Word]) -> Option<Span> {
+        let line = &self.tokens.rows[word.row];
+        let before = line[..line.partition_point(|token| token.start < word.start)].last()?;
+        let rows = self.tokens.rows[word.row.saturating_sub(1)..].iter().take(3);
+        let drawn = rows.flatten().filter(|token| token.is_drawn()).map(|token| token.end).max()?;
+        let behind = matches!(before.what, What::Upright(_) | What::Wire) && before.end < word.start;
+        if !behind || drawn > word.start {
+            return None;
+        }
+        let last = words.iter().rev().find(|other| other.row == word.row)?;
+        last.owner.is_none().then(|| self.grid.span(word.row, word.start, last.end))
     }
 
     /// Gives words that miss their element by a column or two to it, if there is only one reading.
@@ -399,6 +471,14 @@ impl Naming<'_> {
                 }
             }
             if prose {
+                continue;
+            }
+            if let Some(line) = self.text_behind(word, words) {
+                prose = true;
+                let title = Message::new("stray-operand.comment");
+                let problem = Diagnostic::new("stray-operand", line, Message::new("stray-operand.behind"));
+                self.problems
+                    .push(problem.fix(title, vec![TextEdit::new(Span::at(line.start as usize), "// ")]));
                 continue;
             }
             let span = self.grid.span(word.row, word.start, word.end);

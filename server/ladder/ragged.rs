@@ -9,6 +9,11 @@ use crate::text::{Diagnostic, Message, Span};
 /// How many columns a bar may be beside its junction.
 const ASIDE: usize = 2;
 
+/// The message about a wire that can be read in two ways.
+pub(super) const TWO_READINGS: &str = "ragged-drawing.two";
+
+const JUNCTION: &str = "ragged-drawing.junction";
+
 /// An end of a vertical wire that is a bare bar.
 #[derive(Clone, Copy)]
 struct End {
@@ -42,12 +47,18 @@ pub(super) fn mend(
                 join(uprights, &end, upright);
             }
             [(upright, token)] => {
-                problems.push(related(Message::new("ragged-drawing.beside"), own, &[span(row, &token)]));
+                let junction = span(row, &token);
+                // A wire in one row that misses its junctions at both ends is one finding.
+                let message = Message::new("ragged-drawing.beside");
+                match problems.iter_mut().find(|other| other.span == own && other.message == message) {
+                    Some(other) => *other = other.clone().related(junction, Message::new(JUNCTION)),
+                    None => problems.push(related(message, own, &[junction])),
+                }
                 join(uprights, &end, upright);
             }
             _ => {
                 let spans: Vec<Span> = candidates.iter().map(|(_, token)| span(row, token)).collect();
-                problems.push(related(Message::new("ragged-drawing.two"), own, &spans));
+                problems.push(related(Message::new(TWO_READINGS), own, &spans));
             }
         }
     }
@@ -55,9 +66,7 @@ pub(super) fn mend(
 
 fn related(message: Message, span: Span, junctions: &[Span]) -> Diagnostic {
     let problem = Diagnostic::new("ragged-drawing", span, message);
-    junctions
-        .iter()
-        .fold(problem, |problem, span| problem.related(*span, Message::new("ragged-drawing.junction")))
+    junctions.iter().fold(problem, |problem, span| problem.related(*span, Message::new(JUNCTION)))
 }
 
 fn join(uprights: &mut Uprights, end: &End, other: usize) {

@@ -74,7 +74,10 @@ pub(super) fn build_rungs(
         let free_to = groups.get(number + 1).map_or(grid.height(), |next| next.0);
         let lines = (lines.0.max(free_from).min(first), lines.1.min(free_to.saturating_sub(1)).max(last));
         free_from = lines.1 + 1;
-        let number = (first..=last).find_map(|row| margin_number(grid, &rows, row, left, text));
+        let beside = |mut lines: std::ops::RangeInclusive<usize>| {
+            lines.find_map(|row| margin_number(grid, &rows, row, left, text))
+        };
+        let number = beside(first..=last).or_else(|| beside(lines.0..=lines.1));
         let count = rails.iter().take_while(|(row, _)| *row <= last).count();
         let (own_rails, rest) = rails.split_at(count);
         rails = rest;

@@ -6,7 +6,7 @@ use super::glyph::{Arms, contact_mark, continues_word, is_operator, starts_word}
 use super::grid::{Grid, TAKEN, WIDE};
 use super::{Element, ElementKind, OperandPlace};
 use crate::target::Target;
-use crate::text::{Diagnostic, Message, Span};
+use crate::text::{Diagnostic, Message, Span, TextEdit};
 
 /// A piece of a row.
 #[derive(Clone, Copy, Debug)]
@@ -59,8 +59,8 @@ pub(super) struct Tokens {
 pub(super) struct Extent {
     /// Start of the first and of the last token that is drawn.
     pub(super) drawn: Option<(usize, usize)>,
-    /// Start of the first symbol, end of the last one.
-    pub(super) symbols: Option<(usize, usize)>,
+    /// Start of the first symbol, start and end of the last one.
+    pub(super) symbols: Option<(usize, usize, usize)>,
 }
 
 impl Tokens {
@@ -160,7 +160,7 @@ impl Scanner<'_> {
             return Some(self.contact(row, column).unwrap_or_else(|| self.upright(row, column, arms)));
         }
         if let Some(end) = self.word_end(row, column) {
-            return Some(Token { start: column, end, what: What::Word });
+            return Some(self.word(row, column, end));
         }
         if arms.is_horizontal() {
             return Some(self.wire(row, column));
@@ -174,6 +174,27 @@ impl Scanner<'_> {
             '/' | '\\' => self.invert(row, column),
             _ => None,
         }
+    }
+
+    /// A word. In the middle of a wire it stands where an element belongs; the wire goes on behind it, so that it is
+    /// one finding.
+    fn word(&mut self, row: usize, start: usize, end: usize) -> Token {
+        let wire = |column: usize| self.grid.arms(row, column).is_horizontal();
+        if start == 0 || !wire(start - 1) || !wire(end) {
+            return Token { start, end, what: What::Word };
+        }
+        let span = self.grid.span(row, start, end);
+        let word = span.of(self.text);
+        // Where the wire is long enough, the brackets take a cell of it on each side.
+        let cell = |fits: bool| usize::from(fits);
+        let from = start - cell(start > 1 && wire(start - 2));
+        let to = end + cell(wire(end + 1));
+        let edit = TextEdit::new(self.grid.span(row, from, to), format!("[{word}]"));
+        let problem =
+            Diagnostic::new("stray-operand", span, Message::new("stray-operand.in-wire").with("text", word))
+                .fix(Message::new("stray-operand.contact").with("text", word), vec![edit]);
+        self.problems.push(problem);
+        Token { start, end, what: What::Wire }
     }
 
     /// The end of the word that starts at a cell, if one does.
@@ -367,7 +388,7 @@ impl Scanner<'_> {
         let Some(close) = close else {
             let span = self.grid.span(row, column, column + 1);
             self.unreadable(span, Message::new("unreadable-cell.bracket").with("text", span.of(self.text)));
-            return Some(Token { start: column, end: column + 1, what: What::Unreadable });
+            return Some(Token { start: column, end: self.torn_end(row, column), what: What::Unreadable });
         };
         let inside = pieces(self.grid, row, column + 1, close, self.text);
         let reading = read(&inside, self.target);
@@ -375,6 +396,25 @@ impl Scanner<'_> {
             return Some(self.on_vertical(row, column, close + 1));
         }
         Some(self.symbol(row, column, close + 1, reading))
+    }
+
+    /// One past what stands behind a bracket without partner: words, operators and commas belong to it.
+    fn torn_end(&self, row: usize, open: usize) -> usize {
+        let (mut column, mut end) = (open + 1, open + 1);
+        while column < self.grid.width(row) {
+            let character = self.grid.at(row, column);
+            if let Some(word_end) = self.word_end(row, column) {
+                column = word_end;
+            } else if matches!(character, ' ' | ',') || is_operator(character) {
+                column += 1;
+            } else {
+                break;
+            }
+            if character != ' ' || self.grid.arms(row, column).is_horizontal() {
+                end = column;
+            }
+        }
+        end
     }
 
     /// One past the end of `| |` without wires beside it, but with a vertical wire above and below.
@@ -468,7 +508,8 @@ fn extent(line: &[Token]) -> Extent {
     for token in line.iter().filter(|token| token.is_drawn()) {
         extent.drawn = Some((extent.drawn.map_or(token.start, |(first, _)| first), token.start));
         if let What::Symbol(_) = token.what {
-            extent.symbols = Some((extent.symbols.map_or(token.start, |(first, _)| first), token.end));
+            let first = extent.symbols.map_or(token.start, |(first, ..)| first);
+            extent.symbols = Some((first, token.start, token.end));
         }
     }
     extent

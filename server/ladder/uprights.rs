@@ -221,8 +221,9 @@ fn stray_or_rail(upright: &Upright, tokens: &Tokens, nothing_beyond: bool) -> Ro
     let below = (last.row + 1..last.row + 1 + NEAR).find_map(symbols);
     let within = upright.cells.iter().filter_map(|cell| symbols(cell.row));
     let (mut all_left, mut all_right) = (true, true);
-    for (start, end) in within.chain(above).chain(below) {
-        all_left &= end <= column;
+    for (start, last_start, _) in within.chain(above).chain(below) {
+        // A rail beside names may stand over the end of the last element, if that one is wider.
+        all_left &= last_start < column;
         all_right &= column < start;
     }
     if nothing_beyond && all_left {

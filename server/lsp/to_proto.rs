@@ -180,10 +180,11 @@ pub(super) fn inlay_hint(place: Place<'_>, hint: ide::InlayHint) -> lsp::InlayHi
     }
 }
 
-/// The token types in the order of [`ide::TokenKind`], by the names that themes know.
+/// The token types in the order of [`ide::TokenKind`], by the names that themes know. Mnemonics are keywords: themes
+/// leave operators in the colour of plain text.
 pub(super) fn legend() -> lsp::SemanticTokensLegend {
     let types = [
-        "comment", "keyword", "operator", "variable", "variable", "label", "number", "string", "function",
+        "comment", "keyword", "keyword", "variable", "variable", "label", "number", "string", "function",
         "class", "type", "wire", "contact",
     ];
     lsp::SemanticTokensLegend {

@@ -3,12 +3,7 @@
 //! Each figure is a median and a 95th percentile of many rounds, with a ratio to a calibration (a fixed piece of
 //! arithmetic) run beside it, so that figures of different machines and hours can be compared.
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::print_stdout,
-    reason = "a measurement that cannot go on stops, and its figures go to standard output"
-)]
+#![allow(clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a bench that cannot run stops")]
 
 #[path = "../lsp_client.rs"]
 #[allow(dead_code, reason = "the tests use all of it")]
@@ -28,7 +23,9 @@ struct Figures(Vec<Duration>);
 impl Figures {
     fn of(rounds: usize, mut event: impl FnMut(usize) -> Duration) -> Figures {
         // The first rounds warm caches and are not counted.
-        (0..rounds / 10 + 1).for_each(|round| _ = event(round));
+        for round in 0..rounds / 10 + 1 {
+            event(round);
+        }
         let mut durations: Vec<Duration> = (0..rounds).map(|round| event(rounds / 10 + 1 + round)).collect();
         durations.sort();
         Figures(durations)

@@ -87,6 +87,10 @@ test('each keyword entry of the grammar is one pattern, longest word first', () 
     const parts = /^\(\?i\)\(\?<!\[\\w\.%#\]\)\(\?:(.+)\)\(\?!\[\\w#\]\)$/.exec(entry.match);
     const list = (parts?.[1] ?? '').split('|').map((word) => word.replace(/\\(.)/g, '$1'));
     assert.ok(list.length > 5, `${key}: the form of the pattern`);
+    // A last alternative may be a pattern for a whole family of words, such as the conversions.
+    if (list.at(-1)?.includes('[')) {
+      list.pop();
+    }
     const sorted = [...new Set(list)].sort((a, b) => b.length - a.length || (a < b ? -1 : 1));
     assert.deepEqual(list, sorted, `${key}: order`);
   }

@@ -50,7 +50,11 @@ impl<'a> Drawn<'a> {
 
     /// The cells that broke the reading, in order.
     pub(super) fn breaking(&self) -> Vec<Span> {
-        let problems = self.tree.problems.iter().filter(|problem| BREAKING.contains(&problem.code));
+        // Without the element that a word in the wire is meant to be, the rung is another one.
+        let breaks = |problem: &&Diagnostic| {
+            BREAKING.contains(&problem.code) || problem.message.key() == "stray-operand.in-wire"
+        };
+        let problems = self.tree.problems.iter().filter(breaks);
         problems.map(|problem| problem.span).collect()
     }
 

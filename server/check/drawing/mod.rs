@@ -28,6 +28,7 @@ mod rung_too_large;
 mod rung_without_output;
 mod short_circuit;
 mod stray_operand;
+mod tab_in_drawing;
 mod unreadable_cell;
 mod upper_parallel;
 
@@ -51,6 +52,7 @@ pub(super) const RULES: &[&Rule] = &[
     &stray_operand::RULE,
     &ragged_rail::RULE,
     &ragged_drawing::RULE,
+    &tab_in_drawing::RULE,
     &rung_too_large::RULE,
 ];
 

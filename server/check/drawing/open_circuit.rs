@@ -80,12 +80,23 @@ pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
     }
 }
 
-/// The cells of a span and those around them.
+/// The cells of a span and those around them; for a bracket without partner also what stands behind it, up to the
+/// wire.
 fn around(picture: &Picture, span: Span) -> Vec<Place> {
     let cells: Vec<Place> = picture.places(span).collect();
     let row = cells.first().map_or(0, |cell| cell.0);
     let first = cells.first().map_or(0, |cell| cell.1.saturating_sub(1));
-    let last = cells.last().map_or(0, |cell| cell.1 + 1);
+    let mut last = cells.last().map_or(0, |cell| cell.1 + 1);
+    if let [bracket] = cells[..]
+        && matches!(picture.at(bracket), '[' | '(' | '{')
+    {
+        const SHOWN: usize = 80;
+        let ends = |column: &usize| {
+            let character = picture.at((row, *column));
+            is_wire(character) || is_bar(character) || is_junction(character)
+        };
+        last = (last..last + SHOWN).find(ends).unwrap_or(last);
+    }
     (row.saturating_sub(1)..=row + 1)
         .flat_map(|row| (first..=last).map(move |column| (row, column)))
         .collect()
