@@ -236,7 +236,7 @@ fn apply(document: &mut Document, (place, removed, piece): (usize, usize, usize)
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: std::env::var("N").map_or(400, |n| n.parse().unwrap()), failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn incremental_equals_from_scratch(sample in 0..1000usize, edits in edits()) {

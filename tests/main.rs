@@ -10,6 +10,7 @@
 
 mod cli;
 mod document;
+mod extremes;
 mod grammar;
 mod ide;
 mod il_fx;

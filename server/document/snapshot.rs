@@ -180,6 +180,11 @@ impl Document {
         LineColumn { line: line as u32, column }
     }
 
+    /// The line, from 0, in which `offset` lies; the way to it does not read the line.
+    pub fn line_of(&self, offset: usize) -> u32 {
+        self.rope.byte_to_line(offset.min(self.len())) as u32
+    }
+
     /// The line, from 0, in which `offset` lies, with the offset of its start and its text, line end included.
     pub fn line_at(&self, offset: usize) -> (usize, usize, String) {
         let line = self.rope.byte_to_line(offset.min(self.len()));

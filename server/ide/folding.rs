@@ -5,7 +5,7 @@ use crate::document::{ChunkRef, Document, Tree};
 use crate::il::fx::{FxTree, LineKind};
 use crate::il::iec::{IecTree, ItemKind};
 use crate::ladder::LadderTree;
-use crate::text::{Encoding, Span};
+use crate::text::Span;
 
 pub(super) fn of(document: &Document) -> Vec<Fold> {
     let mut folding = Folding { document, folds: Vec::new(), open: Vec::new(), network: None };
@@ -184,8 +184,7 @@ impl Folding<'_> {
     }
 
     fn add_across(&mut self, start: usize, end: usize) {
-        let line = |offset: usize| self.document.position(offset, Encoding::Utf8).line;
-        if start < end && line(start) < line(end) {
+        if start < end && self.document.line_of(start) < self.document.line_of(end) {
             self.folds.push(Fold { span: Span::new(start, end), kind: FoldKind::Region });
         }
     }

@@ -2,7 +2,7 @@
 
 use super::names::{self, Named, Thing};
 use crate::document::{Document, Use};
-use crate::text::{Encoding, Language, Message};
+use crate::text::{Language, Message};
 
 /// So many lines are named, the rest is counted.
 const SHOWN: usize = 8;
@@ -58,7 +58,7 @@ impl Lines {
             self.more += 1;
             return;
         }
-        let line = document.position(offset, Encoding::Utf8).line + 1;
+        let line = document.line_of(offset) + 1;
         if self.shown.last() != Some(&line) {
             self.shown.push(line);
         }
