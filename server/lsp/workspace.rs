@@ -24,8 +24,9 @@ use tower_lsp::ls_types::{
     TextDocumentContentChangeEvent, TextDocumentItem, Uri,
 };
 
-/// A document up to this size is looked at after each edit for what it is; a longer one when it is saved.
-const UNDECIDED_BYTES: usize = 4096;
+/// A document up to this size, a rung or so, is looked at after each edit for what it is; a longer one when it is
+/// saved, lest a half-typed word turn the whole of it into another language.
+const UNDECIDED_BYTES: usize = 128;
 
 tokio::task_local! {
     /// The state at the moment when the request was read.
