@@ -304,7 +304,7 @@ mod reading {
     fn programs_of_other_people_read_without_problems() {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/corpus/fx");
         let Ok(files) = std::fs::read_dir(folder) else {
-            eprintln!("skipped: no {folder}");
+            crate::corpus::say_skipped(&format!("no {folder}"));
             return;
         };
         for file in files {

@@ -1514,7 +1514,7 @@ fn programs_by_others() {
     let folder = std::env::var_os("RUNGWISE_CORPUS")
         .map_or(folder, |corpus| std::path::Path::new(&corpus).join("iec"));
     let Ok(files) = std::fs::read_dir(&folder) else {
-        eprintln!("skipped: no programs by others in {} (set RUNGWISE_CORPUS)", folder.display());
+        crate::corpus::say_skipped(&format!("no programs in {} (set RUNGWISE_CORPUS)", folder.display()));
         return;
     };
     let mut read = 0;

@@ -980,7 +980,7 @@ fn programs_by_other_people() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let places = ["../shared/corpus/ladder", "../../shared/corpus/ladder"];
     let Some(folder) = places.iter().map(|place| root.join(place)).find(|folder| folder.exists()) else {
-        eprintln!("skipped: no folder {}", root.join(places[0]).display());
+        crate::corpus::say_skipped(&format!("no folder {}", root.join(places[0]).display()));
         return;
     };
     // Drawings that are clean as they stand, with the number of their rungs.

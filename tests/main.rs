@@ -9,6 +9,7 @@
 )]
 
 mod cli;
+mod corpus;
 mod document;
 mod extremes;
 mod grammar;

@@ -159,7 +159,7 @@ fn mistakes_are_told_once() {
 fn programs_of_other_people() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/corpus/iec");
     let Ok(entries) = std::fs::read_dir(folder) else {
-        eprintln!("skipped: no sample programs beside the source tree");
+        crate::corpus::say_skipped("no sample programs beside the source tree");
         return;
     };
     let mut all = Vec::new();
