@@ -5,7 +5,7 @@ use rungwise::check::{self, Severities};
 use rungwise::document::{Document, Notation};
 use rungwise::ladder::{TWO_READINGS, parse};
 use rungwise::target::{Model, Target};
-use rungwise::text::Diagnostic;
+use rungwise::text::{Diagnostic, Language, Severity, TextEdit};
 
 fn fx() -> &'static Target {
     Target::of(Model::Fx3u)
@@ -194,4 +194,66 @@ fn what_is_off_by_two_columns_is_read_as_the_straight_drawing_or_in_two_ways() {
         }
     }
     assert!(failures.is_empty(), "{} of {}\n{}", failures.len(), same + asked, failures.join("\n"));
+}
+
+/// The drawing of each fix of a finding.
+fn fixed(drawing: &str, finding: &Diagnostic) -> Vec<String> {
+    finding.fixes.iter().map(|fix| TextEdit::apply_all(&fix.edits, drawing)).collect()
+}
+
+#[test]
+fn what_was_read_is_redrawn() {
+    for straight in STRAIGHT.iter().map(|drawing| drawing.trim_start_matches('\n')) {
+        let wanted = logic(straight);
+        let mut redrawn = 0;
+        for moved in moved(straight) {
+            let found = found(&moved.drawing);
+            for finding in found.iter().filter(|finding| finding.code == "ragged-drawing") {
+                if finding.message.key() == TWO_READINGS {
+                    continue;
+                }
+                let fixed = fixed(&moved.drawing, finding);
+                let drawing = fixed.last().unwrap_or_else(|| panic!("{}\n{}", moved.what, moved.drawing));
+                assert_eq!(logic(drawing), wanted, "{}\n{}{drawing}", moved.what, moved.drawing);
+                assert!(parse(drawing, fx()).problems.is_empty(), "{drawing}");
+                redrawn += 1;
+            }
+        }
+        assert!(redrawn > 20, "{straight}");
+    }
+}
+
+#[test]
+fn two_readings_are_shown_and_neither_is_taken() {
+    let drawing = "\
+|   X0       X2                Y0  |
++---| |---+[ ]+----------------( )-+
+|   X1      |                      |
++---| |-----+                      |
+";
+    let found = found(drawing);
+    assert_eq!(
+        found.iter().map(|f| (f.code, f.severity)).collect::<Vec<_>>(),
+        [("ragged-drawing", Severity::Warning)]
+    );
+    let words = found[0].message.render(Language::English);
+    assert!(words.contains("column 11") && words.contains("column 15"), "{words}");
+    let related: Vec<&str> = found[0].related.iter().map(|related| related.span.of(drawing)).collect();
+    assert_eq!(related, ["+", "+"]);
+    let readings = fixed(drawing, &found[0]);
+    let expected = [
+        "\
+|   X0        X2                           Y0  |
++---| |---+---| |--------------------------( )-+
+|   X1    |                                    |
++---| |---+                                    |
+",
+        "\
+|   X0      X2                             Y0  |
++---| |-----| |---+------------------------( )-+
+|   X1            |                            |
++---| |-----------+                            |
+",
+    ];
+    assert_eq!(readings, expected);
 }

@@ -257,6 +257,13 @@ pub fn column_after(column: u32, character: char) -> u32 {
     }
 }
 
+/// The displayed column, from 0, of byte `offset` in its line of `text`.
+pub fn column_of(text: &str, offset: u32) -> u32 {
+    let before = text.get(..offset as usize).unwrap_or("");
+    let line = before.rsplit('\n').next().unwrap_or("");
+    line.chars().fold(0, column_after)
+}
+
 /// Displayed cells of a character other than a tab; a byte-order mark has none.
 pub(super) fn display_width(character: char) -> u32 {
     if character == '\u{FEFF}' { 0 } else { cell_width(character) as u32 }

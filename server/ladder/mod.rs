@@ -11,7 +11,7 @@ mod reader;
 pub use reader::{Choice, parse, parse_choosing, parse_with};
 
 mod lines;
-pub use lines::column_after;
+pub use lines::{column_after, column_of};
 
 mod glyph;
 
@@ -62,4 +62,4 @@ mod printer;
 pub use printer::{Drawing, Style, StyleKind, print};
 
 mod format;
-pub use format::{Page, format, format_chunk};
+pub use format::{Page, format, format_chunk, redraw};

@@ -69,7 +69,7 @@ impl Uprights {
         problems: &mut Vec<Diagnostic>,
     ) -> Uprights {
         let mut found = Uprights::linked(tokens);
-        Mender { uprights: &mut found, grid, tokens, left, choice, problems }.mend();
+        Mender::new(&mut found, (grid, tokens), left, choice, problems).mend();
         let right =
             tokens.rows.iter().flatten().filter(|token| token.is_drawn()).map(|t| t.end).max().unwrap_or(0);
         for upright in found.all.iter_mut().filter(|upright| !upright.cells.is_empty()) {
