@@ -1303,5 +1303,9 @@ fn one_slip_is_one_problem() {
 fn contacts_by_their_mnemonics() {
     check("--[LD X0]--[ANI X1]--[ANDP X2]--[ LDF X3 ]--(Y0)--", "L X0 /X1 ^X2 vX3 (Y0) R");
     // An unknown mnemonic is no device.
-    check("--[X0]--(OTE Y0)--", "L X0 [?OTE Y0] R");
+    check("--[X0]--(OTX Y0)--", "L X0 [?OTX Y0] R");
+    // Those of Allen-Bradley are known.
+    check("--[XIC X0]--[XIO X1]--(OTE Y0)--", "L X0 /X1 (Y0) R");
+    check("--[X0]--(OTL M0)--", "L X0 (S M0) R");
+    check("--[X0]--(OTU M0)--", "L X0 (R M0) R");
 }

@@ -17,6 +17,10 @@ mod glyph;
 
 mod grid;
 
+mod frame;
+
+mod inline;
+
 mod blocks;
 
 mod scan;

@@ -228,9 +228,9 @@ impl<'a> Mender<'a> {
             let (Some(upper), Some(lower)) = (only(top.row - 1, false), only(last.row + 1, true)) else {
                 continue;
             };
-            let alone = [top.row, last.row]
-                .iter()
-                .all(|row| in_row(*row).filter(|other| other.bare).all(|other| other.number == top.number));
+            let alone = [(top.row, top.number), (last.row, last.token)].iter().all(|(row, number)| {
+                in_row(*row).filter(|other| other.bare).all(|other| other.number == *number)
+            });
             let straight = upper.token.start == lower.token.start;
             if straight && alone && upper.token.start.abs_diff(top.token.start) <= FAR_ASIDE {
                 self.join(&upper, top, "ragged-drawing.beside");

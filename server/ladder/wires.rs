@@ -192,7 +192,7 @@ impl<'a> Tracer<'a> {
                 }
                 self.finish();
             }
-            Role::Stray => self.finish(),
+            Role::Stray | Role::Separator => self.finish(),
             Role::Loose => {
                 let end = self.loose(token.start);
                 if cell.left {
