@@ -1,10 +1,10 @@
 //! Names that stand in the wire, before or behind their element: `--- start --| |---`, `---| | start ---`.
 
+use super::OperandPlace;
 use super::content::Wants;
 use super::glyph::{continues_word, starts_word};
 use super::grid::{Grid, WIDE};
 use super::scan::{Tokens, What};
-use super::OperandPlace;
 use crate::target::{Operand, Target};
 use crate::text::{Span, Spanned};
 
@@ -59,9 +59,9 @@ fn inline_row(grid: &Grid, row: usize) -> Option<Vec<(usize, usize, usize, usize
         let from = if start > 0 && gap(at(start - 1)) { start - 1 } else { start };
         let to = if gap(at(column)) { column + 1 } else { column };
         let wire = |column: usize| grid.arms(row, column).is_horizontal();
-        let before = from > 0 && (wire(from - 1) || symbols.last().is_some_and(|symbol| {
-            bare_symbol(grid, row, *symbol) == Some(from)
-        }));
+        let before = from > 0
+            && (wire(from - 1)
+                || symbols.last().is_some_and(|symbol| bare_symbol(grid, row, *symbol) == Some(from)));
         let after = wire(to) || bare_symbol(grid, row, to).is_some();
         let wired = (from > 0 && wire(from - 1)) || wire(to);
         if !before || !after || !wired {

@@ -17,6 +17,8 @@ mod glyph;
 
 mod grid;
 
+mod beside;
+
 mod frame;
 
 mod inline;

@@ -542,7 +542,8 @@ impl Naming<'_> {
                     problem = problem.related(symbol.element.span, Message::new("stray-operand.element"));
                     if let Some(edit) = self.moved(word, symbol) {
                         let column = symbol.start + 1;
-                        let title = Message::new("stray-operand.move-to").with("text", text).with("column", column);
+                        let title =
+                            Message::new("stray-operand.move-to").with("text", text).with("column", column);
                         problem = problem.fix(title, vec![edit]);
                     }
                 }

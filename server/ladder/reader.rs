@@ -1,5 +1,6 @@
 //! Reads a chunk: lines, grid, tokens, wires, names, and from these the graph of each rung.
 
+use super::beside::take_beside;
 use super::blocks::find_blocks;
 use super::chunks::{ChunkKind, kind_of};
 use super::frame::take_frame;
@@ -88,6 +89,7 @@ fn read_drawing(
     (habit, choice): (NameHabit, Option<Choice>),
     tree: &mut LadderTree,
 ) {
+    take_beside(&mut grid, &mut tree.problems);
     let captions = take_frame(&mut grid);
     for row in captions {
         grid.clear(row, 0..usize::MAX);
