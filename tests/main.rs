@@ -12,6 +12,7 @@ mod cli;
 mod corpus;
 mod document;
 mod extremes;
+mod fuzz;
 mod grammar;
 mod ide;
 mod il_fx;
