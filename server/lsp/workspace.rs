@@ -6,11 +6,12 @@ use super::manifests::Manifests;
 use super::projects::{Loaded, Projects, canonical, file_path};
 use super::publisher::Publisher;
 use super::settings::Settings;
+use super::to_proto::Manner;
 use crate::check::Severities;
 use crate::document::{Document, Edit, Notation};
 use crate::project::{Manifest, Project, decide};
 use crate::target::{Model, Target};
-use crate::text::{Encoding, LineColumn};
+use crate::text::{Encoding, Language, LineColumn};
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -39,7 +40,7 @@ tokio::task_local! {
 /// The state at one moment. Cloning copies some pointers.
 #[derive(Clone, Default)]
 pub(super) struct Snapshot {
-    pub encoding: Encoding,
+    pub manner: Manner,
     pub settings: Arc<Settings>,
     pub projects: Arc<Projects>,
     documents: Arc<FxHashMap<Uri, Arc<Open>>>,
@@ -143,7 +144,10 @@ impl Workspace {
     fn initialise(self: &Arc<Workspace>, params: &InitializeParams) {
         let mut state = self.state();
         state.keeper = Some(Keeper::start(self));
-        state.snapshot.encoding = capabilities::encoding_for(&params.capabilities);
+        state.snapshot.manner = Manner {
+            encoding: capabilities::encoding_for(&params.capabilities),
+            language: params.locale.as_deref().map(Language::of_locale).unwrap_or_default(),
+        };
         let settings = Settings::read(params.initialization_options.as_ref());
         state.snapshot.settings = Arc::new(settings.unwrap_or_default());
         state.watches = capabilities::can_watch(&params.capabilities);
@@ -192,7 +196,7 @@ impl Workspace {
         }
         let before = state.closing.remove(&uri);
         let snapshot = &state.snapshot;
-        let publisher = Publisher::start(self.client.clone(), snapshot.encoding, &snapshot.settings, before);
+        let publisher = Publisher::start(self.client.clone(), snapshot.manner, &snapshot.settings, before);
         state.publishers.insert(uri.clone(), publisher);
         let severities = Arc::new(manifest.severities());
         if let Some(path) = &path {
@@ -211,7 +215,7 @@ impl Workspace {
         let was_short = open.document.len() <= UNDECIDED_BYTES;
         open.version = params.text_document.version;
         for change in params.content_changes {
-            let edit = edit_of(&open.document, change, state.snapshot.encoding);
+            let edit = edit_of(&open.document, change, state.snapshot.manner.encoding);
             let (notation, target) = (open.document.notation(), open.document.target());
             let edited = guarded(|| {
                 let mut document = open.document.clone();
@@ -288,13 +292,14 @@ impl Workspace {
         }
     }
 
+<<<<<<< HEAD
     /// To which project a document belongs. What is wrong with its manifest is told to the user. A project that is met
     /// for the first time is read in the background.
     fn belonging(&self, state: &mut State, uri: &Uri) -> Belonging {
         let Some(project) = file_path(uri).and_then(|path| Project::of(&path)) else {
             return Belonging::default();
         };
-        let place = state.manifests.note(&self.client, &project, state.snapshot.encoding);
+        let place = state.manifests.note(&self.client, &project, state.snapshot.manner);
         let key = canonical(&project.root);
         if !state.snapshot.projects.contains_key(&key)
             && let Some(keeper) = &state.keeper
@@ -312,6 +317,14 @@ impl Workspace {
             Some(loaded) => _ = projects.insert(key.clone(), Arc::new(loaded)),
             None => _ = projects.remove(key),
         }
+=======
+    /// The manifest for a document, and where it is. What is wrong with it is told to the user.
+    fn manifest_of(&self, state: &mut State, uri: &Uri) -> (Manifest, Option<Uri>) {
+        let project = uri.to_file_path().and_then(|path| Project::of(&path));
+        let Some(project) = project else { return (Manifest::default(), None) };
+        let place = state.manifests.note(&self.client, &project, state.snapshot.manner);
+        (project.manifest, place)
+>>>>>>> main
     }
 
     /// A panic while the lock was held leaves whole values behind it: each is put in one assignment.
