@@ -30,3 +30,9 @@ pub use mention::{Mention, Symbol, Use};
 
 mod scope;
 pub use scope::{DeclaredType, Pou, Scopes, Variable};
+
+mod project_view;
+pub use project_view::{At, Member, ProjectView};
+
+mod exports;
+pub use exports::{Exports, Outer};

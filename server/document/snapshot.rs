@@ -1,7 +1,7 @@
 //! The document itself: text, chunks, and how an edit changes both.
 
 use super::pages::{Cursor, Page, Pages};
-use super::{Chunk, Notation, Scopes, Size, chunk};
+use super::{Chunk, Notation, Outer, Scopes, Size, chunk};
 use crate::target::Target;
 use crate::text::{Encoding, LineColumn, Span, column_of_offset, offset_of_column};
 use ropey::Rope;
@@ -19,6 +19,8 @@ pub struct Document {
     target: &'static Target,
     pages: Pages,
     scopes: OnceLock<Arc<Scopes>>,
+    /// What the files of its project declare, and which of them it is.
+    outer: Option<(Arc<Outer>, usize)>,
 }
 
 /// A replacement of bytes; `None` replaces everything.
@@ -48,6 +50,7 @@ impl Document {
             target,
             pages: Pages::default(),
             scopes: OnceLock::new(),
+            outer: None,
         };
         document.read_all(text, &[]);
         document
@@ -56,7 +59,7 @@ impl Document {
     /// Keeps `text` without reading it: the last resort after a failure of a reader.
     pub fn unread(text: &str, notation: Notation, target: &'static Target) -> Document {
         let rope = Rope::from_str(text);
-        Document { rope, notation, target, pages: Pages::default(), scopes: OnceLock::new() }
+        Document { rope, notation, target, pages: Pages::default(), scopes: OnceLock::new(), outer: None }
     }
 
     /// The bytes of `old` that were replaced and those of `self` that replaced them, to whole chunks;
@@ -88,7 +91,7 @@ impl Document {
 
     /// The same text read as another language or for another target.
     pub fn reread(&self, notation: Notation, target: &'static Target) -> Document {
-        Document::new(&self.text(), notation, target)
+        Document { outer: self.outer.clone(), ..Document::new(&self.text(), notation, target) }
     }
 
     /// Applies `edits` one after another, each to the result of the one before.
@@ -166,7 +169,29 @@ impl Document {
         Some(ChunkRef { start: start - chunk.len(), chunk })
     }
 
-    /// The POUs and variables declared in it.
+    /// The same document as file number `own` of a project in which `outer` is declared.
+    pub fn linked(&self, outer: Arc<Outer>, own: usize) -> Document {
+        Document { scopes: OnceLock::new(), outer: Some((outer, own)), ..self.clone() }
+    }
+
+    /// The same document standing alone.
+    pub fn unlinked(&self) -> Document {
+        Document { scopes: OnceLock::new(), outer: None, ..self.clone() }
+    }
+
+    /// The same document in the place of `other` in its project.
+    pub fn linked_as(mut self, other: &Document) -> Document {
+        self.outer = other.outer.clone();
+        self.scopes = OnceLock::new();
+        self
+    }
+
+    /// What the files of its project declare, and which of them it is.
+    pub fn outer(&self) -> Option<(&Arc<Outer>, usize)> {
+        self.outer.as_ref().map(|(outer, own)| (outer, *own))
+    }
+
+    /// The POUs and variables declared in it, and those of the other files of its project.
     pub fn scopes(&self) -> &Arc<Scopes> {
         self.scopes.get_or_init(|| Arc::new(Scopes::of(self)))
     }
