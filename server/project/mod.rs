@@ -3,5 +3,8 @@
 mod manifest;
 pub use manifest::{FormatSettings, FormatStyle, MOST_WIDTH, Manifest, ManifestError, TaskSettings};
 
+mod comments;
+pub use comments::{CommentsFile, decode};
+
 mod files;
 pub use files::{MANIFEST_NAME, Project, decide, is_program_file, open_document, program_files};
