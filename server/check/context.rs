@@ -20,7 +20,7 @@ pub struct ChunkContext<'a> {
 impl ChunkContext<'_> {
     /// The POU in which the chunk stands.
     pub fn pou(&self) -> Option<&Pou> {
-        self.scopes.pous.get(self.pou?)
+        self.scopes.pous.get(self.pou?).map(|pou| &**pou)
     }
 }
 

@@ -33,3 +33,9 @@ pub use comments::{Comments, DeviceComment};
 
 mod scope;
 pub use scope::{DeclaredType, Pou, Scopes, Variable};
+
+mod project_view;
+pub use project_view::{At, Member, ProjectView};
+
+mod exports;
+pub use exports::{Exports, Outer};

@@ -1,7 +1,7 @@
 //! The document itself: text, chunks, and how an edit changes both.
 
 use super::pages::{Cursor, Page, Pages};
-use super::{Chunk, Comments, Notation, Scopes, Size, chunk};
+use super::{Chunk, Comments, Notation, Outer, Scopes, Size, chunk};
 use crate::target::Target;
 use crate::text::{Encoding, LineColumn, Span, column_of_offset, offset_of_column};
 use ropey::Rope;
@@ -22,6 +22,8 @@ pub struct Document {
     reader: Option<Arc<Target>>,
     pages: Pages,
     scopes: OnceLock<Arc<Scopes>>,
+    /// What the files of its project declare, and which of them it is.
+    outer: Option<(Arc<Outer>, usize)>,
 }
 
 /// A replacement of bytes; `None` replaces everything.
@@ -72,6 +74,7 @@ impl Document {
             reader: None,
             pages: Pages::default(),
             scopes: OnceLock::new(),
+            outer: None,
         }
     }
 
@@ -114,13 +117,15 @@ impl Document {
 
     /// The same text read as another language or for another target.
     pub fn reread(&self, notation: Notation, target: &'static Target) -> Document {
-        Document::with_comments(&self.text(), notation, target, self.comments.clone())
+        let read = Document::with_comments(&self.text(), notation, target, self.comments.clone());
+        Document { outer: self.outer.clone(), ..read }
     }
 
     /// The same text with other comments; it is read anew only if the symbols differ.
     pub fn commented(&self, comments: &Arc<Comments>) -> Document {
         if self.comments.symbols() != comments.symbols() {
-            return Document::with_comments(&self.text(), self.notation, self.target, comments.clone());
+            let read = Document::with_comments(&self.text(), self.notation, self.target, comments.clone());
+            return Document { outer: self.outer.clone(), ..read };
         }
         Document { comments: comments.clone(), ..self.clone() }
     }
@@ -200,7 +205,29 @@ impl Document {
         Some(ChunkRef { start: start - chunk.len(), chunk })
     }
 
-    /// The POUs and variables declared in it.
+    /// The same document as file number `own` of a project in which `outer` is declared.
+    pub fn linked(&self, outer: Arc<Outer>, own: usize) -> Document {
+        Document { scopes: OnceLock::new(), outer: Some((outer, own)), ..self.clone() }
+    }
+
+    /// The same document standing alone.
+    pub fn unlinked(&self) -> Document {
+        Document { scopes: OnceLock::new(), outer: None, ..self.clone() }
+    }
+
+    /// The same document in the place of `other` in its project.
+    pub fn linked_as(mut self, other: &Document) -> Document {
+        self.outer = other.outer.clone();
+        self.scopes = OnceLock::new();
+        self
+    }
+
+    /// What the files of its project declare, and which of them it is.
+    pub fn outer(&self) -> Option<(&Arc<Outer>, usize)> {
+        self.outer.as_ref().map(|(outer, own)| (outer, *own))
+    }
+
+    /// The POUs and variables declared in it, and those of the other files of its project.
     pub fn scopes(&self) -> &Arc<Scopes> {
         self.scopes.get_or_init(|| Arc::new(Scopes::of(self)))
     }

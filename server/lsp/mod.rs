@@ -7,7 +7,9 @@
 mod backend;
 mod capabilities;
 mod frames;
+mod keeper;
 mod manifests;
+mod projects;
 mod publisher;
 mod service;
 mod settings;
@@ -16,7 +18,6 @@ mod to_proto;
 mod workspace;
 
 use service::Ordered;
-use std::sync::Arc;
 use tower_lsp::{LspService, Server};
 use workspace::Workspace;
 
@@ -28,7 +29,7 @@ const CONCURRENCY: usize = 4096;
 pub async fn serve() -> u8 {
     let mut workspace = None;
     let (service, socket) = LspService::new(|client| {
-        let shared = Arc::new(Workspace::new(client));
+        let shared = Workspace::new(client);
         workspace = Some(shared.clone());
         backend::Backend::new(shared)
     });

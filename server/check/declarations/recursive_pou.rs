@@ -59,6 +59,7 @@ use crate::il::iec::{ItemKind, PouKind, SectionKind, TypeSpec};
 use crate::text::{Diagnostic, Message, Severity, Span};
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
+use std::sync::Arc;
 
 pub(super) const RULE: Rule = Rule {
     code: "recursive-pou",
@@ -125,7 +126,7 @@ fn used<'a>(view: &View<'a>) -> Vec<(&'a str, Span)> {
 }
 
 /// Goes through the uses depth first, without the stack of the machine: chains of POUs may be long.
-fn find_cycles(pous: &[Pou], uses: &[Vec<Edge>], found: &mut Vec<Diagnostic>) {
+fn find_cycles(pous: &[Arc<Pou>], uses: &[Vec<Edge>], found: &mut Vec<Diagnostic>) {
     let mut done = vec![false; uses.len()];
     // For each POU on the path its place there, and the number of its next edge.
     let mut place: Vec<Option<usize>> = vec![None; uses.len()];
@@ -157,7 +158,7 @@ fn find_cycles(pous: &[Pou], uses: &[Vec<Edge>], found: &mut Vec<Diagnostic>) {
 }
 
 fn cycle(
-    pous: &[Pou],
+    pous: &[Arc<Pou>],
     uses: &[Vec<Edge>],
     path: &[(usize, usize)],
     back_to: usize,

@@ -71,7 +71,7 @@ struct Unit<'a> {
 
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let scopes = context.document.scopes();
-    if scopes.pous.is_empty() {
+    if scopes.own_pous().is_empty() {
         return;
     }
     let enumerators = enumerators(context);
@@ -119,7 +119,7 @@ fn is_declared(scopes: &Scopes, pou: usize, name: &str, mention: &Mention) -> bo
             || scopes.pou_named(name).is_some_and(|pou| pou.kind != PouKind::Program)
     };
     scopes.variable(Some(pou), name).is_some()
-        || scopes.pous.get(pou).is_some_and(is_result)
+        || scopes.pous.get(pou).is_some_and(|pou| is_result(pou))
         || mention.usage == Use::ReadWrite && is_callee()
 }
 

@@ -76,7 +76,7 @@ impl<'a> View<'a> {
 
     /// The POU in which it stands.
     pub fn pou(&self) -> Option<&'a Pou> {
-        self.scopes.pous.get(self.pou?)
+        self.scopes.pous.get(self.pou?).map(|pou| &**pou)
     }
 
     /// The text of an operand.
