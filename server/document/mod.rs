@@ -28,6 +28,9 @@ pub use operation::Operation;
 mod mention;
 pub use mention::{Mention, Symbol, Use};
 
+mod comments;
+pub use comments::{Comments, DeviceComment};
+
 mod scope;
 pub use scope::{DeclaredType, Pou, Scopes, Variable};
 

@@ -27,7 +27,7 @@ pub(super) fn edits(document: &Document, style: Style) -> Vec<TextEdit> {
                 None
             }
             Tree::Iec(tree) => Some(iec::format_chunk(text, tree, &iec::FormatOptions::default())),
-            Tree::Ladder(tree) => ladder::format_chunk(text, tree, document.target(), &page),
+            Tree::Ladder(tree) => ladder::format_chunk(text, tree, document.reader(), &page),
         };
         if let Some(formatted) = formatted {
             edits.extend(line_edits(text, &formatted).iter().map(|edit| edit.shifted(at.start)));

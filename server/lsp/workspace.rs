@@ -292,7 +292,6 @@ impl Workspace {
         }
     }
 
-<<<<<<< HEAD
     /// To which project a document belongs. What is wrong with its manifest is told to the user. A project that is met
     /// for the first time is read in the background.
     fn belonging(&self, state: &mut State, uri: &Uri) -> Belonging {
@@ -317,14 +316,6 @@ impl Workspace {
             Some(loaded) => _ = projects.insert(key.clone(), Arc::new(loaded)),
             None => _ = projects.remove(key),
         }
-=======
-    /// The manifest for a document, and where it is. What is wrong with it is told to the user.
-    fn manifest_of(&self, state: &mut State, uri: &Uri) -> (Manifest, Option<Uri>) {
-        let project = uri.to_file_path().and_then(|path| Project::of(&path));
-        let Some(project) = project else { return (Manifest::default(), None) };
-        let place = state.manifests.note(&self.client, &project, state.snapshot.manner);
-        (project.manifest, place)
->>>>>>> main
     }
 
     /// A panic while the lock was held leaves whole values behind it: each is put in one assignment.
