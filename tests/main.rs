@@ -17,6 +17,7 @@ mod grammar;
 mod ide;
 mod il_fx;
 mod il_iec;
+mod ladder_by_hand;
 mod ladder_generate;
 mod ladder_print;
 mod ladder_read;
