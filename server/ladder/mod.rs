@@ -19,6 +19,9 @@ mod grid;
 
 mod blocks;
 
+mod ldmicro;
+pub use ldmicro::{BoxKind, NameKind, TableRow, table_rows, time_literal};
+
 mod scan;
 
 mod content;

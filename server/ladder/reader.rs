@@ -4,6 +4,7 @@ use super::blocks::find_blocks;
 use super::chunks::{ChunkKind, kind_of};
 use super::glyph::Arms;
 use super::grid::{Grid, MOST_COLUMNS, MOST_ROWS};
+use super::ldmicro::find_boxes;
 use super::lines::{HeaderLine, LineKind, Lines, OpenComment};
 use super::names::{Named, Naming};
 use super::rungs::build_rungs;
@@ -87,7 +88,8 @@ fn read_drawing(
     tree: &mut LadderTree,
 ) {
     let left = left_column(&grid);
-    let (symbols, blocks) = find_blocks(&mut grid, text, target);
+    let (mut symbols, mut blocks) = find_blocks(&mut grid, text, target);
+    find_boxes(&mut grid, text, target, &mut symbols, &mut blocks);
     let problems = &mut tree.problems;
     let scanner = Scanner { grid: &grid, text, target, left, symbols, problems };
     let mut tokens = scanner.scan(&blocks);
