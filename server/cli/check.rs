@@ -47,8 +47,8 @@ struct Summary {
     capacity: u32,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Outcome {
-    let Some(programs) = programs(&paths_or_here(&arguments.paths), arguments.target) else {
+pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
+    let Some(programs) = programs(&paths_or_here(&arguments.paths), arguments.target, language) else {
         return Outcome::Unusable;
     };
     for program in programs.iter().filter(|program| program.damaged) {
@@ -64,8 +64,8 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         .collect();
     let summary = Summary::of(&checked);
     match arguments.format {
-        Format::Text => say_text(&checked, &summary),
-        Format::Json => say(&format!("{:#}\n", as_json(&checked, &summary))),
+        Format::Text => say_text(&checked, &summary, language),
+        Format::Json => say(&format!("{:#}\n", as_json(&checked, &summary, language))),
     }
     if summary.denied(arguments.deny) > 0 { Outcome::Findings } else { Outcome::Clean }
 }
@@ -116,28 +116,28 @@ fn plural(count: usize, word: &str) -> String {
     if count == 1 { format!("1 {word}") } else { format!("{count} {word}s") }
 }
 
-fn say_text(checked: &[(Program, Vec<Diagnostic>)], summary: &Summary) {
+fn say_text(checked: &[(Program, Vec<Diagnostic>)], summary: &Summary, language: Language) {
     let colours = render::Colours::new(super::input::coloured());
     for (program, diagnostics) in checked {
         let name = program.path.display().to_string();
         let (drawn, listed) = diagnostics.split_at(diagnostics.len().min(MOST_DRAWN));
         for diagnostic in drawn {
-            say(&render::diagnostic(&name, &program.document, diagnostic, &colours));
+            say(&render::diagnostic(&name, &program.document, diagnostic, &colours, language));
         }
         for diagnostic in listed {
-            say(&render::headline(&name, &program.document, diagnostic, &colours));
+            say(&render::headline(&name, &program.document, diagnostic, &colours, language));
         }
     }
     say(&format!("{}\n", summary.sentence()));
 }
 
-fn as_json(checked: &[(Program, Vec<Diagnostic>)], summary: &Summary) -> Value {
+fn as_json(checked: &[(Program, Vec<Diagnostic>)], summary: &Summary, language: Language) -> Value {
     let files: Vec<Value> = checked
         .iter()
         .map(|(program, diagnostics)| {
             let status = ide::status(&program.document);
             let diagnostics: Vec<Value> =
-                diagnostics.iter().map(|found| diagnostic_json(program, found)).collect();
+                diagnostics.iter().map(|found| diagnostic_json(program, found, language)).collect();
             json!({
                 "path": program.path.display().to_string(),
                 "target": status.target,
@@ -161,7 +161,7 @@ fn as_json(checked: &[(Program, Vec<Diagnostic>)], summary: &Summary) -> Value {
     })
 }
 
-fn diagnostic_json(program: &Program, diagnostic: &Diagnostic) -> Value {
+fn diagnostic_json(program: &Program, diagnostic: &Diagnostic, language: Language) -> Value {
     let path = program.path.display().to_string();
     let range = |span: Span| {
         let position = |offset: u32| {
@@ -171,18 +171,18 @@ fn diagnostic_json(program: &Program, diagnostic: &Diagnostic) -> Value {
         json!({"start": position(span.start), "end": position(span.end)})
     };
     let related = diagnostic.related.iter().map(|related| {
-        let message = related.message.render(Language::English);
+        let message = related.message.render(language);
         json!({"path": path, "range": range(related.span), "message": message})
     });
     let fix = |fix: &Fix| {
         let edits =
             fix.edits.iter().map(|edit| json!({"path": path, "range": range(edit.span), "text": edit.text}));
-        json!({"title": fix.title.render(Language::English), "edits": edits.collect::<Vec<_>>()})
+        json!({"title": fix.title.render(language), "edits": edits.collect::<Vec<_>>()})
     };
     json!({
         "code": diagnostic.code,
         "severity": severity_word(diagnostic.severity),
-        "message": diagnostic.message.render(Language::English),
+        "message": diagnostic.message.render(language),
         "range": range(diagnostic.span),
         "related": related.collect::<Vec<_>>(),
         "fixes": diagnostic.fixes.iter().map(fix).collect::<Vec<_>>(),

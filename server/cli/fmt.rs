@@ -4,7 +4,7 @@ use super::input::{Program, complain, programs, say};
 use super::{Outcome, paths_or_here};
 use crate::ide::{self, Style};
 use crate::project::FormatStyle;
-use crate::text::TextEdit;
+use crate::text::{Language, TextEdit};
 use clap::ValueEnum;
 use std::path::PathBuf;
 
@@ -30,8 +30,10 @@ enum StyleName {
     Unicode,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Outcome {
-    let Some(programs) = programs(&paths_or_here(&arguments.paths), None) else { return Outcome::Unusable };
+pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
+    let Some(programs) = programs(&paths_or_here(&arguments.paths), None, language) else {
+        return Outcome::Unusable;
+    };
     let mut outcome = Outcome::Clean;
     for program in programs {
         let result = format_one(&program, arguments);

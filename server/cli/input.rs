@@ -18,11 +18,15 @@ pub(super) struct Program {
 }
 
 /// The programs at `paths`, or nothing after complaints about what cannot be read or that there are none.
-pub(super) fn programs(paths: &[PathBuf], target: Option<&'static Target>) -> Option<Vec<Program>> {
+pub(super) fn programs(
+    paths: &[PathBuf],
+    target: Option<&'static Target>,
+    language: Language,
+) -> Option<Vec<Program>> {
     let mut programs = Vec::new();
     let mut failed = false;
     for path in paths {
-        match files_at(path) {
+        match files_at(path, language) {
             Ok(files) => {
                 for (file, manifest) in files {
                     match read_program(&file, manifest, target) {
@@ -78,45 +82,46 @@ pub(super) fn coloured() -> bool {
 }
 
 /// The files at `path` with the manifest of their project.
-fn files_at(path: &Path) -> Result<Vec<(PathBuf, Arc<Manifest>)>, String> {
+fn files_at(path: &Path, language: Language) -> Result<Vec<(PathBuf, Arc<Manifest>)>, String> {
     if !path.exists() {
         return Err(format!("{}: there is no such file or folder", path.display()));
     }
     if path.file_name().is_some_and(|name| name == MANIFEST_NAME) {
         return files_at(
             path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")),
+            language,
         );
     }
     if path.is_file() {
         if !is_program_file(path) {
             return Err(format!("{}: neither a .lad nor an .il file", path.display()));
         }
-        let manifest = manifest_for(path)?;
+        let manifest = manifest_for(path, language)?;
         return Ok(vec![(path.to_path_buf(), manifest)]);
     }
     if path.join(MANIFEST_NAME).is_file() {
         let project = Project::read(path);
-        let manifest = usable(&project)?;
+        let manifest = usable(&project, language)?;
         let files = project.files().map_err(|reason| format!("{}: {reason}", path.display()))?;
         return Ok(files.into_iter().map(|file| (file, manifest.clone())).collect());
     }
     let files = program_files(path).map_err(|reason| format!("{}: {reason}", path.display()))?;
-    files.into_iter().map(|file| manifest_for(&file).map(|manifest| (file, manifest))).collect()
+    files.into_iter().map(|file| manifest_for(&file, language).map(|manifest| (file, manifest))).collect()
 }
 
-fn manifest_for(path: &Path) -> Result<Arc<Manifest>, String> {
+fn manifest_for(path: &Path, language: Language) -> Result<Arc<Manifest>, String> {
     match Project::of(&path.canonicalize().unwrap_or_else(|_| path.to_path_buf())) {
-        Some(project) => usable(&project),
+        Some(project) => usable(&project, language),
         None => Ok(Arc::default()),
     }
 }
 
 /// The manifest, or its mistake with the place.
-fn usable(project: &Project) -> Result<Arc<Manifest>, String> {
+fn usable(project: &Project, language: Language) -> Result<Arc<Manifest>, String> {
     let Some(error) = &project.error else { return Ok(Arc::new(project.manifest.clone())) };
     let path = project.root.join(MANIFEST_NAME);
     let LineColumn { line, column } = project.position(error.span.start, Encoding::Utf32);
-    let reason = error.message.render(Language::English);
+    let reason = error.message.render(language);
     Err(format!("{}:{}:{}: {reason}", path.display(), line + 1, column + 1))
 }
 

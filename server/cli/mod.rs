@@ -18,10 +18,9 @@ use std::process::ExitCode;
 struct Arguments {
     #[command(subcommand)]
     verb: Verb,
-    /// The language of messages: en.
-    // The catalogue has one language, so there is nobody to hand the choice to.
+    /// The language of messages: en, zh-CN.
     #[arg(long = "lang", value_name = "LANGUAGE", global = true, default_value = "en", value_parser = language_named)]
-    _language: Language,
+    language: Language,
 }
 
 #[derive(Subcommand)]
@@ -72,10 +71,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             return if usage { Outcome::Unusable.into() } else { Outcome::Clean.into() };
         }
     };
+    let language = arguments.language;
     match arguments.verb {
         Verb::Lsp { stdio: _ } => serve(),
-        Verb::Check(arguments) => check::run(&arguments).into(),
-        Verb::Fmt(arguments) => fmt::run(&arguments).into(),
+        Verb::Check(arguments) => check::run(&arguments, language).into(),
+        Verb::Fmt(arguments) => fmt::run(&arguments, language).into(),
         Verb::Explain(arguments) => explain::run(&arguments).into(),
     }
 }
@@ -121,7 +121,8 @@ impl From<Outcome> for ExitCode {
 fn language_named(name: &str) -> Result<Language, String> {
     match name {
         "en" => Ok(Language::English),
-        _ => Err("messages are in en only".to_string()),
+        "zh-CN" | "zh" => Ok(Language::SimplifiedChinese),
+        _ => Err("messages are in en and zh-CN".to_string()),
     }
 }
 

@@ -44,18 +44,30 @@ impl Colours {
 }
 
 /// `path:line:column: severity[code]: message`
-pub(super) fn headline(path: &str, document: &Document, found: &Diagnostic, colours: &Colours) -> String {
+pub(super) fn headline(
+    path: &str,
+    document: &Document,
+    found: &Diagnostic,
+    colours: &Colours,
+    language: Language,
+) -> String {
     let LineColumn { line, column } = document.position(found.span.start as usize, Encoding::Utf32);
     let (colour, off) = (colours.of(found.severity), colours.off);
-    let message = found.message.render(Language::English);
+    let message = found.message.render(language);
     let word = severity_word(found.severity);
     format!("{path}:{}:{}: {colour}{word}[{}]{off}: {message}\n", line + 1, column + 1, found.code)
 }
 
 /// The headline, the rung with carets, related places and fixes.
-pub(super) fn diagnostic(path: &str, document: &Document, found: &Diagnostic, colours: &Colours) -> String {
+pub(super) fn diagnostic(
+    path: &str,
+    document: &Document,
+    found: &Diagnostic,
+    colours: &Colours,
+    language: Language,
+) -> String {
     let (colour, off, dim) = (colours.of(found.severity), colours.off, colours.dim);
-    let mut text = headline(path, document, found, colours);
+    let mut text = headline(path, document, found, colours, language);
     let (first, last) = shown_lines(document, found.span);
     let gutter = (last + 1).to_string().len();
     for line in first..=last {
@@ -69,11 +81,11 @@ pub(super) fn diagnostic(path: &str, document: &Document, found: &Diagnostic, co
     }
     for related in &found.related {
         let LineColumn { line, column } = document.position(related.span.start as usize, Encoding::Utf32);
-        let message = related.message.render(Language::English);
+        let message = related.message.render(language);
         text += &format!("  note: {path}:{}:{}: {message}\n", line + 1, column + 1);
     }
     for fix in &found.fixes {
-        text += &format!("  fix: {}\n", fix.title.render(Language::English));
+        text += &format!("  fix: {}\n", fix.title.render(language));
     }
     text.push('\n');
     text

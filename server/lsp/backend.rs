@@ -28,8 +28,8 @@ impl Backend {
 impl LanguageServer for Backend {
     async fn initialize(&self, params: InitializeParams) -> Result<InitializeResult> {
         // The workspace took what these say when the message was read.
-        let Snapshot { encoding, settings, .. } = self.workspace.snapshot();
-        Ok(capabilities::offered(&params.capabilities, encoding, settings.pulls()))
+        let Snapshot { manner, settings, .. } = self.workspace.snapshot();
+        Ok(capabilities::offered(&params.capabilities, manner.encoding, settings.pulls()))
     }
 
     async fn initialized(&self, _: InitializedParams) {
@@ -52,7 +52,7 @@ impl LanguageServer for Backend {
     async fn hover(&self, params: HoverParams) -> Result<Option<Hover>> {
         let at = params.text_document_position_params;
         Ok(with_open(&at.text_document.uri, |_, place| {
-            let hover = ide::hover(place.document, place.offset(at.position), Language::English)?;
+            let hover = ide::hover(place.document, place.offset(at.position), place.language)?;
             Some(to_proto::hover(place, hover))
         }))
     }
@@ -60,7 +60,7 @@ impl LanguageServer for Backend {
     async fn completion(&self, params: CompletionParams) -> Result<Option<CompletionResponse>> {
         let at = params.text_document_position;
         Ok(with_open(&at.text_document.uri, |_, place| {
-            let proposals = ide::completions(place.document, place.offset(at.position), Language::English);
+            let proposals = ide::completions(place.document, place.offset(at.position), place.language);
             let items = proposals.into_iter().map(|proposal| to_proto::completion(place, proposal));
             Some(CompletionResponse::Array(items.collect()))
         }))
@@ -105,7 +105,7 @@ impl LanguageServer for Backend {
 
     async fn document_symbol(&self, params: DocumentSymbolParams) -> Result<Option<DocumentSymbolResponse>> {
         whole(params.text_document.uri, |_, place| {
-            let nodes = ide::symbols(place.document, Language::English)
+            let nodes = ide::symbols(place.document, place.language)
                 .into_iter()
                 .map(|node| to_proto::symbol(place, node));
             DocumentSymbolResponse::Nested(nodes.collect())
@@ -135,7 +135,7 @@ impl LanguageServer for Backend {
             return Ok(None);
         }
         whole(params.text_document.uri, move |_, place| {
-            let hints = ide::inlay_hints(place.document, place.span(params.range), Language::English);
+            let hints = ide::inlay_hints(place.document, place.span(params.range), place.language);
             hints.into_iter().map(|hint| to_proto::inlay_hint(place, hint)).collect()
         })
         .await
@@ -159,10 +159,10 @@ impl LanguageServer for Backend {
     }
 
     async fn diagnostic(&self, params: DocumentDiagnosticParams) -> Result<DocumentDiagnosticReportResult> {
-        let encoding = SNAPSHOT.with(|snapshot| snapshot.encoding);
+        let manner = SNAPSHOT.with(|snapshot| snapshot.manner);
         let uri = params.text_document.uri;
         let items = whole(uri, move |open, _| {
-            to_proto::diagnostics(open, check::all(&open.document, &open.severities), encoding)
+            to_proto::diagnostics(open, check::all(&open.document, &open.severities), manner)
         });
         Ok(report(items.await?.unwrap_or_default(), params.previous_result_id))
     }
@@ -177,7 +177,7 @@ impl LanguageServer for Backend {
             )));
         };
         match params.command.as_str() {
-            "rungwise.check" => whole(uri, |open, _| check_summary(open)).await,
+            "rungwise.check" => whole(uri, |open, place| check_summary(open, place.language)).await,
             "rungwise.format" => self.format(uri).await,
             other => Err(Error::invalid_params(format!("no such command: {other}"))),
         }
@@ -208,7 +208,7 @@ impl Backend {
 fn with_open<T>(uri: &Uri, answer: impl FnOnce(&Open, Place<'_>) -> Option<T>) -> Option<T> {
     let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
     let open = snapshot.open(uri)?;
-    answer(open, Place { document: &open.document, encoding: snapshot.encoding })
+    answer(open, Place::new(&open.document, snapshot.manner))
 }
 
 /// The same for answers that walk the whole document: they run on a thread of their own.
@@ -219,7 +219,7 @@ async fn whole<T: Send + 'static>(
     let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
     let work = tokio::task::spawn_blocking(move || {
         let open = snapshot.open(&uri)?;
-        Some(answer(open, Place { document: &open.document, encoding: snapshot.encoding }))
+        Some(answer(open, Place::new(&open.document, snapshot.manner)))
     });
     work.await.map_err(|failure| {
         tracing::error!("a request failed: {failure}");
@@ -240,9 +240,9 @@ fn quick_fix(open: &Open, place: Place<'_>, fix: &ide::FixOf<'_>) -> CodeAction 
     // Plain changes reach every client, also one that knows no versioned edits.
     let changes = HashMap::from([(open.uri.clone(), place.edits(&fix.fix.edits))]);
     CodeAction {
-        title: fix.fix.title.render(Language::English),
+        title: fix.fix.title.render(place.language),
         kind: Some(CodeActionKind::QUICKFIX),
-        diagnostics: Some(vec![to_proto::diagnostic(open, fix.diagnostic, place.encoding)]),
+        diagnostics: Some(vec![to_proto::diagnostic(open, fix.diagnostic, place.manner())]),
         edit: Some(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }),
         is_preferred: Some(fix.is_preferred),
         ..CodeAction::default()
@@ -250,7 +250,7 @@ fn quick_fix(open: &Open, place: Place<'_>, fix: &ide::FixOf<'_>) -> CodeAction 
 }
 
 /// `{"errors", "warnings", "hints", "rungs", "steps", "capacity", "message"}`
-fn check_summary(open: &Open) -> Value {
+fn check_summary(open: &Open, language: Language) -> Value {
     let found: Vec<Diagnostic> = check::all(&open.document, &open.severities);
     let count = |severity| found.iter().filter(|diagnostic| diagnostic.severity == severity).count();
     let [errors, warnings, hints] =
@@ -276,7 +276,7 @@ fn check_summary(open: &Open) -> Value {
         "rungs": status.rungs,
         "steps": status.steps,
         "capacity": status.capacity,
-        "message": message.render(Language::English),
+        "message": message.render(language),
     })
 }
 
@@ -306,5 +306,6 @@ fn report(
 
 /// A refusal that the editor shows to the user.
 fn refused(message: Message) -> Error {
-    Error::invalid_params(message.render(Language::English))
+    let language = SNAPSHOT.with(|snapshot| snapshot.manner.language);
+    Error::invalid_params(message.render(language))
 }

@@ -1,7 +1,8 @@
 //! Tells the user what is wrong with the manifests of open documents: a message, and a diagnostic in the manifest.
 
+use super::to_proto::Manner;
 use crate::project::{MANIFEST_NAME, Project};
-use crate::text::{Encoding, Language, LineColumn, Message};
+use crate::text::{LineColumn, Message};
 use rustc_hash::{FxHashMap, FxHashSet};
 use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
 use tower_lsp::Client;
@@ -22,18 +23,18 @@ struct Notice {
 
 impl Manifests {
     /// Tells the mistake of `project` unless it was told before, or takes it back; returns its manifest.
-    pub(super) fn note(&mut self, client: &Client, project: &Project, encoding: Encoding) -> Option<Uri> {
+    pub(super) fn note(&mut self, client: &Client, project: &Project, manner: Manner) -> Option<Uri> {
         let manifest = Uri::from_file_path(project.root.join(MANIFEST_NAME))?;
         let Some(error) = &project.error else {
             self.take_back(client, &manifest);
             return Some(manifest);
         };
         let position = |offset| {
-            let LineColumn { line, column } = project.position(offset, encoding);
+            let LineColumn { line, column } = project.position(offset, manner.encoding);
             Position::new(line, column)
         };
         let range = Range::new(position(error.span.start), position(error.span.end));
-        let reason = error.message.render(Language::English);
+        let reason = error.message.render(manner.language);
         let mistake = (range, reason.clone());
         if self.told.get(&manifest) != Some(&mistake) {
             let message =
@@ -45,7 +46,7 @@ impl Manifests {
                 message: reason,
                 ..Diagnostic::default()
             };
-            let message = Some(message.render(Language::English));
+            let message = Some(message.render(manner.language));
             self.send(client, Notice { manifest: manifest.clone(), diagnostics: vec![diagnostic], message });
             self.told.insert(manifest.clone(), mistake);
         }

@@ -5,10 +5,10 @@
 
 use super::settings::Settings;
 use super::status::StatusNotification;
-use super::to_proto;
+use super::to_proto::{self, Manner};
 use super::workspace::Open;
 use crate::check;
-use crate::text::{Diagnostic, Encoding};
+use crate::text::Diagnostic;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
@@ -39,7 +39,7 @@ enum Order {
 /// What the task remembers.
 struct Task {
     client: Client,
-    encoding: Encoding,
+    manner: Manner,
     pushes: bool,
     /// The newest batch findings, and the document that they belong to.
     batch: Option<(Arc<Open>, Vec<Diagnostic>)>,
@@ -52,13 +52,13 @@ impl Publisher {
     /// to say, the clearing at last, must not come after the first word of this one.
     pub(super) fn start(
         client: Client,
-        encoding: Encoding,
+        manner: Manner,
         settings: &Settings,
         before: Option<JoinHandle<()>>,
     ) -> Publisher {
         let (sender, receiver) = watch::channel(Order::Nothing);
         let pushes = !settings.pulls();
-        let task = Task { client, encoding, pushes, batch: None, batch_took: Duration::ZERO, status: None };
+        let task = Task { client, manner, pushes, batch: None, batch_took: Duration::ZERO, status: None };
         let task = tokio::spawn(async move {
             if let Some(before) = before {
                 // One that failed has nothing to say any more either.
@@ -151,7 +151,7 @@ impl Task {
 
     async fn push(&self, open: &Open, diagnostics: Vec<Diagnostic>) {
         if self.pushes {
-            let diagnostics = to_proto::diagnostics(open, check::sorted(diagnostics), self.encoding);
+            let diagnostics = to_proto::diagnostics(open, check::sorted(diagnostics), self.manner);
             self.client.publish_diagnostics(open.uri.clone(), diagnostics, Some(open.version)).await;
         }
     }

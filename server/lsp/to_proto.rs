@@ -9,11 +9,29 @@ use tower_lsp::ls_types as lsp;
 /// A client draws no more of them; one at the end says how many there are.
 const DIAGNOSTICS_LIMIT: usize = 1000;
 
-/// Where answers about one document go: its offsets and the client's way to count.
+/// How a client counts columns and which language its user reads.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(super) struct Manner {
+    pub encoding: Encoding,
+    pub language: Language,
+}
+
+/// Where answers about one document go: its offsets, the client's way to count and to speak.
 #[derive(Clone, Copy)]
 pub(super) struct Place<'a> {
     pub document: &'a Document,
     pub encoding: Encoding,
+    pub language: Language,
+}
+
+impl<'a> Place<'a> {
+    pub(super) fn new(document: &'a Document, manner: Manner) -> Place<'a> {
+        Place { document, encoding: manner.encoding, language: manner.language }
+    }
+
+    pub(super) fn manner(self) -> Manner {
+        Manner { encoding: self.encoding, language: self.language }
+    }
 }
 
 impl Place<'_> {
@@ -52,10 +70,10 @@ pub(super) fn encoding(encoding: Encoding) -> lsp::PositionEncodingKind {
     }
 }
 
-pub(super) fn diagnostics(open: &Open, found: Vec<Diagnostic>, encoding: Encoding) -> Vec<lsp::Diagnostic> {
+pub(super) fn diagnostics(open: &Open, found: Vec<Diagnostic>, manner: Manner) -> Vec<lsp::Diagnostic> {
     let total = found.len();
     let mut shown: Vec<_> =
-        found.iter().take(DIAGNOSTICS_LIMIT).map(|found| diagnostic(open, found, encoding)).collect();
+        found.iter().take(DIAGNOSTICS_LIMIT).map(|found| diagnostic(open, found, manner)).collect();
     if let Some(last) = shown.last_mut().filter(|_| total > DIAGNOSTICS_LIMIT) {
         let message =
             crate::text::Message::new("limits.more-diagnostics").with("count", total - DIAGNOSTICS_LIMIT + 1);
@@ -63,18 +81,18 @@ pub(super) fn diagnostics(open: &Open, found: Vec<Diagnostic>, encoding: Encodin
             range: last.range,
             severity: Some(lsp::DiagnosticSeverity::INFORMATION),
             source: Some("rungwise".to_string()),
-            message: message.render(Language::English),
+            message: message.render(manner.language),
             ..lsp::Diagnostic::default()
         };
     }
     shown
 }
 
-pub(super) fn diagnostic(open: &Open, found: &Diagnostic, encoding: Encoding) -> lsp::Diagnostic {
-    let place = Place { document: &open.document, encoding };
+pub(super) fn diagnostic(open: &Open, found: &Diagnostic, manner: Manner) -> lsp::Diagnostic {
+    let place = Place::new(&open.document, manner);
     let related = found.related.iter().map(|related| lsp::DiagnosticRelatedInformation {
         location: lsp::Location { uri: open.uri.clone(), range: place.range(related.span) },
-        message: related.message.render(Language::English),
+        message: related.message.render(manner.language),
     });
     lsp::Diagnostic {
         range: place.range(found.span),
@@ -85,7 +103,7 @@ pub(super) fn diagnostic(open: &Open, found: &Diagnostic, encoding: Encoding) ->
         }),
         code: Some(lsp::NumberOrString::String(found.code.to_string())),
         source: Some("rungwise".to_string()),
-        message: found.message.render(Language::English),
+        message: found.message.render(manner.language),
         related_information: (!found.related.is_empty()).then(|| related.collect()),
         ..lsp::Diagnostic::default()
     }

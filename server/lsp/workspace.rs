@@ -4,11 +4,12 @@ use super::capabilities;
 use super::manifests::Manifests;
 use super::publisher::Publisher;
 use super::settings::Settings;
+use super::to_proto::Manner;
 use crate::check::Severities;
 use crate::document::{Document, Edit, Notation};
 use crate::project::{Manifest, Project, decide};
 use crate::target::{Model, Target};
-use crate::text::{Encoding, LineColumn};
+use crate::text::{Encoding, Language, LineColumn};
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -36,7 +37,7 @@ tokio::task_local! {
 /// The state at one moment. Cloning copies two pointers.
 #[derive(Clone, Default)]
 pub(super) struct Snapshot {
-    pub encoding: Encoding,
+    pub manner: Manner,
     pub settings: Arc<Settings>,
     documents: Arc<FxHashMap<Uri, Arc<Open>>>,
 }
@@ -123,7 +124,10 @@ impl Workspace {
 
     fn initialise(&self, params: &InitializeParams) {
         let mut state = self.state();
-        state.snapshot.encoding = capabilities::encoding_for(&params.capabilities);
+        state.snapshot.manner = Manner {
+            encoding: capabilities::encoding_for(&params.capabilities),
+            language: params.locale.as_deref().map(Language::of_locale).unwrap_or_default(),
+        };
         let settings = Settings::read(params.initialization_options.as_ref());
         state.snapshot.settings = Arc::new(settings.unwrap_or_default());
         state.watches = capabilities::can_watch(&params.capabilities);
@@ -170,7 +174,7 @@ impl Workspace {
         }
         let before = state.closing.remove(&uri);
         let snapshot = &state.snapshot;
-        let publisher = Publisher::start(self.client.clone(), snapshot.encoding, &snapshot.settings, before);
+        let publisher = Publisher::start(self.client.clone(), snapshot.manner, &snapshot.settings, before);
         state.publishers.insert(uri.clone(), publisher);
         let severities = Arc::new(manifest.severities());
         state.put(Open { uri, version, document, manifest, severities });
@@ -186,7 +190,7 @@ impl Workspace {
         let was_short = open.document.len() <= UNDECIDED_BYTES;
         open.version = params.text_document.version;
         for change in params.content_changes {
-            let edit = edit_of(&open.document, change, state.snapshot.encoding);
+            let edit = edit_of(&open.document, change, state.snapshot.manner.encoding);
             let (notation, target) = (open.document.notation(), open.document.target());
             let edited = guarded(|| {
                 let mut document = open.document.clone();
@@ -254,7 +258,7 @@ impl Workspace {
     fn manifest_of(&self, state: &mut State, uri: &Uri) -> (Manifest, Option<Uri>) {
         let project = uri.to_file_path().and_then(|path| Project::of(&path));
         let Some(project) = project else { return (Manifest::default(), None) };
-        let place = state.manifests.note(&self.client, &project, state.snapshot.encoding);
+        let place = state.manifests.note(&self.client, &project, state.snapshot.manner);
         (project.manifest, place)
     }
 

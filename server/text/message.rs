@@ -9,6 +9,28 @@ pub enum Language {
     /// English.
     #[default]
     English,
+    /// Simplified Chinese.
+    SimplifiedChinese,
+}
+
+impl Language {
+    /// Every language of the catalogue; the first is the one that has every key.
+    pub const ALL: &'static [Language] = &[Language::English, Language::SimplifiedChinese];
+
+    /// As a language tag (BCP 47): also the folder of its catalogue.
+    pub fn tag(self) -> &'static str {
+        match self {
+            Language::English => "en",
+            Language::SimplifiedChinese => "zh-CN",
+        }
+    }
+
+    /// The language for a locale such as `zh-CN`, `zh_CN.UTF-8`, `zh-hans`, `de`. Chinese of any script is better
+    /// served by the simplified one than by English.
+    pub fn of_locale(locale: &str) -> Language {
+        let primary = locale.split(['-', '_', '.', '@']).next().unwrap_or_default();
+        if primary.eq_ignore_ascii_case("zh") { Language::SimplifiedChinese } else { Language::English }
+    }
 }
 
 /// A message that can be rendered in any language of the catalogue.
@@ -38,9 +60,11 @@ impl Message {
         self.key
     }
 
-    /// The words in `language`. A key without an entry shows itself and its arguments, so nothing is lost.
+    /// The words in `language`, else in English. A key without any entry shows itself and its arguments, so nothing
+    /// is lost.
     pub fn render(&self, language: Language) -> String {
-        let Some(template) = catalogue(language).get(self.key) else {
+        let entry = catalogue(language).get(self.key).or_else(|| catalogue(Language::English).get(self.key));
+        let Some(template) = entry else {
             let arguments: Vec<&str> = self.arguments.iter().map(|(_, value)| value.as_str()).collect();
             return format!("{} {}", self.key, arguments.join(", ")).trim_end().to_string();
         };
@@ -70,19 +94,29 @@ pub fn catalogue_keys(language: Language) -> impl Iterator<Item = (&'static str,
 fn catalogue(language: Language) -> &'static HashMap<String, String> {
     match language {
         Language::English => &ENGLISH,
+        Language::SimplifiedChinese => &SIMPLIFIED_CHINESE,
     }
 }
 
-static ENGLISH: LazyLock<HashMap<String, String>> = LazyLock::new(|| {
-    read_catalogue(&[
-        include_str!("messages/en/drawing.toml"),
-        include_str!("messages/en/words.toml"),
-        include_str!("messages/en/order.toml"),
-        include_str!("messages/en/declarations.toml"),
-        include_str!("messages/en/ide.toml"),
-        include_str!("messages/en/cli.toml"),
-    ])
-});
+/// The catalogue of the language in the folder `$tag`: the same area files in every language.
+macro_rules! catalogue_in {
+    ($tag:literal) => {
+        LazyLock::new(|| {
+            read_catalogue(&[
+                include_str!(concat!("messages/", $tag, "/drawing.toml")),
+                include_str!(concat!("messages/", $tag, "/words.toml")),
+                include_str!(concat!("messages/", $tag, "/order.toml")),
+                include_str!(concat!("messages/", $tag, "/declarations.toml")),
+                include_str!(concat!("messages/", $tag, "/ide.toml")),
+                include_str!(concat!("messages/", $tag, "/cli.toml")),
+            ])
+        })
+    };
+}
+
+static ENGLISH: LazyLock<HashMap<String, String>> = catalogue_in!("en");
+
+static SIMPLIFIED_CHINESE: LazyLock<HashMap<String, String>> = catalogue_in!("zh-CN");
 
 /// Flattens tables `[section]` with `name = "template"` to `section.name`.
 /// A file that is not TOML yields nothing; the test of the catalogue fails on it.
