@@ -23,6 +23,7 @@ mod ladder_print;
 mod ladder_read;
 mod lsp;
 mod lsp_client;
+mod manifest_schema;
 mod mistakes;
 mod rules;
 mod rules_drawing;
