@@ -3,7 +3,8 @@
 
 use rungwise::check::{self, Severities};
 use rungwise::document::{Document, Notation};
-use rungwise::ladder::{TWO_READINGS, parse};
+use crate::ladder_read::dump;
+use rungwise::ladder::{TWO_READINGS, parse, split};
 use rungwise::target::{Model, Target};
 use rungwise::text::{Diagnostic, Language, Severity, TextEdit};
 
@@ -256,4 +257,264 @@ fn two_readings_are_shown_and_neither_is_taken() {
 ",
     ];
     assert_eq!(readings, expected);
+}
+
+/// Reads a drawing for a target and compares what it stands for, as `ladder_read` writes it.
+#[track_caller]
+fn check_dialect(model: Model, drawing: &str, expected: &[&str]) {
+    let drawing = drawing.trim_start_matches('\n');
+    let mut start = 0;
+    let mut found = Vec::new();
+    for end in split(drawing) {
+        let chunk = &drawing[start..end];
+        start = end;
+        let tree = parse(chunk, Target::of(model));
+        found.extend(dump(&tree, chunk).lines().map(str::to_string));
+    }
+    assert_eq!(found, expected, "\n{drawing}");
+}
+
+/// Start, stop and seal-in, as most examples in this file.
+const SEALED: &[&str] = &["L start J1", "L motor J1", "J1 /stop (motor) R"];
+
+#[test]
+fn dialect_of_bars() {
+    let drawing = "
+|  start      stop              motor  |
+|--| |---+----|/|----------------( )---|
+|        |                             |
+|  motor |                             |
+|--| |---+                             |
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+}
+
+#[test]
+fn dialect_of_brackets_that_open_outwards() {
+    let drawing = "
+||    start           stop           motor      ||
+||-----] [-----+------]/[------------( )-------||
+||             |                                ||
+||    motor    |                                ||
+||-----] [-----+                                ||
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+}
+
+#[test]
+fn dialect_of_brackets_that_open_inwards() {
+    let drawing = "
+   start    stop     motor
+---[ ]--+---[/]-------( )---
+  motor |
+---[ ]--+
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+}
+
+#[test]
+fn dialect_of_names_in_brackets() {
+    let drawing = "
+|--[start]--+--[/stop]--------( motor )--|
+|           |                            |
+|--[motor]--+                            |
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+}
+
+#[test]
+fn dialect_of_allen_bradley() {
+    let drawing = "
+|  start    stop          motor |
+|---||---+---|/|---------(OTE)--|
+|  motor |                      |
+|---||---+                      |
+|  jam                    alarm |
+|---||-------------------(OTL)--|
+|  ack                    alarm |
+|---||--------------------(U)---|
+";
+    let latch: &[&str] = &["--", "L jam (S alarm) R", "--", "L ack (R alarm) R"];
+    check_dialect(Model::Iec, drawing, &[SEALED, latch].concat());
+    // A timer that is enabled and done, with its parameters inside.
+    let drawing = "
+|  part                +-----------+
+|---||-----------------| TON       |--(EN)
+|                      | Timer T4  |
+|                      | Preset 30 |--(DN)
+|                      +-----------+
+";
+    let expected = [
+        "L T4:TON.#0",
+        "T4:TON.#0 (EN) R",
+        "T4:TON.#1 (DN) R",
+        "block T4:TON _=wire Preset=30 =>_=wire =>_=wire",
+    ];
+    let expected = [&["L part T4:TON.#0"][..], &expected[1..]].concat();
+    check_dialect(Model::Iec, drawing, &expected);
+}
+
+#[test]
+fn dialect_of_box_drawing_and_frames() {
+    let drawing = "
+┌──────────────────────────────────────────┐
+│   start       stop              motor    │
+│ ──┤ ├────┬────┤/├────────────────( )──── │
+│   motor  │                               │
+│ ──┤ ├────┘                               │
+└──────────────────────────────────────────┘
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+    // A caption, a divider, rails of their own inside, cut by a blank line in the frame.
+    let drawing = "
+┌─────────────────────────────────────────────┐
+│ Network 1: start and stop                   │
+├─────────────────────────────────────────────┤
+│                                             │
+│ |   start     stop               motor |    │
+│ |---| |---+---|/|-----------------( )--|    │
+│ |   motor |                            |    │
+│ |---| |---+                            |    │
+└─────────────────────────────────────────────┘
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+    // Of ASCII characters.
+    let drawing = "
++------------------------------------------+
+|   start       stop              motor    |
+| --| |----+----|/|----------------( )---- |
+|   motor  |                               |
+| --| |----+                               |
++------------------------------------------+
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+    // Sides to which wires lead are rails, and the line above them is a cap.
+    let drawing = "
+┌──────────────────────────────────────────┐
+│   start       stop              motor    │
+├───┤ ├────┬────┤/├────────────────( )─────┤
+│   motor  │                               │
+├───┤ ├────┘                               │
+└──────────────────────────────────────────┘
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+    // Mixed with ASCII.
+    let drawing = "
+│ start   stop       motor
+├──┤ ├─+──┤/├────────( S )──┤
+│ jog  |
+├──┤ ├─+
+│ end
+├──┤ ├────────────(RET)
+";
+    let expected = ["L start J1", "L jog J1", "J1 /stop (S motor) R", "--", "L end (RET) R"];
+    check_dialect(Model::Iec, drawing, &expected);
+    // A single line from rail to rail is a rung without an element, not a frame.
+    check_dialect(Model::Iec, "+------------------+\n", &["L R"]);
+}
+
+#[test]
+fn dialect_of_names_below_over_two_lines_and_in_the_wire() {
+    let drawing = "
+|--| |---+---|/|----------------( )--|
+|  start |   stop              motor |
+|        |                           |
+|--| |---+                           |
+|  motor                             |
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+    let drawing = "
+|  START     EMERG             CONV_      |
+|  BUTTON    STOP              MOTOR      |
+|---| |---+---|/|---------------( )-------|
+|  CONV_  |                               |
+|  MOTOR  |                               |
+|---| |---+                               |
+";
+    let expected = ["L START_BUTTON J1", "L CONV_MOTOR J1", "J1 /EMERG_STOP (CONV_MOTOR) R"];
+    check_dialect(Model::Iec, drawing, &expected);
+    let drawing = "
+|-- start --| |---+--- stop --|/|-------( ) motor --|
+|                 |                                 |
+|-- motor --| |---+                                 |
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+    let drawing = "
+|---| | start ---+---|/| stop -----------( ) motor ---|
+|---| | motor ---+
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+    let drawing = "
+|  启动        停止               电机  |
+|--| |---+----|/|----------------( )----|
+|  电机  |                              |
+|--| |---+                              |
+";
+    check_dialect(Model::Iec, drawing, &["L 启动 J1", "L 电机 J1", "J1 /停止 (电机) R"]);
+}
+
+#[test]
+fn dialect_of_exclamation_marks() {
+    let drawing = "
+!  start    stop            motor !
+!--] [--!---]/[--------------( )--!
+!  motor!                         !
+!--] [--!                         !
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+}
+
+#[test]
+fn dialects_of_rails() {
+    let plain: &[&str] = &["L a /b (y) R"];
+    check_dialect(Model::Iec, "    a      b        y\n ---] [----]/[-----( )\n", plain);
+    check_dialect(Model::Iec, "    a      b        y    |\n ---] [----]/[-----( )---|\n", plain);
+    check_dialect(Model::Iec, "|   a      b        y\n|---] [----]/[-----( )\n", plain);
+    check_dialect(Model::Iec, "||   a      b        y   ||\n||--] [----]/[-----( )---||\n", plain);
+    // A rail between conditions and outputs.
+    let drawing = "
+|   start      stop    |    motor   |
+|----| |---+----|/|----|----( )-----|
+|   motor  |           |            |
+|----| |---+           |            |
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+}
+
+#[test]
+fn dialect_of_branches_that_join_behind_the_coil() {
+    let drawing = "
+|  start       stop       motor    |
+|---| |--+-----|/|-----+---( )---+-|
+|        |             |         | |
+|  motor |             |   lamp  | |
+|---| |--+             +---( )---+ |
+";
+    let expected = ["L start J1", "L motor J1", "J1 /stop J2", "J2 (motor) J3", "J2 (lamp) J3", "J3 R"];
+    check_dialect(Model::Iec, drawing, &expected);
+}
+
+#[test]
+fn dialect_of_boxes_as_outputs() {
+    let drawing = "
+|   X0                             |
+|---| |-------------------[ T1 K10 ]
+|   T1                             |
+|---| |---------------------( Y0 )-|
+";
+    check_dialect(Model::Fx3u, drawing, &["L X0 (T1 K10) R", "--", "L T1 (Y0) R"]);
+    let drawing = "
+|   part                                 |
+|---| |-------------------[CTU C1, PV:5]-|
+";
+    check_dialect(Model::Iec, drawing, &["L part [?CTU C1 PV:5] R"]);
+    let drawing = "
+|                    T1                    |
+|   start     +-------------+        run   |
+|---| |-------|IN   TON    Q|--------( )---|
+|             | PT = 500 ms |              |
+|             +-------------+              |
+";
+    let expected = ["L start T1:TON.IN", "T1:TON.Q (run) R", "block T1:TON IN=wire PT=500 ms =>Q=wire"];
+    check_dialect(Model::Iec, drawing, &expected);
 }

@@ -23,7 +23,7 @@ fn iec() -> &'static Target {
 
 /// A tree as text: one line for each chain of elements between rails (`L`, `R`), junctions (`J1` …), loose ends (`?`)
 /// and function blocks, rungs separated by `--`, then problems as `! code: words`.
-fn dump(tree: &LadderTree, text: &str) -> String {
+pub fn dump(tree: &LadderTree, text: &str) -> String {
     let mut out = String::new();
     for (number, rung) in tree.rungs.iter().enumerate() {
         if number > 0 {
@@ -127,6 +127,7 @@ fn element_words(element: &Element, text: &str) -> String {
                 CoilKind::Reset => "R ",
                 CoilKind::Rising => "P ",
                 CoilKind::Falling => "N ",
+                CoilKind::Toggle => "T ",
             };
             format!("({mark}{operands})")
         }

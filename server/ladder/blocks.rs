@@ -119,6 +119,7 @@ fn read_block(grid: &mut Grid, frame: Frame, text: &str, target: &Target) -> Sym
         rows: (frame.top..=frame.bottom).map(row_span).collect(),
         inputs: Vec::new(),
         outputs: Vec::new(),
+        ldmicro: None,
     };
     let mut operands = Vec::new();
     let mut power_row = None;
@@ -138,7 +139,7 @@ fn read_block(grid: &mut Grid, frame: Frame, text: &str, target: &Target) -> Sym
                 Parameter::Input(name, operand) => {
                     operands.push(operand);
                     let wire = PinWire::Operand(operands.len() - 1);
-                    block.inputs.push(Pin { name: Some(name), negated: false, row: grid.line(row), wire });
+                    block.inputs.push(Pin { name: Some(name), implied: "", negated: false, row: grid.line(row), wire });
                 }
             }
             words.clear();
@@ -189,12 +190,12 @@ fn read_pin(
         Outside::Wire => PinWire::Power,
         Outside::Nothing => PinWire::Open,
         Outside::Word(span) => {
-            operands.push(Spanned::new(Operand::read(span.of(text), target.model), span));
+            operands.push(Spanned::new(target.read(span.of(text)), span));
             PinWire::Operand(operands.len() - 1)
         }
     };
     let present = name.is_some() || wire != PinWire::Open;
-    present.then(|| Pin { name, negated, row: grid.line(row), wire })
+    present.then(|| Pin { name, implied: "", negated, row: grid.line(row), wire })
 }
 
 /// What a line inside a box says that stands for itself.
@@ -227,8 +228,8 @@ fn parameter(
     }
     // `500 ms` is a time, though IEC 61131-3 would have it written `T#500ms`.
     let written: String = span.of(text).split_whitespace().collect();
-    let plain = Operand::read(&written, target.model);
-    let time = || Operand::read(&format!("T#{written}"), target.model);
+    let plain = target.read(&written);
+    let time = || target.read(&format!("T#{written}"));
     let value = if matches!(plain, Operand::Invalid(_)) { time() } else { plain };
     Some(Parameter::Input(name, Spanned::new(value, span)))
 }

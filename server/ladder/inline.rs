@@ -5,7 +5,7 @@ use super::content::Wants;
 use super::glyph::{continues_word, starts_word};
 use super::grid::{Grid, WIDE};
 use super::scan::{Tokens, What};
-use crate::target::{Operand, Target};
+use crate::target::Target;
 use crate::text::{Span, Spanned};
 
 /// A name in the wire.
@@ -115,7 +115,7 @@ pub(super) fn give_inline(names: &[InlineName], tokens: &mut Tokens, target: &Ta
         for (name, symbol) in row.iter().zip(symbols) {
             let symbol = &mut tokens.symbols[symbol];
             if matches!(symbol.wants, Wants::Device | Wants::DeviceAndPreset) {
-                let operand = Operand::read(name.span.of(text), target.model);
+                let operand = target.read(name.span.of(text));
                 symbol.element.operands = vec![Spanned::new(operand, name.span)];
                 symbol.element.place = OperandPlace::Beside;
                 symbol.wants = Wants::Nothing;

@@ -25,6 +25,9 @@ mod inline;
 
 mod blocks;
 
+mod ldmicro;
+pub use ldmicro::{BoxKind, NameKind, TableRow, table_rows, time_literal};
+
 mod scan;
 
 mod content;

@@ -260,7 +260,7 @@ impl<'a> Mender<'a> {
             found.push(Diagnostic::new("ragged-drawing", own, Message::new(message)));
             found.len() - 1
         });
-        let junction = Related { span: other, message: Message::new(JUNCTION) };
+        let junction = Related { file: None, span: other, message: Message::new(JUNCTION) };
         found[number].related.push(junction);
     }
 

@@ -7,6 +7,7 @@ use super::frame::take_frame;
 use super::glyph::Arms;
 use super::grid::{Grid, MOST_COLUMNS, MOST_ROWS};
 use super::inline::{give_inline, take_inline};
+use super::ldmicro::find_boxes;
 use super::lines::{HeaderLine, LineKind, Lines, OpenComment};
 use super::names::{Named, Naming};
 use super::rungs::build_rungs;
@@ -95,7 +96,8 @@ fn read_drawing(
         grid.clear(row, 0..usize::MAX);
     }
     let left = left_column(&grid);
-    let (symbols, blocks) = find_blocks(&mut grid, text, target);
+    let (mut symbols, mut blocks) = find_blocks(&mut grid, text, target);
+    find_boxes(&mut grid, text, target, &mut symbols, &mut blocks);
     let inline = take_inline(&mut grid);
     let problems = &mut tree.problems;
     let scanner = Scanner { grid: &grid, text, target, left, symbols, problems };
