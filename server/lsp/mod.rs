@@ -15,7 +15,9 @@ mod status;
 mod to_proto;
 mod workspace;
 
+use crate::text::Language;
 use service::Ordered;
+use settings::Speech;
 use std::sync::Arc;
 use tower_lsp::{LspService, Server};
 use workspace::Workspace;
@@ -25,10 +27,13 @@ const CONCURRENCY: usize = 4096;
 
 /// Serves one client on standard input and output until it says `exit` or goes away.
 /// Returns the process's exit code: 0 after a `shutdown`, else 1, as the protocol wants.
-pub async fn serve() -> u8 {
+///
+/// `asked` is the language that the user asked the program for, which goes before the client's; `otherwise` is taken if
+/// the client says none.
+pub async fn serve(asked: Option<Language>, otherwise: Language) -> u8 {
     let mut workspace = None;
     let (service, socket) = LspService::new(|client| {
-        let shared = Arc::new(Workspace::new(client));
+        let shared = Arc::new(Workspace::new(client, Speech { asked, otherwise, ..Speech::default() }));
         workspace = Some(shared.clone());
         backend::Backend::new(shared)
     });
