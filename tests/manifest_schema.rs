@@ -1,5 +1,6 @@
 //! The JSON schema of `rungwise.toml` that the extension ships says what the manifest's reader takes, no more, no less.
 
+use rungwise::text::Language;
 use rungwise::check::RULES;
 use rungwise::project::{MOST_WIDTH, Manifest};
 use rungwise::text::Language;
@@ -84,7 +85,7 @@ fn every_rule_is_there_with_its_sentence() {
         .iter()
         .map(|rule| {
             let severity = json!([{"$ref": "#/definitions/severity"}]);
-            (rule.code.to_string(), json!({"allOf": severity, "description": rule.summary()}))
+            (rule.code.to_string(), json!({"allOf": severity, "description": rule.summary(Language::English)}))
         })
         .collect();
     if std::env::var_os("UPDATE_EXPECT").is_some() {
