@@ -11,7 +11,7 @@ mod snapshot;
 pub use snapshot::{ChunkRef, Document, Edit, LIMIT_BYTES};
 
 mod chunk;
-pub use chunk::{Chunk, Tree};
+pub use chunk::{Chunk, Reader, Tree};
 
 mod pages;
 pub use pages::Page;
@@ -21,6 +21,9 @@ pub use size::Size;
 
 mod names;
 pub use names::Names;
+
+mod milestone;
+pub use milestone::{Milestone, MilestoneKind};
 
 mod operation;
 pub use operation::Operation;

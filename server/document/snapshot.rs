@@ -59,6 +59,11 @@ impl Document {
         Document { rope, notation, target, pages: Pages::default(), scopes: OnceLock::new() }
     }
 
+    /// The same document for a walk through all its chunks: the trees that are read on the way go away with it.
+    pub fn lean(&self) -> Document {
+        Document { pages: self.pages.lean(), ..self.clone() }
+    }
+
     /// The bytes of `old` that were replaced and those of `self` that replaced them, to whole chunks;
     /// `None` if nothing changed.
     pub fn changed_since(&self, old: &Document) -> Option<(Range<usize>, Range<usize>)> {
@@ -145,6 +150,26 @@ impl Document {
             let at = ChunkRef { start, chunk };
             start += chunk.len();
             at
+        })
+    }
+
+    /// The chunks of IEC declarations and statements, in order, and how many POUs have started before and in each.
+    /// Pages without any are passed over.
+    pub fn iec_chunks(&self) -> impl Iterator<Item = (ChunkRef<'_>, usize)> {
+        let (mut end, mut pous) = (0, 0);
+        self.pages.pages().iter().flat_map(move |page| {
+            let mut start = end;
+            end += page.bytes();
+            let chunks = if page.has_iec() { page.chunks() } else { &[] };
+            let before = pous;
+            pous += page.pou_starts();
+            let mut pous = before;
+            chunks.iter().filter_map(move |chunk| {
+                let at = ChunkRef { start, chunk };
+                start += chunk.len();
+                pous += chunk.pou_starts();
+                chunk.is_iec().then_some((at, pous))
+            })
         })
     }
 
@@ -299,7 +324,7 @@ impl Document {
                 start = end;
                 match known.get(piece) {
                     Some(chunk) => Arc::clone(chunk),
-                    None => Arc::new(Chunk::read(piece, self.notation, self.target)),
+                    None => Arc::new(Chunk::new(piece, self.notation, self.target)),
                 }
             })
             .collect()

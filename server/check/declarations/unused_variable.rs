@@ -34,7 +34,7 @@
 
 use crate::check::iec::folded;
 use crate::check::{ProgramContext, Rule, Run};
-use crate::document::{ChunkRef, Symbol, Tree, Use};
+use crate::document::{ChunkRef, Symbol, Use};
 use crate::il::iec::{Declaration, IecTree, ItemKind, SectionKind};
 use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
 use rustc_hash::FxHashSet;
@@ -61,18 +61,22 @@ struct Unit<'a> {
 }
 
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
+    let scopes = context.document.scopes();
+    if scopes.pous.is_empty() && scopes.globals.is_empty() {
+        return;
+    }
     let mut unit = Unit::default();
     let mut globals = Unit::default();
     for at in context.document.chunks() {
         if at.chunk.pou_starts() > 0 {
             std::mem::take(&mut unit).report(found);
         }
-        match at.chunk.tree() {
-            Tree::Iec(tree) => {
+        match at.chunk.iec() {
+            Some(tree) => {
                 unit.has_body |= tree.items.iter().any(|item| is_instruction(&item.kind));
                 sections(at, tree, &mut unit, &mut globals);
             }
-            _ => unit.has_body = true,
+            None => unit.has_body = true,
         }
         for mention in at.chunk.mentions() {
             if let Symbol::Variable(name) = &mention.symbol
@@ -85,7 +89,7 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     }
     unit.report(found);
     // A file of globals alone is used by other files.
-    globals.has_body = !context.document.scopes().pous.is_empty();
+    globals.has_body = !scopes.pous.is_empty();
     globals.report(found);
 }
 
