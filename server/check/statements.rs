@@ -1,18 +1,20 @@
 //! A program as one sequence of instructions and labels, for the rules that look at the whole of it.
 //!
-//! Lines of FX instruction list and elements of FX ladders come alike; offsets count from the document's start.
+//! Lines of FX instruction list and elements of FX ladders come alike, whichever file of the program they stand in.
 
-use super::ProgramContext;
-use crate::document::{Chunk, Document, Notation};
+use super::{ProgramContext, ProgramFile};
+use crate::document::{ChunkRef, Document, Notation};
 use crate::target::{Device, Flow, Operand};
 use crate::text::{Span, Spanned, TextEdit};
+
+pub(super) use crate::document::MilestoneKind as StatementKind;
 
 /// An instruction or a label of an FX program.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Statement<'a> {
     /// What it is.
     pub kind: StatementKind,
-    /// How many statements without a part in the structure it stands for, all equal to it and before it.
+    /// How many statements it stands for: itself, and those before it that are left out because they are like it.
     pub count: usize,
     /// The mnemonic, the label, or the cells of a drawn element.
     pub word: Span,
@@ -20,13 +22,9 @@ pub(super) struct Statement<'a> {
     pub span: Span,
     /// The first operand of a statement that has a part in the structure.
     pub first: Option<Spanned<Operand>>,
-    chunk: &'a Chunk,
-    /// Where its chunk starts.
-    start: usize,
+    at: ChunkRef<'a>,
     is_list: bool,
 }
-
-pub(super) use crate::document::MilestoneKind as StatementKind;
 
 /// Whether the document is an FX program, in a list or drawn.
 pub(super) fn is_fx_program(document: &Document) -> bool {
@@ -37,43 +35,19 @@ pub(super) fn is_fx_program(document: &Document) -> bool {
     }
 }
 
-/// The statements in the order of the text; none if it is no FX program. Of a run of equal statements that have no
-/// part in the structure only the first and the last are there.
-pub(super) fn statements(document: &Document) -> impl Iterator<Item = Statement<'_>> {
-    let is_list = document.notation() == Notation::FxIl;
-    let pages = if is_fx_program(document) { document.pages() } else { &[] };
-    let mut end = 0;
-    pages.iter().flat_map(move |page| {
-        let page_start = end;
-        end += page.bytes();
-        // Milestones come in order, so the way through the page's chunks is gone once.
-        let (mut number, mut start) = (0, page_start);
-        page.milestones().iter().filter_map(move |milestone| {
-            while number < milestone.chunk() {
-                start += page.chunks().get(number)?.len();
-                number += 1;
-            }
-            let first =
-                milestone.first().map(|first| Spanned::new(first.value, first.span.shifted(page_start)));
-            Some(Statement {
-                kind: milestone.kind,
-                count: milestone.count as usize,
-                word: milestone.word.shifted(page_start),
-                span: milestone.span.shifted(page_start),
-                first,
-                chunk: page.chunks().get(number)?,
-                start,
-                is_list,
-            })
-        })
-    })
-}
+impl<'a> ProgramContext<'a> {
+    /// All statements, in the order of execution; none if it is no FX program. Of a run of equal statements that have
+    /// no part in the structure only the first and the last are there.
+    pub(super) fn statements(&self) -> impl Iterator<Item = Statement<'a>> + use<'a> {
+        let is_fx = self.files().first().is_some_and(|file| is_fx_program(file.document));
+        let files = if is_fx { self.files().to_vec() } else { Vec::new() };
+        files.into_iter().flat_map(of_file)
+    }
 
-impl ProgramContext<'_> {
     /// The statements up to END, it included: what the PLC executes.
-    pub(super) fn executed(&self) -> impl Iterator<Item = Statement<'_>> {
+    pub(super) fn executed(&self) -> impl Iterator<Item = Statement<'a>> + use<'a> {
         let mut ended = false;
-        statements(self.document).take_while(move |statement| {
+        self.statements().take_while(move |statement| {
             let goes_on = !ended;
             ended |= statement.flow() == Some(Flow::ProgramEnd);
             goes_on
@@ -100,32 +74,32 @@ impl<'a> Statement<'a> {
 
     /// Its mnemonic as it is written.
     pub fn mnemonic(&self) -> &'a str {
-        self.relative(self.word).of(self.chunk.text())
+        self.relative(self.word).of(self.at.chunk.text())
     }
 
     /// The words of it.
     pub fn text(&self) -> &'a str {
-        self.relative(self.span).of(self.chunk.text())
+        self.relative(self.span).of(self.at.chunk.text())
     }
 
     /// Puts `line` on a line of its own before this one; nothing where there are no lines but a drawing.
     pub fn line_before(&self, line: &str) -> Option<TextEdit> {
         let edit = line_before(self.list()?, self.relative(self.word), line);
-        Some(edit.shifted(self.start))
+        Some(edit.shifted(self.at.start))
     }
 
     /// Takes it out with its line; nothing in a drawing.
     pub fn removal(&self) -> Option<TextEdit> {
-        Some(removal(self.list()?, self.relative(self.span)).shifted(self.start))
+        Some(removal(self.list()?, self.relative(self.span)).shifted(self.at.start))
     }
 
     /// The text of its chunk, if that is a list.
     fn list(&self) -> Option<&'a str> {
-        self.is_list.then(|| self.chunk.text())
+        self.is_list.then(|| self.at.chunk.text())
     }
 
     fn relative(&self, span: Span) -> Span {
-        let start = self.start as u32;
+        let start = self.at.start as u32;
         Span { start: span.start - start, end: span.end - start }
     }
 }
@@ -157,4 +131,31 @@ pub(super) fn removal(text: &str, span: Span) -> TextEdit {
         true => TextEdit::new(Span::new(start, span.end as usize + length), ""),
         false => TextEdit::new(span, ""),
     }
+}
+
+fn of_file(file: ProgramFile<'_>) -> impl Iterator<Item = Statement<'_>> {
+    let is_list = file.document.notation() == Notation::FxIl;
+    let mut end = file.start;
+    file.document.pages().iter().flat_map(move |page| {
+        let page_start = end;
+        end += page.bytes();
+        // Milestones come in order, so the way through the page's chunks is gone once.
+        let (mut number, mut start) = (0, page_start);
+        page.milestones().iter().filter_map(move |milestone| {
+            while number < milestone.chunk() {
+                start += page.chunks().get(number)?.len();
+                number += 1;
+            }
+            let first = milestone.first();
+            Some(Statement {
+                kind: milestone.kind,
+                count: milestone.count as usize,
+                word: milestone.word.shifted(page_start),
+                span: milestone.span.shifted(page_start),
+                first: first.map(|first| Spanned::new(first.value, first.span.shifted(page_start))),
+                at: ChunkRef { start, chunk: page.chunks().get(number)? },
+                is_list,
+            })
+        })
+    })
 }

@@ -1,7 +1,7 @@
 //! A chunk: a piece of text with what it says, shared by all snapshots that contain it.
 
 use super::milestone::{self, Milestone};
-use super::{Mention, Notation, Size, mention};
+use super::{Mention, Notation, Size, Token, exported, mention, tokens};
 use crate::il::{fx, iec};
 use crate::ladder::{self, LadderTree};
 use crate::target::Target;
@@ -12,8 +12,8 @@ use std::sync::{Arc, LazyLock, Mutex, MutexGuard, OnceLock, PoisonError};
 /// A piece of a document that can be read by itself. Its offsets start at 0.
 ///
 /// What it says is read from its text when it is asked for. A drawing's tree is fifty times as large as its text, so a
-/// document keeps only what is [known](Known) of each chunk; who walks all chunks looks at them through
-/// [`Chunk::reader`], whose trees go away with it.
+/// large document keeps only what is [known](Known) of each chunk; who walks all chunks looks at them through
+/// [`Chunk::reading`], whose trees go away with it.
 #[derive(Debug)]
 pub struct Chunk {
     known: Arc<Known>,
@@ -25,9 +25,28 @@ pub struct Chunk {
 struct Known {
     text: Box<str>,
     kind: Kind,
-    target: &'static Target,
+    dialect: Arc<Dialect>,
+    /// Whether the tree is kept once it was read.
+    keeps_tree: bool,
     summary: OnceLock<Summary>,
+    tokens: OnceLock<Box<[Token]>>,
     found: Kept,
+}
+
+/// How the chunks of a document are read.
+#[derive(Debug)]
+pub(super) struct Dialect {
+    pub(super) notation: Notation,
+    pub(super) target: &'static Target,
+    /// The target with the symbols of the project, if it has any.
+    pub(super) symbols: Option<Target>,
+}
+
+impl Dialect {
+    /// The target as words of the text are read.
+    pub(super) fn reader(&self) -> &Target {
+        self.symbols.as_ref().unwrap_or(self.target)
+    }
 }
 
 /// Which reader reads a chunk.
@@ -36,6 +55,8 @@ enum Kind {
     Ladder,
     Fx,
     Iec,
+    /// The tables of an LDmicro export, which say the same as IEC declarations.
+    Tables,
 }
 
 /// What all readers of the whole document need of a chunk.
@@ -47,20 +68,20 @@ struct Summary {
 }
 
 /// A chunk for reading: its own tree is kept if it has one, else it goes away with this.
-pub enum Reader<'a> {
+pub enum Reading<'a> {
     /// The chunk itself.
     Own(&'a Chunk),
     /// Another one of the same text.
     Twin(Chunk),
 }
 
-impl Deref for Reader<'_> {
+impl Deref for Reading<'_> {
     type Target = Chunk;
 
     fn deref(&self) -> &Chunk {
         match self {
-            Reader::Own(chunk) => chunk,
-            Reader::Twin(chunk) => chunk,
+            Reading::Own(chunk) => chunk,
+            Reading::Twin(chunk) => chunk,
         }
     }
 }
@@ -81,24 +102,41 @@ pub enum Tree {
 
 impl Chunk {
     /// The chunk of `text`, which must be one of the pieces that [`split`] makes.
-    pub fn new(text: &str, notation: Notation, target: &'static Target) -> Chunk {
-        let kind = match notation {
-            Notation::Ladder if ladder::kind_of(text) == ladder::ChunkKind::Declarations => Kind::Iec,
-            Notation::Ladder => Kind::Ladder,
+    /// `keeps_tree` says whether it stands in a document so small that all trees are kept.
+    pub(super) fn new(text: &str, dialect: &Arc<Dialect>, keeps_tree: bool) -> Chunk {
+        let kind = match dialect.notation {
+            Notation::Ladder => match ladder::kind_of(text) {
+                ladder::ChunkKind::Declarations => Kind::Iec,
+                ladder::ChunkKind::Ldmicro if exported::declares(text) => Kind::Tables,
+                _ => Kind::Ladder,
+            },
             Notation::FxIl => Kind::Fx,
             Notation::IecIl => Kind::Iec,
         };
-        let (summary, found) = (OnceLock::new(), Mutex::new(None));
-        let known = Known { text: text.into(), kind, target, summary, found };
+        let known = Known {
+            text: text.into(),
+            kind,
+            dialect: dialect.clone(),
+            // Rules about whole programs look at trees of IEC 61131-3.
+            keeps_tree: keeps_tree || matches!(kind, Kind::Iec | Kind::Tables),
+            summary: OnceLock::new(),
+            tokens: OnceLock::new(),
+            found: Mutex::new(None),
+        };
         Chunk { known: Arc::new(known), tree: OnceLock::new() }
     }
 
-    /// The same chunk for a look at its tree. Trees of IEC 61131-3 are kept: rules about whole programs look at them.
-    pub fn reader(&self) -> Reader<'_> {
-        match self.tree.get().is_some() || self.known.kind == Kind::Iec {
-            true => Reader::Own(self),
-            false => Reader::Twin(self.lean()),
+    /// The same chunk for a look at its tree.
+    pub fn reading(&self) -> Reading<'_> {
+        match self.tree.get().is_some() || self.known.keeps_tree {
+            true => Reading::Own(self),
+            false => Reading::Twin(self.lean()),
         }
+    }
+
+    /// Whether its tree is kept once it was read.
+    pub(super) fn keeps_tree(&self) -> bool {
+        self.known.keeps_tree
     }
 
     /// The same chunk without a tree.
@@ -111,20 +149,22 @@ impl Chunk {
         &self.known.text
     }
 
-    /// What it says. The tree is kept with the chunk; see [`Chunk::reader`].
+    /// What it says. The tree is kept with the chunk; see [`Chunk::reading`].
     pub fn tree(&self) -> &Tree {
         self.tree.get_or_init(|| {
+            let target = self.known.dialect.reader();
             Box::new(match self.known.kind {
-                Kind::Ladder => Tree::Ladder(ladder::parse(self.text(), self.known.target)),
-                Kind::Fx => Tree::Fx(fx::parse(self.text(), self.known.target)),
-                Kind::Iec => Tree::Iec(iec::parse(self.text(), self.known.target)),
+                Kind::Ladder => Tree::Ladder(ladder::parse(self.text(), target)),
+                Kind::Fx => Tree::Fx(fx::parse(self.text(), target)),
+                Kind::Iec => Tree::Iec(iec::parse(self.text(), target)),
+                Kind::Tables => Tree::Iec(exported::read(self.text())),
             })
         })
     }
 
     /// Whether it is IEC declarations or statements, told without reading it.
     pub(super) fn is_iec(&self) -> bool {
-        self.known.kind == Kind::Iec
+        matches!(self.known.kind, Kind::Iec | Kind::Tables)
     }
 
     /// What it says if it is IEC declarations or statements; others are not read for the answer.
@@ -159,6 +199,11 @@ impl Chunk {
         &self.summary().mentions
     }
 
+    /// Every word and symbol with what it means, in order, none overlapping, none over more than one line.
+    pub fn tokens(&self) -> &[Token] {
+        self.known.tokens.get_or_init(|| tokens::of_chunk(&self.reading()).into_boxed_slice())
+    }
+
     /// How much program it is.
     pub fn size(&self) -> Size {
         self.summary().size
@@ -171,11 +216,11 @@ impl Chunk {
 
     fn summary(&self) -> &Summary {
         self.known.summary.get_or_init(|| {
-            let reader = self.reader();
+            let reading = self.reading();
             Summary {
-                mentions: mention::of_chunk(&reader).into_boxed_slice(),
-                size: Size::of(&reader),
-                milestones: milestone::of_chunk(&reader).into_boxed_slice(),
+                mentions: mention::of_chunk(&reading).into_boxed_slice(),
+                size: Size::of(&reading),
+                milestones: milestone::of_chunk(&reading).into_boxed_slice(),
             }
         })
     }
@@ -184,9 +229,9 @@ impl Chunk {
     /// made by `find` unless they are there already. What else is known of the chunk is made from the same tree.
     pub fn found(&self, key: u64, find: impl FnOnce(&Chunk) -> Vec<Diagnostic>) -> Arc<[Diagnostic]> {
         kept(&self.known.found, key, || {
-            let reader = self.reader();
-            let found = find(&reader);
-            reader.summary();
+            let reading = self.reading();
+            let found = find(&reading);
+            reading.summary();
             found
         })
     }

@@ -16,8 +16,8 @@ use std::sync::Arc;
 pub struct Milestone {
     /// What it is.
     pub kind: MilestoneKind,
-    /// How many statements it stands for: of those that do nothing for the structure the first of a run stands for
-    /// itself and the last for all behind the first.
+    /// How many statements it stands for: of a run of equal ones that have no part in the structure the first stands
+    /// for itself and the last for all behind the first.
     pub count: u32,
     /// The mnemonic, the label, or the cells of a drawn element.
     pub word: Span,

@@ -106,11 +106,17 @@ impl Pages {
         &self.pages
     }
 
-    /// The same chunks without their trees, but for those of IEC 61131-3.
+    /// The same chunks without trees that are not kept.
     pub(super) fn lean(&self) -> Pages {
-        let lean = |chunk: &Arc<Chunk>| if chunk.is_iec() { chunk.clone() } else { Arc::new(chunk.lean()) };
-        let pages = self.pages.iter().map(|page| Page::new(page.chunks.iter().map(lean).collect()));
-        Pages { pages: pages.collect() }
+        let lean = |chunk: &Arc<Chunk>| match chunk.keeps_tree() {
+            true => chunk.clone(),
+            false => Arc::new(chunk.lean()),
+        };
+        let lean_page = |page: &Arc<Page>| match page.chunks.iter().all(|chunk| chunk.keeps_tree()) {
+            true => page.clone(),
+            false => Page::new(page.chunks.iter().map(lean).collect()),
+        };
+        Pages { pages: self.pages.iter().map(lean_page).collect() }
     }
 
     pub(super) fn get(&self, at: Cursor) -> Option<&Arc<Chunk>> {

@@ -105,7 +105,7 @@ mod tests {
     fn service() -> Ordered<Fragile> {
         let mut workspace = None;
         let _library = LspService::new(|client| {
-            let shared = Arc::new(Workspace::new(client));
+            let shared = Workspace::new(client);
             workspace = Some(shared.clone());
             Backend::new(shared)
         });

@@ -1,6 +1,6 @@
 //! An IEC chunk with the scopes around it, and the types of its operands.
 
-use crate::check::{ChunkContext, ProgramContext};
+use crate::check::{ChunkContext, ProgramContext, ProgramFile};
 use crate::document::{DeclaredType, Pou, Scopes, Variable};
 use crate::il::iec::{Direction, IecTree, ItemKind, OperandId, Parameter, ParameterValue, PouKind};
 use crate::target::iec::{ElementaryType, FunctionBlock, Literal, LiteralValue, OperatorRole};
@@ -72,7 +72,7 @@ impl<'a> View<'a> {
 
     /// The POU in which it stands.
     pub fn pou(&self) -> Option<&'a Pou> {
-        self.scopes.pous.get(self.pou?)
+        self.scopes.pous.get(self.pou?).map(|pou| &**pou)
     }
 
     /// The text of an operand.
@@ -249,12 +249,17 @@ fn member_ends(path: &str) -> Vec<usize> {
     ends
 }
 
-/// Every IEC chunk of a document with its start.
-pub fn views<'a>(context: &ProgramContext<'a>) -> impl Iterator<Item = (usize, View<'a>)> {
-    let scopes: &'a Scopes = context.document.scopes();
-    context.document.iec_chunks().filter_map(move |(at, started)| {
-        let tree = at.chunk.iec()?;
-        Some((at.start, View { text: at.chunk.text(), tree, scopes, pou: started.checked_sub(1) }))
+/// Every IEC chunk of a program with its start. Numbers of POUs are those of the scopes of its own file.
+pub fn views<'a>(context: &ProgramContext<'a>) -> impl Iterator<Item = (usize, View<'a>)> + use<'a> {
+    context.files().to_vec().into_iter().flat_map(views_of)
+}
+
+/// Every IEC chunk of a file of a program.
+pub fn views_of(file: ProgramFile<'_>) -> impl Iterator<Item = (usize, View<'_>)> {
+    let scopes: &Scopes = file.document.scopes();
+    file.document.iec_chunks().filter_map(move |(at, started)| {
+        let view = View { text: at.chunk.text(), tree: at.chunk.iec()?, scopes, pou: started.checked_sub(1) };
+        Some((at.start + file.start, view))
     })
 }
 
