@@ -1,6 +1,5 @@
 //! The JSON schema of `rungwise.toml` that the extension ships says what the manifest's reader takes, no more, no less.
 
-use rungwise::text::Language;
 use rungwise::check::RULES;
 use rungwise::project::{MOST_WIDTH, Manifest};
 use rungwise::text::Language;
