@@ -19,6 +19,7 @@ mod il_iec;
 mod ladder_generate;
 mod ladder_print;
 mod ladder_read;
+mod ldmicro;
 mod lsp;
 mod lsp_client;
 mod mistakes;
