@@ -33,7 +33,7 @@ pub enum Tree {
 
 impl Chunk {
     /// Reads `text`, which must be one of the pieces that [`split`] makes.
-    pub fn read(text: &str, notation: Notation, target: &'static Target) -> Chunk {
+    pub fn read(text: &str, notation: Notation, target: &Target) -> Chunk {
         let tree = match notation {
             Notation::Ladder => match ladder::kind_of(text) {
                 ladder::ChunkKind::Declarations => Tree::Iec(iec::parse(text, target)),

@@ -5,7 +5,7 @@ use super::glyph::{continues_word, is_operator, starts_word};
 use super::grid::{Grid, WIDE};
 use super::scan::Symbol;
 use super::{Block, Element, ElementKind, OperandPlace, Pin, PinWire};
-use crate::target::{Operand, Target};
+use crate::target::Target;
 use crate::text::{Span, Spanned};
 
 /// Higher boxes are not looked for, which bounds the search.
@@ -131,7 +131,7 @@ fn read_block(grid: &mut Grid, frame: Frame, text: &str, target: &Target) -> Sym
                 Outside::Wire => PinWire::Power,
                 Outside::Nothing => PinWire::Open,
                 Outside::Word(span) => {
-                    operands.push(Spanned::new(Operand::read(span.of(text), target.model), span));
+                    operands.push(Spanned::new(target.read(span.of(text)), span));
                     PinWire::Operand(operands.len() - 1)
                 }
             };

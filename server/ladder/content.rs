@@ -178,7 +178,7 @@ fn read_instruction(pieces: &[Piece], target: &Target) -> Option<Reading> {
     if !target.is_fx() && !ends {
         return None;
     }
-    if rest.is_empty() && !ends && !matches!(Operand::read(word.text, target.model), Operand::Invalid(_)) {
+    if rest.is_empty() && !ends && !matches!(target.read(word.text), Operand::Invalid(_)) {
         return None;
     }
     let wants = if form.instruction.operands.is_empty() { Wants::Nothing } else { Wants::Operands };
@@ -287,7 +287,7 @@ fn coil_kind(word: &Piece, alone: bool) -> Option<CoilKind> {
 }
 
 fn read_operand(piece: &Piece, target: &Target) -> Spanned<Operand> {
-    Spanned::new(Operand::read(piece.text, target.model), piece.span)
+    Spanned::new(target.read(piece.text), piece.span)
 }
 
 fn read_operands(pieces: &[Piece], target: &Target) -> Vec<Spanned<Operand>> {

@@ -8,7 +8,7 @@ mod chunks;
 pub use chunks::{ChunkKind, chunk_ends, kind_of, split};
 
 mod reader;
-pub use reader::{parse, parse_with};
+pub use reader::{Choice, parse, parse_choosing, parse_with};
 
 mod lines;
 pub use lines::column_after;
@@ -29,6 +29,7 @@ mod content;
 mod uprights;
 
 mod ragged;
+pub use ragged::TWO_READINGS;
 
 mod wires;
 
