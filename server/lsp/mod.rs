@@ -7,7 +7,9 @@
 mod backend;
 mod capabilities;
 mod frames;
+mod keeper;
 mod manifests;
+mod projects;
 mod publisher;
 mod service;
 mod settings;
@@ -16,7 +18,7 @@ mod to_proto;
 mod workspace;
 
 use service::Ordered;
-use std::sync::Arc;
+use tokio::io::{AsyncRead, AsyncWrite};
 use tower_lsp::{LspService, Server};
 use workspace::Workspace;
 
@@ -26,15 +28,23 @@ const CONCURRENCY: usize = 4096;
 /// Serves one client on standard input and output until it says `exit` or goes away.
 /// Returns the process's exit code: 0 after a `shutdown`, else 1, as the protocol wants.
 pub async fn serve() -> u8 {
+    serve_between(tokio::io::stdin(), tokio::io::stdout()).await
+}
+
+/// Serves one client that sends `input` and reads `output`; ends and returns as [`serve`] does.
+pub async fn serve_between(
+    input: impl AsyncRead + Send + Unpin + 'static,
+    output: impl AsyncWrite + Send + Unpin,
+) -> u8 {
     let mut workspace = None;
     let (service, socket) = LspService::new(|client| {
-        let shared = Arc::new(Workspace::new(client));
+        let shared = Workspace::new(client);
         workspace = Some(shared.clone());
         backend::Backend::new(shared)
     });
     let Some(workspace) = workspace else { return 1 };
     let ordered = Ordered::new(service, workspace.clone());
-    Server::new(frames::sound(tokio::io::stdin()), tokio::io::stdout(), socket)
+    Server::new(frames::sound(input), output, socket)
         .concurrency_level(CONCURRENCY)
         .serve(ordered)
         .await;
