@@ -6,6 +6,7 @@
 
 mod backend;
 mod capabilities;
+mod editing;
 mod frames;
 mod manifests;
 mod publisher;
@@ -27,11 +28,13 @@ const CONCURRENCY: usize = 4096;
 /// Returns the process's exit code: 0 after a `shutdown`, else 1, as the protocol wants.
 pub async fn serve() -> u8 {
     let mut workspace = None;
-    let (service, socket) = LspService::new(|client| {
+    let (service, socket) = LspService::build(|client| {
         let shared = Arc::new(Workspace::new(client));
         workspace = Some(shared.clone());
         backend::Backend::new(shared)
-    });
+    })
+    .custom_method("rungwise/edit", backend::Backend::edit)
+    .finish();
     let Some(workspace) = workspace else { return 1 };
     let ordered = Ordered::new(service, workspace.clone());
     Server::new(frames::sound(tokio::io::stdin()), tokio::io::stdout(), socket)
