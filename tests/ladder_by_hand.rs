@@ -1,9 +1,9 @@
 //! Drawings by hand: lines and names that miss each other by a column or two are read as everybody reads them, or
 //! both readings are shown; and the dialects in which people draw.
 
+use crate::ladder_read::dump;
 use rungwise::check::{self, Severities};
 use rungwise::document::{Document, Notation};
-use crate::ladder_read::dump;
 use rungwise::ladder::{TWO_READINGS, parse, split};
 use rungwise::target::{Model, Target};
 use rungwise::text::{Diagnostic, Language, Severity, TextEdit};
@@ -345,12 +345,11 @@ fn dialect_of_allen_bradley() {
 |                      +-----------+
 ";
     let expected = [
-        "L T4:TON.#0",
+        "L part T4:TON.#0",
         "T4:TON.#0 (EN) R",
         "T4:TON.#1 (DN) R",
         "block T4:TON _=wire Preset=30 =>_=wire =>_=wire",
     ];
-    let expected = [&["L part T4:TON.#0"][..], &expected[1..]].concat();
     check_dialect(Model::Iec, drawing, &expected);
 }
 
@@ -507,7 +506,8 @@ fn dialect_of_boxes_as_outputs() {
 |   part                                 |
 |---| |-------------------[CTU C1, PV:5]-|
 ";
-    check_dialect(Model::Iec, drawing, &["L part [?CTU C1 PV:5] R"]);
+    let expected = ["L part C1:CTU.CU", "C1:CTU.Q R", "block C1:CTU CU=wire PV=5 =>Q=wire"];
+    check_dialect(Model::Iec, drawing, &expected);
     let drawing = "
 |                    T1                    |
 |   start     +-------------+        run   |

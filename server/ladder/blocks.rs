@@ -139,7 +139,13 @@ fn read_block(grid: &mut Grid, frame: Frame, text: &str, target: &Target) -> Sym
                 Parameter::Input(name, operand) => {
                     operands.push(operand);
                     let wire = PinWire::Operand(operands.len() - 1);
-                    block.inputs.push(Pin { name: Some(name), implied: "", negated: false, row: grid.line(row), wire });
+                    block.inputs.push(Pin {
+                        name: Some(name),
+                        implied: "",
+                        negated: false,
+                        row: grid.line(row),
+                        wire,
+                    });
                 }
             }
             words.clear();
