@@ -42,6 +42,9 @@ mod wires;
 
 mod names;
 
+mod habit;
+pub use habit::habit_of;
+
 mod rungs;
 
 mod element;
