@@ -23,6 +23,7 @@ mod ladder_print;
 mod ladder_read;
 mod lsp;
 mod lsp_client;
+mod lsp_tokens;
 mod manifest_schema;
 mod mistakes;
 mod rules;

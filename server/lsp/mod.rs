@@ -15,6 +15,7 @@ mod service;
 mod settings;
 mod status;
 mod to_proto;
+mod tokens;
 mod workspace;
 
 use service::Ordered;
