@@ -33,6 +33,7 @@ impl Client {
     pub fn spawn_program(rungwise: &Path) -> Client {
         let mut server = Command::new(rungwise)
             .arg("lsp")
+            .env("LC_ALL", "C")
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())

@@ -8,6 +8,7 @@
     reason = "a test that fails says so by a panic"
 )]
 
+mod chinese;
 mod cli;
 mod corpus;
 mod document;
@@ -15,14 +16,17 @@ mod extremes;
 mod fuzz;
 mod grammar;
 mod ide;
+mod ide_structure;
 mod il_fx;
 mod il_iec;
 mod ladder_by_hand;
 mod ladder_generate;
 mod ladder_print;
 mod ladder_read;
+mod ldmicro;
 mod lsp;
 mod lsp_client;
+mod lsp_edit;
 mod lsp_tokens;
 mod manifest_schema;
 mod mistakes;

@@ -35,7 +35,7 @@ pub(super) struct Publisher {
 enum Order {
     #[default]
     Nothing,
-    Publish(Arc<Open>),
+    Publish(Arc<Open>, Manner),
     Close(Uri),
 }
 
@@ -80,8 +80,8 @@ impl Publisher {
         Publisher { sender, task }
     }
 
-    pub(super) fn publish(&self, open: Arc<Open>) {
-        self.sender.send_replace(Order::Publish(open));
+    pub(super) fn publish(&self, open: Arc<Open>, manner: Manner) {
+        self.sender.send_replace(Order::Publish(open, manner));
     }
 
     /// Clears what was published; the handle ends when that is done.
@@ -97,7 +97,10 @@ impl Task {
             let order = receiver.borrow_and_update().clone();
             match order {
                 Order::Nothing => {}
-                Order::Publish(open) => self.publish(open, &mut receiver).await,
+                Order::Publish(open, manner) => {
+                    self.manner = manner;
+                    self.publish(open, &mut receiver).await;
+                }
                 Order::Close(uri) => {
                     self.client.publish_diagnostics(uri, Vec::new(), None).await;
                     return;
