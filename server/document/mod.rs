@@ -13,6 +13,8 @@ pub use snapshot::{ChunkRef, Document, Edit, LIMIT_BYTES};
 mod chunk;
 pub use chunk::{Chunk, Tree};
 
+mod exported;
+
 mod pages;
 pub use pages::Page;
 
@@ -28,5 +30,14 @@ pub use operation::Operation;
 mod mention;
 pub use mention::{Mention, Symbol, Use};
 
+mod comments;
+pub use comments::{Comments, DeviceComment};
+
 mod scope;
 pub use scope::{DeclaredType, Pou, Scopes, Variable};
+
+mod project_view;
+pub use project_view::{At, Member, ProjectView};
+
+mod exports;
+pub use exports::{Exports, Outer};

@@ -1,7 +1,7 @@
 //! The document itself: text, chunks, and how an edit changes both.
 
 use super::pages::{Cursor, Page, Pages};
-use super::{Chunk, Notation, Scopes, Size, chunk};
+use super::{Chunk, Comments, Notation, Outer, Scopes, Size, chunk};
 use crate::target::Target;
 use crate::text::{Encoding, LineColumn, Span, column_of_offset, offset_of_column};
 use ropey::Rope;
@@ -17,8 +17,13 @@ pub struct Document {
     rope: Rope,
     notation: Notation,
     target: &'static Target,
+    comments: Arc<Comments>,
+    /// The target with the symbols of the comments; the target itself if there are none.
+    reader: Option<Arc<Target>>,
     pages: Pages,
     scopes: OnceLock<Arc<Scopes>>,
+    /// What the files of its project declare, and which of them it is.
+    outer: Option<(Arc<Outer>, usize)>,
 }
 
 /// A replacement of bytes; `None` replaces everything.
@@ -42,21 +47,35 @@ pub struct ChunkRef<'a> {
 impl Document {
     /// Reads `text`.
     pub fn new(text: &str, notation: Notation, target: &'static Target) -> Document {
-        let mut document = Document {
-            rope: Rope::from_str(text),
-            notation,
-            target,
-            pages: Pages::default(),
-            scopes: OnceLock::new(),
-        };
+        Document::with_comments(text, notation, target, Arc::default())
+    }
+
+    /// Reads `text`, in which the symbols of `comments` stand for devices.
+    pub fn with_comments(
+        text: &str,
+        notation: Notation,
+        target: &'static Target,
+        comments: Arc<Comments>,
+    ) -> Document {
+        let mut document = Document { comments, ..Document::unread(text, notation, target) };
+        let symbols = document.comments.symbols();
+        document.reader = (!symbols.is_empty()).then(|| Arc::new(target.with_symbols(symbols.clone())));
         document.read_all(text, &[]);
         document
     }
 
     /// Keeps `text` without reading it: the last resort after a failure of a reader.
     pub fn unread(text: &str, notation: Notation, target: &'static Target) -> Document {
-        let rope = Rope::from_str(text);
-        Document { rope, notation, target, pages: Pages::default(), scopes: OnceLock::new() }
+        Document {
+            rope: Rope::from_str(text),
+            notation,
+            target,
+            comments: Arc::default(),
+            reader: None,
+            pages: Pages::default(),
+            scopes: OnceLock::new(),
+            outer: None,
+        }
     }
 
     /// The bytes of `old` that were replaced and those of `self` that replaced them, to whole chunks;
@@ -86,9 +105,29 @@ impl Document {
         self.target
     }
 
+    /// What the project says about its devices.
+    pub fn comments(&self) -> &Arc<Comments> {
+        &self.comments
+    }
+
+    /// The target as words of the text are read: with the project's symbols.
+    pub fn reader(&self) -> &Target {
+        self.reader.as_deref().unwrap_or(self.target)
+    }
+
     /// The same text read as another language or for another target.
     pub fn reread(&self, notation: Notation, target: &'static Target) -> Document {
-        Document::new(&self.text(), notation, target)
+        let read = Document::with_comments(&self.text(), notation, target, self.comments.clone());
+        Document { outer: self.outer.clone(), ..read }
+    }
+
+    /// The same text with other comments; it is read anew only if the symbols differ.
+    pub fn commented(&self, comments: &Arc<Comments>) -> Document {
+        if self.comments.symbols() != comments.symbols() {
+            let read = Document::with_comments(&self.text(), self.notation, self.target, comments.clone());
+            return Document { outer: self.outer.clone(), ..read };
+        }
+        Document { comments: comments.clone(), ..self.clone() }
     }
 
     /// Applies `edits` one after another, each to the result of the one before.
@@ -166,7 +205,29 @@ impl Document {
         Some(ChunkRef { start: start - chunk.len(), chunk })
     }
 
-    /// The POUs and variables declared in it.
+    /// The same document as file number `own` of a project in which `outer` is declared.
+    pub fn linked(&self, outer: Arc<Outer>, own: usize) -> Document {
+        Document { scopes: OnceLock::new(), outer: Some((outer, own)), ..self.clone() }
+    }
+
+    /// The same document standing alone.
+    pub fn unlinked(&self) -> Document {
+        Document { scopes: OnceLock::new(), outer: None, ..self.clone() }
+    }
+
+    /// The same document in the place of `other` in its project.
+    pub fn linked_as(mut self, other: &Document) -> Document {
+        self.outer = other.outer.clone();
+        self.scopes = OnceLock::new();
+        self
+    }
+
+    /// What the files of its project declare, and which of them it is.
+    pub fn outer(&self) -> Option<(&Arc<Outer>, usize)> {
+        self.outer.as_ref().map(|(outer, own)| (outer, *own))
+    }
+
+    /// The POUs and variables declared in it, and those of the other files of its project.
     pub fn scopes(&self) -> &Arc<Scopes> {
         self.scopes.get_or_init(|| Arc::new(Scopes::of(self)))
     }
@@ -299,7 +360,7 @@ impl Document {
                 start = end;
                 match known.get(piece) {
                     Some(chunk) => Arc::clone(chunk),
-                    None => Arc::new(Chunk::read(piece, self.notation, self.target)),
+                    None => Arc::new(Chunk::read(piece, self.notation, self.reader())),
                 }
             })
             .collect()

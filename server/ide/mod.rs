@@ -9,6 +9,8 @@ pub use answer::{
     TokenKind,
 };
 
+pub use crate::document::{At, Member, ProjectView};
+
 mod names;
 
 mod members;

@@ -7,7 +7,9 @@
 mod backend;
 mod capabilities;
 mod frames;
+mod keeper;
 mod manifests;
+mod projects;
 mod publisher;
 mod service;
 mod settings;
@@ -18,7 +20,7 @@ mod workspace;
 use crate::text::Language;
 use service::Ordered;
 use settings::Speech;
-use std::sync::Arc;
+use tokio::io::{AsyncRead, AsyncWrite};
 use tower_lsp::{LspService, Server};
 use workspace::Workspace;
 
@@ -31,15 +33,32 @@ const CONCURRENCY: usize = 4096;
 /// `asked` is the language that the user asked the program for, which goes before the client's; `otherwise` is taken if
 /// the client says none.
 pub async fn serve(asked: Option<Language>, otherwise: Language) -> u8 {
+    let speech = Speech { asked, otherwise, ..Speech::default() };
+    serve_with(speech, tokio::io::stdin(), tokio::io::stdout()).await
+}
+
+/// Serves one client that sends `input` and reads `output`; ends and returns as [`serve`] does.
+pub async fn serve_between(
+    input: impl AsyncRead + Send + Unpin + 'static,
+    output: impl AsyncWrite + Send + Unpin,
+) -> u8 {
+    serve_with(Speech::default(), input, output).await
+}
+
+async fn serve_with(
+    speech: Speech,
+    input: impl AsyncRead + Send + Unpin + 'static,
+    output: impl AsyncWrite + Send + Unpin,
+) -> u8 {
     let mut workspace = None;
     let (service, socket) = LspService::new(|client| {
-        let shared = Arc::new(Workspace::new(client, Speech { asked, otherwise, ..Speech::default() }));
+        let shared = Workspace::new(client, speech);
         workspace = Some(shared.clone());
         backend::Backend::new(shared)
     });
     let Some(workspace) = workspace else { return 1 };
     let ordered = Ordered::new(service, workspace.clone());
-    Server::new(frames::sound(tokio::io::stdin()), tokio::io::stdout(), socket)
+    Server::new(frames::sound(input), output, socket)
         .concurrency_level(CONCURRENCY)
         .serve(ordered)
         .await;

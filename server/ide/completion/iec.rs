@@ -93,7 +93,7 @@ fn pou(place: &Place<'_>) -> Option<usize> {
 /// The first word of a statement, or a keyword outside of program units.
 fn statement_words(place: &mut Place<'_>, typed: &str) {
     let language = place.language;
-    if pou(place).is_some() || place.document.scopes().pous.is_empty() {
+    if pou(place).is_some() || place.document.scopes().own_pous().is_empty() {
         for (rank, written) in Operator::all_written().enumerate() {
             let word = written.word();
             let takes_operand =
@@ -197,7 +197,7 @@ pub(super) fn propose_variables(place: &mut Place<'_>, typed: &str, written: boo
 /// Names and addresses that the document uses without declaring them, as drawings do.
 fn undeclared(place: &mut Place<'_>, typed: &str, variables: &[&Variable]) {
     let document = place.document;
-    let has_units = !document.scopes().pous.is_empty();
+    let has_units = !document.scopes().own_pous().is_empty();
     let declared: FxHashSet<String> = variables.iter().map(|variable| variable.name.to_lowercase()).collect();
     let is_undeclared = |symbol: &Symbol| match symbol {
         Symbol::Variable(name) => !has_units && !declared.contains(name.as_str()),
