@@ -22,6 +22,7 @@ mod ladder_by_hand;
 mod ladder_generate;
 mod ladder_print;
 mod ladder_read;
+mod ldmicro;
 mod lsp;
 mod lsp_client;
 mod manifest_schema;

@@ -216,7 +216,8 @@ async fn whole<T: Send + 'static>(
     let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
     let work = tokio::task::spawn_blocking(move || {
         let open = snapshot.open(&uri)?;
-        Some(answer(open, Place::new(&open.document, snapshot.manner)))
+        // The trees of a walk through the whole document go away with it.
+        Some(answer(open, Place::new(&open.document.lean(), snapshot.manner)))
     });
     work.await.map_err(|failure| {
         tracing::error!("a request failed: {failure}");

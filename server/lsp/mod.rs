@@ -33,26 +33,19 @@ const CONCURRENCY: usize = 4096;
 /// `asked` is the language that the user asked the program for, which goes before the client's; `otherwise` is taken if
 /// the client says none.
 pub async fn serve(asked: Option<Language>, otherwise: Language) -> u8 {
-    let speech = Speech { asked, otherwise, ..Speech::default() };
-    serve_with(speech, tokio::io::stdin(), tokio::io::stdout()).await
+    serve_between(tokio::io::stdin(), tokio::io::stdout(), asked, otherwise).await
 }
 
 /// Serves one client that sends `input` and reads `output`; ends and returns as [`serve`] does.
 pub async fn serve_between(
     input: impl AsyncRead + Send + Unpin + 'static,
     output: impl AsyncWrite + Send + Unpin,
-) -> u8 {
-    serve_with(Speech::default(), input, output).await
-}
-
-async fn serve_with(
-    speech: Speech,
-    input: impl AsyncRead + Send + Unpin + 'static,
-    output: impl AsyncWrite + Send + Unpin,
+    asked: Option<Language>,
+    otherwise: Language,
 ) -> u8 {
     let mut workspace = None;
     let (service, socket) = LspService::new(|client| {
-        let shared = Workspace::new(client, speech);
+        let shared = Workspace::new(client, Speech { asked, otherwise, ..Speech::default() });
         workspace = Some(shared.clone());
         backend::Backend::new(shared)
     });

@@ -80,8 +80,8 @@ struct State {
     /// Publishers of closed documents that are not done yet.
     closing: FxHashMap<Uri, JoinHandle<()>>,
     manifests: Manifests,
-    speech: Speech,
     keeper: Option<Keeper>,
+    speech: Speech,
     watches: bool,
 }
 
