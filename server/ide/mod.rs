@@ -48,6 +48,9 @@ pub use fixes::FixOf;
 
 mod status;
 
+mod drawing;
+pub use drawing::{EditKind, Edited};
+
 /// What stands at `offset`: the page of an instruction, the meaning and range of a device, where it is used.
 pub fn hover(document: &Document, offset: usize, language: Language) -> Option<Hover> {
     hover::at(document, offset, language)
@@ -108,6 +111,25 @@ pub fn inlay_hints(document: &Document, span: Span, language: Language) -> Vec<I
 /// The edits that make the document canonical; none if it is.
 pub fn format(document: &Document, style: Style) -> Vec<TextEdit> {
     format::edits(document, style)
+}
+
+/// The structural edit `kind` of the rung at the cursor or selection `span`; `operand` names what is inserted.
+///
+/// # Errors
+/// Why it is not possible there, or that it would change more than was meant.
+pub fn edit(
+    document: &Document,
+    span: Span,
+    kind: EditKind,
+    operand: Option<&str>,
+    style: Style,
+) -> Result<Edited, Message> {
+    drawing::edit(document, span, kind, operand, style)
+}
+
+/// The structural edits that make sense at the cursor or selection `span`; cheap, and so without drawing the results.
+pub fn applicable_edits(document: &Document, span: Span) -> Vec<EditKind> {
+    drawing::applicable(document, span)
 }
 
 /// The fixes of `diagnostics` that touch `span`.

@@ -6,6 +6,7 @@
 
 mod backend;
 mod capabilities;
+mod editing;
 mod frames;
 mod keeper;
 mod manifests;
@@ -44,11 +45,13 @@ pub async fn serve_between(
     otherwise: Language,
 ) -> u8 {
     let mut workspace = None;
-    let (service, socket) = LspService::new(|client| {
+    let (service, socket) = LspService::build(|client| {
         let shared = Workspace::new(client, Speech { asked, otherwise, ..Speech::default() });
         workspace = Some(shared.clone());
         backend::Backend::new(shared)
-    });
+    })
+    .custom_method("rungwise/edit", backend::Backend::edit)
+    .finish();
     let Some(workspace) = workspace else { return 1 };
     let ordered = Ordered::new(service, workspace.clone());
     Server::new(frames::sound(input), output, socket)
