@@ -3,6 +3,7 @@
 mod check;
 mod explain;
 mod fmt;
+mod import;
 mod input;
 mod render;
 
@@ -37,6 +38,8 @@ enum Verb {
     Fmt(fmt::Arguments),
     /// Show the page of a rule, an instruction, a function or a function block.
     Explain(explain::Arguments),
+    /// Carry a program of LDmicro over: its own file (.ld) or its text export.
+    Import(import::Arguments),
 }
 
 /// The shape of results on standard output.
@@ -77,6 +80,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Verb::Check(arguments) => check::run(&arguments, language).into(),
         Verb::Fmt(arguments) => fmt::run(&arguments, language).into(),
         Verb::Explain(arguments) => explain::run(&arguments).into(),
+        Verb::Import(arguments) => import::run(&arguments, language).into(),
     }
 }
 
