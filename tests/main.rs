@@ -8,6 +8,7 @@
     reason = "a test that fails says so by a panic"
 )]
 
+mod chinese;
 mod cli;
 mod corpus;
 mod document;
@@ -15,6 +16,7 @@ mod extremes;
 mod fuzz;
 mod grammar;
 mod ide;
+mod ide_structure;
 mod il_fx;
 mod il_iec;
 mod ladder_by_hand;
@@ -24,6 +26,7 @@ mod ladder_read;
 mod ldmicro;
 mod lsp;
 mod lsp_client;
+mod lsp_edit;
 mod manifest_schema;
 mod mistakes;
 mod rules;

@@ -22,7 +22,7 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     let bytes = match std::fs::read(&arguments.file) {
         Ok(bytes) => bytes,
         Err(reason) => {
-            complain("unreadable-input", &format!("{path}: {reason}"), &words("import.unreadable-help"));
+            complain("unreadable-input", &format!("{path}: {reason}"), &words("import.unreadable-help"), language);
             return Outcome::Unusable;
         }
     };
@@ -31,11 +31,11 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     let imported = match ladder::import(&source, &program_name(&arguments.file), language) {
         Ok(imported) => imported,
         Err(ImportError::Unknown) => {
-            complain("unknown-format", &words("import.unknown"), &words("import.unknown-help"));
+            complain("unknown-format", &words("import.unknown"), &words("import.unknown-help"), language);
             return Outcome::Unusable;
         }
         Err(ImportError::Unproven) => {
-            complain("import-unproven", &words("import.unproven"), &words("import.unproven-help"));
+            complain("import-unproven", &words("import.unproven"), &words("import.unproven-help"), language);
             return Outcome::Findings;
         }
     };
@@ -44,7 +44,7 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         Some(output) => {
             if let Err(reason) = std::fs::write(output, &imported.text) {
                 let help = words("import.unwritable-help");
-                complain("unwritable", &format!("{}: {reason}", output.display()), &help);
+                complain("unwritable", &format!("{}: {reason}", output.display()), &help, language);
                 return Outcome::Unusable;
             }
             let done = Message::new("import.done").with("path", output.display()).with("rungs", imported.rungs);
@@ -53,7 +53,7 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     }
     for note in &imported.notes {
         let place = format!("{path}:{}: {}", note.line, note.message.render(language));
-        caution("import-note", &place, &words("import.note-help"));
+        caution("import-note", &place, &words("import.note-help"), language);
     }
     if imported.notes.is_empty() { Outcome::Clean } else { Outcome::Findings }
 }

@@ -1,12 +1,12 @@
 //! Editor features, one file each: offsets of a document in, plain structs out. No protocol, no files, no threads.
 
-use crate::document::Document;
+pub use crate::document::{Token, TokenKind};
+use crate::document::{ChunkRef, Document};
 use crate::text::{Diagnostic, Language, Message, Span, TextEdit};
 
 mod answer;
 pub use answer::{
-    Completion, CompletionKind, Fold, FoldKind, Hover, InlayHint, Status, SymbolKind, SymbolNode, Token,
-    TokenKind,
+    Completion, CompletionKind, Fold, FoldKind, Hover, InlayHint, Status, SymbolKind, SymbolNode,
 };
 
 pub use crate::document::{At, Member, ProjectView};
@@ -38,8 +38,6 @@ mod symbols;
 
 mod folding;
 
-mod semantic_tokens;
-
 mod inlay_hints;
 
 mod format;
@@ -49,6 +47,9 @@ mod fixes;
 pub use fixes::FixOf;
 
 mod status;
+
+mod drawing;
+pub use drawing::{EditKind, Edited};
 
 /// What stands at `offset`: the page of an instruction, the meaning and range of a device, where it is used.
 pub fn hover(document: &Document, offset: usize, language: Language) -> Option<Hover> {
@@ -95,7 +96,11 @@ pub fn folds(document: &Document) -> Vec<Fold> {
 
 /// All tokens that mean something, in order, none overlapping, none over more than one line.
 pub fn semantic_tokens(document: &Document) -> Vec<Token> {
-    semantic_tokens::of(document)
+    let shifted = |at: ChunkRef<'_>| {
+        let tokens = at.chunk.tokens().iter();
+        tokens.map(|token| Token { span: token.span.shifted(at.start), ..*token }).collect::<Vec<_>>()
+    };
+    document.chunks().flat_map(shifted).collect()
 }
 
 /// What the editor may show between the words of `span`.
@@ -106,6 +111,25 @@ pub fn inlay_hints(document: &Document, span: Span, language: Language) -> Vec<I
 /// The edits that make the document canonical; none if it is.
 pub fn format(document: &Document, style: Style) -> Vec<TextEdit> {
     format::edits(document, style)
+}
+
+/// The structural edit `kind` of the rung at the cursor or selection `span`; `operand` names what is inserted.
+///
+/// # Errors
+/// Why it is not possible there, or that it would change more than was meant.
+pub fn edit(
+    document: &Document,
+    span: Span,
+    kind: EditKind,
+    operand: Option<&str>,
+    style: Style,
+) -> Result<Edited, Message> {
+    drawing::edit(document, span, kind, operand, style)
+}
+
+/// The structural edits that make sense at the cursor or selection `span`; cheap, and so without drawing the results.
+pub fn applicable_edits(document: &Document, span: Span) -> Vec<EditKind> {
+    drawing::applicable(document, span)
 }
 
 /// The fixes of `diagnostics` that touch `span`.

@@ -14,6 +14,7 @@ mod lines;
 pub use lines::column_after;
 
 mod glyph;
+pub use glyph::Strokes;
 
 mod grid;
 

@@ -204,6 +204,10 @@ impl Scanner<'_> {
         let at = |column: usize| self.grid.at(row, column);
         let first = at(column);
         let after_wire = column > 0 && Arms::of(at(column - 1)).is_horizontal();
+        // `???` stands where a name is still to be given.
+        if first == '?' && at(column + 1) == '?' {
+            return (column..=self.grid.width(row)).find(|c| at(*c) != '?');
+        }
         let named = first == '_' && !after_wire && at(column + 1).is_alphanumeric();
         let address = first != '%' || at(column + 1).is_alphabetic();
         if !(named || starts_word(first) && address) {

@@ -1,6 +1,7 @@
 //! The handlers: a few lines each, from the snapshot of the request to the answer of `ide`.
 
 use super::capabilities;
+use super::editing;
 use super::to_proto::{self, Place};
 use super::workspace::{Open, SNAPSHOT, Snapshot, Workspace};
 use crate::check;
@@ -10,6 +11,7 @@ use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::hash::BuildHasher;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use tower_lsp::LanguageServer;
 use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::*;
@@ -17,16 +19,19 @@ use tower_lsp::ls_types::*;
 /// The server's side of the protocol. Its state is in the workspace; handlers see snapshots only.
 pub(super) struct Backend {
     workspace: Arc<Workspace>,
+    /// Whether the client asks for the edits of code actions later.
+    resolves_actions: AtomicBool,
 }
 
 impl Backend {
     pub(super) fn new(workspace: Arc<Workspace>) -> Backend {
-        Backend { workspace }
+        Backend { workspace, resolves_actions: AtomicBool::new(false) }
     }
 }
 
 impl LanguageServer for Backend {
     async fn initialize(&self, params: InitializeParams) -> Result<InitializeResult> {
+        self.resolves_actions.store(editing::resolves_actions(&params.capabilities), Ordering::Relaxed);
         // The workspace took what these say when the message was read.
         let Snapshot { manner, settings, .. } = self.workspace.snapshot();
         Ok(capabilities::offered(&params.capabilities, manner.encoding, settings.pulls()))
@@ -150,12 +155,26 @@ impl LanguageServer for Backend {
     }
 
     async fn code_action(&self, params: CodeActionParams) -> Result<Option<CodeActionResponse>> {
-        whole(params.text_document.uri, move |open, place| {
+        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let resolves = self.resolves_actions.load(Ordering::Relaxed);
+        whole(params.text_document.uri.clone(), move |open, place| {
             let found = check::all(&open.document, &open.severities);
             let fixes = ide::fixes(&found, place.span(params.range)).into_iter();
-            fixes.map(|fix| quick_fix(open, place, &fix).into()).collect()
+            let fixes = fixes.map(|fix| quick_fix(open, place, &fix).into());
+            let edits = editing::actions(open, place, &params, settings.style(&open.manifest), resolves);
+            fixes.chain(edits.into_iter().map(CodeActionOrCommand::from)).collect()
         })
         .await
+    }
+
+    async fn code_action_resolve(&self, action: CodeAction) -> Result<CodeAction> {
+        let Some(asked) = editing::asked_by(&action) else { return Ok(action) };
+        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let edit = with_open(&asked.text_document.uri, |open, place| {
+            let result = editing::edit(open, place, &asked, settings.style(&open.manifest));
+            Some(result.map(|result| editing::changes(open, result.edits)))
+        });
+        Ok(CodeAction { edit: edit.transpose()?, ..action })
     }
 
     async fn diagnostic(&self, params: DocumentDiagnosticParams) -> Result<DocumentDiagnosticReportResult> {
@@ -171,20 +190,26 @@ impl LanguageServer for Backend {
         let Some(uri) =
             params.arguments.first().and_then(|value| value.as_str()).and_then(|text| text.parse().ok())
         else {
-            return Err(Error::invalid_params(format!(
-                "{}: the first argument is a document's URI",
-                params.command
-            )));
+            return Err(refused(Message::new("request.no-document").with("command", params.command)));
         };
         match params.command.as_str() {
             "rungwise.check" => whole(uri, |open, place| check_summary(open, place.language)).await,
             "rungwise.format" => self.format(uri).await,
-            other => Err(Error::invalid_params(format!("no such command: {other}"))),
+            other => Err(refused(Message::new("request.no-command").with("command", other))),
         }
     }
 }
 
 impl Backend {
+    /// `rungwise/edit`
+    pub(super) async fn edit(&self, params: editing::EditParams) -> Result<Option<editing::EditResult>> {
+        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let edited = with_open(&params.text_document.uri, |open, place| {
+            Some(editing::edit(open, place, &params, settings.style(&open.manifest)))
+        });
+        edited.transpose()
+    }
+
     /// Computes the edits and asks the client to apply them; the answer says how many there are.
     async fn format(&self, uri: Uri) -> Result<Option<LSPAny>> {
         let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
@@ -219,7 +244,8 @@ async fn whole<T: Send + 'static>(
     let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
     let work = tokio::task::spawn_blocking(move || {
         let open = snapshot.open(&uri)?;
-        Some(answer(open, Place::new(&open.document, snapshot.manner)))
+        // The trees of a walk through the whole document go away with it.
+        Some(answer(open, Place::new(&open.document.lean(), snapshot.manner)))
     });
     work.await.map_err(|failure| {
         tracing::error!("a request failed: {failure}");
