@@ -190,15 +190,12 @@ impl LanguageServer for Backend {
         let Some(uri) =
             params.arguments.first().and_then(|value| value.as_str()).and_then(|text| text.parse().ok())
         else {
-            return Err(Error::invalid_params(format!(
-                "{}: the first argument is a document's URI",
-                params.command
-            )));
+            return Err(refused(Message::new("request.no-document").with("command", params.command)));
         };
         match params.command.as_str() {
             "rungwise.check" => whole(uri, |open, place| check_summary(open, place.language)).await,
             "rungwise.format" => self.format(uri).await,
-            other => Err(Error::invalid_params(format!("no such command: {other}"))),
+            other => Err(refused(Message::new("request.no-command").with("command", other))),
         }
     }
 }
@@ -247,7 +244,8 @@ async fn whole<T: Send + 'static>(
     let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
     let work = tokio::task::spawn_blocking(move || {
         let open = snapshot.open(&uri)?;
-        Some(answer(open, Place::new(&open.document, snapshot.manner)))
+        // The trees of a walk through the whole document go away with it.
+        Some(answer(open, Place::new(&open.document.lean(), snapshot.manner)))
     });
     work.await.map_err(|failure| {
         tracing::error!("a request failed: {failure}");

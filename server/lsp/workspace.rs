@@ -5,7 +5,7 @@ use super::keeper::Keeper;
 use super::manifests::Manifests;
 use super::projects::{Loaded, Projects, canonical, file_path};
 use super::publisher::Publisher;
-use super::settings::Settings;
+use super::settings::{Settings, Speech};
 use super::to_proto::Manner;
 use crate::check::Severities;
 use crate::document::{Document, Edit, Notation};
@@ -81,6 +81,7 @@ struct State {
     closing: FxHashMap<Uri, JoinHandle<()>>,
     manifests: Manifests,
     keeper: Option<Keeper>,
+    speech: Speech,
     watches: bool,
 }
 
@@ -103,10 +104,10 @@ impl Snapshot {
 }
 
 impl Workspace {
-    pub(super) fn new(client: Client) -> Arc<Workspace> {
+    pub(super) fn new(client: Client, speech: Speech) -> Arc<Workspace> {
         Arc::new(Workspace {
             client,
-            state: Mutex::default(),
+            state: Mutex::new(State { speech, ..State::default() }),
             initialised: AtomicBool::new(false),
             shut_down: AtomicBool::new(false),
         })
@@ -144,12 +145,13 @@ impl Workspace {
     fn initialise(self: &Arc<Workspace>, params: &InitializeParams) {
         let mut state = self.state();
         state.keeper = Some(Keeper::start(self));
+        state.speech.client = params.locale.as_deref().map(Language::of_locale);
+        let settings = Settings::read(params.initialization_options.as_ref()).unwrap_or_default();
         state.snapshot.manner = Manner {
             encoding: capabilities::encoding_for(&params.capabilities),
-            language: params.locale.as_deref().map(Language::of_locale).unwrap_or_default(),
+            language: settings.language(state.speech),
         };
-        let settings = Settings::read(params.initialization_options.as_ref());
-        state.snapshot.settings = Arc::new(settings.unwrap_or_default());
+        state.snapshot.settings = Arc::new(settings);
         state.watches = capabilities::can_watch(&params.capabilities);
         self.initialised.store(true, Ordering::Relaxed);
     }
@@ -263,7 +265,10 @@ impl Workspace {
     fn configure(&self, params: DidChangeConfigurationParams) {
         // A client without settings says so with `null`; what `initialize` said stays in force.
         let Some(settings) = Settings::read(Some(&params.settings)) else { return };
-        self.state().snapshot.settings = Arc::new(settings);
+        let mut state = self.state();
+        state.snapshot.manner.language = settings.language(state.speech);
+        state.snapshot.settings = Arc::new(settings);
+        drop(state);
         self.reread_projects();
     }
 
@@ -352,7 +357,7 @@ impl State {
         let open = Arc::new(open);
         Arc::make_mut(&mut self.snapshot.documents).insert(open.uri.clone(), open.clone());
         if let Some(publisher) = self.publishers.get(&open.uri) {
-            publisher.publish(open);
+            publisher.publish(open, self.snapshot.manner);
         }
     }
 }
