@@ -180,14 +180,19 @@ fn variables<'d>(place: &Place<'d>) -> Vec<&'d Variable> {
 pub(super) fn propose_variables(place: &mut Place<'_>, typed: &str, written: bool) {
     let scopes = place.document.scopes().clone();
     let variables = variables(place);
+    let exported = declared::table_rows_of(place.document);
     for (rank, variable) in variables.iter().enumerate() {
         if written && (variable.constant || variable.section == SectionKind::Input) {
             continue;
         }
         let message =
             Message::new("complete.variable").with("section", declared::section_keyword(variable.section));
-        let detail =
-            message.with("kind", declared::type_name(&variable.declared, &scopes)).render(place.language);
+        let detail = match exported.get(variable.name.as_str()) {
+            Some(row) => row.clone(),
+            None => {
+                message.with("kind", declared::type_name(&variable.declared, &scopes)).render(place.language)
+            }
+        };
         let rank = 10 + (rank as u16).min(1000);
         place.propose(typed, Proposal::new(variable.name.as_str(), CompletionKind::Variable, detail, rank));
     }
