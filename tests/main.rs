@@ -15,6 +15,7 @@ mod extremes;
 mod grammar;
 mod ide;
 mod ide_structure;
+mod ide_typing;
 mod il_fx;
 mod il_iec;
 mod ladder_generate;
