@@ -188,6 +188,38 @@ impl LanguageServer for Backend {
         .await
     }
 
+    async fn on_type_formatting(
+        &self,
+        params: DocumentOnTypeFormattingParams,
+    ) -> Result<Option<Vec<TextEdit>>> {
+        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let at = params.text_document_position;
+        Ok(with_open(&at.text_document.uri, |open, place| {
+            let style = settings.style(&open.manifest);
+            let edits = ide::typed(place.document, place.offset(at.position), &params.ch, style);
+            Some(place.edits(&edits))
+        }))
+    }
+
+    async fn selection_range(&self, params: SelectionRangeParams) -> Result<Option<Vec<SelectionRange>>> {
+        Ok(with_open(&params.text_document.uri, |_, place| {
+            let positions = params.positions.iter();
+            Some(positions.map(|position| editing::selection_range(place, *position)).collect())
+        }))
+    }
+
+    async fn linked_editing_range(
+        &self,
+        params: LinkedEditingRangeParams,
+    ) -> Result<Option<LinkedEditingRanges>> {
+        let at = params.text_document_position_params;
+        Ok(with_open(&at.text_document.uri, |_, place| {
+            let places = ide::linked_places(place.document, place.offset(at.position));
+            let ranges = places.into_iter().map(|span| place.range(span)).collect::<Vec<_>>();
+            (!ranges.is_empty()).then_some(LinkedEditingRanges { ranges, word_pattern: None })
+        }))
+    }
+
     async fn code_action_resolve(&self, action: CodeAction) -> Result<CodeAction> {
         let Some(asked) = editing::asked_by(&action) else { return Ok(action) };
         let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
@@ -229,6 +261,14 @@ impl Backend {
             Some(editing::edit(open, place, &params, settings.style(&open.manifest)))
         });
         edited.transpose()
+    }
+
+    /// `rungwise/object`
+    pub(super) async fn object(
+        &self,
+        params: editing::ObjectParams,
+    ) -> Result<Option<editing::ObjectResult>> {
+        Ok(with_open(&params.text_document.uri, |_, place| editing::object(place, &params)))
     }
 
     /// Computes the edits and asks the client to apply them; the answer says how many there are.
