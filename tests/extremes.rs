@@ -126,3 +126,40 @@ fn many_undeclared_variables_are_found_in_linear_time() {
     };
     check_linear("undeclared variables", text, judge);
 }
+
+/// Drawings in which every line is off, in doubt, crossed or full of names.
+#[test]
+fn large_rungs_are_judged_in_linear_time() {
+    let judge = |text: &str| {
+        let document = open(Notation::Ladder, text);
+        check::realtime(&document, &Severities::default());
+    };
+    let rows = |first: &'static str, row: &'static str| {
+        move |count: usize| format!("{first}{}", row.repeat(count / row.matches('\n').count()))
+    };
+    let branches = rows("+--[X0]---+--(Y0)-+\n", "+--[X1]---+       |\n");
+    check_linear("branches", branches, judge);
+    let ragged = rows("+--[X0]---+--(Y0)-+\n", "+--[X1]----+      |\n+--[X1]--+        |\n");
+    check_linear("ragged branches", ragged, judge);
+    let doubt = "|   X1      |                      |\n+---| |---+ +                      |\n";
+    check_linear("doubts", rows("+---| |---+[ ]+----------------( )-+\n", doubt), judge);
+    let words = rows("", "|  X0  X1 X2 | Y0 X3\n+--| |-| |-+-( )-\n");
+    check_linear("words", words, judge);
+    check_linear("names in the wire", rows("", "|- X0 -| |- Y0 -( )-|\n"), judge);
+    let wide = |count: usize| format!("+{}--(Y0)\n", "[X0]--+--".repeat(count / 4));
+    check_linear("wide rows", wide, judge);
+}
+
+/// What is larger than a drawing can be is refused at once, in one finding.
+#[test]
+fn drawings_that_are_too_large_are_refused() {
+    for text in [
+        format!("+{}--(Y0)\n", "-[X0]-".repeat(17_000)),
+        format!("+--[X0]---+--(Y0)-+\n{}", "|         +--[X1]-+\n".repeat(10_000)),
+    ] {
+        let document = open(Notation::Ladder, &text);
+        let found = check::realtime(&document, &Severities::default());
+        let codes: Vec<&str> = found.iter().map(|finding| finding.code).collect();
+        assert_eq!(codes, ["rung-too-large"]);
+    }
+}

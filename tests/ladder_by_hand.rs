@@ -3,7 +3,7 @@
 
 use crate::ladder_read::dump;
 use rungwise::check::{self, Severities};
-use rungwise::document::{Document, Edit, Notation, Tree};
+use rungwise::document::{Document, Edit, Notation, Symbol, Tree};
 use rungwise::ladder::{TWO_READINGS, parse, split};
 use rungwise::target::{Model, Target};
 use rungwise::text::{Diagnostic, Language, Severity, TextEdit};
@@ -543,4 +543,51 @@ fn a_drawing_in_doubt_follows_the_others_of_its_document() {
     document.apply(&[edit]);
     assert_eq!(names_of(&document, "X7"), ["X7", "Y7", "", ""]);
     assert_eq!(names_of(&document, "X0")[..2], ["X0", "Y0"]);
+}
+
+#[test]
+fn a_name_over_several_lines_is_one_name() {
+    let text = "|  CONV_     EMERG             LAMP       |
+|  MOTOR     STOP                         |
+|---| |-------|/|---------------( )-------|
+";
+    let document = Document::new(text, Notation::Ladder, Target::of(Model::Iec));
+    let chunk = document.chunk_at(0).unwrap().chunk;
+    let mentions: Vec<(&str, &Symbol)> =
+        chunk.mentions().iter().map(|mention| (mention.span.of(text), &mention.symbol)).collect();
+    let (motor, stop) = (Symbol::variable("CONV_MOTOR"), Symbol::variable("EMERG_STOP"));
+    let lamp = Symbol::variable("LAMP");
+    let expected = [("CONV_", &motor), ("EMERG", &stop), ("LAMP", &lamp), ("MOTOR", &motor), ("STOP", &stop)];
+    assert_eq!(mentions, expected);
+    let at = |word: &str| text.find(word).unwrap();
+    let places = |word: &str| rungwise::ide::references(&document, at(word), true);
+    assert_eq!(places("CONV_"), places("MOTOR"));
+    assert_eq!(places("CONV_").len(), 2);
+}
+
+#[test]
+fn names_of_a_ladder_without_header_are_variables_by_use() {
+    let text = "\
+|   start     stop                     motor   |
++---| |---+---|/|-----------------------( )----+
+|  moter  |                                    |
++---| |---+                                    |
+
+|   motor     pump_1                   lamp    |
++---| |---+---| |-----------------------( )----+
+|  pump_2 |                                    |
++---| |---+                                    |
+";
+    let document = Document::new(text, Notation::Ladder, Target::of(Model::Iec));
+    let found = check::all(&document, &Severities::default());
+    let similar: Vec<&str> =
+        found.iter().filter(|f| f.code == "similar-names").map(|f| f.span.of(text)).collect();
+    assert_eq!(similar, ["moter"]);
+    assert!(found.iter().all(|finding| finding.code != "undeclared-variable"), "{found:?}");
+    // With declarations the rule about them speaks.
+    let text = format!("PROGRAM p\nVAR\n  start : BOOL;\nEND_VAR\n\n{text}\nEND_PROGRAM\n");
+    let found =
+        check::all(&Document::new(&text, Notation::Ladder, Target::of(Model::Iec)), &Severities::default());
+    assert!(found.iter().any(|finding| finding.code == "undeclared-variable"));
+    assert!(found.iter().all(|finding| finding.code != "similar-names"));
 }

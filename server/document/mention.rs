@@ -2,7 +2,7 @@
 
 use super::{Chunk, Operation, Tree};
 use crate::il::fx::LineKind;
-use crate::ladder::{ElementKind, LadderTree};
+use crate::ladder::{Element, ElementKind, LadderTree};
 use crate::target::{Access, Device, DeviceKind, DirectAddress, Model, Operand};
 use crate::text::Span;
 use smol_str::SmolStr;
@@ -133,6 +133,22 @@ fn of_operation(text: &str, operation: &Operation<'_>, mentions: &mut Vec<Mentio
             mention.count = mention.count.max(fixed).max(if pair { 2 } else { 1 });
         }
     }
+    if let Some(element) = operation.element.filter(|element| element.name_lines.len() > 1) {
+        of_name_lines(text, element, mentions);
+    }
+}
+
+/// A name over several lines is one name, which each of its lines mentions.
+fn of_name_lines(text: &str, element: &Element, mentions: &mut Vec<Mention>) {
+    let name = element.operand_text(0, text);
+    let root = name.split(['.', '[', '^']).next().unwrap_or_default();
+    let own =
+        |mention: &&mut Mention| Some(&mention.span.end) == element.name_lines.last().map(|line| &line.end);
+    let Some(mention) = mentions.iter_mut().rev().find(own) else { return };
+    mention.symbol = Symbol::variable(root);
+    let (symbol, usage) = (mention.symbol.clone(), mention.usage);
+    let upper = element.name_lines.iter().rev().skip(1);
+    mentions.extend(upper.map(|line| one(symbol.clone(), *line, usage)));
 }
 
 /// The mentions in one operand; `usage` is that of its base, index registers are read.
@@ -209,7 +225,11 @@ fn of_ladder(text: &str, tree: &LadderTree, mentions: &mut Vec<Mention>) {
                     mentions.push(one(Symbol::variable(instance.of(text)), instance, Use::ReadWrite));
                 }
                 if let Some(name) = block.type_name {
-                    mentions.push(one(Symbol::Pou(folded(block.type_text(text).unwrap_or(""))), name, Use::Read));
+                    mentions.push(one(
+                        Symbol::Pou(folded(block.type_text(text).unwrap_or(""))),
+                        name,
+                        Use::Read,
+                    ));
                 }
                 let outputs = block.outputs.iter().filter_map(|pin| match pin.wire {
                     crate::ladder::PinWire::Operand(index) => Some(index),

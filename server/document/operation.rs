@@ -17,6 +17,8 @@ pub struct Operation<'a> {
     pub is_word: bool,
     /// Its operands.
     pub operands: &'a [Spanned<Operand>],
+    /// The element that it is drawn as.
+    pub element: Option<&'a Element>,
 }
 
 impl Chunk {
@@ -34,7 +36,8 @@ impl Chunk {
                     LineKind::Unknown => None,
                     LineKind::Label(_) => return None,
                 };
-                Some(Operation { form, symbol: line.mnemonic, is_word: true, operands: tree.operands(line) })
+                let operands = tree.operands(line);
+                Some(Operation { form, symbol: line.mnemonic, is_word: true, operands, element: None })
             })
         });
         let elements =
@@ -47,7 +50,7 @@ impl<'a> Operation<'a> {
     /// The instruction that an element stands for, if any.
     pub fn of_element(element: &'a Element) -> Option<Operation<'a>> {
         let (form, symbol, is_word) = form_of(element)?;
-        Some(Operation { form, symbol, is_word, operands: &element.operands })
+        Some(Operation { form, symbol, is_word, operands: &element.operands, element: Some(element) })
     }
 }
 

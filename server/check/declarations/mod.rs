@@ -22,6 +22,8 @@ mod recursive_pou;
 
 mod missing_task;
 
+mod similar_names;
+
 mod guess;
 
 /// The rules of this group.
@@ -36,4 +38,5 @@ pub(super) const RULES: &[&Rule] = &[
     &unused_variable::RULE,
     &recursive_pou::RULE,
     &missing_task::RULE,
+    &similar_names::RULE,
 ];
