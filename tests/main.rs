@@ -17,6 +17,7 @@ mod fuzz;
 mod grammar;
 mod ide;
 mod ide_structure;
+mod ide_typing;
 mod il_fx;
 mod il_iec;
 mod ladder_by_hand;

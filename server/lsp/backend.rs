@@ -188,6 +188,38 @@ impl LanguageServer for Backend {
         .await
     }
 
+    async fn on_type_formatting(
+        &self,
+        params: DocumentOnTypeFormattingParams,
+    ) -> Result<Option<Vec<TextEdit>>> {
+        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let at = params.text_document_position;
+        Ok(with_open(&at.text_document.uri, |open, place| {
+            let style = settings.style(&open.manifest);
+            let edits = ide::typed(place.document, place.offset(at.position), &params.ch, style);
+            Some(place.edits(&edits))
+        }))
+    }
+
+    async fn selection_range(&self, params: SelectionRangeParams) -> Result<Option<Vec<SelectionRange>>> {
+        Ok(with_open(&params.text_document.uri, |_, place| {
+            let positions = params.positions.iter();
+            Some(positions.map(|position| editing::selection_range(place, *position)).collect())
+        }))
+    }
+
+    async fn linked_editing_range(
+        &self,
+        params: LinkedEditingRangeParams,
+    ) -> Result<Option<LinkedEditingRanges>> {
+        let at = params.text_document_position_params;
+        Ok(with_open(&at.text_document.uri, |_, place| {
+            let places = ide::linked_places(place.document, place.offset(at.position));
+            let ranges = places.into_iter().map(|span| place.range(span)).collect::<Vec<_>>();
+            (!ranges.is_empty()).then_some(LinkedEditingRanges { ranges, word_pattern: None })
+        }))
+    }
+
     async fn code_action_resolve(&self, action: CodeAction) -> Result<CodeAction> {
         let Some(asked) = editing::asked_by(&action) else { return Ok(action) };
         let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
@@ -229,6 +261,14 @@ impl Backend {
             Some(editing::edit(open, place, &params, settings.style(&open.manifest)))
         });
         edited.transpose()
+    }
+
+    /// `rungwise/object`
+    pub(super) async fn object(
+        &self,
+        params: editing::ObjectParams,
+    ) -> Result<Option<editing::ObjectResult>> {
+        Ok(with_open(&params.text_document.uri, |_, place| editing::object(place, &params)))
     }
 
     /// Computes the edits and asks the client to apply them; the answer says how many there are.
@@ -307,31 +347,16 @@ fn quick_fix(open: &Open, place: Place<'_>, fix: &ide::FixOf<'_>) -> CodeAction 
 /// `{"errors", "warnings", "hints", "rungs", "steps", "capacity", "message"}`
 fn check_summary(open: &Open, language: Language) -> Value {
     let found: Vec<Diagnostic> = check::all(&open.document, &open.severities);
-    let count = |severity| found.iter().filter(|diagnostic| diagnostic.severity == severity).count();
-    let [errors, warnings, hints] =
-        [crate::text::Severity::Error, crate::text::Severity::Warning, crate::text::Severity::Hint]
-            .map(count);
-    let status = ide::status(&open.document);
-    let key = match (errors + warnings, status.steps) {
-        (0, Some(_)) => "summary.passed-steps",
-        (0, None) => "summary.passed",
-        _ => "summary.failed",
-    };
-    let message = Message::new(key)
-        .with("errors", errors)
-        .with("warnings", warnings)
-        .with("hints", hints)
-        .with("rungs", status.rungs)
-        .with("steps", status.steps.unwrap_or(0))
-        .with("capacity", status.capacity);
+    let mut summary = ide::Summary::default();
+    summary.add(&open.document, &found);
     json!({
-        "errors": errors,
-        "warnings": warnings,
-        "hints": hints,
-        "rungs": status.rungs,
-        "steps": status.steps,
-        "capacity": status.capacity,
-        "message": message.render(language),
+        "errors": summary.errors,
+        "warnings": summary.warnings,
+        "hints": summary.hints,
+        "rungs": summary.rungs,
+        "steps": summary.steps,
+        "capacity": summary.capacity,
+        "message": summary.sentence().render(language),
     })
 }
 
