@@ -185,17 +185,20 @@ fn judge_page(
     diagnostics
 }
 
-/// Messages that are graver than the rest of their rule's.
-const GRAVER: &[(&str, Severity)] = &[(crate::ladder::TWO_READINGS, Severity::Warning)];
+/// Messages that are graver or milder than the rest of their rule's.
+const OWN_SEVERITIES: &[(&str, Severity)] = &[
+    // Nothing was read there.
+    (crate::ladder::TWO_READINGS, Severity::Warning),
+    (super::drawing::CONTACT_AFTER_COIL_ALLOWED, Severity::Hint),
+];
 
 fn with_severities(diagnostics: Vec<Diagnostic>, severities: &Severities) -> Vec<Diagnostic> {
     let graded = diagnostics.into_iter().filter_map(|mut diagnostic| {
         let severity = severities.of(diagnostic.code)?;
-        // A hint of a mild rule may say that nothing was read; a project that grades the rule itself has the last word.
-        let graver =
-            GRAVER.iter().find(|(key, _)| *key == diagnostic.message.key()).map(|(_, severity)| *severity);
-        let own = severities.0.contains_key(diagnostic.code);
-        diagnostic.severity = graver.filter(|_| !own).unwrap_or(severity);
+        // A project that grades the rule itself has the last word.
+        let own = OWN_SEVERITIES.iter().find(|(key, _)| *key == diagnostic.message.key());
+        let own = own.filter(|_| !severities.0.contains_key(diagnostic.code));
+        diagnostic.severity = own.map_or(severity, |(_, severity)| *severity);
         Some(diagnostic)
     });
     graded.collect()

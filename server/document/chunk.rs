@@ -3,7 +3,7 @@
 use super::milestone::{self, Milestone};
 use super::{Mention, Notation, Size, Token, exported, mention, tokens};
 use crate::il::{fx, iec};
-use crate::ladder::{self, LadderTree};
+use crate::ladder::{self, LadderTree, NameHabit};
 use crate::target::Target;
 use crate::text::Diagnostic;
 use std::ops::Deref;
@@ -28,6 +28,8 @@ struct Known {
     dialect: Arc<Dialect>,
     /// Whether the tree is kept once it was read.
     keeps_tree: bool,
+    /// Where a drawing has its names, as far as its edges tell.
+    habit: NameHabit,
     outline: OnceLock<Outline>,
     mentions: OnceLock<Box<[Mention]>>,
     tokens: OnceLock<Box<[Token]>>,
@@ -40,13 +42,15 @@ pub(super) struct Dialect {
     pub(super) notation: Notation,
     pub(super) target: &'static Target,
     /// The target with the symbols of the project, if it has any.
-    pub(super) symbols: Option<Target>,
+    pub(super) symbols: Option<Arc<Target>>,
+    /// Whether most drawings of the document have their names below the elements.
+    pub(super) names_below: bool,
 }
 
 impl Dialect {
     /// The target as words of the text are read.
     pub(super) fn reader(&self) -> &Target {
-        self.symbols.as_ref().unwrap_or(self.target)
+        self.symbols.as_deref().unwrap_or(self.target)
     }
 }
 
@@ -118,6 +122,7 @@ impl Chunk {
             kind,
             dialect: dialect.clone(),
             // Rules about whole programs look at trees of IEC 61131-3.
+            habit: if kind == Kind::Ladder { ladder::habit_of(text) } else { NameHabit::default() },
             keeps_tree: keeps_tree || matches!(kind, Kind::Iec | Kind::Tables),
             outline: OnceLock::new(),
             mentions: OnceLock::new(),
@@ -145,6 +150,11 @@ impl Chunk {
         Chunk { known: self.known.clone(), tree: OnceLock::new() }
     }
 
+    /// Where a drawing has its names, as far as its edges tell.
+    pub(super) fn habit(&self) -> NameHabit {
+        self.known.habit
+    }
+
     /// Its text.
     pub fn text(&self) -> &str {
         &self.known.text
@@ -155,7 +165,12 @@ impl Chunk {
         self.tree.get_or_init(|| {
             let target = self.known.dialect.reader();
             Box::new(match self.known.kind {
-                Kind::Ladder => Tree::Ladder(ladder::parse(self.text(), target)),
+                Kind::Ladder => {
+                    let document = NameHabit { above: 0, below: u32::from(self.known.dialect.names_below) };
+                    let own = self.known.habit;
+                    let hint = if own.decided().is_some() { own } else { document };
+                    Tree::Ladder(ladder::parse_with(self.text(), target, hint))
+                }
                 Kind::Fx => Tree::Fx(fx::parse(self.text(), target)),
                 Kind::Iec => Tree::Iec(iec::parse(self.text(), target)),
                 Kind::Tables => Tree::Iec(exported::read(self.text())),

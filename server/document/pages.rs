@@ -2,6 +2,7 @@
 //! rebuilds one page.
 
 use super::{Chunk, Milestone, Names, Size, chunk, milestone};
+use crate::ladder::NameHabit;
 use crate::text::Diagnostic;
 use std::sync::{Arc, Mutex, OnceLock};
 
@@ -14,6 +15,7 @@ pub struct Page {
     chunks: Box<[Arc<Chunk>]>,
     bytes: usize,
     has_iec: bool,
+    habit: NameHabit,
     size: OnceLock<Size>,
     names: OnceLock<Arc<Names>>,
     pou_starts: OnceLock<usize>,
@@ -25,10 +27,13 @@ impl Page {
     fn new(chunks: Box<[Arc<Chunk>]>) -> Arc<Page> {
         let bytes = chunks.iter().map(|chunk| chunk.len()).sum();
         let has_iec = chunks.iter().any(|chunk| chunk.is_iec());
+        let mut habit = NameHabit::default();
+        chunks.iter().for_each(|chunk| habit += chunk.habit());
         Arc::new(Page {
             chunks,
             bytes,
             has_iec,
+            habit,
             size: OnceLock::new(),
             names: OnceLock::new(),
             pou_starts: OnceLock::new(),
@@ -50,6 +55,11 @@ impl Page {
     /// Whether any of it is IEC declarations or statements.
     pub(super) fn has_iec(&self) -> bool {
         self.has_iec
+    }
+
+    /// Where its drawings have their names, as far as their edges tell.
+    pub(super) fn habit(&self) -> NameHabit {
+        self.habit
     }
 
     /// How much program it is.
@@ -118,6 +128,7 @@ impl Pages {
                 chunks: page.chunks.iter().map(lean).collect(),
                 bytes: page.bytes,
                 has_iec: page.has_iec,
+                habit: page.habit,
                 size: page.size.clone(),
                 names: page.names.clone(),
                 pou_starts: page.pou_starts.clone(),
