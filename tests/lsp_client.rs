@@ -23,8 +23,14 @@ pub struct Client {
 impl Client {
     /// A server that was just started.
     pub fn spawn() -> Client {
+        Client::spawn_with(&[])
+    }
+
+    /// A server that was just started with further arguments.
+    pub fn spawn_with(arguments: &[&str]) -> Client {
         let mut server = Command::new(env!("CARGO_BIN_EXE_rungwise"))
             .arg("lsp")
+            .args(arguments)
             .env("LC_ALL", "C")
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())

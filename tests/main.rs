@@ -10,6 +10,7 @@
 
 mod chinese;
 mod cli;
+mod command_line;
 mod corpus;
 mod document;
 mod extremes;
@@ -28,6 +29,7 @@ mod lsp;
 mod lsp_client;
 mod lsp_edit;
 mod manifest_schema;
+mod markdown;
 mod mistakes;
 mod rules;
 mod rules_drawing;

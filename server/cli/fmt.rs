@@ -37,8 +37,8 @@ pub(super) fn run(arguments: &Arguments, colour: Colour, language: Language) -> 
         return Outcome::Unusable;
     };
     let mut outcome = Outcome::Clean;
-    for program in programs {
-        let result = format_one(&program, arguments, colour, language);
+    for file in programs.chunk_by(|one, next| one.path == next.path) {
+        let result = format_file(file, arguments, colour, language);
         if outcome != Outcome::Unusable && result != Outcome::Clean {
             outcome = result;
         }
@@ -46,7 +46,9 @@ pub(super) fn run(arguments: &Arguments, colour: Colour, language: Language) -> 
     outcome
 }
 
-fn format_one(program: &Program, arguments: &Arguments, colour: Colour, language: Language) -> Outcome {
+/// `programs` are those of one file: one, or the fences of a Markdown text.
+fn format_file(programs: &[Program], arguments: &Arguments, colour: Colour, language: Language) -> Outcome {
+    let Some(program) = programs.first() else { return Outcome::Clean };
     let path = program.path.display();
     if program.damaged {
         let reason = Message::new("cli.not-utf-8-left").with("path", path).render(language);
@@ -54,8 +56,19 @@ fn format_one(program: &Program, arguments: &Arguments, colour: Colour, language
         return Outcome::Unusable;
     }
     let style = style_of(program, arguments.style);
-    let text = program.document.text();
-    let formatted = TextEdit::apply_all(&ide::format(&program.document, style), &text);
+    let (text, formatted) = match &program.fence {
+        None => (program.document.text(), formatted(program, style)),
+        Some(fence) => {
+            let mut text = fence.text.to_string();
+            // From the last to the first, so that the places of the others hold.
+            for program in programs.iter().rev() {
+                if let Some(fence) = &program.fence {
+                    text.replace_range(fence.content.clone(), &formatted(program, style));
+                }
+            }
+            (fence.text.to_string(), text)
+        }
+    };
     if arguments.stdout {
         say(&formatted);
         return Outcome::Clean;
@@ -84,6 +97,18 @@ fn format_one(program: &Program, arguments: &Arguments, colour: Colour, language
             Outcome::Unusable
         }
     }
+}
+
+/// The canonical text of a program; that of a fence without the lines before it, which stay as they are.
+fn formatted(program: &Program, style: Style) -> String {
+    let before = program.fence.as_ref().map_or(0, |fence| fence.before);
+    let mut edits = match &program.fence {
+        Some(fence) if fence.is_indented => Vec::new(),
+        _ => ide::format(&program.document, style),
+    };
+    edits.retain(|edit| edit.span.start as usize >= before);
+    let text = TextEdit::apply_all(&edits, &program.document.text());
+    text.get(before..).unwrap_or("").to_string()
 }
 
 fn style_of(program: &Program, name: Option<StyleName>) -> Style {
