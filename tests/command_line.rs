@@ -182,3 +182,34 @@ fn a_session_is_recorded_and_played_again() {
     check(&files, &["lsp", "--replay", "nowhere"], 2);
     check(&files, &["lsp", "--mirror", "no/such/folder"], 2);
 }
+
+#[test]
+fn files_keep_their_encoding_mark_and_line_ends() {
+    let text = "ld x0 // 电机\r\nout y0\r\nend\r\n";
+    let utf16 = |little: bool| -> Vec<u8> {
+        let units = std::iter::once(0xfeff).chain(text.encode_utf16());
+        units.flat_map(|unit: u16| if little { unit.to_le_bytes() } else { unit.to_be_bytes() }).collect()
+    };
+    let gbk = b"ld x0 // \xb5\xe7\xbb\xfa\r\nout y0\r\nend\r\n".to_vec();
+    let decoded = |bytes: &[u8]| match bytes {
+        [0xff, 0xfe, rest @ ..] => encoding_rs::UTF_16LE.decode_without_bom_handling(rest).0.into_owned(),
+        [0xfe, 0xff, rest @ ..] => encoding_rs::UTF_16BE.decode_without_bom_handling(rest).0.into_owned(),
+        [0xef, 0xbb, 0xbf, rest @ ..] => String::from_utf8(rest.to_vec()).unwrap(),
+        bytes => encoding_rs::GBK.decode_without_bom_handling(bytes).0.into_owned(),
+    };
+    let marked = format!("\u{feff}{text}").into_bytes();
+    for (name, bytes) in [("le.il", utf16(true)), ("be.il", utf16(false)), ("gbk.il", gbk), ("mark.il", marked)] {
+        let files = folder(&[]);
+        let path = files.path().join(name);
+        std::fs::write(&path, &bytes).unwrap();
+        let (_, err) = check(&files, &["check", name], 0);
+        assert_eq!(err, "", "{name}");
+        check(&files, &["fmt", name], 0);
+        let written = std::fs::read(&path).unwrap();
+        assert_eq!(written[..2] == bytes[..2], name != "gbk.il", "{name}");
+        let formatted = decoded(&written);
+        assert!(formatted.starts_with("LD X0") && formatted.contains("电机\r\nOUT Y0\r\n"), "{name}: {formatted}");
+        let stdout = run(&files, &["fmt", "--stdout", name]).stdout;
+        assert_eq!(stdout, written, "{name}");
+    }
+}

@@ -2,7 +2,8 @@
 
 use super::colour::Colour;
 use super::diff;
-use super::input::{Program, complain, programs, say};
+use super::encoding;
+use super::input::{Program, complain, programs, say, say_bytes};
 use super::{Outcome, paths_or_here};
 use crate::ide::{self, Style};
 use crate::project::FormatStyle;
@@ -50,11 +51,11 @@ pub(super) fn run(arguments: &Arguments, colour: Colour, language: Language) -> 
 fn format_file(programs: &[Program], arguments: &Arguments, colour: Colour, language: Language) -> Outcome {
     let Some(program) = programs.first() else { return Outcome::Clean };
     let path = program.path.display();
-    if program.damaged {
+    let Some(encoding) = program.encoding else {
         let reason = Message::new("cli.not-utf-8-left").with("path", path).render(language);
         complain("not-utf-8", &reason, &Message::new("cli.save-as-utf-8").render(language), language);
         return Outcome::Unusable;
-    }
+    };
     let style = style_of(program, arguments.style);
     let (text, formatted) = match &program.fence {
         None => (program.document.text(), formatted(program, style)),
@@ -69,8 +70,14 @@ fn format_file(programs: &[Program], arguments: &Arguments, colour: Colour, lang
             (fence.text.to_string(), text)
         }
     };
+    // The canonical form has no characters that the program has not, but those of a style.
+    let Some(bytes) = encoding::write(&formatted, encoding) else {
+        let reason = Message::new("cli.not-utf-8-left").with("path", path).render(language);
+        complain("not-utf-8", &reason, &Message::new("cli.save-as-utf-8").render(language), language);
+        return Outcome::Unusable;
+    };
     if arguments.stdout {
-        say(&formatted);
+        say_bytes(&bytes);
         return Outcome::Clean;
     }
     if formatted == text {
@@ -86,7 +93,7 @@ fn format_file(programs: &[Program], arguments: &Arguments, colour: Colour, lang
         complain("unwritable", &reason, &Message::new("cli.file-as-it-was").render(language), language);
         return Outcome::Unusable;
     }
-    match write_whole(&program.path, &formatted) {
+    match write_whole(&program.path, &bytes) {
         Ok(()) => {
             say(&format!("{path}\n"));
             Outcome::Clean
@@ -122,12 +129,12 @@ fn style_of(program: &Program, name: Option<StyleName>) -> Style {
 }
 
 /// Writes beside the file and then renames, so that a full disk or a pulled plug never leaves half a program.
-fn write_whole(path: &std::path::Path, text: &str) -> std::io::Result<()> {
+fn write_whole(path: &std::path::Path, bytes: &[u8]) -> std::io::Result<()> {
     let path = path.canonicalize()?;
     let mut name = path.file_name().unwrap_or_default().to_os_string();
     name.push(".rungwise-new");
     let beside = path.with_file_name(name);
-    let result = std::fs::write(&beside, text)
+    let result = std::fs::write(&beside, bytes)
         .and_then(|()| std::fs::set_permissions(&beside, std::fs::metadata(&path)?.permissions()))
         .and_then(|()| std::fs::rename(&beside, &path));
     if result.is_err() {

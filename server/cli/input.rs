@@ -1,5 +1,6 @@
 //! Reading programs from files, folders and projects, and telling what cannot be read.
 
+use super::encoding;
 use crate::document::{Document, fences};
 use crate::project::{MANIFEST_NAME, Manifest, Project, is_program_file, open_document, program_files};
 use crate::target::Target;
@@ -15,8 +16,8 @@ pub(super) struct Program {
     pub path: PathBuf,
     pub document: Document,
     pub manifest: Arc<Manifest>,
-    /// Whether the file was no UTF-8; broken bytes are replaced and `fmt` must not write it.
-    pub damaged: bool,
+    /// How the file is written; `None` if broken bytes were replaced, so that `fmt` must not write it.
+    pub encoding: Option<encoding::Encoding>,
     /// Where it stands in its file, if that is a Markdown text; the document has it at its lines.
     pub fence: Option<InFence>,
 }
@@ -93,8 +94,13 @@ fn refused(program: &Program, target: Option<&'static Target>, language: Languag
 /// Writes `text` to standard output. A reader that went away, as `head` does, is no failure; where nothing can be
 /// written for another reason, as on a full disk, the process ends, lest half a result pass for a whole one.
 pub(super) fn say(text: &str) {
+    say_bytes(text.as_bytes());
+}
+
+/// The same for text in another encoding.
+pub(super) fn say_bytes(bytes: &[u8]) {
     let mut output = std::io::stdout().lock();
-    let Err(reason) = output.write_all(text.as_bytes()).and_then(|()| output.flush()) else { return };
+    let Err(reason) = output.write_all(bytes).and_then(|()| output.flush()) else { return };
     if reason.kind() != ErrorKind::BrokenPipe {
         let language = super::language::spoken();
         let help = Message::new("cli.make-room").render(language);
@@ -165,14 +171,10 @@ fn read_programs(
     manifest: &Arc<Manifest>,
     target: Option<&'static Target>,
 ) -> std::io::Result<Vec<Program>> {
-    let bytes = std::fs::read(path)?;
-    let (text, damaged) = match String::from_utf8(bytes) {
-        Ok(text) => (text, false),
-        Err(broken) => (String::from_utf8_lossy(broken.as_bytes()).into_owned(), true),
-    };
+    let (text, encoding) = encoding::read(std::fs::read(path)?);
     let program = |name: &str, text: &str, fence: Option<InFence>| {
         let document = open_document(name, text, manifest, target, None);
-        Program { path: path.to_path_buf(), document, manifest: manifest.clone(), damaged, fence }
+        Program { path: path.to_path_buf(), document, manifest: manifest.clone(), encoding, fence }
     };
     if !is_markdown(path) {
         return Ok(vec![program(&path.to_string_lossy(), &text, None)]);
