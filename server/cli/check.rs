@@ -41,7 +41,7 @@ pub(super) fn run(arguments: &Arguments, colour: Colour, language: Language) -> 
     let Some(programs) = programs(&paths_or_here(&arguments.paths), arguments.target, language) else {
         return Outcome::Unusable;
     };
-    for program in programs.iter().filter(|program| program.damaged) {
+    for program in programs.iter().filter(|program| program.encoding.is_none()) {
         let reason = Message::new("cli.not-utf-8").with("path", program.path.display()).render(language);
         caution("not-utf-8", &reason, &Message::new("cli.save-as-utf-8").render(language), language);
     }

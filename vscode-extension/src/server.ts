@@ -31,6 +31,9 @@ const DOCUMENTS = [
   { scheme: 'file', language: 'plc-il' },
   { scheme: 'untitled', language: 'ladder' },
   { scheme: 'untitled', language: 'plc-il' },
+  // For the programs in its fences.
+  { scheme: 'file', language: 'markdown' },
+  { scheme: 'untitled', language: 'markdown' },
 ];
 
 export class ServerController implements vscode.Disposable {
