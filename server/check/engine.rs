@@ -1,11 +1,16 @@
 //! Runs the rules and puts their findings together.
 
-use super::{ChunkContext, ProgramContext, RULES, Rule, Run};
-use crate::document::{Document, LIMIT_BYTES, Page};
+use super::{ChunkContext, ProgramContext, RULES, Rule, Run, program_around, programs};
+use crate::document::{Document, LIMIT_BYTES, Page, ProjectView};
 use crate::text::{Diagnostic, Message, Severity, Span};
 use rustc_hash::{FxHashMap, FxHasher};
 use std::hash::{Hash, Hasher};
-use std::sync::LazyLock;
+use std::num::NonZero;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, LazyLock};
+
+/// So many pages are worth the start of threads: a page takes longer to judge than a thread to start.
+const WORTH_THREADS: usize = 4;
 
 /// What a project makes of the rules' severities: a code maps to its severity here, or to `None` if it is off.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
@@ -37,28 +42,86 @@ pub fn realtime(document: &Document, severities: &Severities) -> Vec<Diagnostic>
         let message = Message::new("text-too-large.found").with("limit", LIMIT_BYTES >> 20);
         return with_severities(vec![Diagnostic::new("text-too-large", Span::at(0), message)], severities);
     }
-    let scopes = document.scopes();
-    let (mut start, mut pou_number) = (0, 0);
+    let judged = judged_pages(document);
+    let mut start = 0;
     let mut diagnostics = Vec::new();
-    for page in document.pages() {
-        let found = page.found(hash_of((scopes.key, pou_number)), || judge_page(document, page, pou_number));
+    for (page, found) in document.pages().iter().zip(judged) {
         diagnostics.extend(found.iter().map(|diagnostic| diagnostic.shifted(start)));
         start += page.bytes();
-        pou_number += page.chunks().iter().map(|chunk| chunk.pou_starts()).sum::<usize>();
     }
     with_severities(diagnostics, severities)
 }
 
-/// What the batch tier finds.
+/// The findings in each page, from the page's start. Many pages are judged by several threads.
+fn judged_pages(document: &Document) -> Vec<Arc<[Diagnostic]>> {
+    let scopes = document.scopes();
+    let mut pou_number = 0;
+    let mut tasks = Vec::with_capacity(document.pages().len());
+    for page in document.pages() {
+        tasks.push((page, pou_number));
+        pou_number += page.pou_starts();
+    }
+    let judge = |(page, pou_number): (&Arc<Page>, usize)| {
+        page.found(hash_of((scopes.key, pou_number)), || judge_page(document, page, pou_number))
+    };
+    let is_new =
+        |(page, pou_number): &(&Arc<Page>, usize)| !page.has_found(hash_of((scopes.key, *pou_number)));
+    let new: Vec<_> = tasks.iter().copied().filter(is_new).collect();
+    if new.len() >= WORTH_THREADS {
+        let threads = std::thread::available_parallelism().map_or(1, NonZero::get).min(new.len());
+        let next = AtomicUsize::new(0);
+        let work = || {
+            while let Some(task) = new.get(next.fetch_add(1, Ordering::Relaxed)) {
+                judge(*task);
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 1..threads {
+                scope.spawn(work);
+            }
+            work();
+        });
+    }
+    tasks.into_iter().map(judge).collect()
+}
+
+/// What the batch tier finds in a document that stands alone.
 pub fn program(document: &Document, severities: &Severities) -> Vec<Diagnostic> {
-    let mut diagnostics = Vec::new();
-    let context = ProgramContext { document };
-    for rule in RULES.iter() {
-        if let Rule { run: Run::Program(judge) | Run::Both(_, judge), .. } = rule {
-            judge(&context, &mut diagnostics);
+    let found = judge_program(&ProgramContext::new([(0, document)], None));
+    with_severities(found.into_iter().map(|(_, diagnostic)| diagnostic).collect(), severities)
+}
+
+/// What the batch tier finds in the file of the project that is looked at. Other files are seen, and named by their
+/// numbers where they have to do with a finding.
+pub fn within_project(view: &ProjectView<'_>, severities: &Severities) -> Vec<Diagnostic> {
+    let files = program_around(view).into_iter().map(|number| (number, view.members()[number].document));
+    let found = judge_program(&ProgramContext::new(files, Some(view.here_number())));
+    with_severities(found.into_iter().map(|(_, diagnostic)| diagnostic).collect(), severities)
+}
+
+/// What both tiers find in each file of a project, in their order, sorted by place.
+pub fn project(view: &ProjectView<'_>, severities: &Severities) -> Vec<Vec<Diagnostic>> {
+    let document = |number: usize| view.members()[number].document;
+    let mut by_file: Vec<Vec<Diagnostic>> =
+        (0..view.members().len()).map(|number| realtime(document(number), severities)).collect();
+    for program in programs(view) {
+        let files = program.into_iter().map(|number| (number, document(number)));
+        for (number, diagnostic) in judge_program(&ProgramContext::new(files, None)) {
+            by_file[number].extend(with_severities(vec![diagnostic], severities));
         }
     }
-    with_severities(diagnostics, severities)
+    by_file.into_iter().map(sorted).collect()
+}
+
+/// What the rules of the batch tier find, with the number of the file.
+fn judge_program(context: &ProgramContext<'_>) -> Vec<(usize, Diagnostic)> {
+    let mut found = Vec::new();
+    for rule in RULES.iter() {
+        if let Rule { run: Run::Program(judge) | Run::Both(_, judge), .. } = rule {
+            judge(context, &mut found);
+        }
+    }
+    context.distributed(found).collect()
 }
 
 /// By place, then gravity, then code.
@@ -74,7 +137,7 @@ fn judge_page(document: &Document, page: &Page, mut pou_number: usize) -> Vec<Di
     let mut start = 0;
     for chunk in page.chunks() {
         pou_number += chunk.pou_starts();
-        let found = chunk.found(hash_of((scopes.key, pou_number)), || {
+        let found = chunk.found(hash_of((scopes.key, pou_number)), |chunk| {
             let mut found = chunk.problems().to_vec();
             let context = ChunkContext {
                 chunk,
@@ -96,9 +159,17 @@ fn judge_page(document: &Document, page: &Page, mut pou_number: usize) -> Vec<Di
     diagnostics
 }
 
+/// Messages that are graver than the rest of their rule's.
+const GRAVER: &[(&str, Severity)] = &[(crate::ladder::TWO_READINGS, Severity::Warning)];
+
 fn with_severities(diagnostics: Vec<Diagnostic>, severities: &Severities) -> Vec<Diagnostic> {
     let graded = diagnostics.into_iter().filter_map(|mut diagnostic| {
-        diagnostic.severity = severities.of(diagnostic.code)?;
+        let severity = severities.of(diagnostic.code)?;
+        // A hint of a mild rule may say that nothing was read; a project that grades the rule itself has the last word.
+        let graver =
+            GRAVER.iter().find(|(key, _)| *key == diagnostic.message.key()).map(|(_, severity)| *severity);
+        let own = severities.0.contains_key(diagnostic.code);
+        diagnostic.severity = graver.filter(|_| !own).unwrap_or(severity);
         Some(diagnostic)
     });
     graded.collect()

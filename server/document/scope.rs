@@ -12,16 +12,18 @@ use crate::target::iec::{ElementaryType, FunctionBlock, OperatorRole, ParameterT
 use crate::target::{DirectAddress, Operand};
 use rustc_hash::{FxHashMap, FxHasher};
 use smol_str::SmolStr;
+use std::collections::hash_map::Entry;
 use std::hash::{Hash, Hasher};
+use std::sync::Arc;
 
 /// Everything that a document declares.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Scopes {
     /// Differs whenever a declaration differs: the key for what was found with these scopes.
     pub key: u64,
-    /// The POUs, in the order of the text.
-    pub pous: Vec<Pou>,
-    /// Variables of VAR_GLOBAL, by folded name.
+    /// The POUs, in the order of the text; behind them those of the other files of the project.
+    pub pous: Vec<Arc<Pou>>,
+    /// Variables of VAR_GLOBAL, by folded name; those of the other files, too, as with the types.
     pub globals: FxHashMap<SmolStr, Variable>,
     /// Data types, by folded name.
     pub types: FxHashMap<SmolStr, DeclaredType>,
@@ -29,6 +31,12 @@ pub struct Scopes {
     pub has_configuration: bool,
     /// The number of the first POU with each folded name.
     pou_numbers: FxHashMap<SmolStr, usize>,
+    /// How many of the POUs are declared here.
+    own_pous: usize,
+    /// The folded names of the global variables and types that are declared here, in order.
+    pub(super) own_globals: Vec<SmolStr>,
+    pub(super) own_types: Vec<SmolStr>,
+    pub(super) own_configuration: bool,
 }
 
 /// A program organisation unit.
@@ -80,6 +88,9 @@ pub enum DeclaredType {
 impl Chunk {
     /// How many POUs start in it.
     pub fn pou_starts(&self) -> usize {
+        if !self.is_iec() {
+            return 0;
+        }
         match self.tree() {
             Tree::Iec(tree) => {
                 tree.items.iter().filter(|item| matches!(item.kind, ItemKind::Pou { .. })).count()
@@ -101,11 +112,31 @@ impl Chunk {
                     | ItemKind::PouEnd(_)
             )
         };
-        matches!(self.tree(), Tree::Iec(tree) if tree.items.iter().any(|item| declares(&item.kind)))
+        self.is_iec()
+            && matches!(self.tree(), Tree::Iec(tree) if tree.items.iter().any(|item| declares(&item.kind)))
     }
 }
 
 impl Pou {
+    pub(super) fn new(
+        name: SmolStr,
+        kind: PouKind,
+        result: Option<DeclaredType>,
+        variables: impl Iterator<Item = Variable>,
+    ) -> Pou {
+        let mut pou = Pou { name, kind, result, variables: Vec::new(), index: FxHashMap::default() };
+        variables.for_each(|variable| pou.declare(variable));
+        pou
+    }
+
+    /// The first declaration of a name holds; a rule reports the others.
+    fn declare(&mut self, variable: Variable) {
+        if let Entry::Vacant(free) = self.index.entry(folded(&variable.name)) {
+            free.insert(self.variables.len());
+            self.variables.push(variable);
+        }
+    }
+
     /// Its variable with the folded name `name`.
     pub fn variable(&self, name: &str) -> Option<&Variable> {
         self.variables.get(*self.index.get(name)?)
@@ -122,13 +153,34 @@ impl Scopes {
                 scopes.add(at.chunk.text(), tree);
             }
         }
+        scopes.own_pous = scopes.pous.len();
+        scopes.own_configuration = scopes.has_configuration;
+        if let Some((outer, own)) = document.outer() {
+            scopes.add_outer(outer, own, &mut hasher);
+        }
         scopes.key = hasher.finish();
         scopes
     }
 
+    /// The POUs that are declared in the document itself.
+    pub fn own_pous(&self) -> &[Arc<Pou>] {
+        &self.pous[..self.own_pous.min(self.pous.len())]
+    }
+
+    /// Takes in a POU behind the others.
+    pub(super) fn add_pou(&mut self, pou: Arc<Pou>) {
+        self.pou_numbers.entry(folded(&pou.name)).or_insert(self.pous.len());
+        self.pous.push(pou);
+    }
+
+    /// The number of the POU called `name`, letter case aside.
+    pub fn pou_number(&self, name: &str) -> Option<usize> {
+        self.pou_numbers.get(&folded(name)).copied()
+    }
+
     /// The POU called `name`, letter case aside.
     pub fn pou_named(&self, name: &str) -> Option<&Pou> {
-        self.pous.get(*self.pou_numbers.get(&folded(name))?)
+        self.pous.get(self.pou_number(name)?).map(|pou| &**pou)
     }
 
     /// Whether `name` is a declared data type.
@@ -235,14 +287,8 @@ impl Scopes {
             match item.kind {
                 ItemKind::Pou { kind, name, result } => {
                     let name = name.map_or(SmolStr::default(), |span| SmolStr::from(span.of(text)));
-                    self.pou_numbers.entry(folded(&name)).or_insert(self.pous.len());
-                    self.pous.push(Pou {
-                        name,
-                        kind,
-                        result: result.map(|id| declared_type(text, tree, id)),
-                        variables: Vec::new(),
-                        index: FxHashMap::default(),
-                    });
+                    let result = result.map(|id| declared_type(text, tree, id));
+                    self.add_pou(Arc::new(Pou::new(name, kind, result, std::iter::empty())));
                 }
                 ItemKind::Section { kind, constant, declarations, .. } => {
                     for declaration in declarations.of(&tree.declarations) {
@@ -264,7 +310,10 @@ impl Scopes {
                     for declaration in declarations.of(&tree.declarations) {
                         let name = declaration.names.of(&tree.names).first();
                         if let (Some(name), Some(id)) = (name, declaration.declared) {
-                            self.types.insert(folded(name.of(text)), declared_type(text, tree, id));
+                            let name = folded(name.of(text));
+                            if self.types.insert(name.clone(), declared_type(text, tree, id)).is_none() {
+                                self.own_types.push(name);
+                            }
                         }
                     }
                 }
@@ -274,18 +323,16 @@ impl Scopes {
         }
     }
 
-    /// The first declaration of a name holds; a rule reports the others.
     fn declare(&mut self, variable: Variable) {
-        let name = folded(&variable.name);
         match self.pous.last_mut() {
-            Some(pou) if variable.section != SectionKind::Global => {
-                if let std::collections::hash_map::Entry::Vacant(free) = pou.index.entry(name) {
-                    free.insert(pou.variables.len());
-                    pou.variables.push(variable);
-                }
-            }
+            // Nobody else has this POU yet, so nothing is copied.
+            Some(pou) if variable.section != SectionKind::Global => Arc::make_mut(pou).declare(variable),
             _ => {
-                self.globals.entry(name).or_insert(variable);
+                let name = folded(&variable.name);
+                if let Entry::Vacant(free) = self.globals.entry(name.clone()) {
+                    free.insert(variable);
+                    self.own_globals.push(name);
+                }
             }
         }
     }

@@ -139,7 +139,7 @@ impl Search<'_> {
     }
 
     fn unit_named(&self, name: &str) -> Option<usize> {
-        self.scopes.pous.iter().position(|pou| pou.name.eq_ignore_ascii_case(name))
+        self.scopes.pou_number(name)
     }
 
     fn add(&mut self, pou: usize, span: Span, usage: Use) {

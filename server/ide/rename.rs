@@ -77,9 +77,9 @@ fn device_name(document: &Document, old: Device, new: &str) -> Result<String, Me
         return Err(Message::new("rename.no-device").with("name", new));
     };
     if device.kind != old.kind {
-        let kind = super::devices::kind_name(old.kind, crate::text::Language::English);
+        let kind = super::devices::kind_message(old.kind);
         let message = Message::new("rename.other-kind").with("old", old).with("new", device);
-        return Err(message.with("kind", kind));
+        return Err(message.with_messages("kind", vec![kind]));
     }
     let Some(range) = device.range_on(target) else {
         return Err(Message::new("rename.not-on-target").with("target", target.title).with("new", device));
@@ -91,7 +91,7 @@ fn device_name(document: &Document, old: Device, new: &str) -> Result<String, Me
         && (own.timer_unit_ms, own.bits) != (range.timer_unit_ms, range.bits)
     {
         let message = Message::new("rename.other-purpose").with("old", old).with("new", device);
-        return Err(message.with("purpose", own.purpose));
+        return Err(message.with_phrase("purpose", own.purpose));
     }
     // Devices that are used together with `old` would stay behind.
     let mut count = 1;

@@ -8,17 +8,26 @@ mod chunks;
 pub use chunks::{ChunkKind, chunk_ends, kind_of, split};
 
 mod reader;
-pub use reader::{parse, parse_with};
+pub use reader::{Choice, parse, parse_choosing, parse_with};
 
 mod lines;
-pub use lines::column_after;
+pub use lines::{column_after, column_of};
 
 mod glyph;
 pub use glyph::Strokes;
 
 mod grid;
 
+mod beside;
+
+mod frame;
+
+mod inline;
+
 mod blocks;
+
+mod ldmicro;
+pub use ldmicro::{BoxKind, NameKind, TableRow, table_rows, time_literal};
 
 mod scan;
 
@@ -27,6 +36,7 @@ mod content;
 mod uprights;
 
 mod ragged;
+pub use ragged::TWO_READINGS;
 
 mod wires;
 
@@ -62,4 +72,4 @@ mod printer;
 pub use printer::{Drawing, Style, StyleKind, print};
 
 mod format;
-pub use format::{Page, format, format_chunk};
+pub use format::{Page, format, format_chunk, redraw};

@@ -61,6 +61,8 @@ pub(super) struct Extent {
     pub(super) drawn: Option<(usize, usize)>,
     /// Start of the first symbol, start and end of the last one.
     pub(super) symbols: Option<(usize, usize, usize)>,
+    /// One past the last wire or symbol and what is joined to it.
+    pub(super) wires: Option<usize>,
 }
 
 impl Tokens {
@@ -287,7 +289,7 @@ impl Scanner<'_> {
         let end = self.contact_end(row, column)?;
         let linked = [column, end - 1].map(|bar| self.linked(row, bar));
         let outer = [column > 0 && self.leads(row, column - 1), self.leads(row, end)];
-        let blank = self.grid.at(row, column + 1) == ' ';
+        let blank = self.grid.at(row, column + 1) == ' ' || end == column + 2;
         let (some_linked, all_linked) = (linked[0] || linked[1], linked[0] && linked[1]);
         if column == self.left || (blank && all_linked) || (some_linked && outer != [true, true]) {
             return None;
@@ -320,6 +322,12 @@ impl Scanner<'_> {
             return None;
         }
         let mark = self.grid.at(row, column + 1);
+        let wire = |column: usize| self.grid.arms(row, column).is_horizontal();
+        // `--||--`: two bars in the middle of a wire that belong to nothing above and below.
+        let touching = column > 0 && closes(column + 1) && wire(column - 1) && wire(column + 2);
+        if touching && !self.linked_raw(row, column) && !self.linked_raw(row, column + 1) {
+            return Some(column + 2);
+        }
         let end = if contact_mark(mark).is_some() && closes(column + 2) {
             column + 3
         } else if is_operator(mark) {
@@ -514,6 +522,9 @@ fn extent(line: &[Token]) -> Extent {
         if let What::Symbol(_) = token.what {
             let first = extent.symbols.map_or(token.start, |(first, ..)| first);
             extent.symbols = Some((first, token.start, token.end));
+        }
+        if matches!(token.what, What::Symbol(_) | What::Wire) || extent.wires == Some(token.start) {
+            extent.wires = Some(token.end);
         }
     }
     extent

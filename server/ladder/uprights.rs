@@ -1,7 +1,9 @@
 //! Vertical wires: which bars and junctions belong together, and what each of them is.
 
+use super::Choice;
 use super::glyph::Arms;
 use super::grid::Grid;
+use super::ragged::{Mender, is_left_rail, report_left_rail};
 use super::scan::{Token, Tokens, What};
 use crate::text::{Diagnostic, Message};
 
@@ -40,6 +42,8 @@ pub(super) enum Role {
     Loose,
     /// It joins nothing.
     Stray,
+    /// A line between the parts of a figure, such as conditions and outputs: every wire passes through.
+    Separator,
 }
 
 /// The vertical wires of a drawing.
@@ -63,16 +67,25 @@ impl Uprights {
         grid: &Grid,
         tokens: &Tokens,
         left: usize,
+        choice: Option<Choice>,
         problems: &mut Vec<Diagnostic>,
     ) -> Uprights {
         let mut found = Uprights::linked(tokens);
-        super::ragged::mend(&mut found, grid, tokens, left, problems);
+        Mender::new(&mut found, (grid, tokens), left, choice, problems).mend();
         let right =
             tokens.rows.iter().flatten().filter(|token| token.is_drawn()).map(|t| t.end).max().unwrap_or(0);
         for upright in found.all.iter_mut().filter(|upright| !upright.cells.is_empty()) {
             join(upright, tokens);
+            if is_separator(upright, tokens) {
+                for cell in &mut upright.cells {
+                    (cell.crossed, cell.left, cell.right) = (cell.crossed || cell.left, false, false);
+                }
+                upright.role = Role::Separator;
+                continue;
+            }
             upright.role = role_of(upright, tokens, left, right);
         }
+        report_left_rail(&found, grid, tokens, problems);
         found
     }
 
@@ -164,9 +177,21 @@ fn join(upright: &mut Upright, tokens: &Tokens) {
     }
 }
 
+/// Whether a line of bars only crosses wires, and at most one that it could join with nothing but its own loose end.
+fn is_separator(upright: &Upright, tokens: &Tokens) -> bool {
+    let cells = &upright.cells;
+    let bars = cells.len() > 1 && cells.iter().all(|cell| arms(tokens, cell).is_vertical());
+    let passed = |cell: &&Cell| cell.crossed || (cell.left && cell.right);
+    let bare = |cell: &&Cell| !cell.crossed && !cell.left && !cell.right;
+    bars && cells.iter().any(|cell| passed(&cell))
+        && cells.iter().any(|cell| bare(&cell))
+        && cells.iter().all(|cell| passed(&cell) || bare(&cell))
+        && cells.iter().filter(|cell| cell.left).count() <= 1
+}
+
 fn role_of(upright: &Upright, tokens: &Tokens, left: usize, right: usize) -> Role {
     let first = &upright.cells[0];
-    if tokens.rows[first.row][first.token].start <= left {
+    if tokens.rows[first.row][first.token].start <= left || is_left_rail(upright, tokens, left) {
         return Role::LeftRail;
     }
     let any_left = upright.cells.iter().any(|cell| cell.left);
@@ -179,7 +204,10 @@ fn role_of(upright: &Upright, tokens: &Tokens, left: usize, right: usize) -> Rol
         let arms = arms(tokens, cell);
         let token = &tokens.rows[cell.row][cell.token];
         cell.left
-            && (arms.is_vertical() || arms.is_left_tee() || token.end == right || after_output(tokens, cell))
+            && (arms.is_vertical()
+                || arms.is_left_tee()
+                || token.end == right
+                || reached_from_output(tokens, cell.row, cell.token))
     };
     if any_left && !any_right && nothing_beyond() && upright.cells.iter().any(looks_like_rail) {
         return Role::RightRail;
@@ -194,10 +222,11 @@ fn role_of(upright: &Upright, tokens: &Tokens, left: usize, right: usize) -> Rol
     }
 }
 
-/// Whether the wire that reaches the cell from the left comes from an output.
-fn after_output(tokens: &Tokens, cell: &Cell) -> bool {
-    let mut edge = tokens.rows[cell.row][cell.token].start;
-    for token in tokens.rows[cell.row][..cell.token].iter().rev() {
+/// Whether the wire that reaches a token of a row from the left comes from an output.
+pub(super) fn reached_from_output(tokens: &Tokens, row: usize, number: usize) -> bool {
+    let line = &tokens.rows[row];
+    let mut edge = line[number].start;
+    for token in line[..number].iter().rev() {
         match token.what {
             _ if token.end != edge => return false,
             What::Wire => edge = token.start,

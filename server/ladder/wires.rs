@@ -1,6 +1,7 @@
 //! Tokens to links: which wire leads from where to where.
 
 use super::grid::Grid;
+use super::ragged::{ASIDE, TWO_READINGS};
 use super::scan::{Token, Tokens, What};
 use super::uprights::{Cell, Role, Upright, Uprights};
 use super::{ElementKind, PinWire};
@@ -65,6 +66,10 @@ pub(super) struct Tracer<'a> {
     problems: &'a mut Vec<Diagnostic>,
     /// Elements that have been reported to stand on a vertical wire.
     reported: FxHashSet<Span>,
+    /// Ends of vertical wires that can be read in two ways.
+    in_doubt: FxHashSet<Span>,
+    /// The column of the left rail, if there is one.
+    left_rail: Option<usize>,
 }
 
 impl<'a> Tracer<'a> {
@@ -77,7 +82,26 @@ impl<'a> Tracer<'a> {
         let wiring = Wiring::default();
         let on_vertical = problems.iter().filter(|problem| problem.code == "contact-on-vertical");
         let reported = on_vertical.map(|problem| problem.span).collect();
-        Tracer { grid, tokens, uprights, wiring, row: 0, end: 0, tail: None, start: 0, problems, reported }
+        let two = problems.iter().filter(|problem| problem.message.key() == TWO_READINGS);
+        let in_doubt = two.map(|problem| problem.span).collect();
+        let rails = || uprights.all.iter().filter(|upright| upright.role == Role::LeftRail);
+        let column = |cell: &Cell| tokens.rows[cell.row][cell.token].start;
+        let wired = rails().flat_map(|rail| &rail.cells).filter(|cell| cell.right).map(column).min();
+        let left_rail = wired.or_else(|| rails().flat_map(|rail| &rail.cells).map(column).min());
+        Tracer {
+            grid,
+            tokens,
+            uprights,
+            wiring,
+            row: 0,
+            end: 0,
+            tail: None,
+            start: 0,
+            problems,
+            reported,
+            in_doubt,
+            left_rail,
+        }
     }
 
     /// The wires of all rows.
@@ -105,7 +129,7 @@ impl<'a> Tracer<'a> {
 
     fn wire(&mut self, token: Token) {
         if self.tail.is_none() {
-            let end = self.loose(token.start);
+            let end = self.left_end(token);
             self.follow(end);
         }
         self.add_cells(token);
@@ -127,7 +151,7 @@ impl<'a> Tracer<'a> {
             if self.tail.is_none() {
                 // A connector brings its own power; it stands at the left rail as every start of a path.
                 let starts = matches!(element.kind, ElementKind::ConnectorIn(_));
-                let end = if starts { Node::LeftRail } else { self.loose(token.start) };
+                let end = if starts { Node::LeftRail } else { self.left_end(token) };
                 self.follow(end);
             }
             self.link(Node::Symbol(symbol, 0));
@@ -168,7 +192,7 @@ impl<'a> Tracer<'a> {
                 }
                 self.finish();
             }
-            Role::Stray => self.finish(),
+            Role::Stray | Role::Separator => self.finish(),
             Role::Loose => {
                 let end = self.loose(token.start);
                 if cell.left {
@@ -211,12 +235,27 @@ impl<'a> Tracer<'a> {
 
     fn report_on_vertical(&mut self, symbol: usize, wire: Span) {
         let element = &self.tokens.symbols[symbol].element;
-        if element.block().is_some() || !self.reported.insert(element.span) {
+        if element.block().is_some() || self.in_doubt.contains(&wire) || !self.reported.insert(element.span) {
             return;
         }
         let message = Message::new("contact-on-vertical.element");
         let problem = Diagnostic::new("contact-on-vertical", element.span, message);
         self.problems.push(problem.related(wire, Message::new("contact-on-vertical.wire")));
+    }
+
+    /// Where a wire or an element comes from that nothing leads to: the left rail, if that was only left out in this
+    /// row, else nothing.
+    fn left_end(&mut self, token: Token) -> Node {
+        let first = self.tokens.extent(self.row).drawn.is_some_and(|(first, _)| first == token.start);
+        match self.left_rail {
+            Some(rail) if first && token.start <= rail + ASIDE => {
+                let span = self.grid.span(self.row, token.start, token.start + 1);
+                let message = Message::new("ragged-drawing.no-rail");
+                self.problems.push(Diagnostic::new("ragged-drawing", span, message));
+                Node::LeftRail
+            }
+            _ => self.loose(token.start),
+        }
     }
 
     /// A loose end in a cell of this row.

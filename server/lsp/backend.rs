@@ -3,6 +3,7 @@
 use super::capabilities;
 use super::editing;
 use super::to_proto::{self, Place};
+use super::tokens;
 use super::workspace::{Open, SNAPSHOT, Snapshot, Workspace};
 use crate::check;
 use crate::ide;
@@ -129,8 +130,28 @@ impl LanguageServer for Backend {
         &self,
         params: SemanticTokensParams,
     ) -> Result<Option<SemanticTokensResult>> {
-        whole(params.text_document.uri, |_, place| {
-            to_proto::semantic_tokens(place, &ide::semantic_tokens(place.document)).into()
+        let workspace = self.workspace.clone();
+        aside(params.text_document.uri, move |open, place| workspace.tokens.full(&open.uri, place).into())
+            .await
+    }
+
+    async fn semantic_tokens_full_delta(
+        &self,
+        params: SemanticTokensDeltaParams,
+    ) -> Result<Option<SemanticTokensFullDeltaResult>> {
+        let workspace = self.workspace.clone();
+        aside(params.text_document.uri, move |open, place| {
+            workspace.tokens.delta(&open.uri, &params.previous_result_id, place)
+        })
+        .await
+    }
+
+    async fn semantic_tokens_range(
+        &self,
+        params: SemanticTokensRangeParams,
+    ) -> Result<Option<SemanticTokensRangeResult>> {
+        aside(params.text_document.uri, move |_, place| {
+            tokens::within(place, place.span(params.range).range()).into()
         })
         .await
     }
@@ -222,15 +243,12 @@ impl LanguageServer for Backend {
         let Some(uri) =
             params.arguments.first().and_then(|value| value.as_str()).and_then(|text| text.parse().ok())
         else {
-            return Err(Error::invalid_params(format!(
-                "{}: the first argument is a document's URI",
-                params.command
-            )));
+            return Err(refused(Message::new("request.no-document").with("command", params.command)));
         };
         match params.command.as_str() {
             "rungwise.check" => whole(uri, |open, place| check_summary(open, place.language)).await,
             "rungwise.format" => self.format(uri).await,
-            other => Err(Error::invalid_params(format!("no such command: {other}"))),
+            other => Err(refused(Message::new("request.no-command").with("command", other))),
         }
     }
 }
@@ -279,8 +297,17 @@ fn with_open<T>(uri: &Uri, answer: impl FnOnce(&Open, Place<'_>) -> Option<T>) -
     answer(open, Place::new(&open.document, snapshot.manner))
 }
 
-/// The same for answers that walk the whole document: they run on a thread of their own.
+/// The same for answers that walk the whole document: they run on a thread of their own, and the trees that they read
+/// go away with them.
 async fn whole<T: Send + 'static>(
+    uri: Uri,
+    answer: impl FnOnce(&Open, Place<'_>) -> T + Send + 'static,
+) -> Result<Option<T>> {
+    aside(uri, move |open, place| answer(open, Place { document: &place.document.lean(), ..place })).await
+}
+
+/// The same on a thread of its own, for answers that look at much of a document but read no trees.
+async fn aside<T: Send + 'static>(
     uri: Uri,
     answer: impl FnOnce(&Open, Place<'_>) -> T + Send + 'static,
 ) -> Result<Option<T>> {

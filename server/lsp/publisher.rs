@@ -22,6 +22,9 @@ const AT_ONCE: Duration = Duration::from_micros(500);
 /// A pause in typing.
 const PAUSE: Duration = Duration::from_millis(120);
 
+/// A document that is opened with more bytes than this shows what the real-time tier finds before the batch tier runs.
+const LARGE_BYTES: usize = 256 << 10;
+
 /// Sends what it is given to a task, which sees the newest only.
 pub(super) struct Publisher {
     sender: watch::Sender<Order>,
@@ -32,7 +35,7 @@ pub(super) struct Publisher {
 enum Order {
     #[default]
     Nothing,
-    Publish(Arc<Open>),
+    Publish(Arc<Open>, Manner),
     Close(Uri),
 }
 
@@ -43,6 +46,14 @@ struct Task {
     pushes: bool,
     /// The newest batch findings, and the document that they belong to.
     batch: Option<(Arc<Open>, Vec<Diagnostic>)>,
+    batch_took: Duration,
+    status: Option<StatusNotification>,
+}
+
+/// What both tiers found in one version.
+struct Judged {
+    realtime: Vec<Diagnostic>,
+    batch: Vec<Diagnostic>,
     batch_took: Duration,
     status: Option<StatusNotification>,
 }
@@ -69,8 +80,8 @@ impl Publisher {
         Publisher { sender, task }
     }
 
-    pub(super) fn publish(&self, open: Arc<Open>) {
-        self.sender.send_replace(Order::Publish(open));
+    pub(super) fn publish(&self, open: Arc<Open>, manner: Manner) {
+        self.sender.send_replace(Order::Publish(open, manner));
     }
 
     /// Clears what was published; the handle ends when that is done.
@@ -86,7 +97,10 @@ impl Task {
             let order = receiver.borrow_and_update().clone();
             match order {
                 Order::Nothing => {}
-                Order::Publish(open) => self.publish(open, &mut receiver).await,
+                Order::Publish(open, manner) => {
+                    self.manner = manner;
+                    self.publish(open, &mut receiver).await;
+                }
                 Order::Close(uri) => {
                     self.client.publish_diagnostics(uri, Vec::new(), None).await;
                     return;
@@ -96,27 +110,52 @@ impl Task {
     }
 
     async fn publish(&mut self, open: Arc<Open>, receiver: &mut watch::Receiver<Order>) {
-        let at_once = self.batch_took < AT_ONCE;
-        if !at_once {
+        // How long the batch run of a large document takes is not known when it is opened.
+        let is_first = self.batch.is_none() && open.document.len() > LARGE_BYTES;
+        if is_first || self.batch_took >= AT_ONCE {
             let realtime = self.find(&open, check::realtime).await;
             let mut diagnostics = self.carried(&open);
             diagnostics.extend(realtime);
             self.push(&open, diagnostics).await;
-            match tokio::time::timeout(PAUSE, receiver.changed()).await {
+            match tokio::time::timeout(if is_first { Duration::ZERO } else { PAUSE }, receiver.changed()).await {
                 Ok(Ok(())) => return receiver.mark_changed(),
                 // Nobody is there any more to give orders.
                 Ok(Err(_)) => return,
                 Err(_) => {}
             }
         }
-        let started = Instant::now();
-        let batch = self.find(&open, check::program).await;
-        self.batch_took = started.elapsed();
-        let mut diagnostics = self.find(&open, check::realtime).await;
-        diagnostics.extend(batch.iter().cloned());
-        self.batch = Some((open.clone(), batch));
-        self.push(&open, diagnostics).await;
-        self.tell_status(&open).await;
+        let judged = self.judge(&open).await;
+        self.batch_took = judged.batch_took;
+        let mut diagnostics = judged.realtime;
+        diagnostics.extend(judged.batch.iter().cloned());
+        // What was shown first is all there is if the batch run found nothing.
+        if !is_first || !judged.batch.is_empty() {
+            self.push(&open, diagnostics).await;
+        }
+        self.batch = Some((open, judged.batch));
+        self.tell_status(judged.status).await;
+    }
+
+    /// Both tiers and the status, beside the other tasks; if one of them fails the log has it, and that one finds
+    /// nothing.
+    async fn judge(&self, open: &Arc<Open>) -> Judged {
+        let own = open.clone();
+        let judged = tokio::task::spawn_blocking(move || {
+            let realtime = check::realtime(&own.document, &own.severities);
+            let started = Instant::now();
+            let batch = check::program(&own.document, &own.severities);
+            let batch_took = started.elapsed();
+            Judged { realtime, batch, batch_took, status: Some(StatusNotification::of(&own)) }
+        });
+        match judged.await {
+            Ok(judged) => judged,
+            Err(failure) => {
+                tracing::error!("a check failed: {failure}");
+                let realtime = self.find(open, check::realtime).await;
+                let batch = self.find(open, check::program).await;
+                Judged { realtime, batch, batch_took: AT_ONCE, status: None }
+            }
+        }
     }
 
     /// Runs `find` beside the other tasks; if it fails the log has it and nothing is found.
@@ -156,13 +195,10 @@ impl Task {
         }
     }
 
-    async fn tell_status(&mut self, open: &Arc<Open>) {
-        let open = open.clone();
-        // As a check it counts on a thread of its own, where a failure does not end the publisher.
-        let Ok(status) = tokio::task::spawn_blocking(move || StatusNotification::of(&open)).await else {
-            return;
-        };
-        if self.status.as_ref() != Some(&status) {
+    async fn tell_status(&mut self, status: Option<StatusNotification>) {
+        if let Some(status) = status
+            && self.status.as_ref() != Some(&status)
+        {
             self.client.send_notification::<super::status::StatusMethod>(status.clone()).await;
             self.status = Some(status);
         }

@@ -1,9 +1,12 @@
 //! The state of the server: settings and open documents, changed in message order, read through snapshots.
 
 use super::capabilities;
+use super::keeper::Keeper;
 use super::manifests::Manifests;
+use super::projects::{Loaded, Projects, canonical, file_path};
 use super::publisher::Publisher;
-use super::settings::Settings;
+use super::settings::{Settings, Speech};
+use super::tokens::SentTokens;
 use super::to_proto::Manner;
 use crate::check::Severities;
 use crate::document::{Document, Edit, Notation};
@@ -15,6 +18,7 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::task::JoinHandle;
@@ -34,19 +38,29 @@ tokio::task_local! {
     pub(super) static SNAPSHOT: Snapshot;
 }
 
-/// The state at one moment. Cloning copies two pointers.
+/// The state at one moment. Cloning copies some pointers.
 #[derive(Clone, Default)]
 pub(super) struct Snapshot {
     pub manner: Manner,
     pub settings: Arc<Settings>,
+    pub projects: Arc<Projects>,
     documents: Arc<FxHashMap<Uri, Arc<Open>>>,
+    /// The open document of each file, by canonical path.
+    paths: Arc<FxHashMap<Arc<Path>, Uri>>,
 }
 
-/// An open document.
-#[derive(Clone)]
+/// An open document, or a file of a project as the disk has it.
+#[derive(Clone, Debug)]
 pub(super) struct Open {
     pub uri: Uri,
+    /// That of the editor; 0 for a file that is not open.
     pub version: i32,
+    /// Whether the editor has it.
+    pub is_open: bool,
+    /// The canonical path of its file, if it is one.
+    pub path: Option<Arc<Path>>,
+    /// The canonical folder of the project to which it belongs, if any.
+    pub project: Option<Arc<Path>>,
     pub document: Document,
     pub manifest: Arc<Manifest>,
     pub severities: Arc<Severities>,
@@ -55,6 +69,7 @@ pub(super) struct Open {
 /// The state, and what goes on beside it.
 pub(super) struct Workspace {
     pub client: Client,
+    pub tokens: SentTokens,
     state: Mutex<State>,
     initialised: AtomicBool,
     shut_down: AtomicBool,
@@ -67,6 +82,8 @@ struct State {
     /// Publishers of closed documents that are not done yet.
     closing: FxHashMap<Uri, JoinHandle<()>>,
     manifests: Manifests,
+    keeper: Option<Keeper>,
+    speech: Speech,
     watches: bool,
 }
 
@@ -74,6 +91,11 @@ impl Snapshot {
     /// The open document, if it is one.
     pub(super) fn open(&self, uri: &Uri) -> Option<&Arc<Open>> {
         self.documents.get(uri)
+    }
+
+    /// The open document of the file at a canonical path.
+    pub(super) fn open_at(&self, path: &Arc<Path>) -> Option<&Arc<Open>> {
+        self.documents.get(self.paths.get(path)?)
     }
 
     /// How many documents are open.
@@ -84,13 +106,14 @@ impl Snapshot {
 }
 
 impl Workspace {
-    pub(super) fn new(client: Client) -> Workspace {
-        Workspace {
+    pub(super) fn new(client: Client, speech: Speech) -> Arc<Workspace> {
+        Arc::new(Workspace {
             client,
-            state: Mutex::default(),
+            tokens: SentTokens::default(),
+            state: Mutex::new(State { speech, ..State::default() }),
             initialised: AtomicBool::new(false),
             shut_down: AtomicBool::new(false),
-        }
+        })
     }
 
     pub(super) fn snapshot(&self) -> Snapshot {
@@ -108,7 +131,7 @@ impl Workspace {
 
     /// Takes from a message what it says about the life of the server. What `initialize` says is in force before the
     /// next message is read, although its answer is made later.
-    pub(super) fn note_lifecycle(&self, method: &str, params: Option<&LSPAny>) {
+    pub(super) fn note_lifecycle(self: &Arc<Workspace>, method: &str, params: Option<&LSPAny>) {
         match method {
             "initialize" if !self.initialised.load(Ordering::Relaxed) => {
                 if let Ok(params) = InitializeParams::deserialize(params.unwrap_or(&Value::Null)) {
@@ -122,14 +145,16 @@ impl Workspace {
         }
     }
 
-    fn initialise(&self, params: &InitializeParams) {
+    fn initialise(self: &Arc<Workspace>, params: &InitializeParams) {
         let mut state = self.state();
+        state.keeper = Some(Keeper::start(self));
+        state.speech.client = params.locale.as_deref().map(Language::of_locale);
+        let settings = Settings::read(params.initialization_options.as_ref()).unwrap_or_default();
         state.snapshot.manner = Manner {
             encoding: capabilities::encoding_for(&params.capabilities),
-            language: params.locale.as_deref().map(Language::of_locale).unwrap_or_default(),
+            language: settings.language(state.speech),
         };
-        let settings = Settings::read(params.initialization_options.as_ref());
-        state.snapshot.settings = Arc::new(settings.unwrap_or_default());
+        state.snapshot.settings = Arc::new(settings);
         state.watches = capabilities::can_watch(&params.capabilities);
         self.initialised.store(true, Ordering::Relaxed);
     }
@@ -163,7 +188,9 @@ impl Workspace {
     fn open(&self, params: DidOpenTextDocumentParams) {
         let TextDocumentItem { uri, language_id, version, text } = params.text_document;
         let mut state = self.state();
-        let manifest = Arc::new(self.manifest_of(&mut state, &uri).0);
+        let Belonging { manifest, project, .. } = self.belonging(&mut state, &uri);
+        let path = file_path(&uri).map(|path| canonical(&path));
+        let manifest = Arc::new(manifest);
         let is_ladder = language_id == "ladder";
         let (notation, target) = decided(&uri, &text, &manifest, &state.snapshot.settings, is_ladder);
         let document = read(&text, notation, target);
@@ -177,7 +204,10 @@ impl Workspace {
         let publisher = Publisher::start(self.client.clone(), snapshot.manner, &snapshot.settings, before);
         state.publishers.insert(uri.clone(), publisher);
         let severities = Arc::new(manifest.severities());
-        state.put(Open { uri, version, document, manifest, severities });
+        if let Some(path) = &path {
+            Arc::make_mut(&mut state.snapshot.paths).entry(path.clone()).or_insert_with(|| uri.clone());
+        }
+        state.put(Open { uri, version, is_open: true, path, project, document, manifest, severities });
     }
 
     fn change(&self, params: DidChangeTextDocumentParams) {
@@ -199,7 +229,11 @@ impl Workspace {
             });
             // The text must stay the client's text even if reading it fails.
             open.document = edited
-                .or_else(|| guarded(|| Document::new(&spliced(&open.document, &edit), notation, target)))
+                .or_else(|| {
+                    let document =
+                        guarded(|| Document::new(&spliced(&open.document, &edit), notation, target));
+                    Some(document?.linked_as(&open.document))
+                })
                 .unwrap_or_else(|| Document::unread(&spliced(&open.document, &edit), notation, target));
         }
         if was_short || open.document.len() <= UNDECIDED_BYTES {
@@ -211,7 +245,11 @@ impl Workspace {
     fn close(&self, params: DidCloseTextDocumentParams) {
         let mut state = self.state();
         let uri = params.text_document.uri;
-        Arc::make_mut(&mut state.snapshot.documents).remove(&uri);
+        self.tokens.forget(&uri);
+        let closed = Arc::make_mut(&mut state.snapshot.documents).remove(&uri);
+        if let Some(closed) = closed {
+            state.forget_path(&closed);
+        }
         if let Some(publisher) = state.publishers.remove(&uri) {
             state.closing.retain(|_, task| !task.is_finished());
             let task = publisher.close(uri.clone());
@@ -231,7 +269,10 @@ impl Workspace {
     fn configure(&self, params: DidChangeConfigurationParams) {
         // A client without settings says so with `null`; what `initialize` said stays in force.
         let Some(settings) = Settings::read(Some(&params.settings)) else { return };
-        self.state().snapshot.settings = Arc::new(settings);
+        let mut state = self.state();
+        state.snapshot.manner.language = settings.language(state.speech);
+        state.snapshot.settings = Arc::new(settings);
+        drop(state);
         self.reread_projects();
     }
 
@@ -241,9 +282,10 @@ impl Workspace {
         let opens: Vec<Arc<Open>> = state.snapshot.documents.values().cloned().collect();
         let mut seen = FxHashSet::default();
         for open in opens {
-            let (manifest, place) = self.manifest_of(&mut state, &open.uri);
+            let Belonging { manifest, place, project } = self.belonging(&mut state, &open.uri);
             seen.extend(place);
             let mut open = Open::clone(&open);
+            open.project = project;
             if *open.manifest != manifest {
                 open.severities = Arc::new(manifest.severities());
                 open.manifest = Arc::new(manifest);
@@ -252,14 +294,37 @@ impl Workspace {
             state.put(open);
         }
         state.manifests.forget_others(&self.client, &seen);
+        if let Some(keeper) = &state.keeper {
+            for (key, loaded) in state.snapshot.projects.iter() {
+                keeper.read(key.clone(), loaded.root.clone());
+            }
+        }
     }
 
-    /// The manifest for a document, and where it is. What is wrong with it is told to the user.
-    fn manifest_of(&self, state: &mut State, uri: &Uri) -> (Manifest, Option<Uri>) {
-        let project = uri.to_file_path().and_then(|path| Project::of(&path));
-        let Some(project) = project else { return (Manifest::default(), None) };
+    /// To which project a document belongs. What is wrong with its manifest is told to the user. A project that is met
+    /// for the first time is read in the background.
+    fn belonging(&self, state: &mut State, uri: &Uri) -> Belonging {
+        let Some(project) = file_path(uri).and_then(|path| Project::of(&path)) else {
+            return Belonging::default();
+        };
         let place = state.manifests.note(&self.client, &project, state.snapshot.manner);
-        (project.manifest, place)
+        let key = canonical(&project.root);
+        if !state.snapshot.projects.contains_key(&key)
+            && let Some(keeper) = &state.keeper
+        {
+            keeper.read(key.clone(), project.root.clone());
+        }
+        Belonging { manifest: project.manifest, place, project: Some(key) }
+    }
+
+    /// Takes a project as it was read, or forgets one whose manifest is gone.
+    pub(super) fn adopt(&self, key: &Arc<Path>, loaded: Option<Loaded>) {
+        let mut state = self.state();
+        let projects = Arc::make_mut(&mut state.snapshot.projects);
+        match loaded {
+            Some(loaded) => _ = projects.insert(key.clone(), Arc::new(loaded)),
+            None => _ = projects.remove(key),
+        }
     }
 
     /// A panic while the lock was held leaves whole values behind it: each is put in one assignment.
@@ -268,13 +333,35 @@ impl Workspace {
     }
 }
 
+/// To which project a document belongs.
+#[derive(Default)]
+struct Belonging {
+    manifest: Manifest,
+    /// The manifest's own place.
+    place: Option<Uri>,
+    /// The canonical folder.
+    project: Option<Arc<Path>>,
+}
+
 impl State {
+    /// Takes note that `closed` is no longer open; its file may still be so under another spelling.
+    fn forget_path(&mut self, closed: &Open) {
+        let Some(path) = &closed.path else { return };
+        let other = self.snapshot.documents.values().find(|open| open.path.as_ref() == Some(path));
+        let other = other.map(|open| open.uri.clone());
+        let paths = Arc::make_mut(&mut self.snapshot.paths);
+        match other {
+            Some(uri) => _ = paths.insert(path.clone(), uri),
+            None => _ = paths.remove(path),
+        }
+    }
+
     /// Makes `open` the document's state, and publishes it.
     fn put(&mut self, open: Open) {
         let open = Arc::new(open);
         Arc::make_mut(&mut self.snapshot.documents).insert(open.uri.clone(), open.clone());
         if let Some(publisher) = self.publishers.get(&open.uri) {
-            publisher.publish(open);
+            publisher.publish(open, self.snapshot.manner);
         }
     }
 }
@@ -287,7 +374,7 @@ impl Open {
         let is_ladder = self.document.notation() == Notation::Ladder;
         let (notation, target) = decided(&self.uri, &text, &self.manifest, settings, is_ladder);
         if (notation, target.name) != (self.document.notation(), self.document.target().name) {
-            self.document = read(&text, notation, target);
+            self.document = read(&text, notation, target).linked_as(&self.document);
         }
     }
 }
@@ -297,7 +384,7 @@ fn is_change_of_state(method: &str) -> bool {
 }
 
 /// `is_ladder` is what the client says of the language: a text that has no file yet has no ending to tell by.
-fn decided(
+pub(super) fn decided(
     uri: &Uri,
     text: &str,
     manifest: &Manifest,
@@ -310,7 +397,7 @@ fn decided(
         .unwrap_or((Notation::FxIl, Target::of(Model::Fx2n)))
 }
 
-fn read(text: &str, notation: Notation, target: &'static Target) -> Document {
+pub(super) fn read(text: &str, notation: Notation, target: &'static Target) -> Document {
     guarded(|| Document::new(text, notation, target))
         .unwrap_or_else(|| Document::unread(text, notation, target))
 }

@@ -4,11 +4,24 @@ use super::{Manifest, ManifestError};
 use crate::document::{Document, Notation, detect_ladder_target, detect_notation};
 use crate::target::{Model, Target};
 use crate::text::{Encoding, LineColumn, Message, Span, column_of_offset};
+use std::fs::DirEntry;
 use std::io;
 use std::path::{Path, PathBuf};
 
 /// The manifest's file name.
 pub const MANIFEST_NAME: &str = "rungwise.toml";
+
+/// An editor keeps so many files of a project; those behind them are passed over, and the user is told.
+pub const MOST_FILES: usize = 2000;
+
+/// An editor keeps no file of a project that is longer, unless it is open.
+pub const MOST_FILE_BYTES: u64 = 16 << 20;
+
+/// All files of a project that an editor keeps have no more bytes together.
+pub const MOST_PROJECT_BYTES: u64 = 256 << 20;
+
+/// So many entries of folders are looked at in the search for program files.
+const MOST_ENTRIES: usize = 100_000;
 
 /// A folder of programs with its settings.
 #[derive(Clone, Debug)]
@@ -60,8 +73,23 @@ impl Project {
     pub fn files(&self) -> io::Result<Vec<PathBuf>> {
         match &self.manifest.files {
             Some(names) => Ok(names.iter().map(|name| self.root.join(name)).collect()),
-            None => program_files(&self.root),
+            None => {
+                let mut walk = Walk { files: Vec::new(), nested: false, left: usize::MAX };
+                walk.folder(&self.root, true)?;
+                Ok(walk.files)
+            }
         }
+    }
+
+    /// The same for an editor, which goes on without the folders that cannot be read, and does not search without end.
+    pub fn files_in_reach(&self) -> Vec<PathBuf> {
+        if self.manifest.files.is_some() {
+            return self.files().unwrap_or_default();
+        }
+        let mut walk = Walk { files: Vec::new(), nested: false, left: MOST_ENTRIES };
+        // A folder that cannot be read ends the walk there; what was found before it stays.
+        let _ = walk.folder(&self.root, true);
+        walk.files
     }
 }
 
@@ -72,22 +100,70 @@ pub fn is_program_file(path: &Path) -> bool {
 
 /// The program files below `folder`, by name; what is hidden, and links to folders, are passed over.
 pub fn program_files(folder: &Path) -> io::Result<Vec<PathBuf>> {
-    let mut entries: Vec<_> = std::fs::read_dir(folder)?.collect::<Result<_, _>>()?;
-    entries.sort_by_key(|entry| entry.file_name());
-    let mut files = Vec::new();
-    for entry in entries {
-        let path = entry.path();
-        // Beside the folders of tools these are the lock files of editors and what other systems put into archives.
-        if entry.file_name().to_string_lossy().starts_with('.') {
-            continue;
+    let mut walk = Walk { files: Vec::new(), nested: true, left: usize::MAX };
+    walk.folder(folder, true)?;
+    Ok(walk.files)
+}
+
+/// The folders with a manifest in `folder` and below, by name; what is hidden is passed over.
+pub fn projects_in(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut folders = vec![folder.to_path_buf()];
+    let mut left = MOST_ENTRIES;
+    while let Some(folder) = folders.pop() {
+        if folder.join(MANIFEST_NAME).is_file() {
+            found.push(folder.clone());
         }
-        if entry.file_type()?.is_dir() {
-            files.extend(program_files(&path)?);
-        } else if is_program_file(&path) && !path.is_dir() {
-            files.push(path);
+        for entry in entries(&folder).unwrap_or_default() {
+            left = left.saturating_sub(1);
+            if left > 0 && !is_hidden(&entry) && entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+                folders.push(entry.path());
+            }
         }
     }
-    Ok(files)
+    found.sort();
+    found
+}
+
+/// A walk through folders.
+struct Walk {
+    files: Vec<PathBuf>,
+    /// Whether folders with a manifest of their own are entered, too.
+    nested: bool,
+    /// How many entries may still be looked at.
+    left: usize,
+}
+
+impl Walk {
+    fn folder(&mut self, folder: &Path, is_first: bool) -> io::Result<()> {
+        if !is_first && !self.nested && folder.join(MANIFEST_NAME).is_file() {
+            return Ok(());
+        }
+        for entry in entries(folder)? {
+            self.left = self.left.saturating_sub(1);
+            // Beside the folders of tools these are the lock files of editors and what other systems put into archives.
+            if self.left == 0 || is_hidden(&entry) {
+                continue;
+            }
+            let path = entry.path();
+            if entry.file_type()?.is_dir() {
+                self.folder(&path, false)?;
+            } else if is_program_file(&path) && !path.is_dir() {
+                self.files.push(path);
+            }
+        }
+        Ok(())
+    }
+}
+
+fn entries(folder: &Path) -> io::Result<Vec<DirEntry>> {
+    let mut entries: Vec<_> = std::fs::read_dir(folder)?.collect::<Result<_, _>>()?;
+    entries.sort_by_key(|entry| entry.file_name());
+    Ok(entries)
+}
+
+fn is_hidden(entry: &DirEntry) -> bool {
+    entry.file_name().to_string_lossy().starts_with('.')
 }
 
 /// Reads `text` as the document called `name`, with what the user and then the project want; without either, by the

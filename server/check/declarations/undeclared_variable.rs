@@ -40,7 +40,7 @@
 use super::guess::types_of;
 use crate::check::iec::{View, folded};
 use crate::check::{ProgramContext, Rule, Run};
-use crate::document::{ChunkRef, Mention, Pou, Scopes, Symbol, Tree, Use};
+use crate::document::{Chunk, ChunkRef, DeclaredType, Document, Mention, Pou, Scopes, Symbol, Use};
 use crate::il::iec::{IecTree, ItemKind, PouKind, SectionKind, TypeSpec};
 use crate::target::iec::{Function, FunctionBlock, nearest};
 use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
@@ -70,21 +70,25 @@ struct Unit<'a> {
 }
 
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
-    let scopes = context.document.scopes();
-    if scopes.pous.is_empty() {
+    context.each_file(found, check_file);
+}
+
+fn check_file(document: &Document, found: &mut Vec<Diagnostic>) {
+    let scopes = document.scopes();
+    if scopes.own_pous().is_empty() {
         return;
     }
-    let enumerators = enumerators(context);
+    let enumerators = enumerators(document);
     let mut unit = Unit::default();
     let mut pou: Option<usize> = None;
-    for at in context.document.chunks() {
+    for at in document.chunks() {
         let started = at.chunk.pou_starts();
         if started > 0 {
             std::mem::take(&mut unit).report(scopes, pou, found);
             pou = Some(pou.map_or(started - 1, |number| number + started));
         }
         let Some(number) = pou else { continue };
-        if !is_body_or_section(at.chunk.tree()) {
+        if !is_body_or_section(at.chunk) {
             continue;
         }
         for mention in at.chunk.mentions().iter().filter(|mention| mention.usage != Use::Declare) {
@@ -101,13 +105,13 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
 }
 
 /// Types and configurations name other things than variables of a POU.
-fn is_body_or_section(tree: &Tree) -> bool {
+fn is_body_or_section(chunk: &Chunk) -> bool {
     let is_other = |tree: &IecTree| {
         tree.items.iter().any(|item| {
             matches!(item.kind, ItemKind::Types { .. } | ItemKind::Configuration { .. } | ItemKind::End(_))
         })
     };
-    !matches!(tree, Tree::Iec(tree) if is_other(tree))
+    !chunk.iec().is_some_and(is_other)
 }
 
 /// Also what CAL calls although it is no instance; `unknown-function-block` says so.
@@ -119,15 +123,23 @@ fn is_declared(scopes: &Scopes, pou: usize, name: &str, mention: &Mention) -> bo
             || scopes.pou_named(name).is_some_and(|pou| pou.kind != PouKind::Program)
     };
     scopes.variable(Some(pou), name).is_some()
-        || scopes.pous.get(pou).is_some_and(is_result)
+        || scopes.pous.get(pou).is_some_and(|pou| is_result(pou))
         || mention.usage == Use::ReadWrite && is_callee()
 }
 
 /// The folded names of all values of enumerations.
-fn enumerators(context: &ProgramContext<'_>) -> FxHashSet<SmolStr> {
+fn enumerators(document: &Document) -> FxHashSet<SmolStr> {
     let mut names = FxHashSet::default();
-    for at in context.document.chunks() {
-        let Tree::Iec(tree) = at.chunk.tree() else { continue };
+    let scopes = document.scopes();
+    // Those of other files are known through what they declare.
+    let variables = scopes.globals.values().map(|variable| &variable.declared);
+    for declared in scopes.types.values().chain(variables) {
+        if let DeclaredType::Enumeration(values) = declared {
+            names.extend(values.iter().cloned());
+        }
+    }
+    for (at, _) in document.iec_chunks() {
+        let Some(tree) = at.chunk.iec() else { continue };
         for written in &tree.types {
             if let TypeSpec::Enumeration { values } = written.value {
                 names.extend(values.of(&tree.names).iter().map(|span| folded(span.of(at.chunk.text()))));
@@ -154,10 +166,7 @@ impl Unit<'_> {
         let views: Vec<View<'_>> = self
             .chunks
             .iter()
-            .filter_map(|at| match at.chunk.tree() {
-                Tree::Iec(tree) => Some(View { text: at.chunk.text(), tree, scopes, pou }),
-                _ => None,
-            })
+            .filter_map(|at| Some(View { text: at.chunk.text(), tree: at.chunk.iec()?, scopes, pou }))
             .collect();
         let types = types_of(&views, &self.uses.keys().cloned().collect());
         let gap = self.gap();
@@ -206,7 +215,7 @@ impl Unit<'_> {
         let mut header = None;
         let mut section = None;
         for at in &self.chunks {
-            let Tree::Iec(tree) = at.chunk.tree() else { continue };
+            let Some(tree) = at.chunk.iec() else { continue };
             for item in &tree.items {
                 match item.kind {
                     ItemKind::Pou { .. } => header = Some(at.start + item.span.end as usize),

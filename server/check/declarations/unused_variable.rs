@@ -1,7 +1,8 @@
 //! # unused-variable
 //!
-//! A variable is declared and never named again in its program unit. Either it is left over, or the name that should
-//! have been used is another one: an interlock that was declared and then forgotten is worth a look.
+//! A variable is declared and never named again in its program unit, or a global one in no file of the project. Either
+//! it is left over, or the name that should have been used is another one: an interlock that was declared and then
+//! forgotten is worth a look.
 //!
 //! Variables with an address are left out, because a list of the terminals is useful by itself; so are units
 //! without instructions.
@@ -34,7 +35,7 @@
 
 use crate::check::iec::folded;
 use crate::check::{ProgramContext, Rule, Run};
-use crate::document::{ChunkRef, Symbol, Tree, Use};
+use crate::document::{ChunkRef, Document, Symbol, Use};
 use crate::il::iec::{Declaration, IecTree, ItemKind, SectionKind};
 use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
 use rustc_hash::FxHashSet;
@@ -61,31 +62,40 @@ struct Unit<'a> {
 }
 
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
+    let declares_nothing = |document: &Document| {
+        let scopes = document.scopes();
+        scopes.pous.is_empty() && scopes.globals.is_empty()
+    };
+    if context.files().iter().all(|file| declares_nothing(file.document)) {
+        return;
+    }
     let mut unit = Unit::default();
     let mut globals = Unit::default();
-    for at in context.document.chunks() {
-        if at.chunk.pou_starts() > 0 {
-            std::mem::take(&mut unit).report(found);
-        }
-        match at.chunk.tree() {
-            Tree::Iec(tree) => {
-                unit.has_body |= tree.items.iter().any(|item| is_instruction(&item.kind));
-                sections(at, tree, &mut unit, &mut globals);
+    for file in context.files() {
+        for at in file.chunks() {
+            if at.chunk.pou_starts() > 0 {
+                std::mem::take(&mut unit).report(found);
             }
-            _ => unit.has_body = true,
-        }
-        for mention in at.chunk.mentions() {
-            if let Symbol::Variable(name) = &mention.symbol
-                && mention.usage != Use::Declare
-            {
-                unit.used.insert(name);
-                globals.used.insert(name);
+            match at.chunk.iec() {
+                Some(tree) => {
+                    unit.has_body |= tree.items.iter().any(|item| is_instruction(&item.kind));
+                    sections(at, tree, &mut unit, &mut globals);
+                }
+                None => unit.has_body = true,
+            }
+            for mention in at.chunk.mentions() {
+                if let Symbol::Variable(name) = &mention.symbol
+                    && mention.usage != Use::Declare
+                {
+                    unit.used.insert(name);
+                    globals.used.insert(name);
+                }
             }
         }
+        std::mem::take(&mut unit).report(found);
+        // A file of globals alone is used by other files.
+        globals.has_body |= !file.document.scopes().own_pous().is_empty();
     }
-    unit.report(found);
-    // A file of globals alone is used by other files.
-    globals.has_body = !context.document.scopes().pous.is_empty();
     globals.report(found);
 }
 

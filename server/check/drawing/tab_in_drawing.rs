@@ -25,17 +25,22 @@ pub(super) const RULE: Rule = Rule {
 };
 
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
-    let Some(first) = first_tab(context.document) else { return };
+    context.each_file(found, check_file);
+}
+
+fn check_file(document: &Document, found: &mut Vec<Diagnostic>) {
+    let Some(first) = first_tab(document) else { return };
     let diagnostic = Diagnostic::new(RULE.code, first, Message::new("tab-in-drawing.found"));
-    found.push(diagnostic.fix(Message::new("tab-in-drawing.expand"), expanded(context.document)));
+    found.push(diagnostic.fix(Message::new("tab-in-drawing.expand"), expanded(document)));
 }
 
 /// The first tab on the lines of a rung; tabs in comments and declarations move nothing.
 fn first_tab(document: &Document) -> Option<Span> {
     let mut start = 0;
     for chunk in document.pages().iter().flat_map(|page| page.chunks()) {
-        if let Tree::Ladder(tree) = chunk.tree()
-            && chunk.text().contains('\t')
+        // Few drawings have tabs, and only these have to be read for it.
+        if chunk.text().contains('\t')
+            && let Tree::Ladder(tree) = chunk.reading().tree()
         {
             let commented = |at: usize| {
                 tree.comments.iter().any(|span| (span.start as usize..span.end as usize).contains(&at))

