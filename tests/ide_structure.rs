@@ -106,6 +106,11 @@ fn a_contact_goes_into_the_wire_at_the_cursor() {
         +---| |-----| |^---+                              |
     "#]],
     );
+    // A byte order mark and other line ends stay.
+    let foreign = format!("\u{feff}{}", MOTOR.split_once('\n').unwrap().1.replace('\n', "\r\n"));
+    let after = edited(&foreign.replacen("X1", "X^1", 1), EditKind::InsertContact, Some("M3"));
+    assert!(after.starts_with("\u{feff}|   X0        M3      X1 "), "{after}");
+    assert_eq!(after.matches("\r\n").count(), 4, "{after}");
     // Before and behind an element.
     check(
         &motor(2, 14),
@@ -270,6 +275,76 @@ fn a_branch_is_parallel_to_what_is_chosen() {
         None,
         expect!["Put the cursor on an element, or select some."],
     );
+}
+
+#[test]
+fn a_box_of_an_iec_program_is_a_function_block() {
+    let program = [
+        "PROGRAM a\nVAR\n    s : BOOL;\nEND_VAR\n",
+        "|   s             q  |",
+        "+---| |-----------( )-+",
+        "\nEND_PROGRAM\n",
+    ]
+    .join("\n");
+    let edited = |column: usize, kind, operand| {
+        let at = program.find("+---").unwrap() + column;
+        let document = Document::new(&program, Notation::Ladder, Target::of(Model::Iec));
+        let answer = ide::edit(&document, Span::at(at), kind, operand, STYLE);
+        let answer = answer.map_err(|why| why.render(Language::English)).unwrap();
+        let after = TextEdit::apply_all(&answer.edits, &program);
+        format!("{}{}", after.split_once("END_VAR").unwrap().1, answer.selection.of(&after))
+    };
+    expect![[r#"
+
+
+        |                ???            |
+        |              +------+         |
+        |    s         | TON  |      q  |
+        +---| |--------|IN   Q|-----( )-+
+        |         ???--|PT  ET|         |
+        |              +------+         |
+
+        END_PROGRAM
+        ???"#]]
+    .assert_eq(&edited(12, EditKind::InsertBox, None));
+    expect![[r#"
+
+
+        |               Parts           |
+        |              +------+         |
+        |    s         | CTUD |      q  |
+        +---| |--------|CU  QU|-----( )-+
+        |         ???--|CD  QD|         |
+        |         ???--|R   CV|         |
+        |         ???--|LD    |         |
+        |         ???--|PV    |         |
+        |              +------+         |
+
+        END_PROGRAM
+    "#]]
+    .assert_eq(&edited(12, EditKind::InsertBox, Some("Parts : CTUD")));
+    expect![[r#"
+
+
+        |    s                 q  |
+        +---| |----[> a b]----( )-+
+
+        END_PROGRAM
+    "#]]
+    .assert_eq(&edited(12, EditKind::InsertBox, Some("> a b")));
+    let end = program.find("END_PROGRAM").unwrap() - program.find("+---").unwrap();
+    expect![[r#"
+
+
+        |   s             q  |
+        +---| |-----------( )-+
+
+        |                     |
+        +---------------------+
+
+        END_PROGRAM
+    "#]]
+    .assert_eq(&edited(end, EditKind::InsertRung, None));
 }
 
 #[test]
@@ -1097,29 +1172,35 @@ fn objects_are_element_branch_rung_and_network() {
     expect![[r#"
         <X1 >
         <|/|>
-    "#]].assert_eq(&at(ObjectKind::Element, true, 2, 15));
+    "#]]
+    .assert_eq(&at(ObjectKind::Element, true, 2, 15));
     expect!["( )"].assert_eq(&at(ObjectKind::Element, false, 2, 20));
     expect![[r#"
         <Y0 >
         <| |>
-    "#]].assert_eq(&at(ObjectKind::Branch, false, 4, 2));
+    "#]]
+    .assert_eq(&at(ObjectKind::Branch, false, 4, 2));
     expect![[r#"
         <   Y0    >
         <---| |--->
-    "#]].assert_eq(&at(ObjectKind::Branch, true, 4, 5));
+    "#]]
+    .assert_eq(&at(ObjectKind::Branch, true, 4, 5));
     expect!["none"].assert_eq(&at(ObjectKind::Branch, true, 2, 15));
     expect![[r#"
         |   X0        X1                             Y0  |
         +---| |---+---|/|----------------------------( )-+
         |   Y0    |                                      |
         +---| |---+                                      |
-    "#]].assert_eq(&at(ObjectKind::Rung, false, 4, 5));
+    "#]]
+    .assert_eq(&at(ObjectKind::Rung, false, 4, 5));
     expect![[r#"
+        (* Start and stop *)
         |   X0        X1                             Y0  |
         +---| |---+---|/|----------------------------( )-+
         |   Y0    |                                      |
         +---| |---+                                      |
-    "#]].assert_eq(&at(ObjectKind::Rung, true, 4, 5));
+    "#]]
+    .assert_eq(&at(ObjectKind::Rung, true, 4, 5));
     expect!["none"].assert_eq(&at(ObjectKind::Rung, false, 0, 5));
     let networks = format!(
         "{MOTOR}\nNETWORK 2 'two'\n+--[X^0]--(Y1)-+\n\n+--[X1]--(Y2)-+\n\nNETWORK 3\n+--[X0]--(Y3)-+\n"
@@ -1129,14 +1210,16 @@ fn objects_are_element_branch_rung_and_network() {
 
         +--[X1]--(Y2)-+
 
-    "#]].assert_eq(&object(&networks, ObjectKind::Network, false));
+    "#]]
+    .assert_eq(&object(&networks, ObjectKind::Network, false));
     expect![[r#"
         NETWORK 2 'two'
         +--[X0]--(Y1)-+
 
         +--[X1]--(Y2)-+
 
-    "#]].assert_eq(&object(&networks, ObjectKind::Network, true));
+    "#]]
+    .assert_eq(&object(&networks, ObjectKind::Network, true));
 }
 
 /// What grows around the cursor, each range on a line of its own.
@@ -1163,7 +1246,8 @@ fn selection_grows_from_the_name_to_the_document() {
         "OUT T0 K50"
         "LD X0\nOUT T0 K50"
         "LD X0\nOUT T0 K50\nLD X1\nOUT Y1\n"
-    "#]].assert_eq(&ranges("LD X0\nOUT T^0 K50\nLD X1\nOUT Y1\n", Notation::FxIl, Model::Fx2n));
+    "#]]
+    .assert_eq(&ranges("LD X0\nOUT T^0 K50\nLD X1\nOUT Y1\n", Notation::FxIl, Model::Fx2n));
     let program =
         "PROGRAM a\nVAR\n  x : BOOL;\nEND_VAR\n  LD x\n  ST %QX^0.0\nEND_PROGRAM\nPROGRAM b\nEND_PROGRAM\n";
     expect![[r#"
@@ -1172,7 +1256,8 @@ fn selection_grows_from_the_name_to_the_document() {
         "LD x\n  ST %QX0.0\nEND_PROGRAM"
         "PROGRAM a\nVAR\n  x : BOOL;\nEND_VAR\n  LD x\n  ST %QX0.0\nEND_PROGRAM"
         "PROGRAM a\nVAR\n  x : BOOL;\nEND_VAR\n  LD x\n  ST %QX0.0\nEND_PROGRAM\nPROGRAM b\nEND_PROGRAM\n"
-    "#]].assert_eq(&ranges(program, Notation::IecIl, Model::Iec));
+    "#]]
+    .assert_eq(&ranges(program, Notation::IecIl, Model::Iec));
 }
 
 #[test]

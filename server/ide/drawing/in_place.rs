@@ -26,7 +26,7 @@ impl<'s, 'd> Sketch<'s, 'd> {
     }
 
     fn text(&self) -> String {
-        let line = |(row, end): (&Row, &&str)| format!("{}{end}", cells::text(row).trim_end());
+        let line = |(row, end): (&Row, &&str)| format!("{}{end}", cells::text(row));
         self.rows.iter().zip(&self.line_ends).map(line).collect()
     }
 
@@ -141,10 +141,11 @@ pub(super) fn with_element(
         let line = if spelling.place == OperandPlace::Below { row + 1 } else { row.checked_sub(1)? };
         let names = sketch.rows.get_mut(line)?;
         let from = start - left + usize::from(left == 0) * name_shift(above.len(), body.len());
-        if names.len() < from + above.len() + 1 {
-            names.resize(from + above.len() + 1, ' ');
+        let to = from + above.len();
+        if names.len() < to {
+            names.resize(to, ' ');
         }
-        let room = from.checked_sub(1)?..from + above.len() + 1;
+        let room = from.checked_sub(1)?..(to + 1).min(names.len());
         names[room].iter().all(|cell| *cell == ' ').then_some(())?;
         names[from..from + above.len()].copy_from_slice(&above);
     }

@@ -124,6 +124,9 @@ impl Look {
             line.push_str(comment);
         }
         let mut text = lines.join(self.line_end);
+        if site.lines().of(site.text).starts_with(BYTE_ORDER_MARK) {
+            text.insert(0, BYTE_ORDER_MARK);
+        }
         if self.ended {
             text.push_str(self.line_end);
         }
@@ -185,7 +188,7 @@ fn kind_of(rung: &Rung, text: &str) -> Option<StyleKind> {
 /// The column of the first cell that is drawn, a number in the margin passed over.
 fn first_drawn(line: &str) -> Option<u32> {
     let mut column = 0;
-    for character in line.chars() {
+    for character in line.trim_start_matches(BYTE_ORDER_MARK).chars() {
         if Strokes::of(character) != Strokes::default() || matches!(character, '[' | ']' | '(' | ')') {
             return Some(column);
         }
@@ -247,6 +250,8 @@ fn line_of_row(plan: &Plan, drawing: &Drawing, row: u32) -> usize {
     let nearest = below.or(old().max_by_key(|(_, element)| element.row));
     nearest.and_then(|(id, _)| drawing.line_of(id)).unwrap_or(0)
 }
+
+const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// The row of elements that have not been drawn yet.
 pub(super) const NEW_ROW: u32 = u32::MAX;

@@ -181,7 +181,7 @@ impl Ask<'_, '_> {
     fn in_place(&self, intended: Option<&Intended>) -> Option<Edited> {
         let site = &self.site;
         let old = site.lines().shifted(site.start);
-        if let Some((new, name)) = operation::inserted(self.kind, self.operand) {
+        if let Some((new, name)) = operation::inserted(site, self.kind, self.operand) {
             let wire = operation::wire_at(site, self.span).ok()?;
             let (element, drawing) = parts::element(new, &name, site.document.target()).ok()?;
             let offset = self.span.start as usize;
@@ -257,8 +257,10 @@ pub fn applicable(document: &Document, span: Span) -> Vec<EditKind> {
 fn cursor_at(proved: &Proved, element: &Element, chunk: usize, named: bool) -> Span {
     let (new, start) = proved.text();
     let is_open = |span: &Span| new.get(chunk - start..).is_some_and(|text| span.of(text).contains('?'));
+    let instance = element.block().and_then(|block| block.instance).filter(is_open);
     let words = element.operands.iter().map(|operand| operand.span);
-    let open = words.filter(is_open).reduce(Span::to).filter(|_| !named);
+    // A block that was given its type has open places all the same.
+    let open = instance.or_else(|| words.filter(is_open).reduce(Span::to).filter(|_| !named));
     open.unwrap_or(Span::at(element.span.end as usize)).shifted(chunk)
 }
 

@@ -104,16 +104,12 @@ fn rung(site: &Site<'_>, around: bool) -> Option<Object> {
     let lines = site.lines();
     let (mut start, mut end) = (lines.start as usize, lines.end as usize);
     if around {
-        let above =
-            |line: &str| line.trim_start().starts_with(['(', '/', ';', '*']) && !line.contains(['|', '│']);
-        let comments = &site.tree.comments;
         // A comment directly above moves with its rung.
-        while let Some(comment) = comments.iter().find(|comment| {
-            let between = site.text.get(comment.end as usize..start);
-            between.is_some_and(|text| text.trim().is_empty() && text.matches('\n').count() <= 1)
-        }) {
+        for comment in site.tree.comments.iter().rev().filter(|comment| comment.end <= lines.start) {
             let first = site.line_start(site.line_of(comment.start as usize));
-            if first >= start || !above(site.text.get(first..).unwrap_or("")) {
+            let before = site.text.get(first..comment.start as usize).unwrap_or("");
+            let behind = site.text.get(comment.end as usize..start).unwrap_or("");
+            if !before.trim().is_empty() || !behind.trim().is_empty() || behind.matches('\n').count() > 1 {
                 break;
             }
             start = first;

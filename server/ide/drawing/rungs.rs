@@ -64,7 +64,8 @@ fn beside(site: &Site<'_>, above: bool) -> usize {
 /// The start of a line between rungs: that of the byte if it is blank, else behind the chunk.
 fn free_line(document: &Document, offset: usize) -> usize {
     let (_, start, line) = document.line_at(offset);
-    if line.trim().is_empty() {
+    let ends_unit = line.trim_start().get(..4).is_some_and(|word| word.eq_ignore_ascii_case("END_"));
+    if line.trim().is_empty() || ends_unit && !line.to_ascii_uppercase().contains("END_VAR") {
         return start;
     }
     document.chunk_at(offset).map_or(document.len(), |at| at.start + at.chunk.len())
