@@ -44,6 +44,8 @@ fn an_edit_answers_with_small_changes_and_a_selection() {
     assert_eq!(answer["result"]["selection"], range((0, 22), (0, 25)));
     let named = edit(&mut client, "insertContact", (1, 24), json!({"operand": "M5"}));
     assert_eq!(named["result"]["selection"], range((1, 25), (1, 25)), "behind the contact");
+    let rung = edit(&mut client, "insertRung", (1, 24), json!({}));
+    assert_eq!(rung["result"]["selection"], range((6, 4), (6, 4)), "in the text after the edit");
 }
 
 #[test]
