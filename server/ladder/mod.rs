@@ -27,7 +27,9 @@ mod inline;
 mod blocks;
 
 mod ldmicro;
-pub use ldmicro::{BoxKind, NameKind, TableRow, table_rows, time_literal};
+pub use ldmicro::{
+    BoxKind, Import, ImportError, NameKind, Note, TableRow, import, table_rows, time_literal,
+};
 
 mod scan;
 

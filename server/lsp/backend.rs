@@ -347,31 +347,16 @@ fn quick_fix(open: &Open, place: Place<'_>, fix: &ide::FixOf<'_>) -> CodeAction 
 /// `{"errors", "warnings", "hints", "rungs", "steps", "capacity", "message"}`
 fn check_summary(open: &Open, language: Language) -> Value {
     let found: Vec<Diagnostic> = check::all(&open.document, &open.severities);
-    let count = |severity| found.iter().filter(|diagnostic| diagnostic.severity == severity).count();
-    let [errors, warnings, hints] =
-        [crate::text::Severity::Error, crate::text::Severity::Warning, crate::text::Severity::Hint]
-            .map(count);
-    let status = ide::status(&open.document);
-    let key = match (errors + warnings, status.steps) {
-        (0, Some(_)) => "summary.passed-steps",
-        (0, None) => "summary.passed",
-        _ => "summary.failed",
-    };
-    let message = Message::new(key)
-        .with("errors", errors)
-        .with("warnings", warnings)
-        .with("hints", hints)
-        .with("rungs", status.rungs)
-        .with("steps", status.steps.unwrap_or(0))
-        .with("capacity", status.capacity);
+    let mut summary = ide::Summary::default();
+    summary.add(&open.document, &found);
     json!({
-        "errors": errors,
-        "warnings": warnings,
-        "hints": hints,
-        "rungs": status.rungs,
-        "steps": status.steps,
-        "capacity": status.capacity,
-        "message": message.render(language),
+        "errors": summary.errors,
+        "warnings": summary.warnings,
+        "hints": summary.hints,
+        "rungs": summary.rungs,
+        "steps": summary.steps,
+        "capacity": summary.capacity,
+        "message": summary.sentence().render(language),
     })
 }
 
