@@ -116,7 +116,7 @@ end
 
 --- Each: keys at the cursor, the drawing afterwards.
 local OBJECTS = {
-  { 'yir and p copy a rung', 'yirGo<Esc>p', 1, 5, join(SEAL_IN, END, SEAL_IN) },
+  { 'yir and p copy a rung', 'yirGo<Esc>p', 1, 5, join(SEAL_IN, END, '', SEAL_IN) },
   { 'dar deletes a rung', 'dar', 1, 5, { '+--[END]---------------------------------------+' } },
 }
 
