@@ -28,6 +28,7 @@ mod ldmicro;
 mod lsp;
 mod lsp_client;
 mod lsp_edit;
+mod lsp_tokens;
 mod manifest_schema;
 mod mistakes;
 mod rules;

@@ -48,6 +48,9 @@ pub use fixes::FixOf;
 
 mod status;
 
+mod summary;
+pub use summary::Summary;
+
 mod drawing;
 pub use drawing::{EditKind, Edited, Object, ObjectKind};
 

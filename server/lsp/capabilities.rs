@@ -84,7 +84,8 @@ pub(super) fn offered(client: &ClientCapabilities, encoding: Encoding, pulls: bo
         semantic_tokens_provider: Some(SemanticTokensServerCapabilities::SemanticTokensOptions(
             SemanticTokensOptions {
                 legend: to_proto::legend(),
-                full: Some(SemanticTokensFullOptions::Bool(true)),
+                range: Some(true),
+                full: Some(SemanticTokensFullOptions::Delta { delta: Some(true) }),
                 ..SemanticTokensOptions::default()
             },
         )),

@@ -12,11 +12,15 @@ mod keeper;
 mod manifests;
 mod projects;
 mod publisher;
+mod recording;
 mod service;
 mod settings;
 mod status;
 mod to_proto;
+mod tokens;
 mod workspace;
+
+pub use recording::{NoEntry, replay, serve_mirrored};
 
 use crate::text::Language;
 use service::Ordered;
