@@ -2,7 +2,7 @@
 
 use super::cells::{self, Row, is_wire};
 use super::look::Look;
-use super::site::{Site, cells_of, line_of};
+use super::site::{Site, cells_of};
 use crate::ladder::{ArcId, CoilKind, ContactKind, Element, ElementId, ElementKind, OperandPlace, StyleKind};
 use crate::text::Span;
 
@@ -32,7 +32,7 @@ impl<'s, 'd> Sketch<'s, 'd> {
 
     /// Row and columns of a span of the chunk; nothing outside of the rung.
     fn place(&self, span: Span) -> Option<(usize, usize, usize)> {
-        let line = line_of(self.site.text, span.start as usize).checked_sub(self.site.rung.lines.0)? as usize;
+        let line = self.site.line_of(span.start as usize).checked_sub(self.site.rung.lines.0)? as usize;
         let row = self.rows.get(line)?;
         let (start, end) =
             (self.site.column(span.start as usize) as usize, self.site.column(span.end as usize) as usize);

@@ -132,7 +132,7 @@ pub fn edit(
     let look = Look::of(&site, style_kind(style));
     let ask = Ask { site, span, kind, operand, look };
     // A drawing that is not in the canonical form was laid out by its author, and stays as far as it can.
-    let is_canonical = ask.look.redraws(&site);
+    let is_canonical = ask.look.redraws(&ask.site);
     let in_place = if is_canonical { None } else { ask.in_place(intended.as_ref().ok()) };
     match in_place {
         Some(edited) => Ok(edited),
@@ -267,7 +267,7 @@ fn same_place(site: &Site<'_>, proved: &Proved, offset: usize) -> Span {
     let (new, start) = proved.text();
     let offset = offset.saturating_sub(site.start).min(site.text.len());
     let rung = proved.rung_span();
-    let line = site::line_of(site.text, offset).saturating_sub(site.rung.lines.0) as usize;
+    let line = site.line_of(offset).saturating_sub(site.rung.lines.0) as usize;
     let column = site.column(offset);
     let first = rung.start as usize - start;
     let first = new.get(..first).and_then(|head| head.rfind('\n')).map_or(0, |end| end + 1);
