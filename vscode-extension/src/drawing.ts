@@ -1,7 +1,7 @@
 /** Editing a drawing in the editor: structural edits by command, and mending after deletions and pastes. */
 
 import * as vscode from 'vscode';
-import { joinStretches, linesToMend, rungPlaces, typedOverSelection, type Stretch } from './mending';
+import { filling, joinStretches, linesToMend, rungPlaces, typedOverSelection, type Stretch } from './mending';
 import type { ServerController } from './server';
 import { operandOf, parseEditAnswer, STRUCTURAL_EDITS, type EditAnswer, type StructuralEdit } from './structuralEdits';
 
@@ -17,7 +17,7 @@ export class DrawingEditor implements vscode.Disposable {
   private readonly busy = new Set<vscode.TextDocument>();
   private readonly dirty = new Map<vscode.TextDocument, Stretch>();
   /** Where a character was last typed over a selection, and in which version. */
-  private readonly typedOver = new WeakMap<vscode.TextDocument, { version: number; stretch: Stretch }>();
+  private readonly typedOver = new WeakMap<vscode.TextDocument, { version: number; stretch: Stretch; filled: boolean }>();
   private readonly subscriptions: vscode.Disposable[];
 
   constructor(
@@ -125,17 +125,37 @@ export class DrawingEditor implements vscode.Disposable {
     if (document.languageId !== LANGUAGE || editor?.document !== document || this.busy.has(document)) {
       return;
     }
-    const over = typedOverSelection(contentChanges);
-    if (over !== undefined) {
-      this.typedOver.set(document, { version: document.version, stretch: over });
-    }
     // What undo and redo bring back has been mended before.
-    const lines = reason === undefined && mendsWhileTyping(document) ? linesToMend(contentChanges) : undefined;
-    if (lines === undefined) {
+    if (reason !== undefined || !mendsWhileTyping(document)) {
       return;
     }
+    const row = document.lineAt(Math.min(contentChanges[0]?.range.start.line ?? 0, document.lineCount - 1)).text;
+    const fill = filling(contentChanges, row);
+    const over = typedOverSelection(contentChanges);
+    if (over !== undefined) {
+      this.typedOver.set(document, { version: document.version, stretch: over, filled: fill !== undefined });
+    }
+    const stretch = linesToMend(contentChanges) ?? (fill && over);
+    if (fill !== undefined) {
+      void this.fill(editor, fill).then((done) => done || stretch === undefined || this.mark(editor, stretch));
+    } else if (stretch !== undefined) {
+      this.mark(editor, stretch);
+    }
+  }
+
+  /** Puts cells where others went away, at once; gives whether the text was still the same. */
+  private fill(editor: vscode.TextEditor, { at, text }: NonNullable<ReturnType<typeof filling>>): Promise<boolean> {
+    const range = { start: at, end: at };
+    const selection = editor.selections.length === 1 ? { start: at, end: at } : undefined;
+    const answer = { edits: [{ range, newText: text }], selection };
+    return this.apply(editor, answer, { undoStopBefore: false, undoStopAfter: false });
+  }
+
+  /** Marks lines that the server has to mend. */
+  private mark(editor: vscode.TextEditor, stretch: Stretch): void {
+    const { document } = editor;
     const waiting = this.dirty.has(document);
-    this.dirty.set(document, joinStretches(this.dirty.get(document), lines));
+    this.dirty.set(document, joinStretches(this.dirty.get(document), stretch));
     if (!waiting) {
       void this.enqueue(() => this.mend(editor));
     }
@@ -189,6 +209,9 @@ export class DrawingEditor implements vscode.Disposable {
     const over = this.typedOver.get(document);
     if (over === undefined || over.version !== document.version) {
       return undefined;
+    }
+    if (over.filled) {
+      return [];
     }
     const edits = await this.mendingEdits(document, over.stretch);
     return edits.map((edit) => vscode.TextEdit.replace(toRange(edit.range), edit.newText));

@@ -87,6 +87,28 @@ export function rungPlaces(lineAt: (line: number) => string, { first, last, plac
   return found;
 }
 
+/**
+ * What brings a row back to its width where that is known without asking: cells of one line of a drawing went away.
+ *
+ * As many are put there, wire in a wire and blanks elsewhere. `row` is the line after the change.
+ */
+export function filling(changes: readonly PlainChange[], row: string): { at: PlainPosition; text: string } | undefined {
+  const change = changes[0];
+  if (changes.length !== 1 || change === undefined || lineBreaks(change.text) > 0) {
+    return undefined;
+  }
+  const { start, end } = change.range;
+  const missing = start.line === end.line ? end.character - start.character - change.text.length : 0;
+  const drawn = /^\s*[|+│├└┌┝].*[|+│┤┘┐]\s*$/.test(row);
+  if (missing <= 0 || !drawn) {
+    return undefined;
+  }
+  const at = endOf(start, change.text, start.line);
+  const [before, behind] = [row[start.character - 1] ?? '', row[at.character] ?? ''];
+  const wire = [behind, before].find((cell) => /[-─]/.test(cell));
+  return { at, text: (wire ?? ' ').repeat(missing) };
+}
+
 /** Joins two stretches; the earlier one may have moved since, so one line is added on both sides. */
 export function joinStretches(a: Stretch | undefined, b: Stretch): Stretch {
   return a === undefined

@@ -8,12 +8,12 @@ local TRIGGERS = 'textDocument/onTypeFormatting'
 --- A change of more lines is another program, not an edit of a drawing.
 local MOST_LINES = 400
 
---- State of each buffer: { lines, seq, typed, first, last, place, removed, quiet }.
+--- State of each buffer: { lines, seq, typed, first, last, place, missing, removed, quiet }.
 local states = {}
 
 --- Forgets what has been noted about changes.
 local function forget(state)
-  state.typed, state.first, state.last, state.removed, state.place = nil, nil, nil, nil, nil
+  state.typed, state.first, state.last, state.removed, state.place, state.missing = nil, nil, nil, nil, nil, nil
 end
 
 --- Runs changes that are the plugin's own, which call for no mending.
@@ -112,6 +112,26 @@ local function mend(running, buffer, first, last, place)
   end
 end
 
+--- Fills a row up where cells of it went away: wire in a wire, else blanks. Answers whether it could, which is in a
+--- drawing only. It is a part of the undo step of the change before it.
+local function fill(buffer, place, missing)
+  local row, column = place[1], place[2]
+  local text = vim.api.nvim_buf_get_lines(buffer, row, row + 1, false)[1] or ''
+  if not text:match('^%s*[|+].*[|+]%s*$') then
+    return false
+  end
+  local in_wire = text:sub(column, column + 1):find('-', 1, true)
+  local cursor = vim.api.nvim_win_get_cursor(0)
+  M.quietly(buffer, function()
+    if not vim.fn.mode():match('^[iR]') then
+      vim.cmd('silent! undojoin')
+    end
+    vim.api.nvim_buf_set_text(buffer, row, column, row, column, { (in_wire and '-' or ' '):rep(missing) })
+    vim.api.nvim_win_set_cursor(0, cursor)
+  end)
+  return true
+end
+
 --- Whether the server wants to hear of a typed character.
 local function triggers(running, character)
   local offered = running.server_capabilities.documentOnTypeFormattingProvider
@@ -125,14 +145,18 @@ end
 --- Something changed in Insert mode: one typed character is formatted, everything else is mended.
 local function changed_in_insert(running, buffer, state)
   -- What was typed over a selection is mended: on-type formatting takes every character for one squeezed in.
-  local typed, first, last = not state.removed and state.typed or nil, state.first, state.last
-  local place = state.place
+  local over = state.removed and state.typed ~= nil
+  local typed, first, last = not over and state.typed or nil, state.first, state.last
+  local place, missing = state.place, state.missing or 0
   forget(state)
   local lines = vim.api.nvim_buf_line_count(buffer)
   local added = lines - state.lines
   state.lines = lines
   -- Typing over cells moves none of them.
   if not first or vim.fn.mode() == 'R' then
+    return
+  end
+  if added == 0 and first == last and missing > 0 and fill(buffer, place, missing) then
     return
   end
   local character = typed or (added == 1 and last == first + 1 and '\n' or nil)
@@ -148,13 +172,16 @@ end
 --- Something changed in Normal mode: a deletion inside lines or a paste is mended, undo and redo are not.
 local function changed_in_normal(running, buffer, state)
   local first, last = state.first, state.last
-  local place = state.place
+  local place, missing = state.place, state.missing or 0
+  local before = state.lines
   forget(state)
   state.lines = vim.api.nvim_buf_line_count(buffer)
   local seq = vim.fn.undotree().seq_last
   local is_new = seq > state.seq
   state.seq = seq
-  if is_new and first and last - first <= MOST_LINES then
+  if not is_new or not first or last - first > MOST_LINES then
+    return
+  elseif first ~= last or before ~= state.lines or missing <= 0 or not fill(buffer, place, missing) then
     mend(running, buffer, first, last, place)
   end
 end
@@ -169,6 +196,7 @@ local function note(state, start_row, start_col, old_row, old_col, new_row, new_
   state.first = math.min(state.first or start_row, start_row)
   state.last = math.max(state.last or 0, start_row + new_row)
   state.place = { start_row + new_row, (new_row == 0 and start_col or 0) + new_col }
+  state.missing = (state.missing or 0) + old_col - new_col
   state.removed = state.removed or old_row > 0 or old_col > 0
 end
 
@@ -227,10 +255,12 @@ function M.autocommands(buffer, state)
   end)
   on({ 'TextChangedI', 'TextChangedP' }, changed_in_insert)
   on('TextChanged', changed_in_normal)
-  -- The changes of Insert mode were looked at one by one; TextChanged does not see them again.
-  on('InsertLeave', function()
+  -- The changes of Insert mode were looked at one by one, but for those of a person who left it in a hurry; TextChanged
+  -- does not see them again.
+  on('InsertLeave', function(running)
+    state.typed = state.typed and state.typed .. ' '
+    changed_in_insert(running, buffer, state)
     state.seq = vim.fn.undotree().seq_last
-    forget(state)
   end)
 end
 
