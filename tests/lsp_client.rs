@@ -26,13 +26,19 @@ pub struct Client {
 impl Client {
     /// A server that was just started.
     pub fn spawn() -> Client {
-        Client::spawn_program(env!("CARGO_BIN_EXE_rungwise").as_ref())
+        Client::spawn_with(&[])
+    }
+
+    /// A server that was just started with further arguments.
+    pub fn spawn_with(arguments: &[&str]) -> Client {
+        Client::spawn_program(env!("CARGO_BIN_EXE_rungwise").as_ref(), arguments)
     }
 
     /// A server of the program `rungwise`, or another build of it.
-    pub fn spawn_program(rungwise: &Path) -> Client {
+    pub fn spawn_program(rungwise: &Path, arguments: &[&str]) -> Client {
         let mut server = Command::new(rungwise)
             .arg("lsp")
+            .args(arguments)
             .env("LC_ALL", "C")
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())

@@ -10,6 +10,7 @@
 
 mod chinese;
 mod cli;
+mod command_line;
 mod corpus;
 mod document;
 mod extremes;
@@ -30,6 +31,7 @@ mod lsp_client;
 mod lsp_edit;
 mod lsp_tokens;
 mod manifest_schema;
+mod markdown;
 mod mistakes;
 mod rules;
 mod rules_drawing;

@@ -2,7 +2,8 @@
 
 use super::colour::Colour;
 use super::diff;
-use super::input::{Program, complain, programs, say};
+use super::encoding;
+use super::input::{Program, complain, programs, say, say_bytes};
 use super::{Outcome, paths_or_here};
 use crate::ide::{self, Style};
 use crate::project::FormatStyle;
@@ -37,8 +38,8 @@ pub(super) fn run(arguments: &Arguments, colour: Colour, language: Language) -> 
         return Outcome::Unusable;
     };
     let mut outcome = Outcome::Clean;
-    for program in programs {
-        let result = format_one(&program, arguments, colour, language);
+    for file in programs.chunk_by(|one, next| one.path == next.path) {
+        let result = format_file(file, arguments, colour, language);
         if outcome != Outcome::Unusable && result != Outcome::Clean {
             outcome = result;
         }
@@ -46,18 +47,37 @@ pub(super) fn run(arguments: &Arguments, colour: Colour, language: Language) -> 
     outcome
 }
 
-fn format_one(program: &Program, arguments: &Arguments, colour: Colour, language: Language) -> Outcome {
+/// `programs` are those of one file: one, or the fences of a Markdown text.
+fn format_file(programs: &[Program], arguments: &Arguments, colour: Colour, language: Language) -> Outcome {
+    let Some(program) = programs.first() else { return Outcome::Clean };
     let path = program.path.display();
-    if program.damaged {
+    let Some(encoding) = program.encoding else {
         let reason = Message::new("cli.not-utf-8-left").with("path", path).render(language);
         complain("not-utf-8", &reason, &Message::new("cli.save-as-utf-8").render(language), language);
         return Outcome::Unusable;
-    }
+    };
     let style = style_of(program, arguments.style);
-    let text = program.document.text();
-    let formatted = TextEdit::apply_all(&ide::format(&program.document, style), &text);
+    let (text, formatted) = match &program.fence {
+        None => (program.document.text(), formatted(program, style)),
+        Some(fence) => {
+            let mut text = fence.text.to_string();
+            // From the last to the first, so that the places of the others hold.
+            for program in programs.iter().rev() {
+                if let Some(fence) = &program.fence {
+                    text.replace_range(fence.content.clone(), &formatted(program, style));
+                }
+            }
+            (fence.text.to_string(), text)
+        }
+    };
+    // The canonical form has no characters that the program has not, but those of a style.
+    let Some(bytes) = encoding::write(&formatted, encoding) else {
+        let reason = Message::new("cli.not-utf-8-left").with("path", path).render(language);
+        complain("not-utf-8", &reason, &Message::new("cli.save-as-utf-8").render(language), language);
+        return Outcome::Unusable;
+    };
     if arguments.stdout {
-        say(&formatted);
+        say_bytes(&bytes);
         return Outcome::Clean;
     }
     if formatted == text {
@@ -73,7 +93,7 @@ fn format_one(program: &Program, arguments: &Arguments, colour: Colour, language
         complain("unwritable", &reason, &Message::new("cli.file-as-it-was").render(language), language);
         return Outcome::Unusable;
     }
-    match write_whole(&program.path, &formatted) {
+    match write_whole(&program.path, &bytes) {
         Ok(()) => {
             say(&format!("{path}\n"));
             Outcome::Clean
@@ -84,6 +104,18 @@ fn format_one(program: &Program, arguments: &Arguments, colour: Colour, language
             Outcome::Unusable
         }
     }
+}
+
+/// The canonical text of a program; that of a fence without the lines before it, which stay as they are.
+fn formatted(program: &Program, style: Style) -> String {
+    let before = program.fence.as_ref().map_or(0, |fence| fence.before);
+    let mut edits = match &program.fence {
+        Some(fence) if fence.is_indented => Vec::new(),
+        _ => ide::format(&program.document, style),
+    };
+    edits.retain(|edit| edit.span.start as usize >= before);
+    let text = TextEdit::apply_all(&edits, &program.document.text());
+    text.get(before..).unwrap_or("").to_string()
 }
 
 fn style_of(program: &Program, name: Option<StyleName>) -> Style {
@@ -97,12 +129,12 @@ fn style_of(program: &Program, name: Option<StyleName>) -> Style {
 }
 
 /// Writes beside the file and then renames, so that a full disk or a pulled plug never leaves half a program.
-fn write_whole(path: &std::path::Path, text: &str) -> std::io::Result<()> {
+fn write_whole(path: &std::path::Path, bytes: &[u8]) -> std::io::Result<()> {
     let path = path.canonicalize()?;
     let mut name = path.file_name().unwrap_or_default().to_os_string();
     name.push(".rungwise-new");
     let beside = path.with_file_name(name);
-    let result = std::fs::write(&beside, text)
+    let result = std::fs::write(&beside, bytes)
         .and_then(|()| std::fs::set_permissions(&beside, std::fs::metadata(&path)?.permissions()))
         .and_then(|()| std::fs::rename(&beside, &path));
     if result.is_err() {

@@ -1,11 +1,13 @@
 //! Reading programs from files, folders and projects, and telling what cannot be read.
 
-use crate::document::Document;
+use super::encoding;
+use crate::document::{Document, fences};
 use crate::project::{MANIFEST_NAME, Manifest, Project, is_program_file, open_document, program_files};
 use crate::target::Target;
 use crate::text::{Encoding, Language, LineColumn, Message};
 use std::collections::HashSet;
 use std::io::{ErrorKind, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -14,8 +16,22 @@ pub(super) struct Program {
     pub path: PathBuf,
     pub document: Document,
     pub manifest: Arc<Manifest>,
-    /// Whether the file was no UTF-8; broken bytes are replaced and `fmt` must not write it.
-    pub damaged: bool,
+    /// How the file is written; `None` if broken bytes were replaced, so that `fmt` must not write it.
+    pub encoding: Option<encoding::Encoding>,
+    /// Where it stands in its file, if that is a Markdown text; the document has it at its lines.
+    pub fence: Option<InFence>,
+}
+
+/// A fence of a Markdown text.
+pub(super) struct InFence {
+    /// The whole text.
+    pub text: Arc<str>,
+    /// The bytes of the fence's content.
+    pub content: Range<usize>,
+    /// Bytes of line ends before the content in the document.
+    pub before: usize,
+    /// Whether its lines begin with the blanks of a list, so that they are not formatted.
+    pub is_indented: bool,
 }
 
 /// The programs at `paths`, or nothing after complaints about what cannot be read or that there are none.
@@ -35,10 +51,10 @@ pub(super) fn programs(
                     if !seen.insert(file.canonicalize().unwrap_or_else(|_| file.clone())) {
                         continue;
                     }
-                    match read_program(&file, manifest, target) {
-                        Ok(program) => {
-                            failed |= refused(&program, target, language);
-                            programs.push(program);
+                    match read_programs(&file, &manifest, target) {
+                        Ok(read) => {
+                            failed |= read.iter().any(|program| refused(program, target, language));
+                            programs.extend(read);
                         }
                         Err(reason) => {
                             failed = true;
@@ -78,8 +94,13 @@ fn refused(program: &Program, target: Option<&'static Target>, language: Languag
 /// Writes `text` to standard output. A reader that went away, as `head` does, is no failure; where nothing can be
 /// written for another reason, as on a full disk, the process ends, lest half a result pass for a whole one.
 pub(super) fn say(text: &str) {
+    say_bytes(text.as_bytes());
+}
+
+/// The same for text in another encoding.
+pub(super) fn say_bytes(bytes: &[u8]) {
     let mut output = std::io::stdout().lock();
-    let Err(reason) = output.write_all(text.as_bytes()).and_then(|()| output.flush()) else { return };
+    let Err(reason) = output.write_all(bytes).and_then(|()| output.flush()) else { return };
     if reason.kind() != ErrorKind::BrokenPipe {
         let language = super::language::spoken();
         let help = Message::new("cli.make-room").render(language);
@@ -112,7 +133,7 @@ fn files_at(path: &Path, language: Language) -> Result<Vec<(PathBuf, Arc<Manifes
         );
     }
     if path.is_file() {
-        if !is_program_file(path) {
+        if !is_program_file(path) && !is_markdown(path) {
             return Err(Message::new("cli.no-program-file").with("path", path.display()).render(language));
         }
         let manifest = manifest_for(path, language)?;
@@ -144,16 +165,32 @@ fn usable(project: &Project, language: Language) -> Result<Arc<Manifest>, String
     Err(format!("{}:{}:{}: {reason}", path.display(), line + 1, column + 1))
 }
 
-fn read_program(
+/// The program in a file, or all those in the fences of a Markdown text.
+fn read_programs(
     path: &Path,
-    manifest: Arc<Manifest>,
+    manifest: &Arc<Manifest>,
     target: Option<&'static Target>,
-) -> std::io::Result<Program> {
-    let bytes = std::fs::read(path)?;
-    let (text, damaged) = match String::from_utf8(bytes) {
-        Ok(text) => (text, false),
-        Err(broken) => (String::from_utf8_lossy(broken.as_bytes()).into_owned(), true),
+) -> std::io::Result<Vec<Program>> {
+    let (text, encoding) = encoding::read(std::fs::read(path)?);
+    let program = |name: &str, text: &str, fence: Option<InFence>| {
+        let document = open_document(name, text, manifest, target, None);
+        Program { path: path.to_path_buf(), document, manifest: manifest.clone(), encoding, fence }
     };
-    let document = open_document(&path.to_string_lossy(), &text, &manifest, target, None);
-    Ok(Program { path: path.to_path_buf(), document, manifest, damaged })
+    if !is_markdown(path) {
+        return Ok(vec![program(&path.to_string_lossy(), &text, None)]);
+    }
+    let text: Arc<str> = text.into();
+    let programs = fences(&text).into_iter().map(|fence| {
+        let isolated = fence.isolated(&text);
+        let before = isolated.len() - fence.content.len();
+        let (content, is_indented) = (fence.content.clone(), fence.is_indented);
+        let place = InFence { text: text.clone(), content, before, is_indented };
+        program(fence.ending(), &isolated, Some(place))
+    });
+    Ok(programs.collect())
+}
+
+/// Whether the name is that of a Markdown text. Only those that are named are read, not all of a folder.
+fn is_markdown(path: &Path) -> bool {
+    path.extension().is_some_and(|end| end.eq_ignore_ascii_case("md") || end.eq_ignore_ascii_case("markdown"))
 }

@@ -4,6 +4,7 @@ mod check;
 mod colour;
 mod completions;
 mod diff;
+mod encoding;
 mod explain;
 mod fmt;
 mod help;

@@ -30,7 +30,8 @@ struct Known {
     keeps_tree: bool,
     /// Where a drawing has its names, as far as its edges tell.
     habit: NameHabit,
-    summary: OnceLock<Summary>,
+    outline: OnceLock<Outline>,
+    mentions: OnceLock<Box<[Mention]>>,
     tokens: OnceLock<Box<[Token]>>,
     found: Kept,
 }
@@ -63,10 +64,9 @@ enum Kind {
     Tables,
 }
 
-/// What all readers of the whole document need of a chunk.
+/// What the rules about the whole program need of a chunk.
 #[derive(Debug)]
-struct Summary {
-    mentions: Box<[Mention]>,
+struct Outline {
     size: Size,
     milestones: Box<[Milestone]>,
 }
@@ -124,7 +124,8 @@ impl Chunk {
             // Rules about whole programs look at trees of IEC 61131-3.
             habit: if kind == Kind::Ladder { ladder::habit_of(text) } else { NameHabit::default() },
             keeps_tree: keeps_tree || matches!(kind, Kind::Iec | Kind::Tables),
-            summary: OnceLock::new(),
+            outline: OnceLock::new(),
+            mentions: OnceLock::new(),
             tokens: OnceLock::new(),
             found: Mutex::new(None),
         };
@@ -211,7 +212,7 @@ impl Chunk {
 
     /// Every device, variable and label that it names, in the order of the text.
     pub fn mentions(&self) -> &[Mention] {
-        &self.summary().mentions
+        self.known.mentions.get_or_init(|| mention::of_chunk(&self.reading()).into_boxed_slice())
     }
 
     /// Every word and symbol with what it means, in order, none overlapping, none over more than one line.
@@ -221,19 +222,18 @@ impl Chunk {
 
     /// How much program it is.
     pub fn size(&self) -> Size {
-        self.summary().size
+        self.outline().size
     }
 
     /// Its instructions and labels as far as they matter for the structure of a program.
     pub(super) fn milestones(&self) -> &[Milestone] {
-        &self.summary().milestones
+        &self.outline().milestones
     }
 
-    fn summary(&self) -> &Summary {
-        self.known.summary.get_or_init(|| {
+    fn outline(&self) -> &Outline {
+        self.known.outline.get_or_init(|| {
             let reading = self.reading();
-            Summary {
-                mentions: mention::of_chunk(&reading).into_boxed_slice(),
+            Outline {
                 size: Size::of(&reading),
                 milestones: milestone::of_chunk(&reading).into_boxed_slice(),
             }
@@ -241,12 +241,21 @@ impl Chunk {
     }
 
     /// The local diagnostics under `key`, which stands for everything outside of the chunk that they depend on;
-    /// made by `find` unless they are there already. What else is known of the chunk is made from the same tree.
-    pub fn found(&self, key: u64, find: impl FnOnce(&Chunk) -> Vec<Diagnostic>) -> Arc<[Diagnostic]> {
+    /// made by `find` unless they are there already. What else is known of the chunk is made from the same tree, its
+    /// mentions if `with_mentions` says that somebody will ask for them.
+    pub fn found(
+        &self,
+        key: u64,
+        with_mentions: bool,
+        find: impl FnOnce(&Chunk) -> Vec<Diagnostic>,
+    ) -> Arc<[Diagnostic]> {
         kept(&self.known.found, key, || {
             let reading = self.reading();
             let found = find(&reading);
-            reading.summary();
+            reading.outline();
+            if with_mentions {
+                reading.mentions();
+            }
             found
         })
     }

@@ -15,6 +15,9 @@ pub use chunk::{Chunk, Reading, Tree};
 
 mod exported;
 
+mod fences;
+pub use fences::{Fence, fences};
+
 mod pages;
 pub use pages::Page;
 

@@ -17,9 +17,9 @@ pub struct Page {
     has_iec: bool,
     habit: NameHabit,
     size: OnceLock<Size>,
-    names: OnceLock<Names>,
+    names: OnceLock<Arc<Names>>,
     pou_starts: OnceLock<usize>,
-    milestones: OnceLock<Box<[Milestone]>>,
+    milestones: OnceLock<Arc<[Milestone]>>,
     found: chunk::Kept,
 }
 
@@ -69,7 +69,7 @@ impl Page {
 
     /// What its chunks name.
     pub fn names(&self) -> &Names {
-        self.names.get_or_init(|| Names::of(&self.chunks))
+        self.names.get_or_init(|| Arc::new(Names::of(&self.chunks)))
     }
 
     /// How many POUs start in it.
@@ -80,7 +80,7 @@ impl Page {
 
     /// Its instructions and labels as far as they matter for the structure of a program, offsets from its start.
     pub fn milestones(&self) -> &[Milestone] {
-        self.milestones.get_or_init(|| milestone::of_page(&self.chunks))
+        self.milestones.get_or_init(|| milestone::of_page(&self.chunks).into())
     }
 
     /// Whether there are diagnostics under `key`.
@@ -124,7 +124,17 @@ impl Pages {
         };
         let lean_page = |page: &Arc<Page>| match page.chunks.iter().all(|chunk| chunk.keeps_tree()) {
             true => page.clone(),
-            false => Page::new(page.chunks.iter().map(lean).collect()),
+            false => Arc::new(Page {
+                chunks: page.chunks.iter().map(lean).collect(),
+                bytes: page.bytes,
+                has_iec: page.has_iec,
+                habit: page.habit,
+                size: page.size.clone(),
+                names: page.names.clone(),
+                pou_starts: page.pou_starts.clone(),
+                milestones: page.milestones.clone(),
+                found: Mutex::new(None),
+            }),
         };
         Pages { pages: self.pages.iter().map(lean_page).collect() }
     }

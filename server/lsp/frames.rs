@@ -102,7 +102,12 @@ enum Id {
 }
 
 /// The messages of `input`, re-framed; ends when `input` does.
-pub(super) fn sound(input: impl AsyncRead + Send + Unpin + 'static) -> DuplexStream {
+///
+/// `translate` gives the messages that stand for one of the client's.
+pub(super) fn sound(
+    input: impl AsyncRead + Send + Unpin + 'static,
+    mut translate: impl FnMut(Vec<u8>) -> Vec<Vec<u8>> + Send + 'static,
+) -> DuplexStream {
     let (mut writer, reader) = tokio::io::duplex(PIPE_BYTES);
     tokio::spawn(async move {
         let mut input = BufReader::with_capacity(PIPE_BYTES, input);
@@ -116,9 +121,11 @@ pub(super) fn sound(input: impl AsyncRead + Send + Unpin + 'static) -> DuplexStr
                 tracing::error!("a message of {length} bytes is no JSON-RPC message and was dropped");
                 continue;
             }
-            let header = format!("Content-Length: {length}\r\n\r\n");
-            if writer.write_all(header.as_bytes()).await.is_err() || writer.write_all(&body).await.is_err() {
-                return;
+            for body in translate(body) {
+                let header = format!("Content-Length: {}\r\n\r\n", body.len());
+                if writer.write_all(header.as_bytes()).await.is_err() || writer.write_all(&body).await.is_err() {
+                    return;
+                }
             }
         }
     });
@@ -142,6 +149,15 @@ async fn next_length(input: &mut (impl AsyncBufReadExt + Unpin)) -> Option<usize
             (false, _) => length = content_length(line).or(length),
         }
     }
+}
+
+/// Start and end of the body of the first frame in `bytes`, if it is there as a whole.
+pub(super) fn whole_frame(bytes: &[u8]) -> Option<(usize, usize)> {
+    let head = bytes.windows(4).position(|part| part == b"\r\n\r\n")?;
+    let lines = String::from_utf8_lossy(&bytes[..head]);
+    let length = lines.lines().filter_map(content_length).next_back().unwrap_or(0);
+    let end = head + 4 + length;
+    (bytes.len() >= end).then_some((head + 4, end))
 }
 
 fn content_length(line: &str) -> Option<usize> {
@@ -168,7 +184,7 @@ mod tests {
         let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
         let input = std::io::Cursor::new(input.to_vec());
         let mut text = String::new();
-        runtime.block_on(async { sound(input).read_to_string(&mut text).await.unwrap() });
+        runtime.block_on(async { sound(input, |body| vec![body]).read_to_string(&mut text).await.unwrap() });
         let expected: String = passed.iter().map(|body| frame(body)).collect();
         assert_eq!(text, expected);
     }

@@ -7,9 +7,11 @@
 mod backend;
 mod capabilities;
 mod editing;
+mod fences;
 mod frames;
 mod keeper;
 mod manifests;
+mod outlet;
 mod projects;
 mod publisher;
 mod recording;
@@ -59,7 +61,10 @@ pub async fn serve_between(
     .finish();
     let Some(workspace) = workspace else { return 1 };
     let ordered = Ordered::new(service, workspace.clone());
-    Server::new(frames::sound(input), output, socket)
+    let translator = fences::Translator::default();
+    let (inward, asked) = (translator.clone(), workspace.clone());
+    let input = frames::sound(input, move |body| inward.incoming(body, || asked.snapshot().manner.encoding));
+    Server::new(input, outlet::Outlet::new(output, translator), socket)
         .concurrency_level(CONCURRENCY)
         .serve(ordered)
         .await;

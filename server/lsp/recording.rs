@@ -1,6 +1,7 @@
 //! Recordings of what a client sends, for bug reports: one line of JSON a message, `{"ms": 12, "message": {…}}`, with
 //! the milliseconds since the start of the server.
 
+use super::frames::whole_frame;
 use super::serve_between;
 use crate::text::Language;
 use serde::{Deserialize, Serialize};
@@ -146,16 +147,4 @@ impl<W: std::io::Write> Recorder<W> {
 fn one_line(ms: u64, message: &RawValue) -> Option<String> {
     let value: serde_json::Value = serde_json::from_str(message.get()).ok()?;
     serde_json::to_string(&serde_json::json!({"ms": ms, "message": value})).ok()
-}
-
-/// The body of the first frame in `bytes`, if it is there as a whole.
-fn whole_frame(bytes: &[u8]) -> Option<(usize, usize)> {
-    let head = bytes.windows(4).position(|part| part == b"\r\n\r\n")?;
-    let text = String::from_utf8_lossy(&bytes[..head]);
-    let length = text.lines().rev().find_map(|line| {
-        let (name, value) = line.split_once(':')?;
-        name.trim().to_ascii_lowercase().ends_with("content-length").then(|| value.trim().parse::<usize>().ok())?
-    });
-    let end = (head + 4).checked_add(length.unwrap_or(0))?;
-    (bytes.len() >= end).then_some((head + 4, end))
 }

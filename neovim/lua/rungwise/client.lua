@@ -87,10 +87,26 @@ local function resolved()
   return vim.deepcopy(configured or M.config())
 end
 
+--- Whether a buffer is a program, or Markdown with one in a fence.
+function M.serves(buffer)
+  if vim.bo[buffer].filetype ~= 'markdown' then
+    return vim.list_contains(M.filetypes, vim.bo[buffer].filetype)
+  end
+  for _, line in ipairs(vim.api.nvim_buf_get_lines(buffer, 0, -1, false)) do
+    local info = line:match('^%s*```+%s*([%w-]+)') or line:match('^%s*~~~+%s*([%w-]+)')
+    if info and vim.list_contains({ 'ladder', 'lad', 'plc-ladder', 'il', 'plc-il' }, info:lower()) then
+      return true
+    end
+  end
+  return false
+end
+
 --- Starts the server for a buffer, or attaches the one that runs for its project.
 function M.start(buffer)
   local config = resolved()
-  config.root_dir = config.root_dir or vim.fs.root(buffer, config.root_markers or M.root_markers)
+  -- The function that decides for a buffer has decided already.
+  local given = type(config.root_dir) == 'string' and config.root_dir or nil
+  config.root_dir = given or vim.fs.root(buffer, config.root_markers or M.root_markers)
   return vim.lsp.start(config, { bufnr = buffer })
 end
 
@@ -144,7 +160,7 @@ function M.restart()
     buffers = { vim.api.nvim_get_current_buf() }
   end
   for _, buffer in ipairs(buffers) do
-    if vim.list_contains(M.filetypes, vim.bo[buffer].filetype) then
+    if M.serves(buffer) then
       M.start(buffer)
     end
   end
