@@ -289,7 +289,7 @@ impl Scanner<'_> {
         let end = self.contact_end(row, column)?;
         let linked = [column, end - 1].map(|bar| self.linked(row, bar));
         let outer = [column > 0 && self.leads(row, column - 1), self.leads(row, end)];
-        let blank = self.grid.at(row, column + 1) == ' ';
+        let blank = self.grid.at(row, column + 1) == ' ' || end == column + 2;
         let (some_linked, all_linked) = (linked[0] || linked[1], linked[0] && linked[1]);
         if column == self.left || (blank && all_linked) || (some_linked && outer != [true, true]) {
             return None;
@@ -322,6 +322,12 @@ impl Scanner<'_> {
             return None;
         }
         let mark = self.grid.at(row, column + 1);
+        let wire = |column: usize| self.grid.arms(row, column).is_horizontal();
+        // `--||--`: two bars in the middle of a wire that belong to nothing above and below.
+        let touching = column > 0 && closes(column + 1) && wire(column - 1) && wire(column + 2);
+        if touching && !self.linked_raw(row, column) && !self.linked_raw(row, column + 1) {
+            return Some(column + 2);
+        }
         let end = if contact_mark(mark).is_some() && closes(column + 2) {
             column + 3
         } else if is_operator(mark) {

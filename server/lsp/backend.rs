@@ -3,6 +3,7 @@
 use super::capabilities;
 use super::editing;
 use super::to_proto::{self, Place};
+use super::tokens;
 use super::workspace::{Open, SNAPSHOT, Snapshot, Workspace};
 use crate::check;
 use crate::ide;
@@ -129,8 +130,28 @@ impl LanguageServer for Backend {
         &self,
         params: SemanticTokensParams,
     ) -> Result<Option<SemanticTokensResult>> {
-        whole(params.text_document.uri, |_, place| {
-            to_proto::semantic_tokens(place, &ide::semantic_tokens(place.document)).into()
+        let workspace = self.workspace.clone();
+        aside(params.text_document.uri, move |open, place| workspace.tokens.full(&open.uri, place).into())
+            .await
+    }
+
+    async fn semantic_tokens_full_delta(
+        &self,
+        params: SemanticTokensDeltaParams,
+    ) -> Result<Option<SemanticTokensFullDeltaResult>> {
+        let workspace = self.workspace.clone();
+        aside(params.text_document.uri, move |open, place| {
+            workspace.tokens.delta(&open.uri, &params.previous_result_id, place)
+        })
+        .await
+    }
+
+    async fn semantic_tokens_range(
+        &self,
+        params: SemanticTokensRangeParams,
+    ) -> Result<Option<SemanticTokensRangeResult>> {
+        aside(params.text_document.uri, move |_, place| {
+            tokens::within(place, place.span(params.range).range()).into()
         })
         .await
     }
@@ -165,6 +186,38 @@ impl LanguageServer for Backend {
             fixes.chain(edits.into_iter().map(CodeActionOrCommand::from)).collect()
         })
         .await
+    }
+
+    async fn on_type_formatting(
+        &self,
+        params: DocumentOnTypeFormattingParams,
+    ) -> Result<Option<Vec<TextEdit>>> {
+        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let at = params.text_document_position;
+        Ok(with_open(&at.text_document.uri, |open, place| {
+            let style = settings.style(&open.manifest);
+            let edits = ide::typed(place.document, place.offset(at.position), &params.ch, style);
+            Some(place.edits(&edits))
+        }))
+    }
+
+    async fn selection_range(&self, params: SelectionRangeParams) -> Result<Option<Vec<SelectionRange>>> {
+        Ok(with_open(&params.text_document.uri, |_, place| {
+            let positions = params.positions.iter();
+            Some(positions.map(|position| editing::selection_range(place, *position)).collect())
+        }))
+    }
+
+    async fn linked_editing_range(
+        &self,
+        params: LinkedEditingRangeParams,
+    ) -> Result<Option<LinkedEditingRanges>> {
+        let at = params.text_document_position_params;
+        Ok(with_open(&at.text_document.uri, |_, place| {
+            let places = ide::linked_places(place.document, place.offset(at.position));
+            let ranges = places.into_iter().map(|span| place.range(span)).collect::<Vec<_>>();
+            (!ranges.is_empty()).then_some(LinkedEditingRanges { ranges, word_pattern: None })
+        }))
     }
 
     async fn code_action_resolve(&self, action: CodeAction) -> Result<CodeAction> {
@@ -210,6 +263,14 @@ impl Backend {
         edited.transpose()
     }
 
+    /// `rungwise/object`
+    pub(super) async fn object(
+        &self,
+        params: editing::ObjectParams,
+    ) -> Result<Option<editing::ObjectResult>> {
+        Ok(with_open(&params.text_document.uri, |_, place| editing::object(place, &params)))
+    }
+
     /// Computes the edits and asks the client to apply them; the answer says how many there are.
     async fn format(&self, uri: Uri) -> Result<Option<LSPAny>> {
         let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
@@ -236,16 +297,24 @@ fn with_open<T>(uri: &Uri, answer: impl FnOnce(&Open, Place<'_>) -> Option<T>) -
     answer(open, Place::new(&open.document, snapshot.manner))
 }
 
-/// The same for answers that walk the whole document: they run on a thread of their own.
+/// The same for answers that walk the whole document: they run on a thread of their own, and the trees that they read
+/// go away with them.
 async fn whole<T: Send + 'static>(
+    uri: Uri,
+    answer: impl FnOnce(&Open, Place<'_>) -> T + Send + 'static,
+) -> Result<Option<T>> {
+    aside(uri, move |open, place| answer(open, Place { document: &place.document.lean(), ..place })).await
+}
+
+/// The same on a thread of its own, for answers that look at much of a document but read no trees.
+async fn aside<T: Send + 'static>(
     uri: Uri,
     answer: impl FnOnce(&Open, Place<'_>) -> T + Send + 'static,
 ) -> Result<Option<T>> {
     let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
     let work = tokio::task::spawn_blocking(move || {
         let open = snapshot.open(&uri)?;
-        // The trees of a walk through the whole document go away with it.
-        Some(answer(open, Place::new(&open.document.lean(), snapshot.manner)))
+        Some(answer(open, Place::new(&open.document, snapshot.manner)))
     });
     work.await.map_err(|failure| {
         tracing::error!("a request failed: {failure}");

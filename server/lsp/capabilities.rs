@@ -1,6 +1,6 @@
 //! What the server offers, and what the client can do.
 
-use super::to_proto;
+use super::{editing, to_proto};
 use crate::text::Encoding;
 use tower_lsp::ls_types::*;
 
@@ -77,11 +77,15 @@ pub(super) fn offered(client: &ClientCapabilities, encoding: Encoding, pulls: bo
             resolve_provider: Some(true),
             ..CodeActionOptions::default()
         })),
+        document_on_type_formatting_provider: Some(editing::on_type()),
+        selection_range_provider: Some(SelectionRangeProviderCapability::Simple(true)),
+        linked_editing_range_provider: Some(LinkedEditingRangeServerCapabilities::Simple(true)),
         inlay_hint_provider: Some(OneOf::Left(true)),
         semantic_tokens_provider: Some(SemanticTokensServerCapabilities::SemanticTokensOptions(
             SemanticTokensOptions {
                 legend: to_proto::legend(),
-                full: Some(SemanticTokensFullOptions::Bool(true)),
+                range: Some(true),
+                full: Some(SemanticTokensFullOptions::Delta { delta: Some(true) }),
                 ..SemanticTokensOptions::default()
             },
         )),

@@ -25,6 +25,19 @@
 //!
 //! Errors: a JSON-RPC error whose message says in the user's language why not; nothing is ever changed in part.
 //!
+//! # `rungwise/object`
+//!
+//! A request about text objects. Parameters:
+//!
+//! ```text
+//! { textDocument: { uri }, position: Position, object: "element" | "branch" | "rung" | "network", around: bool }
+//! ```
+//!
+//! Result: `{ range: Range, blockwise: bool }`, or null where there is none. A blockwise range is a rectangle of
+//! cells from its start to before its end; others are the text between. Around an element is its name on another row,
+//! around a branch its wires up to the vertical ones, around a rung its comment and the blank lines below, around a
+//! network its header.
+//!
 //! # Code actions
 //!
 //! The same edits as actions of kind `refactor.rewrite.ladder.<edit>`, offered where they make sense. A client that
@@ -32,7 +45,7 @@
 
 use super::to_proto::Place;
 use super::workspace::Open;
-use crate::ide::{self, EditKind, Style};
+use crate::ide::{self, EditKind, ObjectKind, Style};
 use crate::text::Message;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -84,6 +97,46 @@ pub(super) fn edit(open: &Open, place: Place<'_>, params: &EditParams, style: St
     after.apply(&edits.collect::<Vec<_>>());
     let selection = Place { document: &after, ..place }.range(edited.selection);
     Ok(EditResult { edits: place.edits(&edited.edits), selection })
+}
+
+/// Parameters of `rungwise/object`.
+#[derive(Clone, Deserialize, Debug)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct ObjectParams {
+    pub text_document: TextDocumentIdentifier,
+    pub position: Position,
+    pub object: String,
+    #[serde(default)]
+    pub around: bool,
+}
+
+/// Result of `rungwise/object`.
+#[derive(Clone, Serialize, Debug)]
+pub(super) struct ObjectResult {
+    pub range: Range,
+    pub blockwise: bool,
+}
+
+/// Answers `rungwise/object`.
+pub(super) fn object(place: Place<'_>, params: &ObjectParams) -> Option<ObjectResult> {
+    let kind = match params.object.as_str() {
+        "element" => ObjectKind::Element,
+        "branch" => ObjectKind::Branch,
+        "rung" => ObjectKind::Rung,
+        "network" => ObjectKind::Network,
+        _ => return None,
+    };
+    let object = ide::object(place.document, place.offset(params.position), kind, params.around)?;
+    Some(ObjectResult { range: place.range(object.span), blockwise: object.blockwise })
+}
+
+/// The selection ranges at a position, each with the next larger one as its parent.
+pub(super) fn selection_range(place: Place<'_>, position: Position) -> SelectionRange {
+    let spans = ide::selection_ranges(place.document, place.offset(position));
+    let outward = spans.into_iter().rev().fold(None, |parent, span| {
+        Some(SelectionRange { range: place.range(span), parent: parent.map(Box::new) })
+    });
+    outward.unwrap_or(SelectionRange { range: Range::new(position, position), parent: None })
 }
 
 /// The kind of the code action for an edit.
@@ -144,6 +197,15 @@ pub(super) fn asked_by(action: &CodeAction) -> Option<EditParams> {
 /// The edits of one document. Plain changes reach every client.
 pub(super) fn changes(open: &Open, edits: Vec<TextEdit>) -> WorkspaceEdit {
     WorkspaceEdit { changes: Some(HashMap::from([(open.uri.clone(), edits)])), ..WorkspaceEdit::default() }
+}
+
+/// On-type formatting after Enter and every character of which drawings and their names are made.
+pub(super) fn on_type() -> DocumentOnTypeFormattingOptions {
+    let printable = (' '..='~').chain("─│┌┐└┘├┤┬┴┼".chars()).map(String::from);
+    DocumentOnTypeFormattingOptions {
+        first_trigger_character: "\n".to_string(),
+        more_trigger_character: Some(printable.collect()),
+    }
 }
 
 /// Whether a client asks for the edits of code actions when one is chosen.

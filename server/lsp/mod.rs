@@ -19,6 +19,7 @@ mod service;
 mod settings;
 mod status;
 mod to_proto;
+mod tokens;
 mod workspace;
 
 pub use recording::{NoEntry, replay, serve_mirrored};
@@ -56,6 +57,7 @@ pub async fn serve_between(
         backend::Backend::new(shared)
     })
     .custom_method("rungwise/edit", backend::Backend::edit)
+    .custom_method("rungwise/object", backend::Backend::object)
     .finish();
     let Some(workspace) = workspace else { return 1 };
     let ordered = Ordered::new(service, workspace.clone());

@@ -6,6 +6,7 @@ use super::manifests::Manifests;
 use super::projects::{Loaded, Projects, canonical, file_path};
 use super::publisher::Publisher;
 use super::settings::{Settings, Speech};
+use super::tokens::SentTokens;
 use super::to_proto::Manner;
 use crate::check::Severities;
 use crate::document::{Document, Edit, Notation};
@@ -68,6 +69,7 @@ pub(super) struct Open {
 /// The state, and what goes on beside it.
 pub(super) struct Workspace {
     pub client: Client,
+    pub tokens: SentTokens,
     state: Mutex<State>,
     initialised: AtomicBool,
     shut_down: AtomicBool,
@@ -107,6 +109,7 @@ impl Workspace {
     pub(super) fn new(client: Client, speech: Speech) -> Arc<Workspace> {
         Arc::new(Workspace {
             client,
+            tokens: SentTokens::default(),
             state: Mutex::new(State { speech, ..State::default() }),
             initialised: AtomicBool::new(false),
             shut_down: AtomicBool::new(false),
@@ -242,6 +245,7 @@ impl Workspace {
     fn close(&self, params: DidCloseTextDocumentParams) {
         let mut state = self.state();
         let uri = params.text_document.uri;
+        self.tokens.forget(&uri);
         let closed = Arc::make_mut(&mut state.snapshot.documents).remove(&uri);
         if let Some(closed) = closed {
             state.forget_path(&closed);

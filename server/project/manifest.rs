@@ -96,7 +96,9 @@ impl Manifest {
     /// With the place, where it is not TOML, has an unknown key or a value that a key does not take.
     pub fn read(text: &str) -> Result<Manifest, ManifestError> {
         let manifest: Manifest = toml::from_str(text).map_err(|error| {
-            let span = error.span().map_or(Span::default(), |range| Span::new(range.start, range.end));
+            let span = error.span().map_or(Span::default(), |range| {
+                Span::new(at_character(text, range.start), at_character(text, range.end))
+            });
             ManifestError { message: Message::new("manifest.toml").with("reason", error.message()), span }
         })?;
         manifest.validated(text)
@@ -145,6 +147,11 @@ impl Manifest {
         }
         Ok(self)
     }
+}
+
+/// The start of the character that holds the byte `offset`: the reader of TOML may mean a byte inside one.
+fn at_character(text: &str, offset: usize) -> usize {
+    (0..=offset.min(text.len())).rev().find(|offset| text.is_char_boundary(*offset)).unwrap_or(0)
 }
 
 fn dialect_named(word: &str) -> Option<Notation> {

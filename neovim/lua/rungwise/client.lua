@@ -1,4 +1,5 @@
 --- The language client: where the server is, what it is told, starting and restarting it.
+local words = require('rungwise.words')
 local M = {}
 
 M.filetypes = { 'ladder', 'plc-il' }
@@ -54,6 +55,7 @@ function M.settings()
     target = options.target or vim.NIL,
     dialect = options.dialect or vim.NIL,
     format = { style = format.style or vim.NIL, width = format.width or vim.NIL },
+    language = words.language() or vim.NIL,
     inlayHints = { enabled = hints.enabled ~= false },
   }
 end
@@ -117,7 +119,7 @@ end
 function M.enable()
   local server = M.server()
   if vim.fn.executable(server) == 0 then
-    return nil, ('no language server at "%s"; see :checkhealth rungwise'):format(server)
+    return nil, words.t('no language server at "%s"; see :checkhealth rungwise', server)
   end
   if vim.lsp.enable then
     vim.lsp.enable('rungwise')

@@ -1,5 +1,6 @@
 --- The command :Rungwise with its subcommands, and :RungwiseCheck, :RungwiseRestart, :RungwiseLog, :RungwiseTarget.
 local client = require('rungwise.client')
+local t = require('rungwise.words').t
 local M = {}
 
 local TARGETS = { 'auto', 'fx1s', 'fx1n', 'fx2n', 'fx3u', 'iec' }
@@ -11,16 +12,16 @@ function M.check()
   local buffer = vim.api.nvim_get_current_buf()
   local running = client.clients(buffer)[1]
   if not running then
-    notify('no language server for this buffer; see :checkhealth rungwise', vim.log.levels.ERROR)
+    notify(t('no language server for this buffer; see :checkhealth rungwise'), vim.log.levels.ERROR)
     return
   end
   local params = { command = 'rungwise.check', arguments = { vim.uri_from_bufnr(buffer) } }
   client.request(running, 'workspace/executeCommand', params, function(err, result)
     if err then
-      notify('the program was not checked: ' .. (err.message or vim.inspect(err)), vim.log.levels.ERROR)
+      notify(t('the program was not checked: %s', err.message or vim.inspect(err)), vim.log.levels.ERROR)
     else
       local message = type(result) == 'table' and result.message or result
-      notify(type(message) == 'string' and message or 'the server gave no result of the check')
+      notify(type(message) == 'string' and message or t('the server gave no result of the check'))
     end
   end, buffer)
 end
@@ -36,11 +37,11 @@ end
 function M.target(name)
   if name == '' then
     local status = client.status[vim.uri_from_bufnr(0)]
-    notify('target PLC ' .. (status and tostring(status.target) or 'unknown'))
+    notify(t('target PLC %s', status and tostring(status.target) or t('unknown')))
     return
   end
   if not vim.list_contains(TARGETS, name) then
-    notify(('there is no target "%s"; known are %s'):format(name, table.concat(TARGETS, ', ')), vim.log.levels.ERROR)
+    notify(t('there is no target "%s"; known are %s', name, table.concat(TARGETS, ', ')), vim.log.levels.ERROR)
     return
   end
   local options = client.options()
@@ -114,7 +115,7 @@ function M.run(arguments)
   if subcommand then
     subcommand.run(words)
   else
-    notify(('there is no ":Rungwise %s"; there are %s'):format(name, table.concat(subcommand_names(), ', ')),
+    notify(t('there is no ":Rungwise %s"; there are %s', name, table.concat(subcommand_names(), ', ')),
       vim.log.levels.ERROR)
   end
 end
@@ -132,15 +133,15 @@ end
 function M.create()
   local command = vim.api.nvim_create_user_command
   command('Rungwise', M.run, {
-    desc = 'Check, edit, explain: what Rungwise can do', nargs = '+', range = true, complete = M.complete,
+    desc = t('Check, edit, explain: what Rungwise can do'), nargs = '+', range = true, complete = M.complete,
   })
-  command('RungwiseCheck', M.check, { desc = 'Check the program in this buffer' })
-  command('RungwiseRestart', client.restart, { desc = 'Restart the Rungwise language server' })
-  command('RungwiseLog', M.log, { desc = 'Open the log of the language server' })
+  command('RungwiseCheck', M.check, { desc = t('Check the program in this buffer') })
+  command('RungwiseRestart', client.restart, { desc = t('Restart the Rungwise language server') })
+  command('RungwiseLog', M.log, { desc = t('Open the log of the language server') })
   command('RungwiseTarget', function(arguments)
     M.target(arguments.args)
   end, {
-    desc = 'Set the target PLC',
+    desc = t('Set the target PLC'),
     nargs = '?',
     complete = function(start)
       return matching(start, TARGETS)

@@ -1,5 +1,6 @@
 --- The structural edits of a drawing: insert a contact, wrap in a branch, delete an element and close the gap …
 local client = require('rungwise.client')
+local t = require('rungwise.words').t
 local M = {}
 
 --- Every edit by its name for |:Rungwise-edit|: { name of the server, default key after <localleader>, what it does }.
@@ -71,10 +72,10 @@ function M.run(name, operand)
   local buffer = vim.api.nvim_get_current_buf()
   local running = client.clients(buffer)[1]
   if not edit then
-    client.notify(('there is no edit "%s"'):format(name), vim.log.levels.ERROR)
+    client.notify(t('there is no edit "%s"', name), vim.log.levels.ERROR)
     return
   elseif not running then
-    client.notify('no language server for this buffer; see :checkhealth rungwise', vim.log.levels.ERROR)
+    client.notify(t('no language server for this buffer; see :checkhealth rungwise'), vim.log.levels.ERROR)
     return
   end
   local encoding = running.offset_encoding
@@ -90,7 +91,7 @@ function M.run(name, operand)
       client.notify(err.message or vim.inspect(err), vim.log.levels.WARN)
       return
     elseif not result or vim.api.nvim_buf_get_changedtick(buffer) ~= tick then
-      client.notify('the drawing changed meanwhile; nothing was done')
+      client.notify(t('the drawing changed meanwhile; nothing was done'))
       return
     end
     require('rungwise.typing').quietly(buffer, function()

@@ -1,5 +1,6 @@
 --- Keys of a ladder buffer: `<Plug>` names for everything, default keys below <localleader>, and the text objects.
 local client = require('rungwise.client')
+local t = require('rungwise.words').t
 local M = {}
 
 --- Name of the mapping of an edit.
@@ -12,14 +13,14 @@ function M.define()
   for name, edit in pairs(require('rungwise.edit').edits) do
     vim.keymap.set({ 'n', 'x' }, M.plug(name), function()
       require('rungwise.edit').run(name)
-    end, { desc = 'Rungwise: ' .. edit[3] })
+    end, { desc = 'Rungwise: ' .. t(edit[3]) })
   end
   for letter, object in pairs(require('rungwise.textobjects').objects) do
     for _, around in ipairs({ false, true }) do
       local name = (around and 'a' or 'i') .. '-' .. object
       vim.keymap.set({ 'o', 'x' }, M.plug(name), function()
         require('rungwise.textobjects').select(object, around)
-      end, { desc = ('Rungwise: %s %s'):format(around and 'around' or 'inner', object) })
+      end, { desc = 'Rungwise: ' .. t(around and 'around %s' or 'inner %s', t(object)) })
     end
   end
 end
@@ -39,11 +40,11 @@ function M.attach(buffer)
     end
   end
   for name, edit in pairs(require('rungwise.edit').edits) do
-    map({ 'n', 'x' }, '<LocalLeader>' .. edit[2], M.plug(name), edit[3])
+    map({ 'n', 'x' }, '<LocalLeader>' .. edit[2], M.plug(name), t(edit[3]))
   end
   for letter, object in pairs(require('rungwise.textobjects').objects) do
-    map({ 'o', 'x' }, 'i' .. letter, M.plug('i-' .. object), 'inner ' .. object)
-    map({ 'o', 'x' }, 'a' .. letter, M.plug('a-' .. object), 'around ' .. object)
+    map({ 'o', 'x' }, 'i' .. letter, M.plug('i-' .. object), t('inner %s', t(object)))
+    map({ 'o', 'x' }, 'a' .. letter, M.plug('a-' .. object), t('around %s', t(object)))
   end
   return table.concat(undo, ' | ')
 end

@@ -1,5 +1,7 @@
 --- Windows with what the server writes: pages of rules and instructions, and the devices of a program.
 local client = require('rungwise.client')
+local words = require('rungwise.words')
+local t = words.t
 local M = {}
 
 --- Shows text in a window below, which `q` closes. A window with the same name is used again.
@@ -9,7 +11,7 @@ local function show(name, filetype, text)
     buffer = vim.api.nvim_create_buf(false, true)
     vim.api.nvim_buf_set_name(buffer, name)
     vim.bo[buffer].bufhidden = 'wipe'
-    vim.keymap.set('n', 'q', '<Cmd>close<CR>', { buffer = buffer, desc = 'Close the page' })
+    vim.keymap.set('n', 'q', '<Cmd>close<CR>', { buffer = buffer, desc = t('Close the page') })
   end
   vim.bo[buffer].modifiable = true
   vim.api.nvim_buf_set_lines(buffer, 0, -1, false, vim.split(vim.trim(text), '\n'))
@@ -43,11 +45,13 @@ end
 function M.explain(word)
   word = (word and word ~= '') and word or at_cursor()
   if not word or word == '' then
-    client.notify('put the cursor on an instruction or an error, or name one', vim.log.levels.WARN)
+    client.notify(t('put the cursor on an instruction or an error, or name one'), vim.log.levels.WARN)
     return
   end
   local ok, answer = pcall(function()
-    return vim.system({ client.server(), 'explain', word }, { text = true, timeout = 10000 }):wait()
+    local language = words.language()
+    local command = vim.list_extend({ client.server(), 'explain', word }, language and { '--lang', language } or {})
+    return vim.system(command, { text = true, timeout = 10000 }):wait()
   end)
   if not ok then
     client.notify(tostring(answer), vim.log.levels.ERROR)
@@ -64,7 +68,7 @@ function M.usage()
   local buffer = vim.api.nvim_get_current_buf()
   local running = client.clients(buffer)[1]
   if not running then
-    client.notify('no language server for this buffer; see :checkhealth rungwise', vim.log.levels.ERROR)
+    client.notify(t('no language server for this buffer; see :checkhealth rungwise'), vim.log.levels.ERROR)
     return
   end
   local params = { command = 'rungwise.usage', arguments = { vim.uri_from_bufnr(buffer) } }

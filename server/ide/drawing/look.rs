@@ -2,6 +2,7 @@
 
 use super::assemble::Plan;
 use super::site::{Site, line_of, line_start};
+use crate::ladder::reduce::reduce;
 use crate::ladder::{
     Drawing, Element, ElementKind, OperandPlace, Rung, Strokes, Style, StyleKind, column_after,
 };
@@ -127,6 +128,13 @@ impl Look {
             text.push_str(self.line_end);
         }
         Ok(text)
+    }
+
+    /// Whether the rung is drawn as it would be drawn again.
+    pub fn redraws(&self, site: &Site<'_>) -> bool {
+        let Ok(shape) = reduce(&site.rung.graph) else { return false };
+        let plan = Plan { shape, elements: site.rung.graph.elements.clone() };
+        self.draw(&plan, site.text, site).is_ok_and(|lines| lines == site.lines().of(site.text))
     }
 
     /// Rails as this rung has them: double, or none on the right.

@@ -4,20 +4,27 @@
 //! only if what was drawn reads as the graph that was meant and everything around it as before.
 
 mod assemble;
+mod cells;
 mod changes;
+mod in_place;
 mod look;
+mod mend;
+mod object;
 mod operation;
 mod parts;
 mod proof;
+mod ranges;
 mod rungs;
 mod site;
+mod typing;
 
 use crate::document::{Document, Notation};
 use crate::ide::Style;
-use crate::ladder::{Element, StyleKind};
+use crate::ladder::{Element, Graph, StyleKind};
 use crate::project::FormatStyle;
 use crate::text::{Message, Span, TextEdit};
 use look::Look;
+pub use object::{Object, ObjectKind};
 use operation::Intended;
 use proof::{Proved, Window, keeps_words};
 use site::Site;
@@ -112,16 +119,121 @@ pub fn edit(
     if document.notation() != Notation::Ladder {
         return Err(Message::new("edit.not-ladder"));
     }
+    let within = |offset: u32| (offset as usize).min(document.len());
+    let span = Span::new(within(span.start), within(span.end));
     if matches!(kind, EditKind::InsertRung | EditKind::InsertRungAbove) {
         return rungs::insert(document, span.start as usize, kind == EditKind::InsertRungAbove, style);
     }
     let site = Site::at(document, span.start as usize).ok_or_else(|| Message::new("edit.no-rung"))?;
-    let intended = operation::intended(&site, span, kind, operand)?;
-    let (proved, intended) = redrawn(&site, intended, style)?;
-    Ok(Edited {
-        edits: proved.edits(),
-        selection: selection(&site, &proved, &intended, span, operand.is_some()),
-    })
+    if kind == EditKind::Mend {
+        return mend::mend(&site, span, style);
+    }
+    let intended = operation::intended(&site, span, kind, operand);
+    let look = Look::of(&site, style_kind(style));
+    let ask = Ask { site, span, kind, operand, look };
+    // A drawing that is not in the canonical form was laid out by its author, and stays as far as it can.
+    let is_canonical = ask.look.redraws(&site);
+    let in_place = if is_canonical { None } else { ask.in_place(intended.as_ref().ok()) };
+    match in_place {
+        Some(edited) => Ok(edited),
+        None => ask.redrawn(&intended?),
+    }
+}
+
+/// An edit that is asked for.
+struct Ask<'d, 'o> {
+    site: Site<'d>,
+    span: Span,
+    kind: EditKind,
+    operand: Option<&'o str>,
+    look: Look,
+}
+
+impl Ask<'_, '_> {
+    fn edited(&self, proved: &Proved, focus: Option<(&Element, usize)>) -> Edited {
+        let selection = match focus {
+            Some((element, chunk)) => cursor_at(proved, element, chunk, self.operand.is_some()),
+            None => same_place(&self.site, proved, self.span.start as usize),
+        };
+        Edited { edits: proved.edits(), selection }
+    }
+
+    /// The rung drawn anew as intended, in its own look.
+    fn redrawn(&self, intended: &Intended) -> Result<Edited, Message> {
+        let site = &self.site;
+        let lines = self.look.draw(&intended.plan, &intended.source, site)?;
+        let removed: Vec<&Element> = intended.removed.iter().map(|id| site.element(*id)).collect();
+        if !keeps_words(site, &removed, &lines) {
+            return Err(Message::new("edit.words-lost"));
+        }
+        let mut old = site.lines().shifted(site.start);
+        // A line of bare rails above, where names go, is taken for them.
+        if let Some(above) = rungs::rails_above(site, &lines) {
+            old.start = above as u32;
+        }
+        let proved = prove(site, old, &lines, &intended.plan.graph(), &intended.source);
+        let proved = proved.ok_or_else(|| Message::new("edit.not-the-same"))?;
+        let focus = intended.focus.and_then(|id| proved.element(&intended.plan, id));
+        Ok(self.edited(&proved, focus))
+    }
+
+    /// The rung with the cells of one element changed; nothing where that is not enough.
+    fn in_place(&self, intended: Option<&Intended>) -> Option<Edited> {
+        let site = &self.site;
+        let old = site.lines().shifted(site.start);
+        if let Some((new, name)) = operation::inserted(self.kind, self.operand) {
+            let wire = operation::wire_at(site, self.span).ok()?;
+            let (element, drawing) = parts::element(new, &name, site.document.target()).ok()?;
+            let offset = self.span.start as usize;
+            let (lines, row, column) =
+                in_place::with_element(site, &self.look, wire, offset, (&element, &name))?;
+            let proved = match intended {
+                Some(intended) => prove(site, old, &lines, &intended.plan.graph(), &intended.source)?,
+                None => {
+                    let source = [site.text, "\n", &drawing].concat();
+                    let element = parts::shifted(&element, site.text.len() + 1);
+                    prove(site, old, &lines, &operation::in_wire(site, wire, &element)?, &source)?
+                }
+            };
+            let focus = proved.element_at(row, column);
+            return Some(self.edited(&proved, focus));
+        }
+        let intended = intended?;
+        let lines = match self.kind {
+            EditKind::DeleteElement => in_place::without_elements(site, &intended.removed)?,
+            EditKind::Negate => in_place::with_kinds(site, &intended.changed)?,
+            _ => return None,
+        };
+        let proved = prove(site, old, &lines, &intended.plan.graph(), &intended.source)?;
+        Some(self.edited(&proved, None))
+    }
+}
+
+/// The proof that the lines of a rung (`old`, in bytes of the document) can be replaced.
+fn prove(site: &Site<'_>, old: Span, lines: &str, wanted: &Graph, source: &str) -> Option<Proved> {
+    let window = Window::around(site.document, site.start)?;
+    let number = window.rung_number(site.start, site.number);
+    window.prove(window.with(old, lines), number, wanted, source, false)
+}
+
+/// The text object of a kind at a byte of a ladder document.
+pub fn object(document: &Document, offset: usize, kind: ObjectKind, around: bool) -> Option<Object> {
+    object::at(document, offset, kind, around)
+}
+
+/// The selection ranges around a byte of a drawing, smallest first.
+pub(super) fn ranges(document: &Document, offset: usize) -> Vec<Span> {
+    ranges::around(document, offset)
+}
+
+/// The edits after a character was typed in a drawing, so that it ends at byte `offset`.
+pub(super) fn after_character(document: &Document, offset: usize, typed: char) -> Vec<TextEdit> {
+    typing::after_character(document, offset, typed)
+}
+
+/// The edits after Enter in a drawing, with the cursor at byte `offset` of the new line.
+pub(super) fn after_enter(document: &Document, offset: usize, style: Style) -> Vec<TextEdit> {
+    typing::after_enter(document, offset, style)
 }
 
 /// The edits that make sense at the cursor or selection `span`. Whether the result can be drawn is known only when it
@@ -133,7 +245,7 @@ pub fn applicable(document: &Document, span: Span) -> Vec<EditKind> {
     let Some(site) = Site::at(document, span.start as usize) else { return Vec::new() };
     let makes_sense = |kind: &EditKind| match kind {
         EditKind::InsertRung | EditKind::InsertRungAbove => true,
-        EditKind::Mend => false,
+        EditKind::Mend => mend::is_ragged(&site),
         // The same as a branch beside the element at the cursor.
         EditKind::WrapInBranch if span.is_empty() => false,
         kind => operation::intended(&site, span, *kind, None).is_ok(),
@@ -141,49 +253,26 @@ pub fn applicable(document: &Document, span: Span) -> Vec<EditKind> {
     EditKind::all().filter(makes_sense).collect()
 }
 
-/// The rung drawn anew as intended, in its own look.
-fn redrawn(site: &Site<'_>, intended: Intended, style: Style) -> Result<(Proved, Intended), Message> {
-    let look = Look::of(site, style_kind(style));
-    let lines = look.draw(&intended.plan, &intended.source, site)?;
-    let removed: Vec<&Element> = intended.removed.iter().map(|id| site.element(*id)).collect();
-    if !keeps_words(site, &removed, &lines) {
-        return Err(Message::new("edit.words-lost"));
-    }
-    let window = Window::around(site.document, site.start).ok_or_else(|| Message::new("edit.no-rung"))?;
-    let number = window.rung_number(site.start, site.number);
-    let wanted = intended.plan.graph();
-    let mut old = site.lines().shifted(site.start);
-    // A line of bare rails above, where names go, is taken for them.
-    if let Some(above) = rungs::rails_above(site, &lines) {
-        old.start = above as u32;
-    }
-    let new = window.with(old, &lines);
-    let proved = window.prove(new, number, &wanted, &intended.source, false);
-    Ok((proved.ok_or_else(|| Message::new("edit.not-the-same"))?, intended))
+/// The cursor over the open name of an element, or behind it.
+fn cursor_at(proved: &Proved, element: &Element, chunk: usize, named: bool) -> Span {
+    let (new, start) = proved.text();
+    let is_open = |span: &Span| new.get(chunk - start..).is_some_and(|text| span.of(text).contains('?'));
+    let words = element.operands.iter().map(|operand| operand.span);
+    let open = words.filter(is_open).reduce(Span::to).filter(|_| !named);
+    open.unwrap_or(Span::at(element.span.end as usize)).shifted(chunk)
 }
 
-/// Where the cursor goes.
-fn selection(site: &Site<'_>, proved: &Proved, intended: &Intended, span: Span, named: bool) -> Span {
-    let focus = intended.focus.and_then(|id| proved.element(&intended.plan, id));
+/// The same line and column as a byte of the document before, as far as the rung goes.
+fn same_place(site: &Site<'_>, proved: &Proved, offset: usize) -> Span {
     let (new, start) = proved.text();
-    if let Some((element, chunk)) = focus {
-        let is_open = |span: &Span| new.get(chunk - start..).is_some_and(|text| span.of(text).contains('?'));
-        let words = element.operands.iter().map(|operand| operand.span);
-        let open = words.filter(is_open).reduce(Span::to).filter(|_| !named);
-        return open.unwrap_or(Span::at(element.span.end as usize)).shifted(chunk);
-    }
-    // The same line and column, as far as the rung goes.
-    let offset = (span.start as usize).saturating_sub(site.start).min(site.text.len());
+    let offset = offset.saturating_sub(site.start).min(site.text.len());
     let rung = proved.rung_span();
     let line = site::line_of(site.text, offset).saturating_sub(site.rung.lines.0) as usize;
     let column = site.column(offset);
     let first = rung.start as usize - start;
     let first = new.get(..first).and_then(|head| head.rfind('\n')).map_or(0, |end| end + 1);
     let rest = new.get(first..rung.end as usize - start).unwrap_or("");
-    let mut at = first;
-    for text in rest.split_inclusive('\n').take(line) {
-        at += text.len();
-    }
+    let at = first + rest.split_inclusive('\n').take(line).map(str::len).sum::<usize>();
     let text = new.get(at..rung.end as usize - start).and_then(|rest| rest.lines().next()).unwrap_or("");
     Span::at(start + at + site::byte_of_column(text, column))
 }

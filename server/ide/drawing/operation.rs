@@ -19,6 +19,8 @@ pub(super) struct Intended {
     pub focus: Option<ElementId>,
     /// Elements of the old rung that are gone.
     pub removed: Vec<ElementId>,
+    /// Elements of the old rung that are of another kind.
+    pub changed: Vec<(ElementId, ElementKind)>,
 }
 
 /// A rung being edited.
@@ -39,28 +41,18 @@ pub(super) fn intended(
     operand: Option<&str>,
 ) -> Result<Intended, Message> {
     let work = Work { site, graph: site.rung.graph.clone(), source: site.text.to_string() };
+    if let Some((new, name)) = inserted(kind, operand) {
+        return work.insert(span, (new, &name));
+    }
     let word = operand.map(str::trim).filter(|word| !word.is_empty());
-    let contact = |kind| (New::Contact(kind), word.unwrap_or(PLACEHOLDER));
-    let coil = |kind| (New::Coil(kind), word.unwrap_or(PLACEHOLDER));
     match kind {
-        EditKind::InsertContact => work.insert(span, contact(ContactKind::NormallyOpen)),
-        EditKind::InsertNegatedContact => work.insert(span, contact(ContactKind::NormallyClosed)),
-        EditKind::InsertCoil => work.insert(span, coil(CoilKind::Plain)),
-        EditKind::InsertSetCoil => work.insert(span, coil(CoilKind::Set)),
-        EditKind::InsertResetCoil => work.insert(span, coil(CoilKind::Reset)),
-        EditKind::InsertBox => {
-            let unnamed = format!("MOV {PLACEHOLDER} {PLACEHOLDER}");
-            work.insert(span, (New::Box, word.unwrap_or(&unnamed)))
-        }
         EditKind::InsertBranch | EditKind::WrapInBranch => work.branch(span, word),
         EditKind::MoveBranchUp => work.move_branch(span, true),
         EditKind::MoveBranchDown => work.move_branch(span, false),
         EditKind::DeleteElement => work.delete(span),
         EditKind::DeleteBranch => work.delete_branch(span),
         EditKind::Negate => work.negate(span),
-        EditKind::InsertRung | EditKind::InsertRungAbove | EditKind::Mend => {
-            Err(Message::new("edit.no-rung"))
-        }
+        _ => Err(Message::new("edit.no-rung")),
     }
 }
 
@@ -89,7 +81,13 @@ impl Work<'_, '_> {
         let mut watched: Vec<ElementId> = focus.into_iter().collect();
         let plan = Plan { shape: parts::canonical(shape), elements: self.graph.elements };
         let plan = plan.compacted(&mut watched);
-        Ok(Intended { plan, source: self.source, focus: watched.first().copied(), removed })
+        Ok(Intended {
+            plan,
+            source: self.source,
+            focus: watched.first().copied(),
+            removed,
+            changed: Vec::new(),
+        })
     }
 
     /// A new element, whose words are appended to the source.
@@ -102,25 +100,8 @@ impl Work<'_, '_> {
         Ok(element)
     }
 
-    /// The wire at the cursor into which something new goes: before the middle of an element that before it, else
-    /// behind it; never behind an output.
-    fn wire_at(&self, span: Span) -> Result<ArcId, Message> {
-        let nothing = || Message::new("edit.no-place");
-        let offset = span.start as usize;
-        match self.site.spot(offset).ok_or_else(nothing)? {
-            Spot::Wire(wire) => Ok(wire),
-            Spot::Element(id) => {
-                let element = self.site.element(id);
-                let at = self.site.column(offset.saturating_sub(self.site.start));
-                let before = element.is_output() || 2 * at < element.columns.0 + element.columns.1;
-                let beside = self.site.wire_beside(id, before);
-                beside.or_else(|| self.site.wire_beside(id, !before)).ok_or_else(nothing)
-            }
-        }
-    }
-
     fn insert(mut self, span: Span, (new, operand): (New, &str)) -> Result<Intended, Message> {
-        let wire = self.wire_at(span)?;
+        let wire = wire_at(self.site, span)?;
         let element = self.new_element(new, operand)?;
         let is_output = element.is_output();
         let id = parts::split_wire(&mut self.graph, wire, element);
@@ -250,11 +231,66 @@ impl Work<'_, '_> {
         let shape = self.shape()?;
         for id in &chosen {
             let element = &mut self.graph.elements[id.0 as usize];
-            element.kind = parts::negated(&element.kind).ok_or_else(|| Message::new("edit.no-negation"))?;
+            // A timer counts or does not; its coil with a preset has no negated form.
+            let has_preset = matches!(element.kind, ElementKind::Coil(_)) && element.operands.len() > 1;
+            let negated = parts::negated(&element.kind).filter(|_| !has_preset);
+            element.kind = negated.ok_or_else(|| Message::new("edit.no-negation"))?;
         }
+        let kind = |id: &ElementId| (*id, self.graph.elements[id.0 as usize].kind.clone());
+        let changed = chosen.iter().map(kind).collect();
         let focus = chosen.first().copied();
-        self.finish(shape, focus, Vec::new())
+        Ok(Intended { changed, ..self.finish(shape, focus, Vec::new())? })
     }
+}
+
+/// What an insertion puts where, and how it is named.
+pub(super) fn inserted(kind: EditKind, operand: Option<&str>) -> Option<(New, String)> {
+    let word = operand.map(str::trim).filter(|word| !word.is_empty());
+    let new = match kind {
+        EditKind::InsertContact => New::Contact(ContactKind::NormallyOpen),
+        EditKind::InsertNegatedContact => New::Contact(ContactKind::NormallyClosed),
+        EditKind::InsertCoil => New::Coil(CoilKind::Plain),
+        EditKind::InsertSetCoil => New::Coil(CoilKind::Set),
+        EditKind::InsertResetCoil => New::Coil(CoilKind::Reset),
+        EditKind::InsertBox => New::Box,
+        _ => return None,
+    };
+    let name = match (word, new) {
+        (Some(word), _) => word.to_string(),
+        (None, New::Box) => format!("MOV {PLACEHOLDER} {PLACEHOLDER}"),
+        (None, _) => PLACEHOLDER.to_string(),
+    };
+    Some((new, name))
+}
+
+/// The wire at the cursor into which something new goes: before the middle of an element that before it, else behind
+/// it; never behind an output.
+pub(super) fn wire_at(site: &Site<'_>, span: Span) -> Result<ArcId, Message> {
+    let nothing = || Message::new("edit.no-place");
+    let offset = span.start as usize;
+    match site.spot(offset).ok_or_else(nothing)? {
+        Spot::Wire(wire) => Ok(wire),
+        Spot::Element(id) => {
+            let element = site.element(id);
+            let at = site.column(offset.saturating_sub(site.start));
+            let before = element.is_output() || 2 * at < element.columns.0 + element.columns.1;
+            let beside = site.wire_beside(id, before);
+            beside.or_else(|| site.wire_beside(id, !before)).ok_or_else(nothing)
+        }
+    }
+}
+
+/// The graph of a rung with an element in one of its wires, where only its shape stands in the way of every other
+/// edit: a bridge or an open end. Outputs go nowhere but to the right rail.
+pub(super) fn in_wire(site: &Site<'_>, wire: ArcId, element: &Element) -> Option<Graph> {
+    let mut graph = site.rung.graph.clone();
+    let arc = graph.arc(wire);
+    let is_output = |vertex| graph.element_at(vertex).is_some_and(Element::is_output);
+    if is_output(arc.tail) || element.is_output() && arc.head != Graph::RIGHT_RAIL {
+        return None;
+    }
+    parts::split_wire(&mut graph, wire, element.clone());
+    Some(graph)
 }
 
 /// The series on the way down a path, outermost first, each with the number of the part on the way.

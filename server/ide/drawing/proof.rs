@@ -166,6 +166,14 @@ impl Proved {
         Some((element, self.start + self.chunk.start as usize))
     }
 
+    /// The element that starts in a column of a line of the edited rung, and where its chunk starts in the edited
+    /// document.
+    pub fn element_at(&self, line: u32, column: u32) -> Option<(&Element, usize)> {
+        let row = self.rung.lines.0 + line;
+        let found = self.rung.graph.elements.iter().find(|e| e.row == row && e.columns.0 == column)?;
+        Some((found, self.start + self.chunk.start as usize))
+    }
+
     /// The edited rung's place in the edited document.
     pub fn rung_span(&self) -> Span {
         self.rung.span.shifted(self.start + self.chunk.start as usize)

@@ -7,6 +7,7 @@ use super::proof::Window;
 use super::site::{Site, line_of, line_start};
 use crate::document::{Document, Tree};
 use crate::ide::Style;
+use crate::ladder::Element;
 use crate::ladder::reduce::Shape;
 use crate::text::{Message, Span, TextEdit};
 
@@ -100,4 +101,32 @@ pub(super) fn rails_above(site: &Site<'_>, lines: &str) -> Option<usize> {
     // Between two rungs it may be all that parts them.
     let parted = above_start == 0 || site.document.line_at(above_start - 1).2.trim().is_empty();
     (is_bare(&above) && is_power(old_first) && !is_power(new_first) && grows && parted).then_some(above_start)
+}
+
+/// The edit that puts an empty rung below the one at `site` after Enter behind its last cell, with the cursor at byte
+/// `offset` in the new line; none where something follows or the rung is not complete.
+pub(super) fn after_end(
+    document: &Document,
+    site: &Site<'_>,
+    cut: usize,
+    offset: usize,
+    style: Style,
+) -> Vec<TextEdit> {
+    let last = site.rung.lines.1.saturating_sub(1);
+    let inside = cut.saturating_sub(site.start);
+    let complete = site.rung.graph.elements.iter().any(Element::is_output)
+        && site.tree.problems.is_empty()
+        && !site.rung.right_rail.is_empty();
+    let (_, start, line) = document.line_at(offset);
+    let next = start + line.len();
+    let follows = next < document.len() && !document.line_at(next).2.trim().is_empty();
+    if line_of(site.text, inside) != last || !complete || follows {
+        return Vec::new();
+    }
+    let look = Look::of(site, super::style_kind(style));
+    let rung = look.empty_rung();
+    vec![TextEdit::new(
+        Span::at(offset),
+        format!("{}{}", look.line_end(), rung.trim_end_matches(['\n', '\r'])),
+    )]
 }

@@ -53,7 +53,7 @@ const EDITS = [
   },
   {
     edit: 'insertBox', before: EMPTY, at: [1, 4], operand: 'MOV K10 D0', selected: '',
-    after: ['+--[MOV K10 D0]--------------------------------+'],
+    after: [EMPTY[0], '+--[MOV K10 D0]--------------------------------+'],
   },
   {
     edit: 'insertBranch', before: SEAL_IN, at: [1, 15], selected: '???',

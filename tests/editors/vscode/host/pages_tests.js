@@ -66,11 +66,11 @@ module.exports = [
     await closeAll();
   }],
   ['the task "check" lists the findings of files that are not open', async () => {
-    await closeAll();
+    // A file that was open in this session counts as open for minutes, and what is open has the server's own findings.
     const tasks = await vscode.tasks.fetchTasks({ type: 'rungwise' });
     assert.deepEqual(tasks.map((task) => task.name).sort(), ['check', 'fmt --check']);
     assert.equal(await runTask(tasks.find((task) => task.name === 'check')), 1);
-    const wanted = ['three_mistakes.lad:7 short-circuit', 'mistakes_fx.il:3 unknown-instruction'];
+    const wanted = ['never_opened.lad:5 short-circuit'];
     await until(`problems ${wanted}`, () => wanted.every((problem) => taskErrors().includes(problem)), 5_000)
       .catch((error) => assert.fail(`${error.message}: ${taskErrors()}`));
   }],
