@@ -463,3 +463,31 @@ fn no_key_anywhere_in_any_text_harms() {
         }
     }
 }
+
+#[test]
+fn enter_in_an_aligned_list_aligns_the_line_left() {
+    let after = |text: &str| {
+        let (text, span) = marked(text);
+        let mut document = Document::new(&text, Notation::FxIl, Target::of(Model::Fx2n));
+        let at = span.start as usize;
+        document.apply(&[Edit { range: Some(at..at), text: "\n".to_string() }]);
+        let mut edits = ide::typed(&document, at + 1, "\n", STYLE);
+        edits.reverse();
+        let edits = edits.into_iter().map(|edit| Edit { range: Some(edit.span.range()), text: edit.text });
+        document.apply(&edits.collect::<Vec<_>>());
+        document.text()
+    };
+    assert_eq!(after("LD X0\nand  x1^\nOUT Y0\n"), "LD X0\nAND X1\n\nOUT Y0\n");
+    // Others are written otherwise, so the user has a style of his own.
+    assert_eq!(after("ld  X0\nand  x1^\nOUT Y0\n"), "ld  X0\nand  x1\n\nOUT Y0\n");
+    assert_eq!(after("(* a  b^ *)\nLD X0\n"), "(* a  b\n *)\nLD X0\n");
+}
+
+#[test]
+fn wide_characters_take_two_cells() {
+    let text = "|                      Y0  |\n+---[/X0]--------------( )-+\n";
+    let mut typist = Typist::at(text, 0);
+    typist.go(0, 6);
+    typist.keys("启动");
+    assert_eq!(typist.document.text().lines().next(), Some("|     启动             Y0  |"));
+}

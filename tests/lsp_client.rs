@@ -31,15 +31,11 @@ impl Client {
 
     /// A server that was just started with further arguments.
     pub fn spawn_with(arguments: &[&str]) -> Client {
-        Client::spawn_program_with(env!("CARGO_BIN_EXE_rungwise").as_ref(), arguments)
+        Client::spawn_program(env!("CARGO_BIN_EXE_rungwise").as_ref(), arguments)
     }
 
     /// A server of the program `rungwise`, or another build of it.
-    pub fn spawn_program(rungwise: &Path) -> Client {
-        Client::spawn_program_with(rungwise, &[])
-    }
-
-    fn spawn_program_with(rungwise: &Path, arguments: &[&str]) -> Client {
+    pub fn spawn_program(rungwise: &Path, arguments: &[&str]) -> Client {
         let mut server = Command::new(rungwise)
             .arg("lsp")
             .args(arguments)

@@ -44,6 +44,8 @@ fn an_edit_answers_with_small_changes_and_a_selection() {
     assert_eq!(answer["result"]["selection"], range((0, 22), (0, 25)));
     let named = edit(&mut client, "insertContact", (1, 24), json!({"operand": "M5"}));
     assert_eq!(named["result"]["selection"], range((1, 25), (1, 25)), "behind the contact");
+    let rung = edit(&mut client, "insertRung", (1, 24), json!({}));
+    assert_eq!(rung["result"]["selection"], range((6, 4), (6, 4)), "in the text after the edit");
 }
 
 #[test]
@@ -98,4 +100,32 @@ fn a_client_that_resolves_edits_gets_them_when_it_asks() {
     assert!(action["edit"].is_null() && action["title"] == "Move branch up", "{action}");
     let resolved = client.request("codeAction/resolve", action.clone());
     assert_eq!(resolved["result"]["edit"]["changes"][URI].as_array().unwrap().len(), 2, "{resolved}");
+}
+
+#[test]
+fn objects_ranges_and_typing_go_through_the_wire() {
+    let mut client = started(json!({}), "en");
+    let provider = &client.initialised["capabilities"]["documentOnTypeFormattingProvider"];
+    assert_eq!(provider["firstTriggerCharacter"], "\n");
+    let more = provider["moreTriggerCharacter"].as_array().unwrap();
+    assert!(["|", "-", "]", "X", "0"].iter().all(|key| more.contains(&json!(key))), "{more:?}");
+    let object = |object: &str, around: bool| {
+        json!({"textDocument": {"uri": URI}, "position": {"line": 3, "character": 5}, "object": object,
+            "around": around})
+    };
+    let branch = client.request("rungwise/object", object("branch", true));
+    assert_eq!(branch["result"], json!({"range": range((2, 1), (3, 10)), "blockwise": true}), "{branch}");
+    assert!(client.request("rungwise/object", object("program", false))["result"].is_null());
+    let params = json!({"textDocument": {"uri": URI}, "positions": [{"line": 2, "character": 5}]});
+    let ranges = client.request("textDocument/selectionRange", params);
+    assert_eq!(ranges["result"][0]["range"], range((2, 4), (2, 6)), "{ranges}");
+    assert!(ranges["result"][0]["parent"]["parent"]["parent"].is_object(), "{ranges}");
+    client.change(URI, 2, (1, 24), (1, 24), "|");
+    let params = json!({"textDocument": {"uri": URI}, "position": {"line": 1, "character": 25}, "ch": "|",
+        "options": {"tabSize": 4, "insertSpaces": true}});
+    let edits = client.request("textDocument/onTypeFormatting", params);
+    assert_eq!(edits["result"].as_array().unwrap().len(), 1, "{edits}");
+    assert_eq!(edits["result"][0]["newText"], "", "one cell of wire goes: {edits}");
+    let linked = json!({"textDocument": {"uri": URI}, "position": {"line": 2, "character": 5}});
+    assert!(client.request("textDocument/linkedEditingRange", linked)["result"].is_null());
 }

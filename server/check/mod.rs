@@ -13,7 +13,7 @@ mod programs;
 pub use programs::{program_around, programs};
 
 mod engine;
-pub use engine::{Severities, all, program, project, realtime, sorted, within_project};
+pub use engine::{Severities, all, once, program, project, realtime, sorted, within_project};
 
 mod statements;
 

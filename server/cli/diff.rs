@@ -5,7 +5,7 @@ use similar::{ChangeTag, TextDiff};
 use std::fmt::Write;
 
 /// What stands behind a line without a line feed, in every language.
-const WORDS_OF_CODE: &str = "\\ No newline at end of file\n";
+const NO_LINE_FEED: &str = "\\ No newline at end of file\n";
 
 /// The diff from `old` to `new`, which `patch` understands, with three lines of context. A line that ends without a
 /// line feed is followed by the remark that says so.
@@ -27,7 +27,7 @@ pub(super) fn unified(path: &str, old: &str, new: &str, colour: Colour) -> Strin
             let content = line.strip_suffix('\n').unwrap_or(line);
             let _ = writeln!(text, "{begin}{sign}{content}{end}");
             if change.missing_newline() {
-                text.push_str(WORDS_OF_CODE);
+                text.push_str(NO_LINE_FEED);
             }
         }
     }

@@ -12,12 +12,19 @@ use std::ffi::OsString;
 
 /// The same help as `error` shows, in `language`; errors of other kinds as they are.
 pub(super) fn translated(error: Error, words: &[OsString], language: Language) -> Error {
-    let helps =
-        matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand);
-    if language == Language::English || !helps {
+    if language == Language::English || !helps(&error) {
         return error;
     }
-    command(Arguments::command(), language).try_get_matches_from(words).err().unwrap_or(error)
+    // `rungwise help check` asks for what `rungwise check --help` shows.
+    let (asked, others): (Vec<&OsString>, Vec<&OsString>) = words.iter().partition(|word| *word == "help");
+    let flag = (!asked.is_empty()).then(|| OsString::from("--help"));
+    let words = others.into_iter().cloned().chain(flag);
+    let translated = command(Arguments::command(), language).try_get_matches_from(words).err();
+    translated.filter(helps).unwrap_or(error)
+}
+
+fn helps(error: &Error) -> bool {
+    matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand)
 }
 
 /// `command` and all below it with every text in `language`. It serves to show help; what it parses is of no use.

@@ -41,12 +41,12 @@ fn of_name(name: &str) -> Option<Language> {
 /// The value of the last `--lang`, as the parser of arguments takes it.
 fn after_lang(arguments: &[OsString]) -> Option<String> {
     let words: Vec<&str> = arguments.iter().filter_map(|word| word.to_str()).collect();
-    let values = words.iter().enumerate().filter_map(|(place, word)| match word.strip_prefix("--lang") {
+    let mut values = words.iter().enumerate().filter_map(|(place, word)| match word.strip_prefix("--lang") {
         Some("") => words.get(place + 1).copied(),
         Some(rest) => rest.strip_prefix('='),
         None => None,
     });
-    values.last().map(str::to_string)
+    values.next_back().map(str::to_string)
 }
 
 fn of_environment() -> Language {

@@ -332,7 +332,7 @@ fn word_beside(
     let near = column?;
     let part = |column: usize| {
         let character = grid.at(row, column);
-        continues_word(character) || character == WIDE || matches!(character, '\'' | '"')
+        continues_word(character) || character == WIDE || matches!(character, '\'' | '"' | '?')
     };
     if !part(near) {
         return None;

@@ -9,7 +9,7 @@
 //!   textDocument: { uri, version? },   // an edit for a version that is not current fails with ContentModified
 //!   range: Range,                      // the cursor (empty) or the selection
 //!   edit: string,                      // see below
-//!   operand?: string                   // the name (or `T0 K50`, `MOV K10 D0`) of what is inserted
+//!   operand?: string                   // the name (`T0 K50`, `MOV K10 D0`, `Delay : TON`) of what is inserted
 //! }
 //! ```
 //!

@@ -57,7 +57,7 @@ fn server() -> PathBuf {
 
 /// A server after the handshake with a client that counts columns in UTF-16, as most do.
 fn client() -> Client {
-    let mut client = Client::spawn_program(&server());
+    let mut client = Client::spawn_program(&server(), &[]);
     client.initialise(json!({}), Value::Null);
     client
 }

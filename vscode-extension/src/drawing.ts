@@ -1,7 +1,7 @@
 /** Editing a drawing in the editor: structural edits by command, and mending after deletions and pastes. */
 
 import * as vscode from 'vscode';
-import { joinLines, linesToMend } from './mending';
+import { filling, joinStretches, linesToMend, rungPlaces, typedOverSelection, type Stretch } from './mending';
 import type { ServerController } from './server';
 import { operandOf, parseEditAnswer, STRUCTURAL_EDITS, type EditAnswer, type StructuralEdit } from './structuralEdits';
 
@@ -10,20 +10,21 @@ const EDIT_REQUEST = 'rungwise/edit';
 /** A person who types faster than the server answers has stopped after this many answers that came too late. */
 const MOST_ATTEMPTS = 8;
 
-type Lines = { first: number; last: number };
-
 export class DrawingEditor implements vscode.Disposable {
   /** Edits run one after another: each one must see the text that the one before it left. */
   private queue: Promise<unknown> = Promise.resolve();
   /** Documents that are being changed by this class, whose change events are its own. */
   private readonly busy = new Set<vscode.TextDocument>();
-  private readonly dirty = new Map<vscode.TextDocument, Lines>();
+  private readonly dirty = new Map<vscode.TextDocument, Stretch>();
+  /** Where a character was last typed over a selection, and in which version. */
+  private readonly typedOver = new WeakMap<vscode.TextDocument, { version: number; stretch: Stretch; filled: boolean }>();
   private readonly subscriptions: vscode.Disposable[];
 
   constructor(
     private readonly server: ServerController,
     private readonly output: vscode.LogOutputChannel,
   ) {
+    server.typed = (document) => this.typed(document);
     this.subscriptions = [
       ...STRUCTURAL_EDITS.map((edit) =>
         vscode.commands.registerCommand(`rungwise.${edit}`, (args?: unknown) => this.command(edit, args)),
@@ -52,7 +53,7 @@ export class DrawingEditor implements vscode.Disposable {
       for (let attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
         const version = editor.document.version;
         const isCurrent = () => editor.document.version === version;
-        const answer = await this.ask(editor, edit, editor.selection, operand).catch((error: unknown) => {
+        const answer = await this.ask(editor.document, edit, editor.selection, operand).catch((error: unknown) => {
           // The server refuses an edit of a text that has changed meanwhile; it is asked again.
           if (isCurrent()) {
             throw error;
@@ -72,12 +73,11 @@ export class DrawingEditor implements vscode.Disposable {
   }
 
   private async ask(
-    editor: vscode.TextEditor,
+    { uri, version }: vscode.TextDocument,
     edit: StructuralEdit,
     range: vscode.Range,
     operand?: string,
   ): Promise<EditAnswer> {
-    const { uri, version } = editor.document;
     const answer = parseEditAnswer(
       await this.server.request(EDIT_REQUEST, {
         textDocument: { uri: this.server.protocolUri(uri), version },
@@ -126,12 +126,36 @@ export class DrawingEditor implements vscode.Disposable {
       return;
     }
     // What undo and redo bring back has been mended before.
-    const lines = reason === undefined && mendsWhileTyping(document) ? linesToMend(contentChanges) : undefined;
-    if (lines === undefined) {
+    if (reason !== undefined || !mendsWhileTyping(document)) {
       return;
     }
+    const row = document.lineAt(Math.min(contentChanges[0]?.range.start.line ?? 0, document.lineCount - 1)).text;
+    const fill = filling(contentChanges, row);
+    const over = typedOverSelection(contentChanges);
+    if (over !== undefined) {
+      this.typedOver.set(document, { version: document.version, stretch: over, filled: fill !== undefined });
+    }
+    const stretch = linesToMend(contentChanges) ?? (fill && over);
+    if (fill !== undefined) {
+      void this.fill(editor, fill).then((done) => done || stretch === undefined || this.mark(editor, stretch));
+    } else if (stretch !== undefined) {
+      this.mark(editor, stretch);
+    }
+  }
+
+  /** Puts cells where others went away, at once; gives whether the text was still the same. */
+  private fill(editor: vscode.TextEditor, { at, text }: NonNullable<ReturnType<typeof filling>>): Promise<boolean> {
+    const range = { start: at, end: at };
+    const selection = editor.selections.length === 1 ? { start: at, end: at } : undefined;
+    const answer = { edits: [{ range, newText: text }], selection };
+    return this.apply(editor, answer, { undoStopBefore: false, undoStopAfter: false });
+  }
+
+  /** Marks lines that the server has to mend. */
+  private mark(editor: vscode.TextEditor, stretch: Stretch): void {
+    const { document } = editor;
     const waiting = this.dirty.has(document);
-    this.dirty.set(document, joinLines(this.dirty.get(document), lines));
+    this.dirty.set(document, joinStretches(this.dirty.get(document), stretch));
     if (!waiting) {
       void this.enqueue(() => this.mend(editor));
     }
@@ -147,15 +171,8 @@ export class DrawingEditor implements vscode.Disposable {
           return;
         }
         const version = document.version;
-        const range = document.validateRange(new vscode.Range(lines.first, 0, lines.last, Number.MAX_SAFE_INTEGER));
-        const answer = await this.ask(editor, 'mend', range).catch((error: unknown) => {
-          if (document.version === version) {
-            throw error;
-          }
-          return undefined;
-        });
-        if (answer !== undefined && document.version === version) {
-          const { edits } = answer;
+        const edits = await this.mendingEdits(document, lines);
+        if (document.version === version) {
           this.dirty.delete(document);
           // The cursor stays where the person left it, so no selection.
           await this.apply(editor, { edits, selection: undefined }, { undoStopBefore: false, undoStopAfter: false });
@@ -168,6 +185,36 @@ export class DrawingEditor implements vscode.Disposable {
     } finally {
       this.dirty.delete(document);
     }
+  }
+
+  /** The edits that mend the rungs in a stretch of lines. A rung that cannot be mended is left as it is. */
+  private async mendingEdits(document: vscode.TextDocument, stretch: Stretch): Promise<EditAnswer['edits']> {
+    const last = Math.min(stretch.last, document.lineCount - 1);
+    const places = rungPlaces((line) => document.lineAt(line).text, { ...stretch, last });
+    const asked = places.map(({ line, character }) => {
+      const at = document.validatePosition(new vscode.Position(line, character));
+      return this.ask(document, 'mend', new vscode.Range(at, at)).catch((error: unknown) => {
+        this.output.debug(`mend, line ${line + 1}: ${String(error)}`);
+        return undefined;
+      });
+    });
+    return (await Promise.all(asked)).flatMap((answer) => answer?.edits ?? []);
+  }
+
+  /**
+   * Stands in for on-type formatting where that would be misled: after a character that was typed over a selection the
+   * drawing is mended. `undefined` leaves it to on-type formatting.
+   */
+  private async typed(document: vscode.TextDocument): Promise<vscode.TextEdit[] | undefined> {
+    const over = this.typedOver.get(document);
+    if (over === undefined || over.version !== document.version) {
+      return undefined;
+    }
+    if (over.filled) {
+      return [];
+    }
+    const edits = await this.mendingEdits(document, over.stretch);
+    return edits.map((edit) => vscode.TextEdit.replace(toRange(edit.range), edit.newText));
   }
 
   private enqueue<T>(step: () => Promise<T>): Promise<T> {

@@ -43,6 +43,8 @@ export class ServerController implements vscode.Disposable {
   /** Starts and stops run one after another; two restarts in a row must not leave two servers. */
   private queue: Promise<void> = Promise.resolve();
   private runningVersion: string | undefined;
+  /** Edits to take in place of on-type formatting; `undefined` from it leaves that to the server. */
+  typed: ((document: vscode.TextDocument) => Promise<vscode.TextEdit[] | undefined>) | undefined;
 
   constructor(
     private readonly context: vscode.ExtensionContext,
@@ -191,7 +193,11 @@ export class ServerController implements vscode.Disposable {
       revealOutputChannelOn: RevealOutputChannelOn.Never,
       initializationOptions: currentSettings,
       synchronize: { fileEvents: this.watcher },
-      middleware: { handleDiagnostics: (uri, diagnostics, next) => next(uri, diagnostics.map(linkCode)) },
+      middleware: {
+        handleDiagnostics: (uri, diagnostics, next) => next(uri, diagnostics.map(linkCode)),
+        provideOnTypeFormattingEdits: async (document, position, character, format, token, next) =>
+          (await this.typed?.(document)) ?? next(document, position, character, format, token),
+      },
       errorHandler: {
         error: () => ({ action: ErrorAction.Continue, handled: true }),
         closed: () => this.serverClosed(),

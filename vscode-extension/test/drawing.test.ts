@@ -1,7 +1,11 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { joinLines, linesToMend, type PlainChange } from '../src/mending';
+import { filling, joinStretches, linesToMend, rungPlaces, typedOverSelection, type PlainChange } from '../src/mending';
 import { operandOf, parseEditAnswer } from '../src/structuralEdits';
+
+/** First line, last line and places of a stretch, each place as [line, character]. */
+const plain = (stretch: ReturnType<typeof linesToMend>) =>
+  stretch && [stretch.first, stretch.last, ...stretch.places.map(({ line, character }) => [line, character])];
 
 const change = (line: number, from: number, endLine: number, to: number, text: string): PlainChange => ({
   range: { start: { line, character: from }, end: { line: endLine, character: to } },
@@ -9,12 +13,12 @@ const change = (line: number, from: number, endLine: number, to: number, text: s
 });
 
 test('a deletion inside a line is mended, whether by Backspace, Delete or Cut', () => {
-  assert.deepEqual(linesToMend([change(4, 10, 4, 11, '')]), { first: 4, last: 4 });
-  assert.deepEqual(linesToMend([change(4, 3, 4, 20, '')]), { first: 4, last: 4 });
+  assert.deepEqual(plain(linesToMend([change(4, 10, 4, 11, '')])), [4, 4, [4, 10]]);
+  assert.deepEqual(plain(linesToMend([change(4, 3, 4, 20, '')])), [4, 4, [4, 3]]);
 });
 
 test('joining two lines is mended, removing whole lines is not', () => {
-  assert.deepEqual(linesToMend([change(4, 10, 5, 0, '')]), { first: 4, last: 4 });
+  assert.deepEqual(plain(linesToMend([change(4, 10, 5, 0, '')])), [4, 4, [4, 10]]);
   assert.equal(linesToMend([change(4, 0, 6, 0, '')]), undefined);
 });
 
@@ -27,14 +31,14 @@ test('a typed character is left to on-type formatting, a cell typed over moves n
 });
 
 test('a paste is mended over the lines that it brought', () => {
-  assert.deepEqual(linesToMend([change(4, 10, 4, 10, 'X10')]), { first: 4, last: 4 });
-  assert.deepEqual(linesToMend([change(4, 0, 4, 0, 'a\nb\r\nc\n')]), { first: 4, last: 7 });
+  assert.deepEqual(plain(linesToMend([change(4, 10, 4, 10, 'X10')])), [4, 4, [4, 13]]);
+  assert.deepEqual(plain(linesToMend([change(4, 0, 4, 0, 'a\nb\r\nc\n')])), [4, 7, [7, 0]]);
 });
 
 test('several changes at once are one stretch of lines, counted after the changes above', () => {
   const changes = [change(9, 4, 9, 6, 'Y10'), change(2, 4, 2, 6, 'Y10')];
-  assert.deepEqual(linesToMend(changes), { first: 2, last: 9 });
-  assert.deepEqual(linesToMend([change(9, 0, 9, 2, ''), change(2, 0, 2, 0, 'a\nb\n')]), { first: 2, last: 11 });
+  assert.deepEqual(plain(linesToMend(changes)), [2, 9, [2, 7], [9, 7]]);
+  assert.deepEqual(plain(linesToMend([change(9, 0, 9, 2, ''), change(2, 0, 2, 0, 'a\nb\n')])), [2, 11, [4, 0], [11, 0]]);
 });
 
 test('a replaced program is not mended', () => {
@@ -42,9 +46,10 @@ test('a replaced program is not mended', () => {
   assert.equal(linesToMend(Array.from({ length: 17 }, (_, line) => change(line, 1, line, 2, ''))), undefined);
 });
 
-test('stretches of lines are joined with a line to spare', () => {
-  assert.deepEqual(joinLines(undefined, { first: 3, last: 4 }), { first: 3, last: 4 });
-  assert.deepEqual(joinLines({ first: 0, last: 4 }, { first: 7, last: 7 }), { first: 0, last: 7 });
+test('stretches are joined with a line to spare', () => {
+  const later = { first: 7, last: 7, places: [{ line: 7, character: 3 }] };
+  assert.equal(joinStretches(undefined, later), later);
+  assert.deepEqual(plain(joinStretches({ first: 0, last: 4, places: [] }, later)), [0, 7, [7, 3]]);
 });
 
 test('an answer of the server is read, a broken one is refused', () => {
@@ -63,4 +68,39 @@ test('a keybinding may give an operand', () => {
   for (const nothing of [undefined, null, '', {}, { operand: '' }, 5]) {
     assert.equal(operandOf(nothing), undefined);
   }
+});
+
+test('a character typed over a selection is told from one that is squeezed in', () => {
+  assert.deepEqual(plain(typedOverSelection([change(0, 14, 0, 17, 'X')])), [0, 0, [0, 15]]);
+  assert.equal(typedOverSelection([change(0, 14, 0, 14, 'X')]), undefined);
+  assert.equal(typedOverSelection([change(0, 14, 0, 17, 'X10')]), undefined);
+  assert.equal(typedOverSelection([change(0, 14, 0, 17, '\n')]), undefined);
+  assert.equal(typedOverSelection([change(0, 14, 0, 17, 'X'), change(4, 0, 4, 2, 'X')]), undefined);
+});
+
+test('each rung of a stretch is asked for once, where it was changed, else at a line of its drawing', () => {
+  const lines = ['(* one *)', '|  X0 |', '+-| |-+', '', '  ', '|  X1 |', '+-| |-+', 'LABEL:'];
+  const asked = (first: number, last: number, ...places: { line: number; character: number }[]) =>
+    rungPlaces((line) => lines[line] ?? '', { first, last, places }).map(({ line, character }) => [line, character]);
+  assert.deepEqual(asked(0, 7), [[1, 0], [5, 0]]);
+  assert.deepEqual(asked(2, 5, { line: 5, character: 4 }), [[2, 0], [5, 4]]);
+  assert.deepEqual(asked(7, 7), [[7, 0]]);
+  assert.deepEqual(asked(3, 4), []);
+});
+
+test('cells that go away leave the row as wide as it was', () => {
+  const fill = (row: string, from: number, to: number, text = 'X') => {
+    const at = filling([change(0, from, 0, to, text)], row.slice(0, from) + text + row.slice(to));
+    return at && [at.at.character, at.text];
+  };
+  assert.deepEqual(fill('|   ???   |', 4, 7), [5, '  ']);
+  assert.deepEqual(fill('+---???---+', 4, 7, 'P'), [5, '--']);
+  assert.deepEqual(fill('|   X1  |', 5, 6, ''), [5, ' ']);
+  assert.deepEqual(fill('+-------+', 4, 6, ''), [4, '--']);
+  assert.deepEqual(fill('+--|/|--+', 4, 5, ''), [4, ' ']);
+  assert.deepEqual(fill('|   X10   |', 4, 7, 'Y1'), [6, ' ']);
+  assert.equal(fill('|   ?   |', 4, 5), undefined);
+  assert.equal(fill('|   ?   |', 8, 9, ''), undefined);
+  assert.equal(fill('(* ??? *)', 3, 6), undefined);
+  assert.equal(filling([change(0, 4, 0, 4, 'X')], '|   X   |'), undefined);
 });

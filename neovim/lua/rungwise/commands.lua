@@ -61,7 +61,8 @@ M.subcommands = {
   check = { run = M.check },
   edit = {
     run = function(words)
-      require('rungwise.edit').run(words[1] or '', words[2])
+      local operand = table.concat(vim.list_slice(words, 2), ' ')
+      require('rungwise.edit').run(words[1] or '', operand ~= '' and operand or nil)
     end,
     complete = function()
       return require('rungwise.edit').names()

@@ -8,8 +8,13 @@ local TRIGGERS = 'textDocument/onTypeFormatting'
 --- A change of more lines is another program, not an edit of a drawing.
 local MOST_LINES = 400
 
---- State of each buffer: { lines, seq, typed, first, last, quiet }.
+--- State of each buffer: { lines, seq, typed, first, last, place, missing, removed, quiet }.
 local states = {}
+
+--- Forgets what has been noted about changes.
+local function forget(state)
+  state.typed, state.first, state.last, state.removed, state.place, state.missing = nil, nil, nil, nil, nil, nil
+end
 
 --- Runs changes that are the plugin's own, which call for no mending.
 function M.quietly(buffer, change)
@@ -20,7 +25,7 @@ function M.quietly(buffer, change)
   local ok, reason = pcall(change)
   if state then
     state.quiet = false
-    state.first, state.last = nil, nil
+    forget(state)
     state.seq = vim.api.nvim_buf_call(buffer, vim.fn.undotree).seq_last
   end
   if not ok then
@@ -59,24 +64,72 @@ local function format_typed(running, buffer, character)
   end, buffer)
 end
 
---- Asks for the mending of lines, first and last from 0.
-local function mend(running, buffer, first, last)
-  local text = vim.api.nvim_buf_get_lines(buffer, last, last + 1, false)[1] or ''
-  local params = {
-    textDocument = { uri = vim.uri_from_bufnr(buffer), version = vim.lsp.util.buf_versions[buffer] },
-    range = {
-      start = { line = first, character = 0 },
-      ['end'] = { line = last, character = client.character(text, #text, running.offset_encoding) },
-    },
-    edit = 'mend',
-  }
-  local tick = vim.api.nvim_buf_get_changedtick(buffer)
-  client.request(running, 'rungwise/edit', params, function(err, result)
-    -- A drawing that cannot be mended stays as it is; its diagnostics say what is wrong.
-    if not err and type(result) == 'table' then
-      apply(buffer, tick, result.edits, running.offset_encoding)
+--- One place { line, column in bytes } in each block of lines without a blank one: a rung is mended as a whole, and a
+--- paste may bring several. `place` is where the last change ended; without it the first line of the drawing is taken,
+--- which may have a comment above it.
+local function rung_places(buffer, first, last, place)
+  local found, chosen, drawn = {}, nil, false
+  local lines = vim.api.nvim_buf_get_lines(buffer, first, last + 1, false)
+  for index, text in ipairs(vim.list_extend(lines, { '' })) do
+    local line = first + index - 1
+    if text:match('^%s*$') then
+      table.insert(found, chosen)
+      chosen, drawn = nil, false
+    elseif place and place[1] == line then
+      chosen, drawn = place, true
+    elseif not drawn then
+      drawn = text:match('^%s*[|+]') ~= nil or text:match('^%s*\226\148') ~= nil
+      chosen = (drawn or not chosen) and { line, 0 } or chosen
     end
-  end, buffer)
+  end
+  return found
+end
+
+--- Asks for the mending of lines, first and last from 0; cells that are missing are put at `place` if it is known.
+local function mend(running, buffer, first, last, place)
+  local tick = vim.api.nvim_buf_get_changedtick(buffer)
+  local wanted = rung_places(buffer, first, last, place)
+  local edits, left = {}, #wanted
+  for _, at in ipairs(wanted) do
+    local text = vim.api.nvim_buf_get_lines(buffer, at[1], at[1] + 1, false)[1]
+    local column = client.character(text, math.min(at[2], #text), running.offset_encoding)
+    local position = { line = at[1], character = column }
+    local params = {
+      textDocument = { uri = vim.uri_from_bufnr(buffer), version = vim.lsp.util.buf_versions[buffer] },
+      range = { start = position, ['end'] = position },
+      edit = 'mend',
+    }
+    client.request(running, 'rungwise/edit', params, function(err, result)
+      -- A drawing that cannot be mended stays as it is; its diagnostics say what is wrong.
+      if not err and type(result) == 'table' then
+        vim.list_extend(edits, result.edits)
+      end
+      left = left - 1
+      if left == 0 then
+        apply(buffer, tick, edits, running.offset_encoding)
+      end
+    end, buffer)
+  end
+end
+
+--- Fills a row up where cells of it went away: wire in a wire, else blanks. Answers whether it could, which is in a
+--- drawing only. It is a part of the undo step of the change before it.
+local function fill(buffer, place, missing)
+  local row, column = place[1], place[2]
+  local text = vim.api.nvim_buf_get_lines(buffer, row, row + 1, false)[1] or ''
+  if not text:match('^%s*[|+].*[|+]%s*$') then
+    return false
+  end
+  local in_wire = text:sub(column, column + 1):find('-', 1, true)
+  local cursor = vim.api.nvim_win_get_cursor(0)
+  M.quietly(buffer, function()
+    if not vim.fn.mode():match('^[iR]') then
+      vim.cmd('silent! undojoin')
+    end
+    vim.api.nvim_buf_set_text(buffer, row, column, row, column, { (in_wire and '-' or ' '):rep(missing) })
+    vim.api.nvim_win_set_cursor(0, cursor)
+  end)
+  return true
 end
 
 --- Whether the server wants to hear of a typed character.
@@ -91,13 +144,19 @@ end
 
 --- Something changed in Insert mode: one typed character is formatted, everything else is mended.
 local function changed_in_insert(running, buffer, state)
-  local typed, first, last = state.typed, state.first, state.last
-  state.typed, state.first, state.last = nil, nil, nil
+  -- What was typed over a selection is mended: on-type formatting takes every character for one squeezed in.
+  local over = state.removed and state.typed ~= nil
+  local typed, first, last = not over and state.typed or nil, state.first, state.last
+  local place, missing = state.place, state.missing or 0
+  forget(state)
   local lines = vim.api.nvim_buf_line_count(buffer)
   local added = lines - state.lines
   state.lines = lines
   -- Typing over cells moves none of them.
   if not first or vim.fn.mode() == 'R' then
+    return
+  end
+  if added == 0 and first == last and missing > 0 and fill(buffer, place, missing) then
     return
   end
   local character = typed or (added == 1 and last == first + 1 and '\n' or nil)
@@ -106,20 +165,24 @@ local function changed_in_insert(running, buffer, state)
       format_typed(running, buffer, character)
     end
   elseif added <= 0 or last - first <= MOST_LINES then
-    mend(running, buffer, first, last)
+    mend(running, buffer, first, last, place)
   end
 end
 
 --- Something changed in Normal mode: a deletion inside lines or a paste is mended, undo and redo are not.
 local function changed_in_normal(running, buffer, state)
   local first, last = state.first, state.last
-  state.typed, state.first, state.last = nil, nil, nil
+  local place, missing = state.place, state.missing or 0
+  local before = state.lines
+  forget(state)
   state.lines = vim.api.nvim_buf_line_count(buffer)
   local seq = vim.fn.undotree().seq_last
   local is_new = seq > state.seq
   state.seq = seq
-  if is_new and first and last - first <= MOST_LINES then
-    mend(running, buffer, first, last)
+  if not is_new or not first or last - first > MOST_LINES then
+    return
+  elseif first ~= last or before ~= state.lines or missing <= 0 or not fill(buffer, place, missing) then
+    mend(running, buffer, first, last, place)
   end
 end
 
@@ -132,6 +195,9 @@ local function note(state, start_row, start_col, old_row, old_col, new_row, new_
   end
   state.first = math.min(state.first or start_row, start_row)
   state.last = math.max(state.last or 0, start_row + new_row)
+  state.place = { start_row + new_row, (new_row == 0 and start_col or 0) + new_col }
+  state.missing = (state.missing or 0) + old_col - new_col
+  state.removed = state.removed or old_row > 0 or old_col > 0
 end
 
 --- Whether this Neovim formats on typing by itself.
@@ -157,7 +223,8 @@ function M.attach(buffer)
       note(state, row, column, old_row, old_col, new_row, new_col)
     end,
     on_reload = function()
-      state.first, state.last, state.lines = nil, nil, vim.api.nvim_buf_line_count(buffer)
+      forget(state)
+      state.lines = vim.api.nvim_buf_line_count(buffer)
     end,
     on_detach = function()
       states[buffer] = nil
@@ -188,10 +255,12 @@ function M.autocommands(buffer, state)
   end)
   on({ 'TextChangedI', 'TextChangedP' }, changed_in_insert)
   on('TextChanged', changed_in_normal)
-  -- The changes of Insert mode were looked at one by one; TextChanged does not see them again.
-  on('InsertLeave', function()
+  -- The changes of Insert mode were looked at one by one, but for those of a person who left it in a hurry; TextChanged
+  -- does not see them again.
+  on('InsertLeave', function(running)
+    state.typed = state.typed and state.typed .. ' '
+    changed_in_insert(running, buffer, state)
     state.seq = vim.fn.undotree().seq_last
-    state.typed, state.first, state.last = nil, nil, nil
   end)
 end
 

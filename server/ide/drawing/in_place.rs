@@ -2,7 +2,7 @@
 
 use super::cells::{self, Row, is_wire};
 use super::look::Look;
-use super::site::{Site, cells_of, line_of};
+use super::site::{Site, cells_of};
 use crate::ladder::{ArcId, CoilKind, ContactKind, Element, ElementId, ElementKind, OperandPlace, StyleKind};
 use crate::text::Span;
 
@@ -26,13 +26,13 @@ impl<'s, 'd> Sketch<'s, 'd> {
     }
 
     fn text(&self) -> String {
-        let line = |(row, end): (&Row, &&str)| format!("{}{end}", cells::text(row).trim_end());
+        let line = |(row, end): (&Row, &&str)| format!("{}{end}", cells::text(row));
         self.rows.iter().zip(&self.line_ends).map(line).collect()
     }
 
     /// Row and columns of a span of the chunk; nothing outside of the rung.
     fn place(&self, span: Span) -> Option<(usize, usize, usize)> {
-        let line = line_of(self.site.text, span.start as usize).checked_sub(self.site.rung.lines.0)? as usize;
+        let line = self.site.line_of(span.start as usize).checked_sub(self.site.rung.lines.0)? as usize;
         let row = self.rows.get(line)?;
         let (start, end) =
             (self.site.column(span.start as usize) as usize, self.site.column(span.end as usize) as usize);
@@ -141,10 +141,11 @@ pub(super) fn with_element(
         let line = if spelling.place == OperandPlace::Below { row + 1 } else { row.checked_sub(1)? };
         let names = sketch.rows.get_mut(line)?;
         let from = start - left + usize::from(left == 0) * name_shift(above.len(), body.len());
-        if names.len() < from + above.len() + 1 {
-            names.resize(from + above.len() + 1, ' ');
+        let to = from + above.len();
+        if names.len() < to {
+            names.resize(to, ' ');
         }
-        let room = from.checked_sub(1)?..from + above.len() + 1;
+        let room = from.checked_sub(1)?..(to + 1).min(names.len());
         names[room].iter().all(|cell| *cell == ' ').then_some(())?;
         names[from..from + above.len()].copy_from_slice(&above);
     }

@@ -1,7 +1,7 @@
 //! How a rung is drawn, so that it can be drawn again in the same way: characters, rails, margin, comments behind it.
 
 use super::assemble::Plan;
-use super::site::{Site, line_of, line_start};
+use super::site::Site;
 use crate::ladder::reduce::reduce;
 use crate::ladder::{
     Drawing, Element, ElementKind, OperandPlace, Rung, Strokes, Style, StyleKind, column_after,
@@ -38,7 +38,7 @@ impl Look {
         let widest = lines.iter().map(|line| line.chars().fold(0, column_after)).max().unwrap_or(1);
         let inner = left + u32::from(double_left);
         let number = site.rung.number.map(|number| {
-            let start = line_start(site.text, line_of(site.text, number.span.start as usize));
+            let start = site.line_start(site.line_of(number.span.start as usize));
             let head = site.text.get(start..number.span.end as usize).unwrap_or("");
             let blanks = (left as usize).saturating_sub(head.chars().map(cell_width).sum());
             format!("{head}{}", " ".repeat(blanks))
@@ -124,6 +124,9 @@ impl Look {
             line.push_str(comment);
         }
         let mut text = lines.join(self.line_end);
+        if site.lines().of(site.text).starts_with(BYTE_ORDER_MARK) {
+            text.insert(0, BYTE_ORDER_MARK);
+        }
         if self.ended {
             text.push_str(self.line_end);
         }
@@ -185,7 +188,7 @@ fn kind_of(rung: &Rung, text: &str) -> Option<StyleKind> {
 /// The column of the first cell that is drawn, a number in the margin passed over.
 fn first_drawn(line: &str) -> Option<u32> {
     let mut column = 0;
-    for character in line.chars() {
+    for character in line.trim_start_matches(BYTE_ORDER_MARK).chars() {
         if Strokes::of(character) != Strokes::default() || matches!(character, '[' | ']' | '(' | ')') {
             return Some(column);
         }
@@ -227,8 +230,8 @@ fn comments_behind<'d>(site: &Site<'d>) -> Result<Vec<(u32, u32, &'d str)>, Mess
     let inside =
         site.tree.comments.iter().filter(|comment| comment.start < lines.end && lines.start < comment.end);
     let behind = inside.map(|comment| {
-        let line = line_of(site.text, comment.start as usize);
-        let (start, end) = (line_start(site.text, line), line_start(site.text, line + 1));
+        let line = site.line_of(comment.start as usize);
+        let (start, end) = (site.line_start(line), site.line_start(line + 1));
         let before = site.text.get(start..comment.start as usize).unwrap_or("");
         let after = site.text.get(comment.end as usize..end.max(comment.end as usize)).unwrap_or("");
         let is_behind = !before.trim().is_empty() && after.trim().is_empty();
@@ -247,6 +250,8 @@ fn line_of_row(plan: &Plan, drawing: &Drawing, row: u32) -> usize {
     let nearest = below.or(old().max_by_key(|(_, element)| element.row));
     nearest.and_then(|(id, _)| drawing.line_of(id)).unwrap_or(0)
 }
+
+const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// The row of elements that have not been drawn yet.
 pub(super) const NEW_ROW: u32 = u32::MAX;

@@ -17,6 +17,9 @@ use crate::ladder::reduce::reduce;
 use crate::ladder::{LadderTree, Strokes, parse};
 use crate::text::{Message, Span, TextEdit};
 
+/// Rungs with more rows are not aligned row by row: the way back costs the square of their number.
+const ROWS_MAX: usize = 200;
+
 /// How many half-mended rungs are kept while going down the rows.
 const KEPT: usize = 12;
 
@@ -60,10 +63,10 @@ fn block(text: &str, tree: &LadderTree, line: u32) -> (u32, u32) {
 /// Where it could be aligned in ways that read differently.
 pub(super) fn mend(site: &Site<'_>, span: Span, style: Style) -> Result<Edited, Message> {
     let offset = (span.start as usize).saturating_sub(site.start).min(site.text.len());
-    let aligned = aligned(site, super::site::line_of(site.text, offset), site.column(offset));
+    let aligned = aligned(site, site.line_of(offset), site.column(offset));
     if let Some(edits) = aligned {
         let after = TextEdit::apply_all(&edits, site.text);
-        let line = super::site::line_of(site.text, offset);
+        let line = site.line_of(offset);
         let from = line_start(&after, line);
         let text = after.get(from..).and_then(|rest| rest.lines().next()).unwrap_or("");
         let cursor = site.start + from + byte_of_column(text, site.column(offset));
@@ -99,7 +102,10 @@ fn redrawn(site: &Site<'_>, span: Span, style: Style) -> Option<Edited> {
 fn aligned(site: &Site<'_>, line: u32, column: u32) -> Option<Vec<TextEdit>> {
     let (first, end) = block(site.text, site.tree, line);
     let cursor = Some((line - first, column));
-    let lines: Vec<&str> = (first..end).map(|number| line_at(site.text, number)).collect();
+    if (end - first) as usize > ROWS_MAX {
+        return None;
+    }
+    let lines: Vec<&str> = (first..end).map(|number| site.line(number)).collect();
     let rows: Vec<Row> = lines.iter().map(|line| cells::row(line.trim_end())).collect::<Option<_>>()?;
     let rail = common_rail(&rows)?;
     if rows.iter().filter_map(rail_of).all(|own| own == rail) {
@@ -144,8 +150,8 @@ fn aligned(site: &Site<'_>, line: u32, column: u32) -> Option<Vec<TextEdit>> {
     }
     let (rows, ..) = found?;
     let edits = rows.iter().zip(first..).filter_map(|(row, number)| {
-        let start = line_start(site.text, number);
-        changes::smallest(line_at(site.text, number), &cells::text(row), start)
+        let start = site.line_start(number);
+        changes::smallest(site.line(number), &cells::text(row), start)
     });
     Some(edits.collect())
 }
@@ -157,10 +163,6 @@ fn same_logic((left_text, left): (&str, &LadderTree), (right_text, right): (&str
             .iter()
             .zip(&right.rungs)
             .all(|(left, right)| left.graph.same_logic(left_text, &right.graph, right_text))
-}
-
-fn line_at(text: &str, line: u32) -> &str {
-    text.get(line_start(text, line)..).and_then(|rest| rest.lines().next()).unwrap_or("")
 }
 
 fn replaced(text: &str, (first, end): (u32, u32), rows: &[Row]) -> String {

@@ -132,7 +132,7 @@ pub fn edit(
     let look = Look::of(&site, style_kind(style));
     let ask = Ask { site, span, kind, operand, look };
     // A drawing that is not in the canonical form was laid out by its author, and stays as far as it can.
-    let is_canonical = ask.look.redraws(&site);
+    let is_canonical = ask.look.redraws(&ask.site);
     let in_place = if is_canonical { None } else { ask.in_place(intended.as_ref().ok()) };
     match in_place {
         Some(edited) => Ok(edited),
@@ -181,7 +181,7 @@ impl Ask<'_, '_> {
     fn in_place(&self, intended: Option<&Intended>) -> Option<Edited> {
         let site = &self.site;
         let old = site.lines().shifted(site.start);
-        if let Some((new, name)) = operation::inserted(self.kind, self.operand) {
+        if let Some((new, name)) = operation::inserted(site, self.kind, self.operand) {
             let wire = operation::wire_at(site, self.span).ok()?;
             let (element, drawing) = parts::element(new, &name, site.document.target()).ok()?;
             let offset = self.span.start as usize;
@@ -257,8 +257,10 @@ pub fn applicable(document: &Document, span: Span) -> Vec<EditKind> {
 fn cursor_at(proved: &Proved, element: &Element, chunk: usize, named: bool) -> Span {
     let (new, start) = proved.text();
     let is_open = |span: &Span| new.get(chunk - start..).is_some_and(|text| span.of(text).contains('?'));
+    let instance = element.block().and_then(|block| block.instance).filter(is_open);
     let words = element.operands.iter().map(|operand| operand.span);
-    let open = words.filter(is_open).reduce(Span::to).filter(|_| !named);
+    // A block that was given its type has open places all the same.
+    let open = instance.or_else(|| words.filter(is_open).reduce(Span::to).filter(|_| !named));
     open.unwrap_or(Span::at(element.span.end as usize)).shifted(chunk)
 }
 
@@ -267,7 +269,7 @@ fn same_place(site: &Site<'_>, proved: &Proved, offset: usize) -> Span {
     let (new, start) = proved.text();
     let offset = offset.saturating_sub(site.start).min(site.text.len());
     let rung = proved.rung_span();
-    let line = site::line_of(site.text, offset).saturating_sub(site.rung.lines.0) as usize;
+    let line = site.line_of(offset).saturating_sub(site.rung.lines.0) as usize;
     let column = site.column(offset);
     let first = rung.start as usize - start;
     let first = new.get(..first).and_then(|head| head.rfind('\n')).map_or(0, |end| end + 1);

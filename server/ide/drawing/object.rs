@@ -104,16 +104,12 @@ fn rung(site: &Site<'_>, around: bool) -> Option<Object> {
     let lines = site.lines();
     let (mut start, mut end) = (lines.start as usize, lines.end as usize);
     if around {
-        let above =
-            |line: &str| line.trim_start().starts_with(['(', '/', ';', '*']) && !line.contains(['|', '│']);
-        let comments = &site.tree.comments;
         // A comment directly above moves with its rung.
-        while let Some(comment) = comments.iter().find(|comment| {
-            let between = site.text.get(comment.end as usize..start);
-            between.is_some_and(|text| text.trim().is_empty() && text.matches('\n').count() <= 1)
-        }) {
-            let first = line_start(site.text, line_of(site.text, comment.start as usize));
-            if first >= start || !above(site.text.get(first..).unwrap_or("")) {
+        for comment in site.tree.comments.iter().rev().filter(|comment| comment.end <= lines.start) {
+            let first = site.line_start(site.line_of(comment.start as usize));
+            let before = site.text.get(first..comment.start as usize).unwrap_or("");
+            let behind = site.text.get(comment.end as usize..start).unwrap_or("");
+            if !before.trim().is_empty() || !behind.trim().is_empty() || behind.matches('\n').count() > 1 {
                 break;
             }
             start = first;
@@ -166,7 +162,7 @@ impl Site<'_> {
     /// The smallest rectangle with all cells of some elements.
     fn rectangle(&self, elements: &[&Element]) -> Option<Rectangle> {
         let cells: Vec<Span> = elements.iter().flat_map(|element| cells_of(element)).collect();
-        let lines = cells.iter().map(|span| line_of(self.text, span.start as usize));
+        let lines = cells.iter().map(|span| self.line_of(span.start as usize));
         let starts = cells.iter().map(|span| self.column(span.start as usize));
         let ends = cells.iter().map(|span| self.column(span.end as usize));
         Some(Rectangle {
@@ -177,8 +173,7 @@ impl Site<'_> {
 
     /// Columns widened over the wires of a row on both sides.
     fn up_to_verticals(&self, row: u32, (first, last): (u32, u32)) -> (u32, u32) {
-        let start = line_start(self.text, row);
-        let line = self.text.get(start..).and_then(|rest| rest.lines().next()).unwrap_or("");
+        let line = self.line(row);
         let mut column = 0;
         let mut cells = Vec::with_capacity(line.len());
         for character in line.chars() {
@@ -196,11 +191,7 @@ impl Site<'_> {
 
     /// The bytes of the document from a rectangle's first to its last cell.
     fn span_of(&self, rectangle: Rectangle) -> Span {
-        let byte = |line: u32, column: u32| {
-            let start = line_start(self.text, line);
-            let text = self.text.get(start..).and_then(|rest| rest.lines().next()).unwrap_or("");
-            start + byte_of_column(text, column)
-        };
+        let byte = |line: u32, column: u32| self.line_start(line) + byte_of_column(self.line(line), column);
         let start = byte(rectangle.lines.0, rectangle.columns.0);
         let end = byte(rectangle.lines.1.saturating_sub(1), rectangle.columns.1);
         Span::new(start, end.max(start)).shifted(self.start)

@@ -41,7 +41,7 @@ pub(super) fn intended(
     operand: Option<&str>,
 ) -> Result<Intended, Message> {
     let work = Work { site, graph: site.rung.graph.clone(), source: site.text.to_string() };
-    if let Some((new, name)) = inserted(kind, operand) {
+    if let Some((new, name)) = inserted(site, kind, operand) {
         return work.insert(span, (new, &name));
     }
     let word = operand.map(str::trim).filter(|word| !word.is_empty());
@@ -244,7 +244,7 @@ impl Work<'_, '_> {
 }
 
 /// What an insertion puts where, and how it is named.
-pub(super) fn inserted(kind: EditKind, operand: Option<&str>) -> Option<(New, String)> {
+pub(super) fn inserted(site: &Site<'_>, kind: EditKind, operand: Option<&str>) -> Option<(New, String)> {
     let word = operand.map(str::trim).filter(|word| !word.is_empty());
     let new = match kind {
         EditKind::InsertContact => New::Contact(ContactKind::NormallyOpen),
@@ -257,6 +257,8 @@ pub(super) fn inserted(kind: EditKind, operand: Option<&str>) -> Option<(New, St
     };
     let name = match (word, new) {
         (Some(word), _) => word.to_string(),
+        // The boxes of IEC programs are function blocks.
+        (None, New::Box) if !site.document.target().is_fx() => "TON".to_string(),
         (None, New::Box) => format!("MOV {PLACEHOLDER} {PLACEHOLDER}"),
         (None, _) => PLACEHOLDER.to_string(),
     };

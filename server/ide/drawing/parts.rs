@@ -7,6 +7,7 @@ use crate::ladder::{
     Arc, ArcId, CoilKind, CompareOperator, ContactKind, Element, ElementId, ElementKind, Graph,
 };
 use crate::target::Target;
+use crate::target::iec::{FunctionBlock, Parameter};
 use crate::text::{Message, Span};
 
 /// What stands where a name is still to be given.
@@ -50,7 +51,10 @@ pub(super) fn element(new: New, operand: &str, target: &Target) -> Result<(Eleme
             };
             format!("|     {operand}{blanks}|\n+----({mark}){wire}+\n")
         }
-        New::Box => format!("+----[{operand}]{wire}+\n"),
+        New::Box => match function_block(operand, target) {
+            Some(drawing) => drawing,
+            None => format!("+----[{operand}]{wire}+\n"),
+        },
     };
     let tree = parse(&drawing, target);
     let [rung] = tree.rungs.as_slice() else { return Err(refuse()) };
@@ -71,6 +75,34 @@ pub(super) fn element(new: New, operand: &str, target: &Target) -> Result<(Eleme
         return Err(refuse());
     }
     Ok((element.clone(), drawing))
+}
+
+/// The drawing of a standard function block, for `TON` or `Delay : TON`: power through its first input and output,
+/// open places at its other inputs.
+fn function_block(operand: &str, target: &Target) -> Option<String> {
+    let (instance, name) = operand.split_once(':').unwrap_or((PLACEHOLDER, operand));
+    let (instance, name) = (instance.trim(), name.trim());
+    let block = FunctionBlock::named(name).filter(|_| !target.is_fx() && !instance.is_empty())?;
+    let widest = |pins: &[Parameter]| pins.iter().map(|pin| pin.name.len()).max().unwrap_or(0);
+    let (left, right) = (widest(block.inputs), widest(block.outputs));
+    let inner = (left + right + 2).max(name.len());
+    let margin = instance.chars().count() + 12;
+    let blanks = " ".repeat(margin);
+    let border = format!("{blanks}+{}+\n", "-".repeat(inner));
+    let mut drawing = format!("{blanks}{instance}\n{border}{blanks}|{name:^inner$}|\n");
+    for row in 0..block.inputs.len().max(block.outputs.len()) {
+        let input = block.inputs.get(row).map_or("", |pin| pin.name);
+        let output = block.outputs.get(row).map_or("", |pin| pin.name);
+        let (before, behind) = match row {
+            0 => (format!("+{}", "-".repeat(margin - 1)), "-----+".to_string()),
+            _ if input.is_empty() => (blanks.clone(), String::new()),
+            _ => (format!("{}{PLACEHOLDER}--", " ".repeat(margin - PLACEHOLDER.len() - 2)), String::new()),
+        };
+        let gap = inner - input.len() - output.len();
+        drawing.push_str(&format!("{before}|{input}{}{output}|{behind}\n", " ".repeat(gap)));
+    }
+    drawing.push_str(&border);
+    Some(drawing)
 }
 
 /// The element with all its places moved by so many bytes.

@@ -4,7 +4,7 @@ use super::Edited;
 use super::assemble::Plan;
 use super::look::Look;
 use super::proof::Window;
-use super::site::{Site, line_of, line_start};
+use super::site::Site;
 use crate::document::{Document, Tree};
 use crate::ide::Style;
 use crate::ladder::Element;
@@ -19,7 +19,7 @@ pub(super) fn insert(
     style: Style,
 ) -> Result<Edited, Message> {
     let site = Site::at(document, offset);
-    let near = site.or_else(|| nearest(document, offset));
+    let near = site.clone().or_else(|| nearest(document, offset));
     let fallback = super::style_kind(style);
     let look = near.map_or_else(|| Look::plain(fallback, style.width), |site| Look::of(&site, fallback));
     let place = match site {
@@ -58,14 +58,14 @@ fn beside(site: &Site<'_>, above: bool) -> usize {
         return site.start + site.lines().start as usize;
     }
     let blank = site.text.len() - site.text.trim_start_matches(['\n', '\r', ' ', '\t', '\u{feff}']).len();
-    site.start
-        + line_start(site.text, line_of(site.text, blank)).max(site.text.find('\u{feff}').map_or(0, |_| 3))
+    site.start + site.line_start(site.line_of(blank)).max(site.text.find('\u{feff}').map_or(0, |_| 3))
 }
 
 /// The start of a line between rungs: that of the byte if it is blank, else behind the chunk.
 fn free_line(document: &Document, offset: usize) -> usize {
     let (_, start, line) = document.line_at(offset);
-    if line.trim().is_empty() {
+    let ends_unit = line.trim_start().get(..4).is_some_and(|word| word.eq_ignore_ascii_case("END_"));
+    if line.trim().is_empty() || ends_unit && !line.to_ascii_uppercase().contains("END_VAR") {
         return start;
     }
     document.chunk_at(offset).map_or(document.len(), |at| at.start + at.chunk.len())
@@ -120,7 +120,7 @@ pub(super) fn after_end(
     let (_, start, line) = document.line_at(offset);
     let next = start + line.len();
     let follows = next < document.len() && !document.line_at(next).2.trim().is_empty();
-    if line_of(site.text, inside) != last || !complete || follows {
+    if site.line_of(inside) != last || !complete || follows {
         return Vec::new();
     }
     let look = Look::of(site, super::style_kind(style));

@@ -5,7 +5,7 @@ use crate::ladder::{ArcId, Element, ElementId, LadderTree, Rung, VertexKind, col
 use crate::text::Span;
 
 /// A rung with its surroundings.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Site<'d> {
     pub document: &'d Document,
     /// Where the chunk starts in the document.
@@ -16,6 +16,8 @@ pub(super) struct Site<'d> {
     /// The rung's number in the chunk.
     pub number: usize,
     pub rung: &'d Rung,
+    /// First bytes of the chunk's lines.
+    starts: Vec<usize>,
 }
 
 /// What the cursor is at.
@@ -34,13 +36,30 @@ impl<'d> Site<'d> {
         let line = line_of(text, offset.saturating_sub(at.start));
         let (number, rung) =
             tree.rungs.iter().enumerate().find(|(_, rung)| rung.lines.0 <= line && line < rung.lines.1)?;
-        Some(Site { document, start: at.start, text, tree, number, rung })
+        let starts = [0].into_iter().chain(text.match_indices('\n').map(|(end, _)| end + 1)).collect();
+        Some(Site { document, start: at.start, text, tree, number, rung, starts })
+    }
+
+    /// The line of the chunk, from 0, in which a byte of it lies.
+    pub fn line_of(&self, offset: usize) -> u32 {
+        self.starts.partition_point(|start| *start <= offset).saturating_sub(1) as u32
+    }
+
+    /// The first byte of a line of the chunk; its end if there is no such line.
+    pub fn line_start(&self, line: u32) -> usize {
+        self.starts.get(line as usize).copied().unwrap_or(self.text.len())
+    }
+
+    /// A line of the chunk without its line end.
+    pub fn line(&self, line: u32) -> &'d str {
+        let text = self.text.get(self.line_start(line)..self.line_start(line + 1)).unwrap_or("");
+        text.trim_end_matches(['\n', '\r'])
     }
 
     /// The bytes of the rung's lines in the chunk, line ends included.
     pub fn lines(&self) -> Span {
-        let start = line_start(self.text, self.rung.lines.0);
-        Span::new(start, line_start(self.text, self.rung.lines.1).max(start))
+        let start = self.line_start(self.rung.lines.0);
+        Span::new(start, self.line_start(self.rung.lines.1).max(start))
     }
 
     /// What a byte of the document is at; what is nearest where it is at nothing.
@@ -66,9 +85,9 @@ impl<'d> Site<'d> {
 
     /// What is nearest in the line of a byte; of two, what is on the left.
     fn spot_in_row(&self, offset: usize) -> Option<Spot> {
-        let line = line_of(self.text, offset);
-        let start = line_start(self.text, line);
-        let bounds = start..line_start(self.text, line + 1).max(start);
+        let line = self.line_of(offset);
+        let start = self.line_start(line);
+        let bounds = start..self.line_start(line + 1).max(start);
         let distance = |span: &Span| match span {
             span if span.end as usize <= offset => 2 * (offset - span.end as usize),
             span => 2 * (span.start as usize).saturating_sub(offset) + 1,
@@ -87,7 +106,7 @@ impl<'d> Site<'d> {
 
     /// What is nearest below, else above, in the column of a byte.
     fn spot_in_column(&self, offset: usize) -> Option<Spot> {
-        let row = line_of(self.text, offset);
+        let row = self.line_of(offset);
         let column = self.column(offset);
         let distance = |line: u32| if line >= row { (line - row) * 2 } else { (row - line) * 2 + 1 };
         let covers = |span: &&Span| {
@@ -99,7 +118,7 @@ impl<'d> Site<'d> {
         });
         let wires = self.wires().filter_map(|(arc, cells)| {
             let cells = cells.iter().filter(covers);
-            let near = cells.map(|span| distance(line_of(self.text, span.start as usize))).min()?;
+            let near = cells.map(|span| distance(self.line_of(span.start as usize))).min()?;
             Some((near, Spot::Wire(arc)))
         });
         elements.chain(wires).min_by_key(|(distance, _)| *distance).map(|(_, spot)| spot)
@@ -141,7 +160,7 @@ impl<'d> Site<'d> {
 
     /// The displayed column of a byte of the chunk.
     pub fn column(&self, offset: usize) -> u32 {
-        let start = line_start(self.text, line_of(self.text, offset));
+        let start = self.line_start(self.line_of(offset));
         let head = self.text.get(start..offset).unwrap_or("");
         head.chars().fold(0, column_after)
     }

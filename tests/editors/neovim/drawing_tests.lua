@@ -52,7 +52,7 @@ local EDITS = {
     '|                                          M0  |',
     '+------------------------------------------(R)-+',
   } },
-  { 'insert-box', ':Rungwise edit insert-box RET<CR>', EMPTY, 1, 4, { EMPTY[1], '+--[RET]---------------------------------------+' } },
+  { 'insert-box', ':Rungwise edit insert-box MOV K1 D0<CR>', EMPTY, 1, 4, { EMPTY[1], '+--[MOV K1 D0]---------------------------------+' } },
   { 'insert-branch', '\\bX2<Esc>', SEAL_IN, 1, 15, {
     SEAL_IN[1],
     '+---| |---+---|/|---+----------------------( )-+',
@@ -116,7 +116,7 @@ end
 
 --- Each: keys at the cursor, the drawing afterwards.
 local OBJECTS = {
-  { 'yir and p copy a rung', 'yirGo<Esc>p', 1, 5, join(SEAL_IN, END, SEAL_IN) },
+  { 'yir and p copy a rung', 'yirGo<Esc>p', 1, 5, join(SEAL_IN, END, '', SEAL_IN) },
   { 'dar deletes a rung', 'dar', 1, 5, { '+--[END]---------------------------------------+' } },
 }
 
@@ -129,6 +129,67 @@ for _, script in ipairs(OBJECTS) do
     same(name, table.concat(after, '\n'))
   end)
 end
+
+--- A command of the plugin whose placeholder is typed over.
+local function inserted(keys, operand)
+  nvim:press(keys)
+  nvim:until_true('the placeholder', function()
+    return nvim:request('nvim_get_mode').mode == 's'
+  end)
+  nvim:type(operand)
+  nvim:press('<Esc>')
+  nvim:settle()
+end
+
+check('a program is typed from nothing', function()
+  nvim:open('typed.lad', table.concat(vim.list_slice(END, 2), '\n'), 0, 3)
+  nvim:press('\\G')
+  nvim:settle()
+  inserted('\\c', 'X10')
+  nvim:request('nvim_win_set_cursor', 0, { 2, 40 })
+  inserted('\\o', 'Y10')
+  nvim:request('nvim_win_set_cursor', 0, { 2, 5 })
+  inserted('\\b', 'Y10')
+  nvim:request('nvim_win_set_cursor', 0, { 2, 30 })
+  inserted('\\n', 'X11')
+  nvim:request('nvim_win_set_cursor', 0, { 2, 5 })
+  nvim:press('\\g')
+  nvim:settle()
+  inserted('\\c', 'Y10')
+  nvim:request('nvim_win_set_cursor', 0, { 7, 30 })
+  nvim:press(':Rungwise edit insert-coil T0 K100<CR>')
+  nvim:settle()
+  same('the whole program', table.concat({
+    '|   X10       X11                          Y10 |',
+    '+---| |---+---|/|--------------------------( )-+',
+    '|   Y10   |                                    |',
+    '+---| |---+                                    |',
+    '',
+    '|   Y10                                 T0 K100|',
+    '+---| |------------------------------------( )-+',
+    '',
+    '+--[END]---------------------------------------+',
+  }, '\n'))
+  nvim:until_true('no diagnostics', function()
+    return vim.deep_equal(nvim:codes(), {})
+  end)
+end)
+
+check('deleting a character of a name keeps the columns, and is undone at once', function()
+  nvim:open('deleted.lad', program(SEAL_IN), 0, 15)
+  nvim:press('x')
+  nvim:settle()
+  same('the shorter name', program(join('|   X0        X                            Y0  |', vim.list_slice(SEAL_IN, 2))))
+  nvim:press('u')
+  same('the name again', program(SEAL_IN))
+end)
+
+check('a longer name put in by a paste keeps the columns', function()
+  nvim:open('pasted.lad', program(SEAL_IN), 0, 14)
+  nvim:press('cwX17<Esc>')
+  nvim:settle()
+  same('the longer name', program(join('|   X0        X17                          Y0  |', vim.list_slice(SEAL_IN, 2))))
+end)
 
 nvim:stop()
 finish()

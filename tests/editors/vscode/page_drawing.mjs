@@ -94,16 +94,17 @@ async function editsByKeys(workbench) {
 async function deletion(workbench) {
   await workbench.openFile('edited.lad');
   const before = await workbench.documentLines();
-  await workbench.goTo(2, 25);
-  for (let i = 0; i < 3; i++) {
-    await workbench.page.keyboard.press('Backspace');
-    await workbench.page.waitForTimeout(40);
-  }
-  const gap = [...before];
-  gap[1] = `${before[1].slice(0, 21)}   ${before[1].slice(24)}`;
-  await untilText(workbench, 'blank cells where the wire was', gap);
+  await workbench.goTo(1, 17);
+  await workbench.page.keyboard.press('Backspace');
+  const shorter = [...before];
+  shorter[0] = before[0].replace('X1 ', 'X  ');
+  await untilText(workbench, 'the name one character shorter, and all columns as before', shorter);
   await workbench.page.keyboard.press('Control+z');
-  await untilText(workbench, 'the wire again', before);
+  await untilText(workbench, 'the name again', before);
+  await workbench.goTo(2, 28);
+  await workbench.page.keyboard.press('Delete');
+  await workbench.page.keyboard.press('Delete');
+  await untilText(workbench, 'a wire without a gap', before);
 }
 
 async function paste(workbench) {

@@ -11,15 +11,19 @@ export const VIEW_TESTS = {
 };
 
 async function walkthrough(workbench) {
+  // Without the panel there is room for the picture.
+  await workbench.page.keyboard.press('Control+j');
   await workbench.command('Rungwise: Get Started');
   const page = workbench.page.locator('.gettingStartedContainer');
   await page.locator('text=Get started with Rungwise').first().waitFor({ timeout: 30_000 });
   await page.locator('.step-list-container .getting-started-step').nth(2).waitFor({ timeout: 15_000 });
   // The picture of the first step is a drawing of its own.
   await workbench.until('the picture', async () => (await page.locator('.getting-started-media svg, .getting-started-media iframe, .getting-started-media webview').count()) > 0);
-  await workbench.page.waitForTimeout(1500);
+  await workbench.page.locator('.gettingStartedContainer .getting-started-media').first().waitFor();
+  await workbench.page.waitForTimeout(1500); // The picture is drawn in a page of its own.
   await workbench.screenshot('15-walkthrough');
   await workbench.page.keyboard.press('Control+F4');
+  await workbench.page.keyboard.press('Control+j');
 }
 
 async function explain(workbench) {
@@ -28,7 +32,7 @@ async function explain(workbench) {
   await workbench.chord('e');
   await workbench.page.waitForSelector('.tab.active[data-resource-name="short-circuit.md"]', { timeout: 15_000 });
   await workbench.until('the page in the preview', async () => {
-    for (const frame of workbench.page.frames()) {
+    for (const frame of workbench.page.frames().slice(1)) {
       if (/short/i.test(await frame.locator('body').innerText({ timeout: 500 }).catch(() => ''))) {
         return true;
       }
@@ -36,7 +40,7 @@ async function explain(workbench) {
     return false;
   }, 30_000);
   await workbench.screenshot('16-page-of-a-rule');
-  await workbench.page.keyboard.press('Control+F4');
+  await workbench.closeTab('short-circuit.md');
 }
 
 async function usage(workbench) {
@@ -47,8 +51,7 @@ async function usage(workbench) {
   const table = workbench.page.locator('.editor-instance[data-uri], .editor-instance').last().locator('.view-line');
   await workbench.until('the devices', async () => (await table.allInnerTexts()).some((line) => /\bT0\b/.test(line)));
   await workbench.screenshot('17-devices-in-use');
-  await workbench.page.locator('.tab[data-resource-name="conveyor_fx.il.usage"]').click();
-  await workbench.page.keyboard.press('Control+F4');
+  await workbench.closeTab('conveyor_fx.il.usage');
 }
 
 async function hints(workbench) {

@@ -105,6 +105,14 @@ export class Workbench {
     throw new Error(`waited ${timeoutMs} ms for ${what}`);
   }
 
+  /** Closes a tab by its cross. */
+  async closeTab(name) {
+    const tab = this.page.locator(`.tab[data-resource-name="${name}"]`).first();
+    await tab.hover();
+    await tab.locator('.codicon-close').click();
+    await tab.waitFor({ state: 'detached', timeout: SHORT_MS });
+  }
+
   /** Closes what a failed check has left open, so that the next one starts in the editor. */
   async calm() {
     for (let i = 0; i < 3; i++) {
