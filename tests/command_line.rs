@@ -29,7 +29,8 @@ fn check(folder: &TempDir, arguments: &[&str], code: i32) -> (String, String) {
 
 #[test]
 fn sarif_has_the_form_of_the_standard() {
-    let files = folder(&[("wrong file.il", "LD X8\nOUT Y0\nEND\n"), ("open.lad", "|  X0     |\n+--| |-   |\n")]);
+    let files =
+        folder(&[("wrong file.il", "LD X8\nOUT Y0\nEND\n"), ("open.lad", "|  X0     |\n+--| |-   |\n")]);
     let (out, _) = check(&files, &["check", "--format", "sarif", "."], 1);
     // These types are generated from the schema of OASIS.
     let log: serde_sarif::sarif::Sarif = serde_json::from_str(&out).unwrap();
@@ -63,7 +64,7 @@ fn fmt_check_shows_a_diff_that_patch_applies() {
     let files = folder(&[("a.il", "ld x0\nout y0\nend"), ("b.il", "LD X0\nOUT Y0\nEND\n")]);
     let (out, _) = check(&files, &["fmt", "--check"], 1);
     let expected = "--- a.il\n+++ a.il\n@@ -1,3 +1,3 @@\n-ld x0\n-out y0\n-end\n\\ No newline at end of file\n\
-                    +LD X0\n+OUT Y0\n+END\n\\ No newline at end of file\n";
+                    +LD X0\n+OUT Y0\n+END\n";
     let out = out.replace("./a.il", "a.il");
     assert_eq!(out, expected);
     assert_eq!(std::fs::read_to_string(files.path().join("a.il")).unwrap(), "ld x0\nout y0\nend");
@@ -110,7 +111,8 @@ fn a_target_of_another_dialect_is_refused() {
     check(&files, &["check", "--target", "fx3u", "a.il"], 0);
 }
 
-const NATIVE: &str = "LDmicro0.1\nIO LIST\n    Xa at 3\nEND\nPROGRAM\nRUNG\n    CONTACTS Xa 0\n    COIL Yb 0 0 0\nEND\n";
+const NATIVE: &str =
+    "LDmicro0.1\nIO LIST\n    Xa at 3\nEND\nPROGRAM\nRUNG\n    CONTACTS Xa 0\n    COIL Yb 0 0 0\nEND\n";
 
 #[test]
 fn imports_are_written_and_what_is_lost_is_said() {
@@ -143,7 +145,10 @@ fn programs_in_markdown_are_checked_and_formatted_each_by_itself() {
     let text = std::fs::read_to_string(files.path().join("pump.md")).unwrap();
     let (before, rest) = text.split_once("```ladder\n").unwrap();
     assert_eq!(before, "# Pump\n\nText | here.\n\n");
-    assert!(rest.starts_with("|   X0  ") && rest.contains("( )-+\n```\n\n- item\n  ```il\n  ld x0\n"), "{text}");
+    assert!(
+        rest.starts_with("|   X0  ") && rest.contains("( )-+\n```\n\n- item\n  ```il\n  ld x0\n"),
+        "{text}"
+    );
     assert!(text.contains("```c\n+--[X0]\n```\n\n~~~il\r\nLD X0\r\nOUT Y0\r\nEND\r\n~~~\n"), "{text}");
     assert_eq!(check(&files, &["fmt", "--check", "pump.md"], 0).0, "");
     // Only a text that is named is looked into.
@@ -157,7 +162,8 @@ fn a_session_is_recorded_and_played_again() {
     let mut client = crate::lsp_client::Client::spawn_with(&["--mirror", path.to_str().unwrap()]);
     client.request("initialize", json!({"processId": null, "rootUri": null, "capabilities": {}}));
     client.notify("initialized", json!({}));
-    let item = json!({"uri": "file:///a.il", "languageId": "plc-il", "version": 1, "text": "LD X8\nOUT Y0\nEND\n"});
+    let item =
+        json!({"uri": "file:///a.il", "languageId": "plc-il", "version": 1, "text": "LD X8\nOUT Y0\nEND\n"});
     client.notify("textDocument/didOpen", json!({"textDocument": item}));
     let place = json!({"textDocument": {"uri": "file:///a.il"}, "position": {"line": 1, "character": 1}});
     let hover = client.request("textDocument/hover", place)["result"].clone();
@@ -198,7 +204,9 @@ fn files_keep_their_encoding_mark_and_line_ends() {
         bytes => encoding_rs::GBK.decode_without_bom_handling(bytes).0.into_owned(),
     };
     let marked = format!("\u{feff}{text}").into_bytes();
-    for (name, bytes) in [("le.il", utf16(true)), ("be.il", utf16(false)), ("gbk.il", gbk), ("mark.il", marked)] {
+    for (name, bytes) in
+        [("le.il", utf16(true)), ("be.il", utf16(false)), ("gbk.il", gbk), ("mark.il", marked)]
+    {
         let files = folder(&[]);
         let path = files.path().join(name);
         std::fs::write(&path, &bytes).unwrap();
@@ -208,7 +216,10 @@ fn files_keep_their_encoding_mark_and_line_ends() {
         let written = std::fs::read(&path).unwrap();
         assert_eq!(written[..2] == bytes[..2], name != "gbk.il", "{name}");
         let formatted = decoded(&written);
-        assert!(formatted.starts_with("LD X0") && formatted.contains("电机\r\nOUT Y0\r\n"), "{name}: {formatted}");
+        assert!(
+            formatted.starts_with("LD X0") && formatted.contains("电机\r\nOUT Y0\r\n"),
+            "{name}: {formatted}"
+        );
         let stdout = run(&files, &["fmt", "--stdout", name]).stdout;
         assert_eq!(stdout, written, "{name}");
     }

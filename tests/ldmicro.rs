@@ -54,7 +54,8 @@ fn timers_are_blocks_with_their_preset() {
         ("o[RTL 2 s]", "T1:RTL IN=wire PT=T#2s =>Q=wire"),
         ("[TON delay]", "T1:TON IN=wire PT=delay =>Q=wire"),
     ] {
-        let drawing = format!("      Xa             T1             Yb    \n------] [--------{symbol:-<16}---( )-----");
+        let drawing =
+            format!("      Xa             T1             Yb    \n------] [--------{symbol:-<16}---( )-----");
         let name = block.split(' ').next().unwrap();
         check_rung(&drawing, &format!("L Xa {name}.IN\n{name}.Q (Yb) R\nblock {block}"));
     }
@@ -96,7 +97,8 @@ fn waves_are_edges() {
         ("   _     _   _  ", "[_/ OSC_/ \\_/ \\]", "_:OSC IN=wire =>Q=wire"),
         ("", "[_/ OSR_/ \\_]", "_:R_TRIG CLK=wire =>Q=wire"),
     ] {
-        let drawing = format!("      Xa         {wave:17}     Yb      \n------] [--------{symbol:-<17}----( )-----");
+        let drawing =
+            format!("      Xa         {wave:17}     Yb      \n------] [--------{symbol:-<17}----( )-----");
         let name = block.split(' ').next().unwrap();
         let pin = block.split([' ', '=']).nth(1).unwrap();
         check_rung(&drawing, &format!("L Xa {name}.{pin}\n{name}.Q (Yb) R\nblock {block}"));
@@ -145,9 +147,17 @@ fn commands_take_the_name_above() {
         ("Ra", "(T)", "L Xa (T Ra) R"),
         ("done", "{GOTO}", "L Xa >>done R"),
         ("", "{RETURN}", "L Xa <RETURN> R"),
-        ("Ain", "{READ ADC}", "L Xa _:READ_ADC.EN\n_:READ_ADC.ENO R\nblock _:READ_ADC EN=wire =>ENO=wire =>OUT=Ain"),
+        (
+            "Ain",
+            "{READ ADC}",
+            "L Xa _:READ_ADC.EN\n_:READ_ADC.ENO R\nblock _:READ_ADC EN=wire =>ENO=wire =>OUT=Ain",
+        ),
         ("x", "{PERSIST}", "L Xa _:PERSIST.EN\n_:PERSIST.ENO R\nblock _:PERSIST EN=wire IN=x =>ENO=wire"),
-        ("", "{MASTER RLY}", "L Xa _:MASTER_RLY.EN\n_:MASTER_RLY.ENO R\nblock _:MASTER_RLY EN=wire =>ENO=wire"),
+        (
+            "",
+            "{MASTER RLY}",
+            "L Xa _:MASTER_RLY.EN\n_:MASTER_RLY.ENO R\nblock _:MASTER_RLY EN=wire =>ENO=wire",
+        ),
         ("50", "{PWM Pout}", "L Xa _:PWM.EN\n_:PWM.ENO R\nblock _:PWM EN=wire IN1=50 IN2=Pout =>ENO=wire"),
     ] {
         let blank = " ".repeat((symbol.len() - name.len().min(symbol.len())) / 2);
@@ -508,7 +518,8 @@ fn imported(source: &str) -> rungwise::ladder::Import {
 }
 
 fn notes(import: &rungwise::ladder::Import) -> Vec<String> {
-    let note = |note: &rungwise::ladder::Note| format!("{}: {}", note.line, note.message.render(Language::English));
+    let note =
+        |note: &rungwise::ladder::Note| format!("{}: {}", note.line, note.message.render(Language::English));
     import.notes.iter().map(note).collect()
 }
 
@@ -582,14 +593,20 @@ fn an_export_becomes_the_same_program_with_pins_and_types() {
         assert_eq!(notes(&import), [""; 0]);
         let kind = if text == FIRST { "digital in" } else { "Entr\u{e9}e digitale" };
         assert!(import.text.contains(&format!("Xbutton : BOOL; (* {kind}, pin 17 *)")), "{}", import.text);
-        assert!(import.text.contains("(* The lamp comes a second after the button.\n   ( * and goes at once * ) *)"));
+        assert!(
+            import
+                .text
+                .contains("(* The lamp comes a second after the button.\n   ( * and goes at once * ) *)")
+        );
         assert!(import.text.contains("    Tdelay  : TON; (* "), "{}", import.text);
     }
 }
 
 #[test]
 fn what_has_no_counterpart_is_said_and_drawn() {
-    let rung = |leaf: &str| format!("LDmicro0.1\n\nPROGRAM\nRUNG\n    CONTACTS Xa 0\n    {leaf}\n    COIL Yb 0 0 0\nEND\n");
+    let rung = |leaf: &str| {
+        format!("LDmicro0.1\n\nPROGRAM\nRUNG\n    CONTACTS Xa 0\n    {leaf}\n    COIL Yb 0 0 0\nEND\n")
+    };
     for (leaf, note, drawn) in [
         ("RTO Tr 10000", "RTO has no counterpart in IEC 61131-3; it is drawn as LDMICRO_RTO", "LDMICRO_RTO"),
         ("CTD Cd 2 10", "CTD has no counterpart in IEC 61131-3; it is drawn as LDMICRO_CTD", "LDMICRO_CTD"),
@@ -607,10 +624,17 @@ fn what_has_no_counterpart_is_said_and_drawn() {
         let found = notes(&import);
         match note {
             "" => assert!(found.is_empty(), "{leaf}: {found:?}"),
-            note => assert!(found.iter().any(|found| found.starts_with(&format!("6: {note}"))), "{leaf}: {found:?}"),
+            note => assert!(
+                found.iter().any(|found| found.starts_with(&format!("6: {note}"))),
+                "{leaf}: {found:?}"
+            ),
         }
         assert!(import.text.contains(drawn), "{leaf}\n{}", import.text);
-        assert!(found.iter().all(|note| import.text.contains(note.split_once(": ").unwrap().1)), "{}", import.text);
+        assert!(
+            found.iter().all(|note| import.text.contains(note.split_once(": ").unwrap().1)),
+            "{}",
+            import.text
+        );
     }
 }
 
@@ -644,7 +668,7 @@ fn broken_files_are_imported_as_far_as_they_go() {
     }
     let deep = format!("LDmicro0.1\nPROGRAM\nRUNG\n{}CONTACTS Xa\n", "PARALLEL\nSERIES\n".repeat(50_000));
     assert!(notes(&imported(&deep)).iter().any(|note| note.contains("nested more than")));
-    for source in ["", "LDmicro", "LDmicro export", "PROGRAM\nRUNG\n", "\u{0}\u{1}"] {
+    for source in ["", "LDmicro", "LDmicro exported", "PROGRAM\nRUNG\n", "\u{0}\u{1}"] {
         let error = rungwise::ladder::import(source, "x", Language::English).unwrap_err();
         assert_eq!(error, rungwise::ladder::ImportError::Unknown, "{source}");
     }
@@ -652,12 +676,51 @@ fn broken_files_are_imported_as_far_as_they_go() {
 
 /// Lines of native files, whole and broken.
 const LINES: &[&str] = &[
-    "RUNG", "END", "PARALLEL", "SERIES", "CONTACTS Xa 0", "CONTACTS Ra 1 0", "COIL Yb 0 0 0", "COIL Yb 0 0 0 1",
-    "TON Ta 1000000", "TOF Tb 5 0", "RTO Tc x", "CTU Ca 5 0", "CTD Cb", "CTC Cc 7", "RES Ca", "MOVE a b",
-    "ADD a b 3", "EQU a 0x10", "GEQ Ca", "OSR", "OSC", "OPEN", "SHORT", "PLACEHOLDER", "LABEL L", "GOTO L", "GOTO 3",
-    "COMMENT x *) y", "COMMENT", "READ_ADC Ain", "PERSIST a", "MASTER_RELAY", "FORMATTED_STRING a 3 65 66 67",
-    "IO LIST", "Xa at 3", "\u{7}|+-(", "PROGRAM", "CONTACTS", "CONTACTS - 0", "CONTACTS 3 0", "CONTACTS ++--| 1",
-    "COIL * 0 0 0", "MOVE (* 5", "TON \u{4e2d} 5", "RETURN",
+    "RUNG",
+    "END",
+    "PARALLEL",
+    "SERIES",
+    "CONTACTS Xa 0",
+    "CONTACTS Ra 1 0",
+    "COIL Yb 0 0 0",
+    "COIL Yb 0 0 0 1",
+    "TON Ta 1000000",
+    "TOF Tb 5 0",
+    "RTO Tc x",
+    "CTU Ca 5 0",
+    "CTD Cb",
+    "CTC Cc 7",
+    "RES Ca",
+    "MOVE a b",
+    "ADD a b 3",
+    "EQU a 0x10",
+    "GEQ Ca",
+    "OSR",
+    "OSC",
+    "OPEN",
+    "SHORT",
+    "PLACEHOLDER",
+    "LABEL L",
+    "GOTO L",
+    "GOTO 3",
+    "COMMENT x *) y",
+    "COMMENT",
+    "READ_ADC Ain",
+    "PERSIST a",
+    "MASTER_RELAY",
+    "FORMATTED_STRING a 3 65 66 67",
+    "IO LIST",
+    "Xa at 3",
+    "\u{7}|+-(",
+    "PROGRAM",
+    "CONTACTS",
+    "CONTACTS - 0",
+    "CONTACTS 3 0",
+    "CONTACTS ++--| 1",
+    "COIL * 0 0 0",
+    "MOVE (* 5",
+    "TON \u{4e2d} 5",
+    "RETURN",
 ];
 
 proptest! {

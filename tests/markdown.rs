@@ -34,7 +34,9 @@ fn await_diagnostics(client: &mut Client, version: Option<i64>, expected: &[(&st
             .as_array()
             .unwrap()
             .iter()
-            .map(|one| (one["code"].as_str().unwrap().to_string(), one["range"]["start"]["line"].as_u64().unwrap()))
+            .map(|one| {
+                (one["code"].as_str().unwrap().to_string(), one["range"]["start"]["line"].as_u64().unwrap())
+            })
             .collect();
         found.iter().map(|(code, line)| (code.as_str(), *line)).eq(expected.iter().copied())
     });
@@ -56,8 +58,12 @@ fn every_fence_is_a_document_at_its_place() {
     assert_eq!(references.as_array().unwrap().len(), 1, "{references}");
     assert_eq!(references[0]["uri"], URI);
     let symbols = client.request("textDocument/documentSymbol", whole())["result"].clone();
-    let lines: Vec<u64> =
-        symbols.as_array().unwrap().iter().map(|node| node["range"]["start"]["line"].as_u64().unwrap()).collect();
+    let lines: Vec<u64> = symbols
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|node| node["range"]["start"]["line"].as_u64().unwrap())
+        .collect();
     assert_eq!(lines, [3, 10], "{symbols}");
 }
 
@@ -98,10 +104,13 @@ fn fences_come_and_go_as_one_types() {
     let mut change = |client: &mut Client, start: (u32, u32), end: (u32, u32), text: &str| {
         version += 1;
         let place = |(line, character): (u32, u32)| json!({"line": line, "character": character});
-        client.notify("textDocument/didChange", json!({
-            "textDocument": {"uri": URI, "version": version},
-            "contentChanges": [{"range": {"start": place(start), "end": place(end)}, "text": text}]
-        }));
+        client.notify(
+            "textDocument/didChange",
+            json!({
+                "textDocument": {"uri": URI, "version": version},
+                "contentChanges": [{"range": {"start": place(start), "end": place(end)}, "text": text}]
+            }),
+        );
     };
     change(&mut client, (1, 0), (1, 0), "Some words.\n\n");
     await_diagnostics(&mut client, Some(2), &[("octal-digit", 12)]);
@@ -126,10 +135,16 @@ fn fixes_and_renames_name_the_document() {
     let actions = client.request("textDocument/codeAction", params)["result"].clone();
     assert!(!actions.to_string().contains(".fence-"), "{actions}");
     assert!(actions.to_string().contains(URI), "{actions}");
-    let answer = client.request("textDocument/rename", json!({
-        "textDocument": {"uri": URI}, "position": {"line": 3, "character": 3}, "newName": "X1"
-    }));
-    assert!(answer["result"].to_string().contains(URI) && !answer.to_string().contains(".fence-"), "{answer}");
+    let answer = client.request(
+        "textDocument/rename",
+        json!({
+            "textDocument": {"uri": URI}, "position": {"line": 3, "character": 3}, "newName": "X1"
+        }),
+    );
+    assert!(
+        answer["result"].to_string().contains(URI) && !answer.to_string().contains(".fence-"),
+        "{answer}"
+    );
 }
 
 #[test]
@@ -155,7 +170,8 @@ fn what_opens_and_closes_a_fence() {
         ("```ladder\n```\n```il\n```", vec![(true, 1, ""), (false, 3, "")]),
         ("```ladder `x\na\n", vec![]),
     ] {
-        let expected: Vec<_> = expected.into_iter().map(|(ladder, line, text)| (ladder, line, text.to_string())).collect();
+        let expected: Vec<_> =
+            expected.into_iter().map(|(ladder, line, text)| (ladder, line, text.to_string())).collect();
         assert_eq!(programs(text), expected, "{text}");
     }
 }

@@ -7,7 +7,7 @@ use clap_complete::Shell;
 
 #[derive(clap::Args)]
 pub(super) struct Arguments {
-    /// The shell.
+    /// Which shell the script is for.
     #[arg(value_enum)]
     shell: Shell,
 }

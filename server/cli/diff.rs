@@ -4,6 +4,9 @@ use super::colour::Colour;
 use similar::{ChangeTag, TextDiff};
 use std::fmt::Write;
 
+/// What stands behind a line without a line feed, in every language.
+const NO_LINE_FEED: &str = "\\ No newline at end of file\n";
+
 /// The diff from `old` to `new`, which `patch` understands, with three lines of context. A line that ends without a
 /// line feed is followed by the remark that says so.
 pub(super) fn unified(path: &str, old: &str, new: &str, colour: Colour) -> String {
@@ -24,7 +27,7 @@ pub(super) fn unified(path: &str, old: &str, new: &str, colour: Colour) -> Strin
             let content = line.strip_suffix('\n').unwrap_or(line);
             let _ = writeln!(text, "{begin}{sign}{content}{end}");
             if change.missing_newline() {
-                text.push_str("\\ No newline at end of file\n");
+                text.push_str(NO_LINE_FEED);
             }
         }
     }

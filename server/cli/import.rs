@@ -22,7 +22,12 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     let bytes = match std::fs::read(&arguments.file) {
         Ok(bytes) => bytes,
         Err(reason) => {
-            complain("unreadable-input", &format!("{path}: {reason}"), &words("import.unreadable-help"), language);
+            complain(
+                "unreadable-input",
+                &format!("{path}: {reason}"),
+                &words("import.unreadable-help"),
+                language,
+            );
             return Outcome::Unusable;
         }
     };
@@ -47,7 +52,8 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
                 complain("unwritable", &format!("{}: {reason}", output.display()), &help, language);
                 return Outcome::Unusable;
             }
-            let done = Message::new("import.done").with("path", output.display()).with("rungs", imported.rungs);
+            let done =
+                Message::new("import.done").with("path", output.display()).with("rungs", imported.rungs);
             say(&format!("{}\n", done.render(language)));
         }
     }

@@ -125,7 +125,9 @@ fn uri(path: &Path) -> String {
         match part {
             Component::CurDir => continue,
             Component::RootDir => uri.push('/'),
-            Component::Prefix(drive) => uri += &format!("file:///{}", escaped(&drive.as_os_str().to_string_lossy())),
+            Component::Prefix(drive) => {
+                uri += &format!("file:///{}", escaped(&drive.as_os_str().to_string_lossy()))
+            }
             Component::ParentDir => push(&mut uri, ".."),
             Component::Normal(name) => push(&mut uri, &escaped(&name.to_string_lossy())),
         }

@@ -67,7 +67,8 @@ pub fn fences(text: &str) -> Vec<Fence> {
                 open = Some((sign, length, fence));
             }
             Some((own, least, fence)) if sign == *own && length >= *least && words.len() == length => {
-                found.extend(fence.take().map(|fence| Fence { content: fence.content.start..start, ..fence }));
+                found
+                    .extend(fence.take().map(|fence| Fence { content: fence.content.start..start, ..fence }));
                 open = None;
             }
             Some((_, _, Some(fence))) => fence.lines += 1,

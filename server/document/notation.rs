@@ -68,7 +68,7 @@ pub fn detect_ladder_target(text: &str) -> &'static Target {
         .trim_start_matches('\u{feff}')
         .lines()
         .take(3)
-        .any(|line| line.starts_with("LDmicro export text"));
+        .any(|line| line.starts_with("LDmicro export "));
     let foreign = || {
         drawing_words(text).any(|word| {
             word.chars().any(char::is_alphabetic)

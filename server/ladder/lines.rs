@@ -220,7 +220,7 @@ impl Line {
         if let Some(section) = declaration(words) {
             return LineKind::Declaration(section);
         }
-        if words.starts_with("LDmicro export text") {
+        if words.starts_with("LDmicro export ") {
             LineKind::Ldmicro
         } else if is_title(words) {
             LineKind::Table

@@ -118,7 +118,8 @@ impl State {
     fn translate(&mut self, message: &Value) -> Option<Vec<Value>> {
         let method = message["method"].as_str()?;
         let params = &message["params"];
-        let uri = params["textDocument"]["uri"].as_str().or_else(|| params["arguments"][0].as_str())?.to_string();
+        let uri =
+            params["textDocument"]["uri"].as_str().or_else(|| params["arguments"][0].as_str())?.to_string();
         if method == "textDocument/didOpen" {
             let item = &params["textDocument"];
             if item["languageId"] != "markdown" {
@@ -210,15 +211,19 @@ impl State {
                     if open.text != text {
                         let item = json!({"uri": fence_uri, "version": version});
                         let params = json!({"textDocument": item, "contentChanges": [{"text": text}]});
-                        messages.push(json!({"jsonrpc": "2.0", "method": "textDocument/didChange", "params": params}));
+                        messages.push(
+                            json!({"jsonrpc": "2.0", "method": "textDocument/didChange", "params": params}),
+                        );
                     }
                     open.diagnostics
                 }
                 None => {
                     let language = if fence.is_ladder { "ladder" } else { "plc-il" };
-                    let item = json!({"uri": fence_uri, "languageId": language, "version": version, "text": text});
+                    let item =
+                        json!({"uri": fence_uri, "languageId": language, "version": version, "text": text});
                     let params = json!({"textDocument": item});
-                    messages.push(json!({"jsonrpc": "2.0", "method": "textDocument/didOpen", "params": params}));
+                    messages
+                        .push(json!({"jsonrpc": "2.0", "method": "textDocument/didOpen", "params": params}));
                     Vec::new()
                 }
             };
@@ -300,11 +305,13 @@ impl Gathering {
                     let line = |side: &str| value["range"][side]["line"].as_u64();
                     let column = value["range"]["end"]["character"].as_u64();
                     // The line that closes the fence is no part of it.
-                    let ends = line("end").is_some_and(|line| line < end || (line == end && column == Some(0)));
+                    let ends =
+                        line("end").is_some_and(|line| line < end || (line == end && column == Some(0)));
                     !edits || (line("start").is_some_and(|line| line >= first) && ends)
                 };
                 let lists = results().filter_map(|(result, lines)| Some((result.as_array()?, lines)));
-                let items = lists.flat_map(|(list, lines)| list.iter().filter(move |value| inside(value, lines)));
+                let items =
+                    lists.flat_map(|(list, lines)| list.iter().filter(move |value| inside(value, lines)));
                 json!(items.collect::<Vec<_>>())
             }
         };

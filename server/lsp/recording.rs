@@ -7,9 +7,11 @@ use crate::text::Language;
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use std::pin::Pin;
+use std::sync::Arc;
 use std::task::{Context, Poll};
 use std::time::Instant;
 use tokio::io::{AsyncRead, AsyncWrite, AsyncWriteExt, ReadBuf};
+use tokio::sync::Notify;
 
 /// A message of a recording.
 #[derive(Serialize, Deserialize)]
@@ -56,15 +58,21 @@ pub async fn replay(
         messages.push(r#"{"jsonrpc":"2.0","id":"replay","method":"shutdown"}"#.to_string());
     }
     let (mut client, input) = tokio::io::duplex(1 << 16);
+    let spoken = Arc::new(Notify::new());
+    let output = Tap { output, spoken: spoken.clone() };
     tokio::spawn(async move {
-        let (mut ends, exit) = (false, r#"{"jsonrpc":"2.0","method":"exit"}"#);
+        let exit = r#"{"jsonrpc":"2.0","method":"exit"}"#;
         for message in messages {
-            ends |= method_of(&message).as_deref() == Some("exit");
-            if ends {
+            let method = method_of(&message);
+            if method.as_deref() == Some("exit") {
                 break;
             }
             if client.write_all(frame(&message).as_bytes()).await.is_err() {
                 return;
+            }
+            // A client waits for the answer, and the server refuses what comes before it.
+            if method.as_deref() == Some("initialize") {
+                let _ = tokio::time::timeout(PATIENCE, spoken.notified()).await;
             }
         }
         // What is under way is answered and published before the server ends.
@@ -77,6 +85,34 @@ pub async fn replay(
 
 /// How long the server has for its last answers.
 const SETTLING: std::time::Duration = std::time::Duration::from_millis(500);
+
+/// How long the first answer may take.
+const PATIENCE: std::time::Duration = std::time::Duration::from_secs(10);
+
+/// Hands bytes on and tells that the server spoke.
+struct Tap<W> {
+    output: W,
+    spoken: Arc<Notify>,
+}
+
+impl<W: AsyncWrite + Unpin> AsyncWrite for Tap<W> {
+    fn poll_write(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        bytes: &[u8],
+    ) -> Poll<std::io::Result<usize>> {
+        self.spoken.notify_one();
+        Pin::new(&mut self.output).poll_write(context, bytes)
+    }
+
+    fn poll_flush(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<std::io::Result<()>> {
+        Pin::new(&mut self.output).poll_flush(context)
+    }
+
+    fn poll_shutdown(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<std::io::Result<()>> {
+        Pin::new(&mut self.output).poll_shutdown(context)
+    }
+}
 
 fn frame(message: &str) -> String {
     format!("Content-Length: {}\r\n\r\n{message}", message.len())

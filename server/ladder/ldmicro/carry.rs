@@ -309,7 +309,9 @@ pub(super) fn leaf(carrier: &mut Carrier, words: &[String]) -> Option<Element> {
         "LEQ" => Some(compare(CompareOperator::LessOrEqual { wide: false })),
         _ => None,
     };
-    if let Some((operator, left, right)) = compared.filter(|(_, left, right)| !left.is_empty() && !right.is_empty()) {
+    if let Some((operator, left, right)) =
+        compared.filter(|(_, left, right)| !left.is_empty() && !right.is_empty())
+    {
         return Some(carrier.compare(operator, &left, &right));
     }
     match (word(0), words.len()) {

@@ -7,7 +7,8 @@ use super::native::{self, Node, Note, Program, shown};
 use super::table::{TableRow, table_rows};
 use crate::ladder::reduce::reduce;
 use crate::ladder::{
-    ChunkKind, Element, ElementKind, Graph, LadderTree, Style, VertexId, VertexKind, kind_of, parse, print, split,
+    ChunkKind, Element, ElementKind, Graph, LadderTree, Style, VertexId, VertexKind, kind_of, parse, print,
+    split,
 };
 use crate::target::{Model, Target};
 use crate::text::{Language, Message};
@@ -53,9 +54,12 @@ pub fn import(source: &str, name: &str, language: Language) -> Result<Import, Im
     let mut rungs = if native::is_native(source) {
         let Program { settings, pins, rungs, notes } = native::read(source);
         carrier.notes = notes;
-        head.extend(settings.into_iter().filter(|(key, _)| key != "COMPILED").map(|(key, value)| {
-            format!("{key} = {}", shown(&value))
-        }));
+        head.extend(
+            settings
+                .into_iter()
+                .filter(|(key, _)| key != "COMPILED")
+                .map(|(key, value)| format!("{key} = {}", shown(&value))),
+        );
         for (name, pin) in &pins {
             let number = carrier.names.of(name);
             carrier.names.get_mut(number).pin = if pin == "0" { String::new() } else { shown(pin) };
@@ -80,7 +84,7 @@ pub fn import(source: &str, name: &str, language: Language) -> Result<Import, Im
 
 fn is_export(source: &str) -> bool {
     let mut first = source.trim_start_matches('\u{feff}').lines().take(3);
-    first.any(|line| line.starts_with("LDmicro export text"))
+    first.any(|line| line.starts_with("LDmicro export "))
 }
 
 fn of_native(carrier: &mut Carrier, source: Vec<(u32, Vec<Node>)>) -> Vec<Rung> {
@@ -230,9 +234,7 @@ fn of_chunk(
     for rung in &tree.rungs {
         let line = first_line + rung.lines.0;
         let first = rung.graph.elements.first();
-        let is_end = |element: &Element| {
-            matches!(element.kind, ElementKind::Instruction { mnemonic, .. } if mnemonic.of(chunk) == "END")
-        };
+        let is_end = |element: &Element| matches!(element.kind, ElementKind::Instruction { mnemonic, .. } if mnemonic.of(chunk) == "END");
         if rung.graph.elements.len() == 1 && first.is_some_and(is_end) {
             continue;
         }
@@ -271,7 +273,11 @@ fn rehomed(
 /// A line of a comment without what could end it.
 fn shown_comment(line: &str) -> String {
     let line = line.trim().trim_start_matches(';').trim();
-    line.replace("(*", "( *").replace("*)", "* )").chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+    line.replace("(*", "( *")
+        .replace("*)", "* )")
+        .chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect()
 }
 
 struct Printer {
@@ -335,7 +341,9 @@ impl Printer {
         notes.sort_by_key(|note| note.line);
         for note in notes {
             let message = Message::new("import.note").with("line", note.line);
-            head.push(shown_comment(&message.with("text", note.message.render(self.language)).render(self.language)));
+            head.push(shown_comment(
+                &message.with("text", note.message.render(self.language)).render(self.language),
+            ));
         }
         push_comment(&mut text, &head);
         let _ = writeln!(text, "PROGRAM {}", self.name);

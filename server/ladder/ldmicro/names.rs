@@ -142,7 +142,8 @@ pub(super) fn number(word: &str) -> Option<String> {
         return Some(character.to_string());
     }
     let based = [("0x", 16), ("0X", 16), ("0b", 2), ("0B", 2), ("0o", 8), ("0O", 8)];
-    let (digits, base) = based.iter().find_map(|(prefix, base)| Some((digits.strip_prefix(prefix)?, *base)))?;
+    let (digits, base) =
+        based.iter().find_map(|(prefix, base)| Some((digits.strip_prefix(prefix)?, *base)))?;
     let fits = (1..=16).contains(&digits.len()) && digits.chars().all(|c| c.is_digit(base));
     if !fits {
         return None;
