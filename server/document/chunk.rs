@@ -218,10 +218,7 @@ impl Chunk {
     fn outline(&self) -> &Outline {
         self.known.outline.get_or_init(|| {
             let reading = self.reading();
-            Outline {
-                size: Size::of(&reading),
-                milestones: milestone::of_chunk(&reading).into_boxed_slice(),
-            }
+            Outline { size: Size::of(&reading), milestones: milestone::of_chunk(&reading).into_boxed_slice() }
         })
     }
 
