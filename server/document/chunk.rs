@@ -12,7 +12,7 @@ use std::sync::{Arc, LazyLock, Mutex, MutexGuard, OnceLock, PoisonError};
 /// A piece of a document that can be read by itself. Its offsets start at 0.
 ///
 /// What it says is read from its text when it is asked for. A drawing's tree is fifty times as large as its text, so a
-/// large document keeps only what is [known](Known) of each chunk; who walks all chunks looks at them through
+/// large document keeps only what else is known of each chunk; who walks all chunks looks at them through
 /// [`Chunk::reading`], whose trees go away with it.
 #[derive(Debug)]
 pub struct Chunk {
@@ -233,10 +233,7 @@ impl Chunk {
     fn outline(&self) -> &Outline {
         self.known.outline.get_or_init(|| {
             let reading = self.reading();
-            Outline {
-                size: Size::of(&reading),
-                milestones: milestone::of_chunk(&reading).into_boxed_slice(),
-            }
+            Outline { size: Size::of(&reading), milestones: milestone::of_chunk(&reading).into_boxed_slice() }
         })
     }
 

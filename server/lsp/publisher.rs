@@ -117,7 +117,8 @@ impl Task {
             let mut diagnostics = self.carried(&open);
             diagnostics.extend(realtime);
             self.push(&open, diagnostics).await;
-            match tokio::time::timeout(if is_first { Duration::ZERO } else { PAUSE }, receiver.changed()).await {
+            let pause = if is_first { Duration::ZERO } else { PAUSE };
+            match tokio::time::timeout(pause, receiver.changed()).await {
                 Ok(Ok(())) => return receiver.mark_changed(),
                 // Nobody is there any more to give orders.
                 Ok(Err(_)) => return,
@@ -137,7 +138,9 @@ impl Task {
         self.tell_status(judged.status).await;
         if let Some(open) = opened {
             // The first hover or completion finds the names of all pages ready.
-            tokio::task::spawn_blocking(move || open.document.pages().iter().for_each(|page| _ = page.names()));
+            tokio::task::spawn_blocking(move || {
+                open.document.pages().iter().for_each(|page| _ = page.names())
+            });
         }
     }
 
