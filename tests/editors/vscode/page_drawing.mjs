@@ -1,4 +1,4 @@
-// Draws as a person does, in the page: a whole rung from nothing, edits by their keys, deletions and pastes.
+// Draws as a person does, in the page: a whole rung from nothing, edits by their keys, deletions.
 
 const SEAL_IN = [
   '|   X10       X2      X11                  Y10 |',
@@ -19,7 +19,6 @@ export const DRAWING_TESTS = {
   'a program is typed from nothing: snippets, names longer than their places, a contact by its keys': wholeProgram,
   'a contact, a branch and a coil are inserted by their keys and taken back': editsByKeys,
   'deleting cells keeps the columns, and is undone at once': deletion,
-  'a pasted rung is aligned': paste,
   'the context menu has the edits': contextMenu,
 };
 
@@ -35,7 +34,6 @@ async function snippet(workbench, word, names) {
   for (const name of names) {
     await workbench.page.waitForTimeout(80);
     await keyboard.type(name, { delay: 60 });
-    await keyboard.press('Escape'); // The list of names, if it is open, would take the Tab.
     await keyboard.press('Tab');
   }
 }
@@ -105,20 +103,6 @@ async function deletion(workbench) {
   await workbench.page.keyboard.press('Delete');
   await workbench.page.keyboard.press('Delete');
   await untilText(workbench, 'a wire without a gap', before);
-}
-
-async function paste(workbench) {
-  await workbench.openFile('edited.lad');
-  const before = await workbench.documentLines();
-  await workbench.goTo(1, 5);
-  await workbench.page.keyboard.press('Shift+ArrowRight');
-  await workbench.page.keyboard.press('Shift+ArrowRight');
-  await workbench.page.keyboard.insertText('X17');
-  const wanted = [...before];
-  wanted[0] = `${before[0].slice(0, 4)}X17${before[0].slice(7)}`;
-  await untilText(workbench, 'the name in its place', wanted);
-  await workbench.page.keyboard.press('Control+z');
-  await untilText(workbench, 'the name before', before);
 }
 
 async function contextMenu(workbench) {

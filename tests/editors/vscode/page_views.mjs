@@ -1,11 +1,9 @@
-// What the extension shows beside the program: walkthrough, pages, devices in use, tasks, lenses and hints, fences.
+// What the extension shows beside the program: walkthrough, pages, hints, icons, tasks.
 
 export const VIEW_TESTS = {
   'the walkthrough opens with its pictures': walkthrough,
   'the code of an error opens the page of its rule': explain,
-  'the devices in use stand beside the program and follow it': usage,
-  'lenses and hints are drawn into the program': hints,
-  'a drawing in a fence of a Markdown file has its errors': fences,
+  'hints are drawn into the program': hints,
   'the icons of the files are seen in both themes': icons,
   'the task lists what it finds in the problems': task,
 };
@@ -43,28 +41,10 @@ async function explain(workbench) {
   await workbench.closeTab('short-circuit.md');
 }
 
-async function usage(workbench) {
-  await workbench.openFile('conveyor_fx.il');
-  await workbench.focusEditor();
-  await workbench.chord('u');
-  await workbench.page.waitForSelector('.tab[data-resource-name="conveyor_fx.il.usage"]', { timeout: 15_000 });
-  const table = workbench.page.locator('.editor-instance[data-uri], .editor-instance').last().locator('.view-line');
-  await workbench.until('the devices', async () => (await table.allInnerTexts()).some((line) => /\bT0\b/.test(line)));
-  await workbench.screenshot('17-devices-in-use');
-  await workbench.closeTab('conveyor_fx.il.usage');
-}
-
 async function hints(workbench) {
   await workbench.openFile('conveyor_fx.il');
-  await workbench.until('a lens', async () => (await workbench.page.locator('.editor-instance .codelens-decoration').count()) > 0);
   await workbench.until('the hint', async () => (await workbench.editorLines()).some((line) => /K50.*5\ss/.test(line)));
-  await workbench.screenshot('18-lenses-and-hints');
-}
-
-async function fences(workbench) {
-  await workbench.openFile('notes.md');
-  await workbench.until('a squiggle', async () => (await workbench.errorSquiggles()) >= 1);
-  await workbench.screenshot('19-fence');
+  await workbench.screenshot('18-hints');
 }
 
 async function icons(workbench) {
