@@ -59,13 +59,13 @@ export class Pages implements vscode.TextDocumentContentProvider, vscode.Disposa
       void vscode.window.showWarningMessage(`Rungwise: ${reason}`);
       return undefined;
     }
-    await show(pageUri(word));
+    show(pageUri(word));
     return page;
   }
 
   private async showStatus(): Promise<string> {
     this.changes.fire(STATUS_URI);
-    await show(STATUS_URI);
+    show(STATUS_URI);
     return statusPage(this.server.report(), this.statusBar.allPrograms());
   }
 
@@ -87,8 +87,9 @@ export class Pages implements vscode.TextDocumentContentProvider, vscode.Disposa
   }
 }
 
-async function show(uri: vscode.Uri): Promise<void> {
-  await vscode.commands.executeCommand('vscode.open', uri, { preview: true, viewColumn: vscode.ViewColumn.Beside });
+/** Opens the preview beside the program. It is ready when its own page is, which nobody has to wait for. */
+function show(uri: vscode.Uri): void {
+  void vscode.commands.executeCommand('vscode.open', uri, { preview: true, viewColumn: vscode.ViewColumn.Beside });
 }
 
 /** The code of a diagnostic at the cursor, else the word there. */

@@ -18,7 +18,8 @@ export async function runPageTests(server, workspace, home, report, artefacts) {
     await report.check('page: the workbench opens', () => workbench.load(`http://${server.authority}/?folder=${workspace}`));
     // The last one leaves VS Code without a server.
     const tests = { ...FIRST_TESTS, ...DRAWING_TESTS, ...VIEW_TESTS, ...LAST_TESTS };
-    for (const [name, test] of Object.entries(tests)) {
+    const chosen = new RegExp(process.env.RUNGWISE_TESTS_NAMED ?? '');
+    for (const [name, test] of Object.entries(tests).filter(([name]) => chosen.test(name))) {
       await report.check(`page: ${name}`, async () => {
         try {
           await test(workbench, workspace);

@@ -152,4 +152,17 @@ module.exports = [
     await until('no errors', () => errors(document).length === 0);
     await close();
   }],
+  ['a pasted name that is longer pushes nothing aside', async () => {
+    const { document, editor } = await open(program(SEAL_IN));
+    editor.selection = new vscode.Selection(0, 4, 0, 6);
+    await vscode.commands.executeCommand('paste', { text: 'X17' });
+    const wanted = program(['|   X17       X1                           Y0  |', ...SEAL_IN.slice(1)]);
+    await until(`the name in its place`, () => document.getText() === wanted)
+      .catch((error) => assert.fail(`${error.message}\n${document.getText()}`));
+    // VS Code closes the undo step of a paste itself, so the mending is a step of its own.
+    await vscode.commands.executeCommand('undo');
+    await vscode.commands.executeCommand('undo');
+    assert.equal(document.getText(), program(SEAL_IN));
+    await close();
+  }],
 ];
