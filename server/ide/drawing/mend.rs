@@ -73,7 +73,8 @@ pub(super) fn mend(site: &Site<'_>, span: Span, style: Style) -> Result<Edited, 
         let edits = edits.iter().map(|edit| edit.shifted(site.start)).collect();
         return Ok(Edited { edits, selection: Span::at(cursor) });
     }
-    if !is_ragged(site) && site.tree.problems.is_empty() {
+    // What else may be wrong with it is not a matter of columns.
+    if !is_ragged(site) {
         return Ok(Edited { edits: Vec::new(), selection: span });
     }
     redrawn(site, span, style).ok_or_else(|| Message::new("edit.ragged"))
