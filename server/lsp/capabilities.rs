@@ -52,8 +52,8 @@ pub(super) fn offered(client: &ClientCapabilities, encoding: Encoding, pulls: bo
     let diagnostic_provider = (pulls || !can_pull).then(|| {
         DiagnosticServerCapabilities::Options(DiagnosticOptions {
             identifier: Some("rungwise".to_string()),
-            inter_file_dependencies: false,
-            workspace_diagnostics: false,
+            inter_file_dependencies: true,
+            workspace_diagnostics: true,
             ..DiagnosticOptions::default()
         })
     });
@@ -71,6 +71,19 @@ pub(super) fn offered(client: &ClientCapabilities, encoding: Encoding, pulls: bo
             ..CompletionOptions::default()
         }),
         definition_provider: Some(OneOf::Left(true)),
+        workspace_symbol_provider: Some(OneOf::Left(true)),
+        call_hierarchy_provider: Some(CallHierarchyServerCapability::Simple(true)),
+        document_link_provider: Some(DocumentLinkOptions {
+            resolve_provider: Some(false),
+            work_done_progress_options: WorkDoneProgressOptions::default(),
+        }),
+        workspace: Some(WorkspaceServerCapabilities {
+            workspace_folders: Some(WorkspaceFoldersServerCapabilities {
+                supported: Some(true),
+                change_notifications: Some(OneOf::Left(true)),
+            }),
+            ..WorkspaceServerCapabilities::default()
+        }),
         references_provider: Some(OneOf::Left(true)),
         document_symbol_provider: Some(OneOf::Left(true)),
         folding_range_provider: Some(FoldingRangeProviderCapability::Simple(true)),

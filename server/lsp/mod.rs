@@ -5,6 +5,7 @@
 //! diagnostics.
 
 mod abilities;
+mod across;
 mod backend;
 mod capabilities;
 mod folders;
@@ -15,6 +16,7 @@ mod manifests;
 mod progress;
 mod projects;
 mod publisher;
+mod pulled;
 mod service;
 mod settings;
 mod status;
