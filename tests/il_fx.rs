@@ -214,7 +214,7 @@ mod reading {
 
     #[test]
     fn unknown_words_stay_records() {
-        check("LDX0\nFOO X0 é", "?LDX0\n?FOO X0\nsyntax-error fx-syntax.stray at é");
+        check("LDX0\nFOO X0 é", "?LDX0\n?FOO X0 invalid(é)");
         check("LD Q7", "LD invalid(Q7)");
         check("LD X8", "LD invalid(X8)");
     }

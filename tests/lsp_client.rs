@@ -25,6 +25,7 @@ impl Client {
     pub fn spawn() -> Client {
         let mut server = Command::new(env!("CARGO_BIN_EXE_rungwise"))
             .arg("lsp")
+            .env("LC_ALL", "C")
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())

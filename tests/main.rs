@@ -8,19 +8,24 @@
     reason = "a test that fails says so by a panic"
 )]
 
+mod chinese;
 mod cli;
 mod corpus;
 mod document;
 mod extremes;
+mod fuzz;
 mod grammar;
 mod ide;
 mod il_fx;
 mod il_iec;
+mod ladder_by_hand;
 mod ladder_generate;
 mod ladder_print;
 mod ladder_read;
+mod ldmicro;
 mod lsp;
 mod lsp_client;
+mod manifest_schema;
 mod mistakes;
 mod rules;
 mod rules_drawing;

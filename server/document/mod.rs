@@ -11,7 +11,9 @@ mod snapshot;
 pub use snapshot::{ChunkRef, Document, Edit, LIMIT_BYTES};
 
 mod chunk;
-pub use chunk::{Chunk, Tree};
+pub use chunk::{Chunk, Reading, Tree};
+
+mod exported;
 
 mod pages;
 pub use pages::Page;
@@ -22,11 +24,20 @@ pub use size::Size;
 mod names;
 pub use names::Names;
 
+mod milestone;
+pub use milestone::{Milestone, MilestoneKind};
+
+mod tokens;
+pub use tokens::{Token, TokenKind};
+
 mod operation;
 pub use operation::Operation;
 
 mod mention;
 pub use mention::{Mention, Symbol, Use};
+
+mod comments;
+pub use comments::{Comments, DeviceComment};
 
 mod scope;
 pub use scope::{DeclaredType, Pou, Scopes, Variable};

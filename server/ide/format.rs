@@ -26,8 +26,10 @@ pub(super) fn edits(document: &Document, style: Style) -> Vec<TextEdit> {
                 instructions.push((text, tree));
                 None
             }
+            // The tables of an LDmicro export are declarations, but not as the standard writes them.
+            Tree::Iec(_) if ladder::kind_of(text) == ladder::ChunkKind::Ldmicro => None,
             Tree::Iec(tree) => Some(iec::format_chunk(text, tree, &iec::FormatOptions::default())),
-            Tree::Ladder(tree) => ladder::format_chunk(text, tree, document.target(), &page),
+            Tree::Ladder(tree) => ladder::format_chunk(text, tree, document.reader(), &page),
         };
         if let Some(formatted) = formatted {
             edits.extend(line_edits(text, &formatted).iter().map(|edit| edit.shifted(at.start)));

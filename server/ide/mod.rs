@@ -1,12 +1,12 @@
 //! Editor features, one file each: offsets of a document in, plain structs out. No protocol, no files, no threads.
 
-use crate::document::Document;
+pub use crate::document::{Token, TokenKind};
+use crate::document::{ChunkRef, Document};
 use crate::text::{Diagnostic, Language, Message, Span, TextEdit};
 
 mod answer;
 pub use answer::{
-    Completion, CompletionKind, Fold, FoldKind, Hover, InlayHint, Status, SymbolKind, SymbolNode, Token,
-    TokenKind,
+    Completion, CompletionKind, Fold, FoldKind, Hover, InlayHint, Status, SymbolKind, SymbolNode,
 };
 
 pub use crate::document::{At, Member, ProjectView};
@@ -43,8 +43,6 @@ mod rename;
 mod symbols;
 
 mod folding;
-
-mod semantic_tokens;
 
 mod inlay_hints;
 
@@ -156,7 +154,11 @@ pub fn folds(document: &Document) -> Vec<Fold> {
 
 /// All tokens that mean something, in order, none overlapping, none over more than one line.
 pub fn semantic_tokens(document: &Document) -> Vec<Token> {
-    semantic_tokens::of(document)
+    let shifted = |at: ChunkRef<'_>| {
+        let tokens = at.chunk.tokens().iter();
+        tokens.map(|token| Token { span: token.span.shifted(at.start), ..*token }).collect::<Vec<_>>()
+    };
+    document.chunks().flat_map(shifted).collect()
 }
 
 /// What the editor may show between the words of `span`.

@@ -211,9 +211,9 @@ fn device_like(old: Device, new: &str, target: &'static Target) -> Result<Device
         return Err(Message::new("rename.no-device").with("name", new));
     };
     if device.kind != old.kind {
-        let kind = super::devices::kind_name(old.kind, crate::text::Language::English);
+        let kind = super::devices::kind_message(old.kind);
         let message = Message::new("rename.other-kind").with("old", old).with("new", device);
-        return Err(message.with("kind", kind));
+        return Err(message.with_messages("kind", vec![kind]));
     }
     let Some(range) = device.range_on(target) else {
         return Err(Message::new("rename.not-on-target").with("target", target.title).with("new", device));
@@ -225,7 +225,7 @@ fn device_like(old: Device, new: &str, target: &'static Target) -> Result<Device
         && (own.timer_unit_ms, own.bits) != (range.timer_unit_ms, range.bits)
     {
         let message = Message::new("rename.other-purpose").with("old", old).with("new", device);
-        return Err(message.with("purpose", own.purpose));
+        return Err(message.with_phrase("purpose", own.purpose));
     }
     Ok(device)
 }

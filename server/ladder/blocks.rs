@@ -5,7 +5,7 @@ use super::glyph::{continues_word, is_operator, starts_word};
 use super::grid::{Grid, WIDE};
 use super::scan::Symbol;
 use super::{Block, Element, ElementKind, OperandPlace, Pin, PinWire};
-use crate::target::{Operand, Target};
+use crate::target::Target;
 use crate::text::{Span, Spanned};
 
 /// Higher boxes are not looked for, which bounds the search.
@@ -119,6 +119,7 @@ fn read_block(grid: &mut Grid, frame: Frame, text: &str, target: &Target) -> Sym
         rows: (frame.top..=frame.bottom).map(row_span).collect(),
         inputs: Vec::new(),
         outputs: Vec::new(),
+        ldmicro: None,
     };
     let mut operands = Vec::new();
     let mut power_row = None;
@@ -130,12 +131,12 @@ fn read_block(grid: &mut Grid, frame: Frame, text: &str, target: &Target) -> Sym
                 Outside::Wire => PinWire::Power,
                 Outside::Nothing => PinWire::Open,
                 Outside::Word(span) => {
-                    operands.push(Spanned::new(Operand::read(span.of(text), target.model), span));
+                    operands.push(Spanned::new(target.read(span.of(text)), span));
                     PinWire::Operand(operands.len() - 1)
                 }
             };
             let present = name.is_some() || wire != PinWire::Open;
-            present.then(|| Pin { name, negated, row: grid.line(row), wire })
+            present.then(|| Pin { name, implied: "", negated, row: grid.line(row), wire })
         };
         if block.type_name.is_none() && !words.is_empty() {
             // The type stands in the middle of the first line with words.
@@ -291,6 +292,12 @@ fn word_beside(
                     first -= 1;
                 }
             }
+            // ` -5`: a hyphen alone before a number is no wire.
+            let alone = first > 0
+                && grid.at(row, first - 1) == '-'
+                && grid.at(row, first).is_ascii_digit()
+                && (first == 1 || grid.at(row, first - 2) == ' ');
+            first -= usize::from(alone);
         }
         Side::Right => {
             while part(last + 1) {

@@ -269,7 +269,7 @@ impl Naming<'_> {
         }
         let read = |word: &Word| {
             let span = self.grid.span(word.row, word.start, word.end);
-            Operand::read(span.of(self.text), self.target.model)
+            self.target.read(span.of(self.text))
         };
         let mut devices: rustc_hash::FxHashMap<usize, Operand> = rustc_hash::FxHashMap::default();
         for word in words.iter() {
@@ -334,7 +334,7 @@ impl Naming<'_> {
         let target = self.target;
         let spans: Vec<Span> =
             words.iter().map(|word| self.grid.span(word.row, word.start, word.end)).collect();
-        let read = |span: &Span| Spanned::new(Operand::read(span.of(self.text), target.model), *span);
+        let read = |span: &Span| Spanned::new(target.read(span.of(self.text)), *span);
         let operands: Vec<Spanned<Operand>> = spans.iter().map(read).collect();
         let one_line = words.iter().all(|word| word.row == first.row);
         let symbol = &mut self.tokens.symbols[number];
@@ -623,7 +623,7 @@ fn name_device(
         symbol.element.operands = operands.last().copied().into_iter().collect();
         let name = symbol.element.operand_text(0, text).into_owned();
         for operand in &mut symbol.element.operands {
-            operand.value = Operand::read(&name, target.model);
+            operand.value = target.read(&name);
         }
         return Vec::new();
     }

@@ -244,15 +244,12 @@ impl LanguageServer for Backend {
         let Some(uri) =
             params.arguments.first().and_then(|value| value.as_str()).and_then(|text| text.parse().ok())
         else {
-            return Err(Error::invalid_params(format!(
-                "{}: the first argument is a document's URI",
-                params.command
-            )));
+            return Err(refused(Message::new("request.no-document").with("command", params.command)));
         };
         match params.command.as_str() {
             "rungwise.check" => whole(uri, |around, place| check_summary(around, place.language)).await,
             "rungwise.format" => self.format(uri).await,
-            other => Err(Error::invalid_params(format!("no such command: {other}"))),
+            other => Err(refused(Message::new("request.no-command").with("command", other))),
         }
     }
 }
@@ -298,7 +295,9 @@ async fn whole<T: Send + 'static>(
             None => snapshot.around_closed(&uri)?,
         };
         let around = around.cancellable(cancelled);
-        Some(answer(&around, Place::new(&around.here().document, snapshot.manner)))
+        // The trees of a walk through the whole document go away with it.
+        let document = around.here().document.lean();
+        Some(answer(&around, Place::new(&document, snapshot.manner)))
     })
     .await
 }

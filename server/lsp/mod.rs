@@ -23,7 +23,10 @@ mod status;
 mod to_proto;
 mod workspace;
 
+use crate::text::Language;
 use service::Ordered;
+use settings::Speech;
+use tokio::io::{AsyncRead, AsyncWrite};
 use tower_lsp::{LspService, Server};
 use workspace::Workspace;
 
@@ -32,16 +35,29 @@ const CONCURRENCY: usize = 4096;
 
 /// Serves one client on standard input and output until it says `exit` or goes away.
 /// Returns the process's exit code: 0 after a `shutdown`, else 1, as the protocol wants.
-pub async fn serve() -> u8 {
+///
+/// `asked` is the language that the user asked the program for, which goes before the client's; `otherwise` is taken if
+/// the client says none.
+pub async fn serve(asked: Option<Language>, otherwise: Language) -> u8 {
+    serve_between(tokio::io::stdin(), tokio::io::stdout(), asked, otherwise).await
+}
+
+/// Serves one client that sends `input` and reads `output`; ends and returns as [`serve`] does.
+pub async fn serve_between(
+    input: impl AsyncRead + Send + Unpin + 'static,
+    output: impl AsyncWrite + Send + Unpin,
+    asked: Option<Language>,
+    otherwise: Language,
+) -> u8 {
     let mut workspace = None;
     let (service, socket) = LspService::new(|client| {
-        let shared = Workspace::new(client);
+        let shared = Workspace::new(client, Speech { asked, otherwise, ..Speech::default() });
         workspace = Some(shared.clone());
         backend::Backend::new(shared)
     });
     let Some(workspace) = workspace else { return 1 };
     let ordered = Ordered::new(service, workspace.clone());
-    Server::new(frames::sound(tokio::io::stdin()), tokio::io::stdout(), socket)
+    Server::new(frames::sound(input), output, socket)
         .concurrency_level(CONCURRENCY)
         .serve(ordered)
         .await;

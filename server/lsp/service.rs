@@ -71,9 +71,9 @@ where
 mod tests {
     use super::{Ordered, SNAPSHOT, Workspace};
     use crate::lsp::backend::Backend;
+    use crate::lsp::settings::Speech;
     use serde_json::json;
     use std::pin::Pin;
-    use std::sync::Arc;
     use std::task::{Context, Poll};
     use tower::Service;
     use tower_lsp::jsonrpc::{Id, Request, Response};
@@ -105,7 +105,7 @@ mod tests {
     fn service() -> Ordered<Fragile> {
         let mut workspace = None;
         let _library = LspService::new(|client| {
-            let shared = Workspace::new(client);
+            let shared = Workspace::new(client, Speech::default());
             workspace = Some(shared.clone());
             Backend::new(shared)
         });

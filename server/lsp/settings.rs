@@ -4,6 +4,7 @@ use crate::document::Notation;
 use crate::ide::Style;
 use crate::project::{FormatStyle, MOST_WIDTH, Manifest};
 use crate::target::Target;
+use crate::text::Language;
 use serde_json::Value;
 
 /// What the user set in the editor. Everything may be left out.
@@ -17,12 +18,25 @@ pub(super) struct Settings {
     style: Option<FormatStyle>,
     /// `format.width`, in cells; else the project's.
     width: Option<u32>,
+    /// `language`: `en`, `zh-CN`; anything else leaves it to the client.
+    language: Option<Language>,
     /// `inlayHints.enabled`
     pub inlay_hints: bool,
     /// `diagnostics.scope` is `project` and not `open`: files of a project that are not open are reported, too.
     pub whole_project: bool,
     /// `diagnostics.mode` is `pull` and not `push`. A client that shows both kinds would show everything twice.
     pulls: bool,
+}
+
+/// What is known of the user's language apart from the settings.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(super) struct Speech {
+    /// What the command line of the server says.
+    pub asked: Option<Language>,
+    /// The locale of the client.
+    pub client: Option<Language>,
+    /// What holds if nobody says anything.
+    pub otherwise: Language,
 }
 
 impl Default for Settings {
@@ -32,6 +46,7 @@ impl Default for Settings {
             notation: None,
             style: None,
             width: None,
+            language: None,
             inlay_hints: true,
             whole_project: true,
             pulls: false,
@@ -59,12 +74,18 @@ impl Settings {
             Some("unicode") => Some(FormatStyle::Unicode),
             _ => None,
         };
+        let language = match word(own.get("language")).as_deref() {
+            Some("en") => Some(Language::English),
+            Some("zh-cn" | "zh") => Some(Language::SimplifiedChinese),
+            _ => None,
+        };
         let width = part("format", "width").and_then(Value::as_u64);
         Some(Settings {
             target: word(own.get("target")).and_then(|name| Target::named(&name)),
             notation,
             style,
             width: width.map(|width| width.min(u64::from(MOST_WIDTH)) as u32),
+            language,
             inlay_hints: part("inlayHints", "enabled").and_then(Value::as_bool).unwrap_or(true),
             whole_project: word(part("diagnostics", "scope")).as_deref() != Some("open"),
             pulls: word(part("diagnostics", "mode")).as_deref() == Some("pull"),
@@ -82,6 +103,11 @@ impl Settings {
     pub(super) fn style(&self, manifest: &Manifest) -> Style {
         let width = self.width.unwrap_or(manifest.format.width);
         Style { kind: self.style.unwrap_or(manifest.format.style), width }
+    }
+
+    /// The language of all messages.
+    pub(super) fn language(&self, speech: Speech) -> Language {
+        self.language.or(speech.asked).or(speech.client).unwrap_or(speech.otherwise)
     }
 
     pub(super) fn pulls(&self) -> bool {

@@ -6,7 +6,7 @@ use super::keeper::Keeper;
 use super::manifests::Manifests;
 use super::projects::{Projects, canonical, file_path};
 use super::publisher::{Closing, Publisher};
-use super::settings::Settings;
+use super::settings::{Settings, Speech};
 use super::to_proto::Manner;
 use crate::check::Severities;
 use crate::document::{Document, Edit, Notation};
@@ -86,6 +86,7 @@ pub(super) struct State {
     closing: FxHashMap<Uri, Closing>,
     manifests: Manifests,
     pub keeper: Option<Keeper>,
+    pub speech: Speech,
     /// Projects that are read for the first time: their documents wait for what the other files declare.
     pub awaited: FxHashSet<Arc<Path>>,
     /// Folders that the client has open, as it spells them.
@@ -126,10 +127,10 @@ impl Snapshot {
 }
 
 impl Workspace {
-    pub(super) fn new(client: Client) -> Arc<Workspace> {
+    pub(super) fn new(client: Client, speech: Speech) -> Arc<Workspace> {
         Arc::new(Workspace {
             client,
-            state: Mutex::default(),
+            state: Mutex::new(State { speech, ..State::default() }),
             initialised: AtomicBool::new(false),
             shut_down: AtomicBool::new(false),
         })
@@ -167,14 +168,15 @@ impl Workspace {
     fn initialise(self: &Arc<Workspace>, params: &InitializeParams) {
         let mut state = self.state();
         state.keeper = Some(Keeper::start(self));
+        state.speech.client = params.locale.as_deref().map(Language::of_locale);
+        let settings = Settings::read(params.initialization_options.as_ref()).unwrap_or_default();
         state.snapshot.manner = Manner {
             encoding: capabilities::encoding_for(&params.capabilities),
-            language: params.locale.as_deref().map(Language::of_locale).unwrap_or_default(),
+            language: settings.language(state.speech),
             abilities: Abilities::of(&params.capabilities),
         };
-        let settings = Settings::read(params.initialization_options.as_ref());
         state.settings_source = params.initialization_options.clone();
-        state.snapshot.settings = Arc::new(settings.unwrap_or_default());
+        state.snapshot.settings = Arc::new(settings);
         state.requests = Requests::of(&params.capabilities);
         state.this = Arc::downgrade(self);
         self.take_folders(&mut state, params);
@@ -412,7 +414,7 @@ impl State {
         let open = Arc::new(open);
         Arc::make_mut(&mut self.snapshot.documents).insert(open.uri.clone(), open.clone());
         if let Some(publisher) = self.publishers.get(&open.uri).filter(|_| !is_awaited) {
-            publisher.publish(open);
+            publisher.publish(open, self.snapshot.manner);
         }
     }
 }

@@ -3,6 +3,9 @@
 mod manifest;
 pub use manifest::{FormatSettings, FormatStyle, MOST_WIDTH, Manifest, ManifestError, TaskSettings};
 
+mod comments;
+pub use comments::{CommentsFile, decode};
+
 mod files;
 pub use files::{
     MANIFEST_NAME, MOST_FILE_BYTES, MOST_FILES, MOST_PROJECT_BYTES, Project, decide, is_program_file,

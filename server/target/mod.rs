@@ -12,6 +12,9 @@ pub use device::{Device, DeviceKind, DeviceRange, SpecialDevice};
 mod operand;
 pub use operand::{Constant, DirectAddress, Location, Operand, OperandProblem, Width};
 
+mod symbols;
+pub use symbols::{SymbolProblem, Symbols};
+
 mod accepts;
 pub use accepts::Accepts;
 

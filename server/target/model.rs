@@ -1,6 +1,7 @@
 //! The PLC models, with their device ranges and limits.
 
-use super::{DeviceKind, DeviceRange, SpecialDevice};
+use super::{DeviceKind, DeviceRange, SpecialDevice, Symbols};
+use std::sync::Arc;
 
 /// A PLC model, or the vendor-neutral language of IEC 61131-3.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -32,6 +33,8 @@ pub struct Target {
     pub special: &'static [SpecialDevice],
     /// The limits of programs.
     pub limits: Limits,
+    /// The names that a project gives to devices; `None` in the rows of [`Target::ALL`].
+    pub symbols: Option<Arc<Symbols>>,
 }
 
 /// The limits of programs for a model.
@@ -104,4 +107,5 @@ static IEC: Target = Target {
         loops: 5,
         calls: 5,
     },
+    symbols: None,
 };

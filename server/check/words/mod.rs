@@ -34,6 +34,8 @@ mod lenient_form;
 
 mod text_too_large;
 
+mod device_comments;
+
 /// The rules of this group.
 pub(super) const RULES: &[&Rule] = &[
     &unknown_instruction::RULE,
@@ -52,4 +54,5 @@ pub(super) const RULES: &[&Rule] = &[
     &syntax_error::RULE,
     &lenient_form::RULE,
     &text_too_large::RULE,
+    &device_comments::RULE,
 ];

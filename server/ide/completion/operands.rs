@@ -5,7 +5,7 @@ use crate::document::{Document, Symbol, Use};
 use crate::ide::names::{self, Thing};
 use crate::ide::{CompletionKind, devices};
 use crate::target::{Accepts, Access, Device, DeviceKind, DeviceRange, Form, Operand};
-use crate::text::{Encoding, Message};
+use crate::text::{Encoding, Message, phrase};
 use rustc_hash::FxHashMap;
 
 /// More devices in use are not proposed; typing narrows the choice.
@@ -61,7 +61,7 @@ pub(super) fn propose_devices(
         let message =
             if uses == 1 { Message::new("complete.used-once") } else { Message::new("complete.used") };
         let kind = match device.special_on(target) {
-            Some(special) => special.meaning.to_string(),
+            Some(special) => phrase(special.meaning, place.language).to_string(),
             None => devices::kind_name(device.kind, place.language),
         };
         let detail = message.with("kind", kind).with("count", uses).render(place.language);
@@ -133,7 +133,12 @@ fn propose_special(
             let rank = 500 + (device.number.saturating_sub(SPECIAL) as u16).min(999);
             place.propose(
                 typed,
-                Proposal::new(device.to_string(), CompletionKind::Device, special.meaning, rank),
+                Proposal::new(
+                    device.to_string(),
+                    CompletionKind::Device,
+                    phrase(special.meaning, place.language),
+                    rank,
+                ),
             );
         }
     }

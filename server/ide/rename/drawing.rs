@@ -55,7 +55,7 @@ pub(super) fn still_say_the_same(
             continue;
         }
         let redrawn = TextEdit::apply_all(&inside, at.chunk.text());
-        let redrawn = Chunk::read(&redrawn, document.notation(), document.target());
+        let redrawn = document.chunk_of(&redrawn);
         let is_renamed = |mention: &Mention| places.binary_search(&mention.span.shifted(at.start)).is_ok();
         let pairs = at.chunk.mentions().iter().zip(redrawn.mentions());
         let same = |(old, new): (&Mention, &Mention)| {

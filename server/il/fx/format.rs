@@ -11,7 +11,7 @@
 //! from a listing, and are counted anew, because the ones behind an edit no longer fit.
 
 use super::{FxLine, FxTree, LineKind, parse, split, steps};
-use crate::target::{Operand, Target};
+use crate::target::{Model, Operand, Target};
 use crate::text::{Span, TextEdit, cell_width};
 use std::ops::Range;
 
@@ -273,6 +273,10 @@ impl Printer<'_> {
             let word = operand.span.of(self.chunk);
             match operand.value {
                 Operand::Text => row.push_str(word),
+                // A symbol keeps the letters that the project gave it.
+                Operand::Device(_) if matches!(Operand::read(word, Model::Fx3u), Operand::Invalid(_)) => {
+                    row.push_str(word);
+                }
                 _ => row.push_str(&word.to_ascii_uppercase()),
             }
         }

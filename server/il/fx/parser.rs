@@ -61,7 +61,7 @@ enum Place {
 
 struct Parser<'a> {
     chunk: &'a str,
-    model: Model,
+    target: &'a Target,
     tree: FxTree,
     place: Place,
     step: Option<Spanned<u32>>,
@@ -72,14 +72,14 @@ struct Parser<'a> {
 }
 
 impl<'a> Parser<'a> {
-    fn new(chunk: &'a str, target: &Target) -> Parser<'a> {
+    fn new(chunk: &'a str, target: &'a Target) -> Parser<'a> {
         // An FX program in a project for another target is still read with the FX spelling of devices.
-        let model = if target.is_fx() { target.model } else { Model::Fx2n };
+        let target = if target.is_fx() { target } else { Target::of(Model::Fx2n) };
         // Programs have about a record and an operand a line, so the vectors seldom grow.
         let lines = chunk.bytes().filter(|byte| *byte == b'\n').count() + 1;
         let (lines, operands) = (Vec::with_capacity(lines), Vec::with_capacity(lines));
         let tree = FxTree { lines, operands, ..FxTree::default() };
-        Parser { chunk, model, tree, place: Place::Start, step: None, comma: None, glue: 0 }
+        Parser { chunk, target, tree, place: Place::Start, step: None, comma: None, glue: 0 }
     }
 
     fn problem(&mut self, span: Span, key: &'static str) {
@@ -117,7 +117,7 @@ impl<'a> Parser<'a> {
             }
             return;
         }
-        match label(word, self.model) {
+        match label(word, self.target.model) {
             Some(kind) => {
                 self.record(span, kind);
                 self.place = Place::Label;
@@ -144,7 +144,7 @@ impl<'a> Parser<'a> {
         if self.takes_text_only() {
             return self.push_operand(span, Operand::Text);
         }
-        let operand = Operand::read(word, self.model);
+        let operand = self.target.read(word);
         if matches!(operand, Operand::Invalid(_)) && Form::named(word).is_some() {
             return self.second_instruction(span);
         }
@@ -266,6 +266,10 @@ impl Parser<'_> {
         if problem.message.key() == STRAY && self.place == Place::Operands && span.start == self.glue {
             return self.extend(span);
         }
+        // Letters of other scripts begin the name of a variable or a symbol; the words behind them are part of it.
+        if self.place == Place::Operands && span.of(self.chunk).chars().all(char::is_alphanumeric) {
+            return self.push_operand(span, self.read_glued(span));
+        }
         self.tree.problems.push(problem);
     }
 
@@ -279,7 +283,11 @@ impl Parser<'_> {
             Some(operand) => {
                 operand.span.end = span.end;
                 if operand.value != Operand::Text {
-                    operand.value = Operand::Invalid(OperandProblem::Unreadable);
+                    let whole = operand.span;
+                    let value = self.read_glued(whole);
+                    if let Some(operand) = self.tree.operands.last_mut() {
+                        operand.value = value;
+                    }
                 }
             }
             None => {
@@ -289,11 +297,22 @@ impl Parser<'_> {
         }
     }
 
+    /// A word with characters that no token contains: a symbol of the project, or unreadable.
+    fn read_glued(&self, span: Span) -> Operand {
+        match self.target.read(span.of(self.chunk)) {
+            Operand::Device(device) => Operand::Device(device),
+            _ => Operand::Invalid(OperandProblem::Unreadable),
+        }
+    }
+
     /// Whether the last word ends with a stray character, so that a word right behind it belongs to it.
     fn is_glued(&self) -> bool {
         self.tree.lines.last().is_some_and(|line| {
             match self.tree.operands.last().filter(|_| line.operands.0 < line.operands.1) {
-                Some(operand) => operand.value == Operand::Invalid(OperandProblem::Unreadable),
+                Some(operand) => {
+                    operand.value == Operand::Invalid(OperandProblem::Unreadable)
+                        || operand.span.of(self.chunk).ends_with(|last: char| !last.is_ascii())
+                }
                 None => {
                     line.kind == LineKind::Unknown && !line.mnemonic.of(self.chunk).ends_with(['=', '<', '>'])
                 }

@@ -11,6 +11,7 @@ pub static FX1S: Target = Target {
     devices: ranges::FX1S,
     special: &special::FX1S,
     limits: Limits { steps: 2000, ..LIMITS },
+    symbols: None,
 };
 
 /// FX1N: compact unit that can be extended.
@@ -21,6 +22,7 @@ pub static FX1N: Target = Target {
     devices: ranges::FX1N,
     special: &special::FX1N,
     limits: Limits { steps: 8000, ..LIMITS },
+    symbols: None,
 };
 
 /// FX2N and FX2NC with the memory that is built in.
@@ -31,6 +33,7 @@ pub static FX2N: Target = Target {
     devices: ranges::FX2N,
     special: &special::FX2N,
     limits: Limits { steps: 8000, ..LIMITS },
+    symbols: None,
 };
 
 /// FX3U and FX3UC.
@@ -41,6 +44,7 @@ pub static FX3U: Target = Target {
     devices: ranges::FX3U,
     special: &special::FX3U,
     limits: Limits { steps: 64_000, ..LIMITS },
+    symbols: None,
 };
 
 /// What all models of the family have in common; only the memory differs.

@@ -1,0 +1,88 @@
+//! The symbols that a project gives to devices, and words read with them.
+
+use super::{Device, Form, Operand, Target};
+use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
+use std::sync::Arc;
+
+/// Names that a project gives to devices: `Start` for X0. Letter case has no meaning.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct Symbols {
+    devices: FxHashMap<SmolStr, Device>,
+}
+
+/// Why a word cannot be the symbol of a device.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum SymbolProblem {
+    /// It has other characters than letters, digits and underscores, or begins with a digit.
+    NoIdentifier,
+    /// It reads as a device or a constant: `M1`, `X9`, `HAD`.
+    Device,
+    /// It is a mnemonic, or a mark of drawings such as the `S` of a set coil.
+    Instruction,
+}
+
+/// Words that mean something in the brackets of a drawing.
+const MARKS: [&str; 10] = ["S", "R", "P", "N", "L", "U", "JMP", "RETURN", "V", "Z"];
+
+impl Symbols {
+    /// Of pairs; of a name that stands twice the first counts.
+    pub fn new(pairs: impl IntoIterator<Item = (SmolStr, Device)>) -> Symbols {
+        let mut devices = FxHashMap::default();
+        for (name, device) in pairs {
+            devices.entry(folded(&name)).or_insert(device);
+        }
+        Symbols { devices }
+    }
+
+    /// The device called `name`.
+    pub fn device(&self, name: &str) -> Option<Device> {
+        self.devices.get(&folded(name)).copied()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.devices.is_empty()
+    }
+
+    /// Why `word` cannot be a symbol on `target`; nothing if it can.
+    pub fn problem(word: &str, target: &Target) -> Option<SymbolProblem> {
+        let mut letters = word.chars();
+        let starts = letters.next().is_some_and(|first| first.is_alphabetic() || first == '_');
+        if !starts || !letters.all(|letter| letter.is_alphanumeric() || letter == '_') {
+            return Some(SymbolProblem::NoIdentifier);
+        }
+        if MARKS.iter().any(|mark| mark.eq_ignore_ascii_case(word)) || Form::named(word).is_some() {
+            return Some(SymbolProblem::Instruction);
+        }
+        // `X9` is no device, but nobody would take it for anything else.
+        let numbered = word.get(1..).is_some_and(|rest| rest.bytes().all(|byte| byte.is_ascii_digit()));
+        let letter = word.chars().next().is_some_and(|first| super::DeviceKind::of_letter(first).is_some());
+        let reads = !matches!(Operand::read(word, target.model), Operand::Invalid(_));
+        (target.is_fx() && (reads || (letter && numbered))).then_some(SymbolProblem::Device)
+    }
+}
+
+impl Target {
+    /// The same target with the project's `symbols`.
+    pub fn with_symbols(&self, symbols: Arc<Symbols>) -> Target {
+        Target { symbols: Some(symbols), ..*self }
+    }
+
+    /// Reads one operand word; one that means nothing by itself may be a symbol.
+    pub fn read(&self, word: &str) -> Operand {
+        let operand = Operand::read(word, self.model);
+        match (&operand, &self.symbols) {
+            (Operand::Invalid(_), Some(symbols)) => symbols.device(word).map_or(operand, Operand::Device),
+            _ => operand,
+        }
+    }
+}
+
+fn folded(name: &str) -> SmolStr {
+    if name.is_ascii() {
+        SmolStr::from(name.to_ascii_lowercase())
+    } else {
+        SmolStr::from(name.to_lowercase())
+    }
+}
