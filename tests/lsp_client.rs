@@ -138,6 +138,13 @@ impl Client {
         }
     }
 
+    /// The first message that came already and that `wanted` takes.
+    pub fn take(&mut self, wanted: impl Fn(&Value) -> bool) -> Option<Value> {
+        self.kept.extend(self.messages.try_iter());
+        let place = self.kept.iter().position(wanted)?;
+        Some(self.kept.remove(place))
+    }
+
     /// Whether nothing that `unwanted` takes comes within `time`.
     pub fn stays_silent(&mut self, time: Duration, unwanted: impl Fn(&Value) -> bool) -> bool {
         let end = Instant::now() + time;

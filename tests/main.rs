@@ -25,6 +25,8 @@ mod ladder_read;
 mod ldmicro;
 mod lsp;
 mod lsp_client;
+mod lsp_project;
+mod lsp_robust;
 mod manifest_schema;
 mod mistakes;
 mod rules;

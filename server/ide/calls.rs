@@ -153,7 +153,8 @@ enum Event<'a> {
 
 impl Walk {
     fn file(&mut self, number: usize, member: crate::document::Member<'_>) {
-        let document = member.document;
+        // Trees that are read here are not kept.
+        let document = &member.document.lean();
         self.file = number;
         let main = self.add(CallItem {
             file: number,
@@ -184,6 +185,9 @@ impl Walk {
     }
 
     fn event(&mut self, span: Span, event: Event<'_>, pou: Option<usize>, document: &Document, main: usize) {
+        if !matches!(event, Event::Mention(_)) {
+            self.extend(span.end);
+        }
         match event {
             Event::MainEnd => {
                 self.behind_main = true;
@@ -194,11 +198,18 @@ impl Walk {
                 self.behind_main = false;
                 (self.unit, self.label) = (main, None);
             }
-            Event::Mention(mention) => self.mention(span, mention, pou, document),
+            Event::Mention(mention) => {
+                self.mention(span, mention, pou, document);
+                self.extend(span.end);
+            }
         }
+    }
+
+    /// The bodies to which what ends at `end` belongs reach to there.
+    fn extend(&mut self, end: u32) {
         for number in [Some(self.unit), self.label].into_iter().flatten() {
             if let Some(body) = self.bodies.get_mut(number).filter(|body| body.item.file == self.file) {
-                body.item.span.end = body.item.span.end.max(span.end);
+                body.item.span.end = body.item.span.end.max(end);
             }
         }
     }

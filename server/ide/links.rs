@@ -10,7 +10,11 @@ const ENDINGS: &[&str] = &[".lad", ".il", ".csv", ".toml"];
 pub(super) fn of(document: &Document) -> Vec<(Span, String)> {
     let mut links = Vec::new();
     for at in document.chunks() {
-        let (comments, text) = match at.chunk.tree() {
+        if in_text(at.chunk.text()).is_empty() {
+            continue;
+        }
+        let reading = at.chunk.reading();
+        let (comments, text) = match reading.tree() {
             Tree::Fx(tree) => (&tree.comments, at.chunk.text()),
             Tree::Ladder(tree) => (&tree.comments, at.chunk.text()),
             Tree::Iec(tree) => (&tree.comments, at.chunk.text()),

@@ -77,7 +77,11 @@ impl Search<'_> {
             let container = if is_inside { container().to_string() } else { String::new() };
             self.add(name.to_string(), container, kind, mention.span.shifted(at.start), score);
         }
-        let Tree::Ladder(tree) = at.chunk.tree() else { return };
+        if !has_network(at.chunk.text()) {
+            return;
+        }
+        let reading = at.chunk.reading();
+        let Tree::Ladder(tree) = reading.tree() else { return };
         let Some(header) = &tree.header else { return };
         let title = header.title.map_or("", |title| title.of(at.chunk.text()));
         let number = header.number.map(|number| number.value.to_string()).unwrap_or_default();
@@ -97,6 +101,12 @@ impl Search<'_> {
             self.found.push(FoundSymbol { file: self.file, name, container, kind, span, score });
         }
     }
+}
+
+/// Whether a network may begin in the text; drawings are read only for that.
+fn has_network(text: &str) -> bool {
+    const WORD: &[u8] = b"network";
+    text.as_bytes().windows(WORD.len()).any(|part| part.eq_ignore_ascii_case(WORD))
 }
 
 fn kind_of(mention: &Mention, scopes: &Scopes) -> Option<SymbolKind> {

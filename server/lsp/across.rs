@@ -1,5 +1,7 @@
 //! Answers that name several files: places, edits, calls, links.
 
+use super::abilities::Abilities;
+use super::capabilities;
 use super::projects::{Around, file_path};
 use super::to_proto::{self, Manner, Place};
 use super::workspace::{Open, Snapshot};
@@ -88,6 +90,18 @@ pub(super) fn workspace_edit(
     });
     let document_changes = DocumentChanges::Edits(edits.collect());
     WorkspaceEdit { document_changes: Some(document_changes), ..WorkspaceEdit::default() }
+}
+
+/// A code action, or the command that does the same in a client that knows no code actions.
+pub(super) fn code_action(action: CodeAction, abilities: Abilities) -> CodeActionOrCommand {
+    match (abilities.code_actions, &action.edit) {
+        (false, Some(edit)) => CodeActionOrCommand::Command(Command {
+            title: action.title,
+            command: capabilities::APPLY.to_string(),
+            arguments: Some(vec![json!(edit)]),
+        }),
+        _ => CodeActionOrCommand::CodeAction(action),
+    }
 }
 
 /// Names in all projects and open documents that have the letters of `query`.

@@ -100,10 +100,11 @@ impl LanguageServer for Backend {
 
     async fn rename(&self, params: RenameParams) -> Result<Option<WorkspaceEdit>> {
         let at = params.text_document_position;
-        let renamed = whole(at.text_document.uri, move |around, place| {
+        let uri = at.text_document.uri;
+        let renamed = whole(uri.clone(), move |around, place| {
             across::rename(around, place, at.position, &params.new_name)
         });
-        renamed.await?.transpose().map_err(refused)
+        self.unless_changed(&uri, renamed.await)?.transpose().map_err(refused)
     }
 
     async fn document_symbol(&self, params: DocumentSymbolParams) -> Result<Option<DocumentSymbolResponse>> {
@@ -190,17 +191,18 @@ impl LanguageServer for Backend {
 
     async fn formatting(&self, params: DocumentFormattingParams) -> Result<Option<Vec<TextEdit>>> {
         let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
-        whole(params.text_document.uri, move |around, place| {
+        let uri = params.text_document.uri;
+        let edits = whole(uri.clone(), move |around, place| {
             place.edits(&ide::format(place.document, settings.style(&around.here().manifest)))
-        })
-        .await
+        });
+        self.unless_changed(&uri, edits.await)
     }
 
     async fn code_action(&self, params: CodeActionParams) -> Result<Option<CodeActionResponse>> {
         whole(params.text_document.uri, move |around, place| {
             let found = around.findings();
             let fixes = ide::fixes(&found, place.span(params.range)).into_iter();
-            fixes.map(|fix| quick_fix(around, place, &fix).into()).collect()
+            fixes.map(|fix| across::code_action(quick_fix(around, place, &fix), place.abilities)).collect()
         })
         .await
     }
@@ -241,6 +243,9 @@ impl LanguageServer for Backend {
     }
 
     async fn execute_command(&self, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
+        if params.command == capabilities::APPLY {
+            return self.apply(params.arguments);
+        }
         let Some(uri) =
             params.arguments.first().and_then(|value| value.as_str()).and_then(|text| text.parse().ok())
         else {
@@ -255,6 +260,29 @@ impl LanguageServer for Backend {
 }
 
 impl Backend {
+    /// Edits that were made for a text that has changed meanwhile help nobody.
+    fn unless_changed<T>(&self, uri: &Uri, answer: Result<Option<T>>) -> Result<Option<T>> {
+        let version = |snapshot: &Snapshot| snapshot.open(uri).map(|open| open.version);
+        let now = version(&self.workspace.snapshot());
+        if now != SNAPSHOT.with(version) { Err(Error::content_modified()) } else { answer }
+    }
+
+    /// Has the client apply the edit that a code action stands for in a client that only knows commands.
+    fn apply(&self, arguments: Vec<Value>) -> Result<Option<LSPAny>> {
+        let edit = arguments.into_iter().next().and_then(|value| serde_json::from_value(value).ok());
+        let Some(edit) = edit else {
+            return Err(refused(Message::new("request.no-edit").with("command", capabilities::APPLY)));
+        };
+        let client = self.workspace.client.clone();
+        // The client may answer late or never; no handler waits for it.
+        tokio::spawn(async move {
+            if let Err(reason) = client.apply_edit(edit).await {
+                tracing::warn!("the client did not apply the edits: {reason}");
+            }
+        });
+        Ok(None)
+    }
+
     /// Computes the edits and asks the client to apply them; the answer says how many there are.
     async fn format(&self, uri: Uri) -> Result<Option<LSPAny>> {
         let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());

@@ -1,13 +1,16 @@
 //! What the server offers, and what the client can do.
 
-use super::abilities::Requests;
+use super::abilities::{Abilities, Requests};
 use super::to_proto;
 use crate::text::Encoding;
 use serde_json::json;
 use tower_lsp::ls_types::*;
 
 /// The commands of `workspace/executeCommand`.
-pub(super) const COMMANDS: &[&str] = &["rungwise.check", "rungwise.format"];
+pub(super) const COMMANDS: &[&str] = &["rungwise.check", "rungwise.format", APPLY];
+
+/// Applies the `WorkspaceEdit` that is its argument: what a code action does where clients know commands alone.
+pub(super) const APPLY: &str = "rungwise.applyEdit";
 
 /// The best encoding that the client offers: bytes cost nothing, UTF-16 is what every client knows.
 pub(super) fn encoding_for(client: &ClientCapabilities) -> Encoding {
@@ -88,10 +91,13 @@ pub(super) fn offered(client: &ClientCapabilities, encoding: Encoding, pulls: bo
         document_symbol_provider: Some(OneOf::Left(true)),
         folding_range_provider: Some(FoldingRangeProviderCapability::Simple(true)),
         document_formatting_provider: Some(OneOf::Left(true)),
-        rename_provider: Some(OneOf::Right(RenameOptions {
-            prepare_provider: Some(true),
-            work_done_progress_options: WorkDoneProgressOptions::default(),
-        })),
+        rename_provider: Some(match Abilities::of(client).prepare_rename {
+            true => OneOf::Right(RenameOptions {
+                prepare_provider: Some(true),
+                work_done_progress_options: WorkDoneProgressOptions::default(),
+            }),
+            false => OneOf::Left(true),
+        }),
         code_action_provider: Some(CodeActionProviderCapability::Options(CodeActionOptions {
             code_action_kinds: Some(vec![CodeActionKind::QUICKFIX]),
             ..CodeActionOptions::default()

@@ -10,7 +10,7 @@ use super::settings::{Settings, Speech};
 use super::to_proto::Manner;
 use crate::check::Severities;
 use crate::document::{Document, Edit, Notation};
-use crate::project::{Manifest, Project, decide};
+use crate::project::{MANIFEST_NAME, Manifest, Project, decide};
 use crate::target::{Model, Target};
 use crate::text::{Encoding, Language, LineColumn};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -218,7 +218,10 @@ impl Workspace {
         let manifest = Arc::new(manifest);
         let is_ladder = language_id == "ladder";
         let (notation, target) = decided(&uri, &text, &manifest, &state.snapshot.settings, is_ladder);
-        let document = read(&text, notation, target);
+        let document = match is_manifest(&uri) {
+            true => Document::unread(&text, notation, target),
+            false => read(&text, notation, target),
+        };
         let loaded = project.as_ref().and_then(|key| state.snapshot.projects.get(key));
         let document = match loaded {
             Some(loaded) => loaded.placed(document, path.as_ref()),
@@ -231,8 +234,10 @@ impl Workspace {
         }
         let before = state.closing.remove(&uri).map(Closing::superseded);
         let snapshot = &state.snapshot;
-        let publisher = Publisher::start(state.this.clone(), &self.client, snapshot, before);
-        state.publishers.insert(uri.clone(), publisher);
+        if !is_manifest(&uri) {
+            let publisher = Publisher::start(state.this.clone(), &self.client, snapshot, before);
+            state.publishers.insert(uri.clone(), publisher);
+        }
         let severities = Arc::new(manifest.severities());
         if let Some(path) = &path {
             Arc::make_mut(&mut state.snapshot.paths).entry(path.clone()).or_insert_with(|| uri.clone());
@@ -252,6 +257,10 @@ impl Workspace {
         for change in params.content_changes {
             let edit = edit_of(&open.document, change, state.snapshot.manner.encoding);
             let (notation, target) = (open.document.notation(), open.document.target());
+            if is_manifest(&open.uri) {
+                open.document = Document::unread(&spliced(&open.document, &edit), notation, target);
+                continue;
+            }
             let edited = guarded(|| {
                 let mut document = open.document.clone();
                 document.apply(std::slice::from_ref(&edit));
@@ -423,6 +432,9 @@ impl Open {
     /// Decides anew in which language and for which target the document is written, and reads it anew if that
     /// changed: what is typed into an empty file says what it is only after some lines.
     fn decide_again(&mut self, settings: &Settings) {
+        if is_manifest(&self.uri) {
+            return;
+        }
         let text = self.document.text();
         let is_ladder = self.document.notation() == Notation::Ladder;
         let (notation, target) = decided(&self.uri, &text, &self.manifest, settings, is_ladder);
@@ -453,6 +465,11 @@ pub(super) fn decided(
 pub(super) fn read(text: &str, notation: Notation, target: &'static Target) -> Document {
     guarded(|| Document::new(text, notation, target))
         .unwrap_or_else(|| Document::unread(text, notation, target))
+}
+
+/// Whether a document is a manifest: its text is kept for the links in it, and it is no program.
+fn is_manifest(uri: &Uri) -> bool {
+    uri.path().as_str().rsplit('/').next() == Some(MANIFEST_NAME)
 }
 
 /// The value, or nothing and a line in the log if making it panics.
