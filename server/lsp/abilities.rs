@@ -41,11 +41,8 @@ pub(super) struct Requests {
     pub progress: bool,
     /// `workspace/diagnostic/refresh`.
     pub refresh_diagnostics: bool,
-    /// `workspace/inlayHint/refresh`, `workspace/semanticTokens/refresh`.
+    /// `workspace/inlayHint/refresh`.
     pub refresh_hints: bool,
-    pub refresh_tokens: bool,
-    /// `workspace/applyEdit`.
-    pub apply_edit: bool,
 }
 
 impl Default for Abilities {
@@ -118,11 +115,6 @@ impl Requests {
             progress,
             refresh_diagnostics: diagnostics.is_some_and(|one| one.refresh_support == Some(true)),
             refresh_hints: workspace.inlay_hint.as_ref().is_some_and(|one| one.refresh_support == Some(true)),
-            refresh_tokens: workspace
-                .semantic_tokens
-                .as_ref()
-                .is_some_and(|one| one.refresh_support == Some(true)),
-            apply_edit: workspace.apply_edit == Some(true),
         }
     }
 }

@@ -101,6 +101,10 @@ impl LanguageServer for Backend {
     async fn rename(&self, params: RenameParams) -> Result<Option<WorkspaceEdit>> {
         let at = params.text_document_position;
         let uri = at.text_document.uri;
+        let unknown = SNAPSHOT.with(|snapshot| snapshot.is_incomplete(snapshot.open(&uri)?));
+        if let Some(reason) = unknown {
+            return Err(refused(reason));
+        }
         let renamed = whole(uri.clone(), move |around, place| {
             across::rename(around, place, at.position, &params.new_name)
         });

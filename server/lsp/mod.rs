@@ -57,9 +57,6 @@ pub async fn serve_between(
     });
     let Some(workspace) = workspace else { return 1 };
     let ordered = Ordered::new(service, workspace.clone());
-    Server::new(frames::sound(input), output, socket)
-        .concurrency_level(CONCURRENCY)
-        .serve(ordered)
-        .await;
+    Server::new(frames::sound(input), output, socket).concurrency_level(CONCURRENCY).serve(ordered).await;
     u8::from(!workspace.was_shut_down())
 }

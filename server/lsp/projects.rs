@@ -5,7 +5,7 @@ use super::workspace::{Open, Snapshot};
 use crate::check;
 use crate::document::{Exports, Member, Outer, ProjectView};
 use crate::project::Manifest;
-use crate::text::Diagnostic;
+use crate::text::{Diagnostic, Message};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -39,7 +39,7 @@ pub(super) struct OnDisk {
     /// The canonical path, by which an open document is known to be this file.
     pub path: Arc<Path>,
     /// The path from the project's folder with `/`, for people.
-    pub name: String,
+    pub name: Arc<str>,
     /// When and how long the file was, to know whether it must be read again.
     pub stamp: Option<Stamp>,
     /// What was read; nothing if the file is not there, too large or unreadable.
@@ -67,7 +67,7 @@ impl Stamp {
 #[derive(Clone)]
 pub(super) struct Around {
     files: Vec<Arc<Open>>,
-    names: Vec<String>,
+    names: Vec<Arc<str>>,
     here: usize,
     is_listed: bool,
     /// Set when nobody waits for the answer any more.
@@ -124,7 +124,7 @@ impl Around {
 
     /// A file without others.
     pub fn alone(open: &Arc<Open>) -> Around {
-        Around { files: vec![open.clone()], names: vec![String::new()], ..Around::empty() }
+        Around { files: vec![open.clone()], names: vec![Arc::from("")], ..Around::empty() }
     }
 
     /// File number `number`.
@@ -152,7 +152,7 @@ impl Snapshot {
                 } else {
                     around.files.push(file);
                 }
-                around.names.push(name.to_string());
+                around.names.push(name.clone());
             }
         }
         if around.here == usize::MAX {
@@ -176,11 +176,23 @@ impl Snapshot {
         loaded.files.get(loaded.number_of(open)?)?.file.as_ref()
     }
 
+    /// Why nothing can be renamed in all files of the project of `open`, if so: they are not all known.
+    pub(super) fn is_incomplete(&self, open: &Open) -> Option<Message> {
+        let key = open.project.as_ref()?;
+        match self.projects.get(key) {
+            None => Some(Message::new("rename.reading")),
+            Some(loaded) if loaded.passed_over > 0 && loaded.number_of(open).is_some() => {
+                Some(Message::new("rename.passed-over").with("count", loaded.passed_over))
+            }
+            Some(_) => None,
+        }
+    }
+
     /// All of a project, seen from its first file; nothing if it has none.
     pub(super) fn project(&self, key: &Arc<Path>) -> Option<Around> {
         let loaded = self.projects.get(key)?;
         let (files, names): (Vec<_>, Vec<_>) =
-            self.files_of(loaded).map(|(file, name)| (file, name.to_string())).unzip();
+            self.files_of(loaded).map(|(file, name)| (file, name.clone())).unzip();
         let is_listed = loaded.manifest.files.is_some();
         (!files.is_empty()).then(|| Around { files, names, is_listed, ..Around::empty() })
     }
@@ -196,7 +208,7 @@ impl Snapshot {
         let is_alone = |open: &&Arc<Open>| open.path.as_ref().is_none_or(|path| !seen.contains(path));
         around.files.extend(self.opens().filter(is_alone).cloned());
         around.files.sort_by(|left, right| left.uri.as_str().cmp(right.uri.as_str()));
-        around.names = around.files.iter().map(|_| String::new()).collect();
+        around.names = vec![Arc::from(""); around.files.len()];
         (!around.files.is_empty()).then_some(around)
     }
 
@@ -204,10 +216,10 @@ impl Snapshot {
     pub(super) fn files_of<'a>(
         &'a self,
         loaded: &'a Loaded,
-    ) -> impl Iterator<Item = (Arc<Open>, &'a str)> + 'a {
+    ) -> impl Iterator<Item = (Arc<Open>, &'a Arc<str>)> + 'a {
         loaded.files.iter().filter_map(|file| {
             let open = self.open_at(&file.path).or(file.file.as_ref())?;
-            Some((open.clone(), file.name.as_str()))
+            Some((open.clone(), &file.name))
         })
     }
 }

@@ -348,14 +348,19 @@ impl Workspace {
         Belonging { manifest: project.manifest, place, project: Some(key) }
     }
 
-    /// Has a client that pulls diagnostics ask again.
-    pub(super) fn refresh_pulled(&self) {
+    /// Has the client ask again for what other files have a part in. Nobody waits for it.
+    pub(super) fn refresh(&self) {
         let state = self.state();
-        if state.requests.refresh_diagnostics && state.snapshot.settings.pulls() {
-            let client = self.client.clone();
-            // Nobody waits for the client.
-            tokio::spawn(async move { client.workspace_diagnostic_refresh().await });
-        }
+        let (requests, pulls) = (state.requests, state.snapshot.settings.pulls());
+        let client = self.client.clone();
+        tokio::spawn(async move {
+            if requests.refresh_diagnostics && pulls {
+                let _ = client.workspace_diagnostic_refresh().await;
+            }
+            if requests.refresh_hints {
+                let _ = client.inlay_hint_refresh().await;
+            }
+        });
     }
 
     /// A document changed in a way that the other files of its project see.
@@ -462,7 +467,13 @@ pub(super) fn decided(
         .unwrap_or((Notation::FxIl, Target::of(Model::Fx2n)))
 }
 
-pub(super) fn read(text: &str, notation: Notation, target: &'static Target) -> Document {
+/// A file of the disk, of which nothing is kept that can be read again.
+pub(super) fn frugal(text: &str, notation: Notation, target: &'static Target) -> Document {
+    guarded(|| Document::frugal(text, notation, target))
+        .unwrap_or_else(|| Document::unread(text, notation, target))
+}
+
+fn read(text: &str, notation: Notation, target: &'static Target) -> Document {
     guarded(|| Document::new(text, notation, target))
         .unwrap_or_else(|| Document::unread(text, notation, target))
 }
