@@ -39,7 +39,8 @@ impl Workspace {
     pub(super) fn change_files(&self, params: DidChangeWatchedFilesParams) {
         let paths: Vec<PathBuf> = params.changes.iter().filter_map(|change| file_path(&change.uri)).collect();
         let is_manifest = |path: &&PathBuf| path.file_name().is_some_and(|name| name == MANIFEST_NAME);
-        if paths.iter().any(|path| is_manifest(&path)) {
+        // A client that does not say which files changed may mean any.
+        if params.changes.is_empty() || paths.iter().any(|path| is_manifest(&path)) {
             self.reread_projects();
         }
         // The disk is asked before the state is locked.

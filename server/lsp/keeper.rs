@@ -1,14 +1,15 @@
 //! The task that looks after projects: it reads their files, links them, and publishes what is found in those that are
 //! not open. One task, so that the disk is asked once at a time and no two pictures of a project compete.
 
-use super::projects::{Loaded, OnDisk, Stamp, canonical};
+use super::projects::{Loaded, OnDisk, canonical};
 use super::settings::Settings;
 use super::to_proto;
 use super::workspace::{Open, Snapshot, Workspace, decided, frugal};
 use crate::check;
 use crate::document::{Document, Exports};
 use crate::project::{
-    MANIFEST_NAME, MOST_FILE_BYTES, MOST_FILES, MOST_PROJECT_BYTES, Manifest, Project, projects_in,
+    MANIFEST_NAME, MOST_FILE_BYTES, MOST_FILES, MOST_PROJECT_BYTES, Manifest, Project, Stamp, projects_in,
+    read_text,
 };
 use crate::text::Message;
 use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
@@ -370,8 +371,7 @@ fn read_project(
 
 fn read_file(path: &Path, settings: &Settings, manifest: &Manifest) -> Option<(Uri, Document)> {
     let uri = Uri::from_file_path(path)?;
-    let bytes = std::fs::read(path).ok()?;
-    let text = String::from_utf8_lossy(&bytes);
+    let text = read_text(path)?;
     let (notation, target) = decided(&uri, &text, manifest, settings, false);
     Some((uri, frugal(&text, notation, target)))
 }

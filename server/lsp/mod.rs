@@ -8,6 +8,7 @@ mod abilities;
 mod across;
 mod backend;
 mod capabilities;
+mod editing;
 mod folders;
 mod frames;
 mod keeper;
@@ -17,11 +18,15 @@ mod progress;
 mod projects;
 mod publisher;
 mod pulled;
+mod recording;
 mod service;
 mod settings;
 mod status;
 mod to_proto;
+mod tokens;
 mod workspace;
+
+pub use recording::{NoEntry, replay, serve_mirrored};
 
 use crate::text::Language;
 use service::Ordered;
@@ -50,11 +55,14 @@ pub async fn serve_between(
     otherwise: Language,
 ) -> u8 {
     let mut workspace = None;
-    let (service, socket) = LspService::new(|client| {
+    let (service, socket) = LspService::build(|client| {
         let shared = Workspace::new(client, Speech { asked, otherwise, ..Speech::default() });
         workspace = Some(shared.clone());
         backend::Backend::new(shared)
-    });
+    })
+    .custom_method("rungwise/edit", backend::Backend::edit)
+    .custom_method("rungwise/object", backend::Backend::object)
+    .finish();
     let Some(workspace) = workspace else { return 1 };
     let ordered = Ordered::new(service, workspace.clone());
     Server::new(frames::sound(input), output, socket).concurrency_level(CONCURRENCY).serve(ordered).await;

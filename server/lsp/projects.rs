@@ -4,13 +4,12 @@ use super::settings::Settings;
 use super::workspace::{Open, Snapshot};
 use crate::check;
 use crate::document::{Exports, Member, Outer, ProjectView};
-use crate::project::Manifest;
+use crate::project::{Manifest, Stamp};
 use crate::text::{Diagnostic, Message};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use std::time::SystemTime;
 use tower_lsp::ls_types::Uri;
 
 /// The projects that were read, by the canonical path of their folder.
@@ -46,21 +45,6 @@ pub(super) struct OnDisk {
     pub file: Option<Arc<Open>>,
     /// What it declares for the other files.
     pub exports: Arc<Exports>,
-}
-
-/// What tells a changed file from an unchanged one without reading it.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) struct Stamp {
-    pub modified: Option<SystemTime>,
-    pub bytes: u64,
-}
-
-impl Stamp {
-    /// That of the file at `path`; nothing if there is none.
-    pub(super) fn of(path: &Path) -> Option<Stamp> {
-        let data = std::fs::metadata(path).ok().filter(|data| data.is_file())?;
-        Some(Stamp { modified: data.modified().ok(), bytes: data.len() })
-    }
 }
 
 /// The files of the project of a document; a document that belongs to none stands alone.

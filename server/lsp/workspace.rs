@@ -8,6 +8,7 @@ use super::projects::{Projects, canonical, file_path};
 use super::publisher::{Closing, Publisher};
 use super::settings::{Settings, Speech};
 use super::to_proto::Manner;
+use super::tokens::SentTokens;
 use crate::check::Severities;
 use crate::document::{Document, Edit, Notation};
 use crate::project::{MANIFEST_NAME, Manifest, Project, decide};
@@ -72,6 +73,7 @@ pub(super) struct Open {
 /// The state, and what goes on beside it.
 pub(super) struct Workspace {
     pub client: Client,
+    pub tokens: SentTokens,
     state: Mutex<State>,
     initialised: AtomicBool,
     shut_down: AtomicBool,
@@ -130,6 +132,7 @@ impl Workspace {
     pub(super) fn new(client: Client, speech: Speech) -> Arc<Workspace> {
         Arc::new(Workspace {
             client,
+            tokens: SentTokens::default(),
             state: Mutex::new(State { speech, ..State::default() }),
             initialised: AtomicBool::new(false),
             shut_down: AtomicBool::new(false),
@@ -213,6 +216,13 @@ impl Workspace {
     fn open(&self, params: DidOpenTextDocumentParams) {
         let TextDocumentItem { uri, language_id, version, text } = params.text_document;
         let mut state = self.state();
+        // A document that is opened a second time was closed in the client's eyes.
+        if let Some(publisher) = state.publishers.remove(&uri) {
+            let closing = publisher.close(uri.clone(), None);
+            state.closing.insert(uri.clone(), closing);
+        }
+        // Before the text is read, which may take a while: what was published is not to be cleared.
+        let before = state.closing.remove(&uri).map(Closing::superseded);
         let Belonging { manifest, project, .. } = self.belonging(&mut state, &uri);
         let path = file_path(&uri).map(|path| canonical(&path));
         let manifest = Arc::new(manifest);
@@ -227,12 +237,6 @@ impl Workspace {
             Some(loaded) => loaded.placed(document, path.as_ref()),
             None => document,
         };
-        // A document that is opened a second time was closed in the client's eyes.
-        if let Some(publisher) = state.publishers.remove(&uri) {
-            let closing = publisher.close(uri.clone(), None);
-            state.closing.insert(uri.clone(), closing);
-        }
-        let before = state.closing.remove(&uri).map(Closing::superseded);
         let snapshot = &state.snapshot;
         if !is_manifest(&uri) {
             let publisher = Publisher::start(state.this.clone(), &self.client, snapshot, before);
@@ -284,6 +288,7 @@ impl Workspace {
     fn close(&self, params: DidCloseTextDocumentParams) {
         let mut state = self.state();
         let uri = params.text_document.uri;
+        self.tokens.forget(&uri);
         let closed = Arc::make_mut(&mut state.snapshot.documents).remove(&uri);
         let Some(closed) = closed else { return };
         state.forget_path(&closed);
