@@ -159,7 +159,7 @@ impl Client {
 
     /// The first message that came already and that `wanted` takes.
     pub fn take(&mut self, wanted: impl Fn(&Value) -> bool) -> Option<Value> {
-        self.kept.extend(self.messages.try_iter());
+        self.kept.extend(self.messages.try_iter().map(|(_, message)| message));
         let place = self.kept.iter().position(wanted)?;
         Some(self.kept.remove(place))
     }

@@ -181,6 +181,11 @@ impl Workspace {
         state.settings_source = params.initialization_options.clone();
         state.snapshot.settings = Arc::new(settings);
         state.requests = Requests::of(&params.capabilities);
+        // A client that sends its settings of its own accord would answer with something else, such as its defaults.
+        if state.settings_source.as_ref().is_some_and(|source| !source.is_null()) {
+            state.requests.configuration = false;
+            state.requests.watch_configuration = false;
+        }
         state.this = Arc::downgrade(self);
         self.take_folders(&mut state, params);
         self.initialised.store(true, Ordering::Relaxed);
