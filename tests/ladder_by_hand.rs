@@ -3,7 +3,7 @@
 
 use crate::ladder_read::dump;
 use rungwise::check::{self, Severities};
-use rungwise::document::{Document, Notation};
+use rungwise::document::{Document, Edit, Notation, Tree};
 use rungwise::ladder::{TWO_READINGS, parse, split};
 use rungwise::target::{Model, Target};
 use rungwise::text::{Diagnostic, Language, Severity, TextEdit};
@@ -515,6 +515,32 @@ fn dialect_of_boxes_as_outputs() {
 |             | PT = 500 ms |              |
 |             +-------------+              |
 ";
-    let expected = ["L start T1:TON.IN", "T1:TON.Q (run) R", "block T1:TON IN=wire PT=500 ms =>Q=wire"];
+    let expected = ["L start T1:TON.IN", "T1:TON.Q (run) R", "block T1:TON IN=wire PT=T#500ms =>Q=wire"];
     check_dialect(Model::Iec, drawing, &expected);
+}
+
+/// The first operand of each element of the first drawing that has `mark` in it.
+fn names_of(document: &Document, mark: &str) -> Vec<String> {
+    let chunk = document.chunks().map(|at| at.chunk).find(|chunk| chunk.text().contains(mark)).unwrap();
+    let Tree::Ladder(tree) = chunk.tree() else { panic!("{mark}") };
+    let elements = tree.rungs.iter().flat_map(|rung| &rung.graph.elements);
+    elements.map(|element| element.operand_text(0, chunk.text()).into_owned()).collect()
+}
+
+#[test]
+fn a_drawing_in_doubt_follows_the_others_of_its_document() {
+    // Names stand between the rows, so either could be meant.
+    let doubt = "|--| |-----( )--|\n|  X7     Y7    |\n|--| |-----( )--|\n";
+    let above = "|  X0     Y0    |\n|--| |-----( )--|\n\n";
+    let below = "|--| |-----( )--|\n|  X0     Y0    |\n\n";
+    let mut document = Document::new(&format!("{below}{below}{doubt}"), Notation::Ladder, fx());
+    assert_eq!(names_of(&document, "X7"), ["X7", "Y7", "", ""]);
+    // The habit turns while the drawing in doubt stays.
+    let edit = Edit { range: Some(0..2 * below.len()), text: above.repeat(2) };
+    document.apply(&[edit]);
+    assert_eq!(names_of(&document, "X7"), ["", "", "X7", "Y7"]);
+    let edit = Edit { range: Some(0..0), text: below.repeat(5) };
+    document.apply(&[edit]);
+    assert_eq!(names_of(&document, "X7"), ["X7", "Y7", "", ""]);
+    assert_eq!(names_of(&document, "X0")[..2], ["X0", "Y0"]);
 }

@@ -426,3 +426,75 @@ fn mnemonics_of_other_makers_are_one_mistake_each() {
     let expected = ["unknown-instruction 1:5", "unknown-instruction 1:16", "unknown-instruction 1:27"];
     assert_eq!(places(text, &found(text)), expected);
 }
+
+/// A rung in which each of `levels` branches begins behind the one around it: as many blocks wait, and two more.
+fn branches_in_branches(levels: usize) -> String {
+    let mut row = String::from("+");
+    let mut starts = Vec::new();
+    for level in 0..=levels {
+        row += &format!("-----[X{}]-----", level % 8);
+        if level < levels {
+            starts.push(row.len());
+            row.push('+');
+        }
+    }
+    let mut ends = Vec::new();
+    for _ in 0..levels {
+        ends.insert(0, row.len());
+        row += "+--";
+    }
+    row += "--(Y0)--";
+    let mut lines = vec![row.clone()];
+    for level in (0..levels).rev() {
+        let (start, end) = (starts[level], ends[level]);
+        let mut line = vec![' '; row.len()];
+        (0..level).for_each(|outer| (line[starts[outer]], line[ends[outer]]) = ('|', '|'));
+        line[start..=end].fill('-');
+        (line[start], line[end]) = ('+', '+');
+        "--[M0]--[M1]".chars().enumerate().for_each(|(at, c)| line[start + 1 + at] = c);
+        lines.push(line.into_iter().collect::<String>().trim_end().to_string());
+    }
+    lines.join("\n") + "\n"
+}
+
+#[test]
+fn branches_in_branches_are_counted_as_the_blocks_that_they_become() {
+    let codes = |levels| {
+        let text = branches_in_branches(levels);
+        let found: Vec<String> = found(&text).iter().map(|finding| finding.code.to_string()).collect();
+        found.into_iter().filter(|code| code != "rung-too-large").collect::<Vec<_>>()
+    };
+    assert_eq!(codes(6), Vec::<String>::new());
+    assert_eq!(codes(7), ["nesting-too-deep"]);
+    let iec = found_for(&branches_in_branches(7), Model::Iec);
+    assert!(iec.iter().all(|finding| finding.code != "nesting-too-deep"), "{iec:?}");
+}
+
+#[test]
+fn outputs_in_branches_are_counted_as_the_mps_that_they_become() {
+    // Each branch with a contact of its own but the last keeps the result before it.
+    let rung = |levels: usize| {
+        let mut text = String::from("+-[X0]-+");
+        (0..levels).for_each(|_| text += "-[X1]-+");
+        text += "-[X2]--(Y0)\n";
+        for level in (0..=levels).rev() {
+            let bars: String = (0..level).map(|_| "|      ").collect();
+            text += &format!("       {bars}+-[X3]--(Y{})\n", level % 8);
+        }
+        text
+    };
+    let deep = |levels| found(&rung(levels)).iter().any(|finding| finding.code == "nesting-too-deep");
+    assert!(!deep(10), "{}", rung(10));
+    assert!(deep(11), "{}", rung(11));
+}
+
+#[test]
+fn a_contact_behind_a_coil_is_a_hint_where_the_language_allows_it() {
+    let text = "|   a         y         b         z  |\n+---| |-------( )-------| |-------( )-+\n";
+    let severity = |model| {
+        let found = found_for(text, model);
+        found.iter().find(|finding| finding.code == "contact-after-coil").map(|finding| finding.severity)
+    };
+    assert_eq!(severity(Model::Iec), Some(Severity::Hint));
+    assert_eq!(severity(Model::Fx3u), Some(Severity::Error));
+}

@@ -38,11 +38,30 @@ pub fn all(document: &Document, severities: &Severities) -> Vec<Diagnostic> {
 
 /// What the real-time tier finds. Chunks that kept their text and surroundings are not judged again.
 pub fn realtime(document: &Document, severities: &Severities) -> Vec<Diagnostic> {
+    judged(document, severities, true)
+}
+
+/// What both tiers find in a document about which nothing else will be asked, sorted by place.
+pub fn once(document: &Document, severities: &Severities) -> Vec<Diagnostic> {
+    let mut diagnostics = realtime_once(document, severities);
+    diagnostics.extend(program(document, severities));
+    sorted(diagnostics)
+}
+
+/// What the real-time tier finds in a document about which nothing else will be asked. Rules about declared names look
+/// at the mentions of all chunks.
+fn realtime_once(document: &Document, severities: &Severities) -> Vec<Diagnostic> {
+    let scopes = document.scopes();
+    judged(document, severities, !scopes.pous.is_empty() || !scopes.globals.is_empty())
+}
+
+/// What the real-time tier finds; `with_mentions` says whether those of the chunks will be needed afterwards.
+fn judged(document: &Document, severities: &Severities, with_mentions: bool) -> Vec<Diagnostic> {
     if document.len() > LIMIT_BYTES {
         let message = Message::new("text-too-large.found").with("limit", LIMIT_BYTES >> 20);
         return with_severities(vec![Diagnostic::new("text-too-large", Span::at(0), message)], severities);
     }
-    let judged = judged_pages(document);
+    let judged = judged_pages(document, with_mentions);
     let mut start = 0;
     let mut diagnostics = Vec::new();
     for (page, found) in document.pages().iter().zip(judged) {
@@ -53,7 +72,7 @@ pub fn realtime(document: &Document, severities: &Severities) -> Vec<Diagnostic>
 }
 
 /// The findings in each page, from the page's start. Many pages are judged by several threads.
-fn judged_pages(document: &Document) -> Vec<Arc<[Diagnostic]>> {
+fn judged_pages(document: &Document, with_mentions: bool) -> Vec<Arc<[Diagnostic]>> {
     let scopes = document.scopes();
     let mut pou_number = 0;
     let mut tasks = Vec::with_capacity(document.pages().len());
@@ -62,7 +81,9 @@ fn judged_pages(document: &Document) -> Vec<Arc<[Diagnostic]>> {
         pou_number += page.pou_starts();
     }
     let judge = |(page, pou_number): (&Arc<Page>, usize)| {
-        page.found(hash_of((scopes.key, pou_number)), || judge_page(document, page, pou_number))
+        page.found(hash_of((scopes.key, pou_number)), || {
+            judge_page(document, page, pou_number, with_mentions)
+        })
     };
     let is_new =
         |(page, pou_number): &(&Arc<Page>, usize)| !page.has_found(hash_of((scopes.key, *pou_number)));
@@ -103,7 +124,7 @@ pub fn within_project(view: &ProjectView<'_>, severities: &Severities) -> Vec<Di
 pub fn project(view: &ProjectView<'_>, severities: &Severities) -> Vec<Vec<Diagnostic>> {
     let document = |number: usize| view.members()[number].document;
     let mut by_file: Vec<Vec<Diagnostic>> =
-        (0..view.members().len()).map(|number| realtime(document(number), severities)).collect();
+        (0..view.members().len()).map(|number| realtime_once(document(number), severities)).collect();
     for program in programs(view).into_iter().take_while(|_| !view.is_cancelled()) {
         let files = program.into_iter().map(|number| (number, document(number)));
         for (number, diagnostic) in judge_program(&ProgramContext::new(files, None)) {
@@ -131,13 +152,18 @@ pub fn sorted(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
 }
 
 /// The findings in a page whose first chunk comes after `pou_number` starts of a POU, from the page's start.
-fn judge_page(document: &Document, page: &Page, mut pou_number: usize) -> Vec<Diagnostic> {
+fn judge_page(
+    document: &Document,
+    page: &Page,
+    mut pou_number: usize,
+    with_mentions: bool,
+) -> Vec<Diagnostic> {
     let scopes = document.scopes();
     let mut diagnostics = Vec::new();
     let mut start = 0;
     for chunk in page.chunks() {
         pou_number += chunk.pou_starts();
-        let found = chunk.found(hash_of((scopes.key, pou_number)), |chunk| {
+        let found = chunk.found(hash_of((scopes.key, pou_number)), with_mentions, |chunk| {
             let mut found = chunk.problems().to_vec();
             let context = ChunkContext {
                 chunk,
@@ -159,17 +185,20 @@ fn judge_page(document: &Document, page: &Page, mut pou_number: usize) -> Vec<Di
     diagnostics
 }
 
-/// Messages that are graver than the rest of their rule's.
-const GRAVER: &[(&str, Severity)] = &[(crate::ladder::TWO_READINGS, Severity::Warning)];
+/// Messages that are graver or milder than the rest of their rule's.
+const OWN_SEVERITIES: &[(&str, Severity)] = &[
+    // Nothing was read there.
+    (crate::ladder::TWO_READINGS, Severity::Warning),
+    (super::drawing::CONTACT_AFTER_COIL_ALLOWED, Severity::Hint),
+];
 
 fn with_severities(diagnostics: Vec<Diagnostic>, severities: &Severities) -> Vec<Diagnostic> {
     let graded = diagnostics.into_iter().filter_map(|mut diagnostic| {
         let severity = severities.of(diagnostic.code)?;
-        // A hint of a mild rule may say that nothing was read; a project that grades the rule itself has the last word.
-        let graver =
-            GRAVER.iter().find(|(key, _)| *key == diagnostic.message.key()).map(|(_, severity)| *severity);
-        let own = severities.0.contains_key(diagnostic.code);
-        diagnostic.severity = graver.filter(|_| !own).unwrap_or(severity);
+        // A project that grades the rule itself has the last word.
+        let own = OWN_SEVERITIES.iter().find(|(key, _)| *key == diagnostic.message.key());
+        let own = own.filter(|_| !severities.0.contains_key(diagnostic.code));
+        diagnostic.severity = own.map_or(severity, |(_, severity)| *severity);
         Some(diagnostic)
     });
     graded.collect()

@@ -16,7 +16,7 @@ mod surface;
 pub use surface::surface;
 
 mod engine;
-pub use engine::{Severities, all, program, project, realtime, sorted, within_project};
+pub use engine::{Severities, all, once, program, project, realtime, sorted, within_project};
 
 mod statements;
 

@@ -26,7 +26,7 @@ pub(super) fn checked(
     for (root, numbers) in groups {
         check_project(&root, &numbers, &mut programs, &mut found, target);
     }
-    let alone = |program: &Program| check::all(&program.document, &program.manifest.severities());
+    let alone = |program: &Program| check::once(&program.document, &program.manifest.severities());
     let results = programs.into_iter().zip(found);
     results
         .map(|(program, found)| {

@@ -3,7 +3,7 @@
 use super::milestone::{self, Milestone};
 use super::{Mention, Notation, Size, Token, exported, mention, tokens};
 use crate::il::{fx, iec};
-use crate::ladder::{self, LadderTree};
+use crate::ladder::{self, LadderTree, NameHabit};
 use crate::target::Target;
 use crate::text::Diagnostic;
 use std::ops::Deref;
@@ -28,7 +28,10 @@ struct Known {
     dialect: Arc<Dialect>,
     /// Whether the tree is kept once it was read.
     keeps_tree: bool,
-    summary: OnceLock<Summary>,
+    /// Where a drawing has its names, as far as its edges tell.
+    habit: NameHabit,
+    outline: OnceLock<Outline>,
+    mentions: OnceLock<Box<[Mention]>>,
     tokens: OnceLock<Box<[Token]>>,
     found: Kept,
 }
@@ -39,13 +42,15 @@ pub(super) struct Dialect {
     pub(super) notation: Notation,
     pub(super) target: &'static Target,
     /// The target with the symbols of the project, if it has any.
-    pub(super) symbols: Option<Target>,
+    pub(super) symbols: Option<Arc<Target>>,
+    /// Whether most drawings of the document have their names below the elements.
+    pub(super) names_below: bool,
 }
 
 impl Dialect {
     /// The target as words of the text are read.
     pub(super) fn reader(&self) -> &Target {
-        self.symbols.as_ref().unwrap_or(self.target)
+        self.symbols.as_deref().unwrap_or(self.target)
     }
 }
 
@@ -59,10 +64,9 @@ enum Kind {
     Tables,
 }
 
-/// What all readers of the whole document need of a chunk.
+/// What the rules about the whole program need of a chunk.
 #[derive(Debug)]
-struct Summary {
-    mentions: Box<[Mention]>,
+struct Outline {
     size: Size,
     milestones: Box<[Milestone]>,
 }
@@ -118,8 +122,10 @@ impl Chunk {
             kind,
             dialect: dialect.clone(),
             // Rules about whole programs look at trees of IEC 61131-3.
+            habit: if kind == Kind::Ladder { ladder::habit_of(text) } else { NameHabit::default() },
             keeps_tree: keeps_tree || matches!(kind, Kind::Iec | Kind::Tables),
-            summary: OnceLock::new(),
+            outline: OnceLock::new(),
+            mentions: OnceLock::new(),
             tokens: OnceLock::new(),
             found: Mutex::new(None),
         };
@@ -144,6 +150,11 @@ impl Chunk {
         Chunk { known: self.known.clone(), tree: OnceLock::new() }
     }
 
+    /// Where a drawing has its names, as far as its edges tell.
+    pub(super) fn habit(&self) -> NameHabit {
+        self.known.habit
+    }
+
     /// Its text.
     pub fn text(&self) -> &str {
         &self.known.text
@@ -154,7 +165,12 @@ impl Chunk {
         self.tree.get_or_init(|| {
             let target = self.known.dialect.reader();
             Box::new(match self.known.kind {
-                Kind::Ladder => Tree::Ladder(ladder::parse(self.text(), target)),
+                Kind::Ladder => {
+                    let document = NameHabit { above: 0, below: u32::from(self.known.dialect.names_below) };
+                    let own = self.known.habit;
+                    let hint = if own.decided().is_some() { own } else { document };
+                    Tree::Ladder(ladder::parse_with(self.text(), target, hint))
+                }
                 Kind::Fx => Tree::Fx(fx::parse(self.text(), target)),
                 Kind::Iec => Tree::Iec(iec::parse(self.text(), target)),
                 Kind::Tables => Tree::Iec(exported::read(self.text())),
@@ -196,7 +212,7 @@ impl Chunk {
 
     /// Every device, variable and label that it names, in the order of the text.
     pub fn mentions(&self) -> &[Mention] {
-        &self.summary().mentions
+        self.known.mentions.get_or_init(|| mention::of_chunk(&self.reading()).into_boxed_slice())
     }
 
     /// Every word and symbol with what it means, in order, none overlapping, none over more than one line.
@@ -206,19 +222,18 @@ impl Chunk {
 
     /// How much program it is.
     pub fn size(&self) -> Size {
-        self.summary().size
+        self.outline().size
     }
 
     /// Its instructions and labels as far as they matter for the structure of a program.
     pub(super) fn milestones(&self) -> &[Milestone] {
-        &self.summary().milestones
+        &self.outline().milestones
     }
 
-    fn summary(&self) -> &Summary {
-        self.known.summary.get_or_init(|| {
+    fn outline(&self) -> &Outline {
+        self.known.outline.get_or_init(|| {
             let reading = self.reading();
-            Summary {
-                mentions: mention::of_chunk(&reading).into_boxed_slice(),
+            Outline {
                 size: Size::of(&reading),
                 milestones: milestone::of_chunk(&reading).into_boxed_slice(),
             }
@@ -226,12 +241,21 @@ impl Chunk {
     }
 
     /// The local diagnostics under `key`, which stands for everything outside of the chunk that they depend on;
-    /// made by `find` unless they are there already. What else is known of the chunk is made from the same tree.
-    pub fn found(&self, key: u64, find: impl FnOnce(&Chunk) -> Vec<Diagnostic>) -> Arc<[Diagnostic]> {
+    /// made by `find` unless they are there already. What else is known of the chunk is made from the same tree, its
+    /// mentions if `with_mentions` says that somebody will ask for them.
+    pub fn found(
+        &self,
+        key: u64,
+        with_mentions: bool,
+        find: impl FnOnce(&Chunk) -> Vec<Diagnostic>,
+    ) -> Arc<[Diagnostic]> {
         kept(&self.known.found, key, || {
             let reading = self.reading();
             let found = find(&reading);
-            reading.summary();
+            reading.outline();
+            if with_mentions {
+                reading.mentions();
+            }
             found
         })
     }

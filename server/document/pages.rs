@@ -2,6 +2,7 @@
 //! rebuilds one page.
 
 use super::{Chunk, Milestone, Names, Size, chunk, milestone};
+use crate::ladder::NameHabit;
 use crate::text::Diagnostic;
 use std::sync::{Arc, Mutex, OnceLock};
 
@@ -14,10 +15,11 @@ pub struct Page {
     chunks: Box<[Arc<Chunk>]>,
     bytes: usize,
     has_iec: bool,
+    habit: NameHabit,
     size: OnceLock<Size>,
-    names: OnceLock<Names>,
+    names: OnceLock<Arc<Names>>,
     pou_starts: OnceLock<usize>,
-    milestones: OnceLock<Box<[Milestone]>>,
+    milestones: OnceLock<Arc<[Milestone]>>,
     found: chunk::Kept,
 }
 
@@ -25,10 +27,13 @@ impl Page {
     fn new(chunks: Box<[Arc<Chunk>]>) -> Arc<Page> {
         let bytes = chunks.iter().map(|chunk| chunk.len()).sum();
         let has_iec = chunks.iter().any(|chunk| chunk.is_iec());
+        let mut habit = NameHabit::default();
+        chunks.iter().for_each(|chunk| habit += chunk.habit());
         Arc::new(Page {
             chunks,
             bytes,
             has_iec,
+            habit,
             size: OnceLock::new(),
             names: OnceLock::new(),
             pou_starts: OnceLock::new(),
@@ -52,6 +57,11 @@ impl Page {
         self.has_iec
     }
 
+    /// Where its drawings have their names, as far as their edges tell.
+    pub(super) fn habit(&self) -> NameHabit {
+        self.habit
+    }
+
     /// How much program it is.
     pub fn size(&self) -> Size {
         *self.size.get_or_init(|| self.chunks.iter().map(|chunk| chunk.size()).sum())
@@ -59,7 +69,7 @@ impl Page {
 
     /// What its chunks name.
     pub fn names(&self) -> &Names {
-        self.names.get_or_init(|| Names::of(&self.chunks))
+        self.names.get_or_init(|| Arc::new(Names::of(&self.chunks)))
     }
 
     /// How many POUs start in it.
@@ -70,7 +80,7 @@ impl Page {
 
     /// Its instructions and labels as far as they matter for the structure of a program, offsets from its start.
     pub fn milestones(&self) -> &[Milestone] {
-        self.milestones.get_or_init(|| milestone::of_page(&self.chunks))
+        self.milestones.get_or_init(|| milestone::of_page(&self.chunks).into())
     }
 
     /// Whether there are diagnostics under `key`.
@@ -114,7 +124,17 @@ impl Pages {
         };
         let lean_page = |page: &Arc<Page>| match page.chunks.iter().all(|chunk| chunk.keeps_tree()) {
             true => page.clone(),
-            false => Page::new(page.chunks.iter().map(lean).collect()),
+            false => Arc::new(Page {
+                chunks: page.chunks.iter().map(lean).collect(),
+                bytes: page.bytes,
+                has_iec: page.has_iec,
+                habit: page.habit,
+                size: page.size.clone(),
+                names: page.names.clone(),
+                pou_starts: page.pou_starts.clone(),
+                milestones: page.milestones.clone(),
+                found: Mutex::new(None),
+            }),
         };
         Pages { pages: self.pages.iter().map(lean_page).collect() }
     }

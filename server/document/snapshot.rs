@@ -3,6 +3,7 @@
 use super::chunk::{self, Dialect};
 use super::pages::{Cursor, Page, Pages};
 use super::{Chunk, Comments, Notation, Outer, Scopes, Size};
+use crate::ladder::NameHabit;
 use crate::target::Target;
 use crate::text::{Encoding, LineColumn, Span, column_of_offset, offset_of_column};
 use ropey::Rope;
@@ -61,8 +62,8 @@ impl Document {
         comments: Arc<Comments>,
     ) -> Document {
         let symbols = comments.symbols();
-        let symbols = (!symbols.is_empty()).then(|| target.with_symbols(symbols.clone()));
-        let dialect = Arc::new(Dialect { notation, target, symbols });
+        let symbols = (!symbols.is_empty()).then(|| Arc::new(target.with_symbols(symbols.clone())));
+        let dialect = Arc::new(Dialect { notation, target, symbols, names_below: false });
         let mut document = Document { comments, dialect, ..Document::unread(text, notation, target) };
         document.read_all(text, &[]);
         document
@@ -72,7 +73,7 @@ impl Document {
     pub fn unread(text: &str, notation: Notation, target: &'static Target) -> Document {
         Document {
             rope: Rope::from_str(text),
-            dialect: Arc::new(Dialect { notation, target, symbols: None }),
+            dialect: Arc::new(Dialect { notation, target, symbols: None, names_below: false }),
             comments: Arc::default(),
             pages: Pages::default(),
             scopes: OnceLock::new(),
@@ -318,6 +319,27 @@ impl Document {
         let chunks = if text.len() > LIMIT_BYTES { Vec::new() } else { self.read_pieces(text, old) };
         self.pages = Pages::new(chunks);
         self.scopes = OnceLock::new();
+        self.settle_names();
+    }
+
+    /// Reads the drawings that do not show where they have their names as most others of the document do. That costs
+    /// a look at each page, and those drawings when the habit changes.
+    fn settle_names(&mut self) {
+        let mut habit = NameHabit::default();
+        self.pages.pages().iter().for_each(|page| habit += page.habit());
+        let names_below = habit.decided() == Some(true);
+        if names_below == self.dialect.names_below {
+            return;
+        }
+        let Dialect { notation, target, ref symbols, .. } = *self.dialect;
+        self.dialect = Arc::new(Dialect { notation, target, symbols: symbols.clone(), names_below });
+        let keeps_trees = self.len() <= KEPT_TREES_BYTES;
+        let settled = |chunk: &Arc<Chunk>| match chunk.habit().decided() {
+            None if !chunk.is_iec() => Arc::new(Chunk::new(chunk.text(), &self.dialect, keeps_trees)),
+            _ => Arc::clone(chunk),
+        };
+        self.pages =
+            Pages::new(self.pages.pages().iter().flat_map(|page| page.chunks()).map(settled).collect());
     }
 
     fn replace(&mut self, range: Range<usize>, text: &str) {
@@ -371,6 +393,7 @@ impl Document {
                     self.scopes = OnceLock::new();
                 }
                 self.pages.replace(first, last, new);
+                self.settle_names();
                 return;
             }
             if !start_holds {

@@ -98,6 +98,20 @@ impl Graph {
         graph
     }
 
+    /// A graph of two rails with room for so many elements and wires.
+    pub(super) fn with_room(elements: usize, wires: usize) -> Graph {
+        let mut graph = Graph {
+            // Each element is a vertex, and seldom there are more junctions than elements.
+            vertices: Vec::with_capacity(2 + 2 * elements),
+            arcs: Vec::with_capacity(wires),
+            elements: Vec::with_capacity(elements),
+            cells: Vec::with_capacity(2 * wires),
+        };
+        graph.add_vertex(VertexKind::LeftRail, &[]);
+        graph.add_vertex(VertexKind::RightRail, &[]);
+        graph
+    }
+
     /// Adds a vertex that fills `cells`.
     pub fn add_vertex(&mut self, kind: VertexKind, cells: &[Span]) -> VertexId {
         let cells = self.add_cells(cells);

@@ -44,6 +44,9 @@ mod wires;
 
 mod names;
 
+mod habit;
+pub use habit::habit_of;
+
 mod rungs;
 
 mod element;

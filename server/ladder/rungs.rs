@@ -54,7 +54,7 @@ pub(super) fn build_rungs(
             }
         }
         let mut builder = Builder {
-            graph: Graph::new(),
+            graph: Graph::with_room(members.len(), own.len()),
             vertices: FxHashMap::default(),
             grid,
             rows: &rows,

@@ -212,8 +212,13 @@ impl Task {
             self.push(&judged.batch.around, diagnostics).await;
         }
         self.tell_project(&open, &judged.batch);
+        let opened = self.batch.is_none().then(|| open.clone());
         self.batch = Some((open, judged.batch));
         self.tell_status(judged.status).await;
+        if let Some(open) = opened {
+            // The first hover or completion finds the names of all pages ready.
+            tokio::task::spawn_blocking(move || open.document.pages().iter().for_each(|page| _ = page.names()));
+        }
     }
 
     /// Both tiers and the status, beside the other tasks; if one of them fails the log has it, and that one finds

@@ -6,6 +6,7 @@ use crate::target::Target;
 use crate::text::{Message, Severity, Span};
 use serde::Deserialize;
 use std::collections::BTreeMap;
+use toml::de::DeTable;
 
 /// A project's settings. Every one has a default, so an empty manifest is one.
 #[derive(Clone, PartialEq, Debug, Default, Deserialize)]
@@ -96,7 +97,9 @@ impl Manifest {
     /// With the place, where it is not TOML, has an unknown key or a value that a key does not take.
     pub fn read(text: &str) -> Result<Manifest, ManifestError> {
         let manifest: Manifest = toml::from_str(text).map_err(|error| {
-            let span = error.span().map_or(Span::default(), |range| Span::new(range.start, range.end));
+            let span = error.span().map_or(Span::default(), |range| {
+                Span::new(at_character(text, range.start), at_character(text, range.end))
+            });
             ManifestError { message: Message::new("manifest.toml").with("reason", error.message()), span }
         })?;
         manifest.validated(text)
@@ -119,32 +122,65 @@ impl Manifest {
     }
 
     fn validated(self, text: &str) -> Result<Manifest, ManifestError> {
-        let fail = |key: &'static str, word: &str| {
-            let start = text.find(word).unwrap_or(0);
-            Err(ManifestError {
-                message: Message::new(key).with("word", word),
-                span: Span::new(start, (start + word.len()).min(text.len())),
-            })
+        let fail = |message: &'static str, word: &str, part: Part, keys: &[&str]| {
+            let message = Message::new(message).with("word", word);
+            Err(ManifestError { message, span: place(text, keys, part) })
         };
         if let Some(word) = self.target.as_deref().filter(|word| Target::named(word).is_none()) {
-            return fail("manifest.target", word);
+            return fail("manifest.target", word, Part::Value, &["target"]);
         }
         if self.format.width > MOST_WIDTH {
-            return fail("manifest.width", &self.format.width.to_string());
+            let width = self.format.width.to_string();
+            return fail("manifest.width", &width, Part::Value, &["format", "width"]);
         }
         if let Some(word) = self.dialect.as_deref().filter(|word| dialect_named(word).is_none()) {
-            return fail("manifest.dialect", word);
+            return fail("manifest.dialect", word, Part::Value, &["dialect"]);
         }
         for (code, word) in &self.rules {
             if crate::check::Rule::named(code).is_none() {
-                return fail("manifest.rule", code);
+                return fail("manifest.rule", code, Part::Key, &["rules", code]);
             }
             if severity_named(word).is_none() {
-                return fail("manifest.severity", word);
+                return fail("manifest.severity", word, Part::Value, &["rules", code]);
             }
         }
         Ok(self)
     }
+}
+
+/// What of an entry is meant.
+#[derive(Clone, Copy)]
+enum Part {
+    Key,
+    Value,
+}
+
+/// Where the entry under `keys`, table by table, stands in a manifest that could be read.
+fn place(text: &str, keys: &[&str], part: Part) -> Span {
+    let Ok(table) = DeTable::parse(text) else { return Span::default() };
+    let mut table = Some(table.get_ref());
+    let mut span = 0..0;
+    for key in keys {
+        let Some((written, value)) = table.and_then(|table| table.get_key_value(*key)) else { break };
+        span = match part {
+            Part::Key => written.span(),
+            Part::Value => value.span(),
+        };
+        table = value.get_ref().as_table();
+    }
+    let (start, end) = (at_character(text, span.start), at_character(text, span.end));
+    // A word is meant without its quotes.
+    let quotes = text
+        .get(start..end)
+        .and_then(|entry| entry.chars().next())
+        .filter(|first| matches!(first, '"' | '\''));
+    let inside = usize::from(quotes.is_some() && end - start >= 2);
+    Span::new(start + inside, end - inside)
+}
+
+/// The start of the character that holds the byte `offset`: the reader of TOML may mean a byte inside one.
+fn at_character(text: &str, offset: usize) -> usize {
+    (0..=offset.min(text.len())).rev().find(|offset| text.is_char_boundary(*offset)).unwrap_or(0)
 }
 
 fn dialect_named(word: &str) -> Option<Notation> {

@@ -44,7 +44,7 @@ pub fn measure(table: &Table) {
         started.elapsed()
     });
     let mut newest = 0;
-    let unordered = client.notified("textDocument/publishDiagnostics").iter().filter(|message| {
+    let unordered = client.notified("textDocument/publishDiagnostics").into_iter().filter(|message| {
         let version = message["params"]["version"].as_i64().unwrap_or(0);
         let is_older = version < newest;
         newest = newest.max(version);

@@ -5,7 +5,7 @@
 //!
 //! FX programs cannot express it, and programming tools refuse to draw it. On a machine it is mostly an interlock
 //! that was added on the wrong side of the coil, where it locks nothing. For IEC 61131-3, whose coils pass their
-//! power on, the drawing is allowed.
+//! power on, the drawing is allowed, and the finding is a hint.
 //!
 //! ```lad
 //! |   X0        Y0        X1                     |
@@ -30,10 +30,10 @@ pub(super) const RULE: Rule = Rule {
     source: include_str!("contact_after_coil.rs"),
 };
 
+/// The message where the language allows it; it is a hint.
+pub(in crate::check) const ALLOWED: &str = "contact-after-coil.allowed";
+
 pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
-    if !drawn.target.is_fx() {
-        return;
-    }
     for rung in drawn.sound_rungs() {
         let graph = &rung.graph;
         let mut seen = vec![false; graph.vertices.len()];
@@ -41,9 +41,9 @@ pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
             let Some(output) = graph.element_at(id).filter(|element| element.is_output()) else { continue };
             let contacts = behind(graph, id, &mut seen);
             let Some((first, others)) = contacts.split_first() else { continue };
-            let message = Message::new("contact-after-coil.found")
-                .with("contact", drawn.name(first))
-                .with("output", drawn.name(output));
+            let key = if drawn.target.is_fx() { "contact-after-coil.found" } else { ALLOWED };
+            let message =
+                Message::new(key).with("contact", drawn.name(first)).with("output", drawn.name(output));
             let related = Message::new("contact-after-coil.output").with("output", drawn.name(output));
             let mut diagnostic =
                 Diagnostic::new(RULE.code, first.span, message).related(output.span, related);

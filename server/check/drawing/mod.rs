@@ -13,6 +13,8 @@ mod prune;
 
 mod dead_end;
 
+pub(super) mod nesting;
+
 mod loose_end;
 
 mod coil_at_left_rail;
@@ -35,6 +37,8 @@ mod upper_parallel;
 use super::{ChunkContext, Rule};
 use crate::ladder::{Graph, VertexId, VertexKind};
 use crate::text::{Diagnostic, Span};
+
+pub(super) use contact_after_coil::ALLOWED as CONTACT_AFTER_COIL_ALLOWED;
 
 /// The rules of this group.
 pub(super) const RULES: &[&Rule] = &[

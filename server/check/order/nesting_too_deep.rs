@@ -2,7 +2,8 @@
 //!
 //! The CPU keeps what is nested in stacks of a fixed size: eight blocks that wait for `ANB` or `ORB`, eleven open
 //! branches of `MPS`, five loops within each other, five subroutines that call each other. One more and the PLC
-//! refuses the program, or stops when it comes there. A subroutine that calls itself never comes to an end.
+//! refuses the program, or stops when it comes there. A subroutine that calls itself never comes to an end. A drawn
+//! rung runs as Instruction List, so branches within branches need blocks too.
 //!
 //! ```fx
 //! FOR K2
@@ -60,6 +61,7 @@ pub(super) const RULE: Rule = Rule {
 };
 
 fn check_rung(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
+    crate::check::drawing::nesting::find(RULE.code, context, found);
     let Some((tree, findings)) = findings(context) else { return };
     let limits = &context.target.limits;
     for finding in findings {
