@@ -1,13 +1,13 @@
 //! Program files on the disk.
 
 use std::path::Path;
-use std::time::SystemTime;
+use std::time::{Duration, UNIX_EPOCH};
 
 /// What tells a changed file from an unchanged one without reading it.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Stamp {
-    /// When it was written, where the system tells.
-    pub modified: Option<SystemTime>,
+    /// When it was written, since 1970, where the system tells.
+    pub modified: Option<Duration>,
     /// Its length.
     pub bytes: u64,
 }
@@ -16,7 +16,8 @@ impl Stamp {
     /// That of the file at `path`; nothing if there is none, or if it is a pipe or the like, which might never end.
     pub fn of(path: &Path) -> Option<Stamp> {
         let data = std::fs::metadata(path).ok().filter(|data| data.is_file())?;
-        Some(Stamp { modified: data.modified().ok(), bytes: data.len() })
+        let modified = data.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());
+        Some(Stamp { modified, bytes: data.len() })
     }
 }
 
