@@ -163,6 +163,13 @@ impl Client {
         }
     }
 
+    /// The first message that came already and that `wanted` takes.
+    pub fn take(&mut self, wanted: impl Fn(&Value) -> bool) -> Option<Value> {
+        self.kept.extend(self.messages.try_iter().map(|(_, message)| message));
+        let place = self.kept.iter().position(wanted)?;
+        Some(self.kept.remove(place))
+    }
+
     /// The notifications with this method that came while something else was waited for.
     pub fn notified(&self, method: &str) -> Vec<&Value> {
         self.kept.iter().filter(|message| message["method"] == json!(method)).collect()

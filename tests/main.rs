@@ -29,6 +29,8 @@ mod ldmicro;
 mod lsp;
 mod lsp_client;
 mod lsp_edit;
+mod lsp_project;
+mod lsp_robust;
 mod lsp_tokens;
 mod manifest_schema;
 mod markdown;

@@ -125,7 +125,7 @@ pub fn project(view: &ProjectView<'_>, severities: &Severities) -> Vec<Vec<Diagn
     let document = |number: usize| view.members()[number].document;
     let mut by_file: Vec<Vec<Diagnostic>> =
         (0..view.members().len()).map(|number| realtime_once(document(number), severities)).collect();
-    for program in programs(view) {
+    for program in programs(view).into_iter().take_while(|_| !view.is_cancelled()) {
         let files = program.into_iter().map(|number| (number, document(number)));
         for (number, diagnostic) in judge_program(&ProgramContext::new(files, None)) {
             by_file[number].extend(with_severities(vec![diagnostic], severities));

@@ -3,7 +3,7 @@
 use super::colour::Colour;
 use super::input::{Program, caution, programs, say};
 use super::{Format, Outcome, paths_or_here, render, sarif};
-use crate::check;
+use crate::document::Document;
 use crate::ide::{self, Summary};
 use crate::target::Target;
 use crate::text::{Diagnostic, Encoding, Fix, Language, Message, Severity, Span};
@@ -45,13 +45,7 @@ pub(super) fn run(arguments: &Arguments, colour: Colour, language: Language) -> 
         let reason = Message::new("cli.not-utf-8").with("path", program.path.display()).render(language);
         caution("not-utf-8", &reason, &Message::new("cli.save-as-utf-8").render(language), language);
     }
-    let checked: Vec<(Program, Vec<Diagnostic>)> = programs
-        .into_iter()
-        .map(|program| {
-            let diagnostics = check::once(&program.document, &program.manifest.severities());
-            (program, diagnostics)
-        })
-        .collect();
+    let checked = super::across::checked(programs, arguments.target);
     let mut summary = Summary::default();
     checked.iter().for_each(|(program, found)| summary.add(&program.document, found));
     match arguments.format {
@@ -83,7 +77,7 @@ fn say_text(
         let name = program.path.display().to_string();
         let (drawn, listed) = diagnostics.split_at(diagnostics.len().min(MOST_DRAWN));
         for diagnostic in drawn {
-            say(&render::diagnostic(&name, &program.document, diagnostic, &colours, language));
+            say(&render::diagnostic(&name, program, diagnostic, &colours, language));
         }
         for diagnostic in listed {
             say(&render::headline(&name, &program.document, diagnostic, &colours, language));
@@ -124,16 +118,18 @@ fn as_json(checked: &[(Program, Vec<Diagnostic>)], summary: &Summary, language: 
 
 fn diagnostic_json(program: &Program, diagnostic: &Diagnostic, language: Language) -> Value {
     let path = program.path.display().to_string();
-    let range = |span: Span| {
+    let range_in = |document: &Document, span: Span| {
         let position = |offset: u32| {
-            let position = program.document.position(offset as usize, Encoding::Utf32);
+            let position = document.position(offset as usize, Encoding::Utf32);
             json!({"line": position.line + 1, "column": position.column + 1})
         };
         json!({"start": position(span.start), "end": position(span.end)})
     };
+    let range = |span: Span| range_in(&program.document, span);
     let related = diagnostic.related.iter().map(|related| {
         let message = related.message.render(language);
-        json!({"path": path, "range": range(related.span), "message": message})
+        let (path, document) = program.file(related, &path);
+        json!({"path": path, "range": range_in(document, related.span), "message": message})
     });
     let fix = |fix: &Fix| {
         let edits =

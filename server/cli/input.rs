@@ -2,9 +2,11 @@
 
 use super::encoding;
 use crate::document::{Document, fences};
-use crate::project::{MANIFEST_NAME, Manifest, Project, is_program_file, open_document, program_files};
+use crate::project::{
+    MANIFEST_NAME, Manifest, Project, is_program_file, open_document, program_files, projects_in,
+};
 use crate::target::Target;
-use crate::text::{Encoding, Language, LineColumn, Message};
+use crate::text::{Encoding, Language, LineColumn, Message, Related};
 use std::collections::HashSet;
 use std::io::{ErrorKind, Write};
 use std::ops::Range;
@@ -16,6 +18,8 @@ pub(super) struct Program {
     pub path: PathBuf,
     pub document: Document,
     pub manifest: Arc<Manifest>,
+    /// The files of its project, by the numbers that findings give them; none where it stands alone.
+    pub beside: Arc<[Beside]>,
     /// How the file is written; `None` if broken bytes were replaced, so that `fmt` must not write it.
     pub encoding: Option<encoding::Encoding>,
     /// Where it stands in its file, if that is a Markdown text; the document has it at its lines.
@@ -32,6 +36,22 @@ pub(super) struct InFence {
     pub before: usize,
     /// Whether its lines begin with the blanks of a list, so that they are not formatted.
     pub is_indented: bool,
+}
+
+impl Program {
+    /// The path and text in which `related` lies; `own` is how the program's own path is shown.
+    pub(super) fn file<'a>(&'a self, related: &Related, own: &'a str) -> (&'a str, &'a Document) {
+        match related.file.and_then(|number| self.beside.get(number)) {
+            Some(beside) => (&beside.path, &beside.document),
+            None => (own, &self.document),
+        }
+    }
+}
+
+/// A file of a project that a finding in another file names.
+pub(super) struct Beside {
+    pub path: String,
+    pub document: Document,
 }
 
 /// The programs at `paths`, or nothing after complaints about what cannot be read or that there are none.
@@ -140,10 +160,13 @@ fn files_at(path: &Path, language: Language) -> Result<Vec<(PathBuf, Arc<Manifes
         return Ok(vec![(path.to_path_buf(), manifest)]);
     }
     if path.join(MANIFEST_NAME).is_file() {
-        let project = Project::read(path);
-        let manifest = usable(&project, language)?;
-        let files = project.files().map_err(|reason| format!("{}: {reason}", path.display()))?;
-        return Ok(files.into_iter().map(|file| (file, manifest.clone())).collect());
+        let mut files = Vec::new();
+        for project in projects_in(path).iter().map(|folder| Project::read(folder)) {
+            let manifest = usable(&project, language)?;
+            let own = project.files().map_err(|reason| format!("{}: {reason}", project.root.display()))?;
+            files.extend(own.into_iter().map(|file| (file, manifest.clone())));
+        }
+        return Ok(files);
     }
     let files = program_files(path).map_err(|reason| format!("{}: {reason}", path.display()))?;
     files.into_iter().map(|file| manifest_for(&file, language).map(|manifest| (file, manifest))).collect()
@@ -166,7 +189,7 @@ fn usable(project: &Project, language: Language) -> Result<Arc<Manifest>, String
 }
 
 /// The program in a file, or all those in the fences of a Markdown text.
-fn read_programs(
+pub(super) fn read_programs(
     path: &Path,
     manifest: &Arc<Manifest>,
     target: Option<&'static Target>,
@@ -174,7 +197,8 @@ fn read_programs(
     let (text, encoding) = encoding::read(std::fs::read(path)?);
     let program = |name: &str, text: &str, fence: Option<InFence>| {
         let document = open_document(name, text, manifest, target, None);
-        Program { path: path.to_path_buf(), document, manifest: manifest.clone(), encoding, fence }
+        let (path, manifest) = (path.to_path_buf(), manifest.clone());
+        Program { path, document, manifest, beside: Arc::default(), encoding, fence }
     };
     if !is_markdown(path) {
         return Ok(vec![program(&path.to_string_lossy(), &text, None)]);

@@ -179,7 +179,7 @@ impl Chunk {
     }
 
     /// Whether it is IEC declarations or statements, told without reading it.
-    pub(super) fn is_iec(&self) -> bool {
+    pub fn is_iec(&self) -> bool {
         matches!(self.known.kind, Kind::Iec | Kind::Tables)
     }
 

@@ -28,9 +28,15 @@ mod hover;
 
 mod completion;
 
-mod definition;
+mod across;
 
-mod references;
+mod calls;
+pub use calls::CallItem;
+
+mod search;
+pub use search::FoundSymbol;
+
+mod links;
 
 mod rename;
 
@@ -72,12 +78,23 @@ pub fn completions(document: &Document, offset: usize, language: Language) -> Ve
 
 /// Where the name at `offset` is declared or, for a device, driven.
 pub fn definition(document: &Document, offset: usize) -> Vec<Span> {
-    definition::of(document, offset)
+    definition_in(&ProjectView::alone(document), offset).into_iter().map(|at| at.value).collect()
+}
+
+/// The same among the files of a project.
+pub fn definition_in(view: &ProjectView<'_>, offset: usize) -> Vec<At<Span>> {
+    across::definition(view, offset)
 }
 
 /// Every place of the name at `offset`, in order.
 pub fn references(document: &Document, offset: usize, with_declaration: bool) -> Vec<Span> {
-    references::of(document, offset, with_declaration)
+    let found = references_in(&ProjectView::alone(document), offset, with_declaration);
+    found.into_iter().map(|at| at.value).collect()
+}
+
+/// The same among the files of a project.
+pub fn references_in(view: &ProjectView<'_>, offset: usize, with_declaration: bool) -> Vec<At<Span>> {
+    across::references(view, offset, with_declaration)
 }
 
 /// The name at `offset`, if it can be renamed.
@@ -90,7 +107,51 @@ pub fn renamable(document: &Document, offset: usize) -> Option<Span> {
 /// # Errors
 /// Where there is no name, where `new` is none of its kind, or where it is taken.
 pub fn rename(document: &Document, offset: usize, new: &str) -> Result<Vec<TextEdit>, Message> {
-    rename::rename(document, offset, new)
+    let edits = rename::rename(&ProjectView::alone(document), offset, new)?;
+    Ok(edits.into_iter().flat_map(|at| at.value).collect())
+}
+
+/// The same among the files of a project: the edits of each file that has any.
+///
+/// # Errors
+/// The same, in any of the files.
+pub fn rename_in(view: &ProjectView<'_>, offset: usize, new: &str) -> Result<Vec<At<Vec<TextEdit>>>, Message> {
+    rename::rename(view, offset, new)
+}
+
+/// The names in the files of a project that have the letters of `query`, best first.
+pub fn workspace_symbols(view: &ProjectView<'_>, query: &str) -> Vec<FoundSymbol> {
+    search::symbols(view, query)
+}
+
+/// The POU, subroutine or label named at `offset`, else the one in which it stands.
+pub fn call_item(view: &ProjectView<'_>, offset: usize) -> Option<CallItem> {
+    calls::prepare(view, offset)
+}
+
+/// The main program of the file that is looked at.
+pub fn main_item(view: &ProjectView<'_>) -> Option<CallItem> {
+    calls::main_of(view)
+}
+
+/// Who calls `item` or jumps to it, each with the places in its file.
+pub fn incoming_calls(view: &ProjectView<'_>, item: &CallItem) -> Vec<(CallItem, Vec<Span>)> {
+    calls::incoming(view, item)
+}
+
+/// What `item` calls or jumps to, each with the places in the file of `item`.
+pub fn outgoing_calls(view: &ProjectView<'_>, item: &CallItem) -> Vec<(CallItem, Vec<Span>)> {
+    calls::outgoing(view, item)
+}
+
+/// The names of files in the comments of `document`; whether there are such files is not known here.
+pub fn links(document: &Document) -> Vec<(Span, String)> {
+    links::of(document)
+}
+
+/// The names of files in any text, such as a manifest.
+pub fn links_in_text(text: &str) -> Vec<(Span, String)> {
+    links::in_text(text)
 }
 
 /// The outline.

@@ -1,16 +1,18 @@
 //! The handlers: a few lines each, from the snapshot of the request to the answer of `ide`.
 
+use super::across;
 use super::capabilities;
 use super::editing;
+use super::progress::Progress;
+use super::projects::Around;
+use super::pulled::{self, PartialReport, PartialReportParams};
 use super::to_proto::{self, Place};
 use super::tokens;
 use super::workspace::{Open, SNAPSHOT, Snapshot, Workspace};
-use crate::check;
 use crate::ide;
-use crate::text::{Diagnostic, Language, Message};
+use crate::text::{Language, Message};
 use serde_json::{Value, json};
 use std::collections::HashMap;
-use std::hash::BuildHasher;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use tower_lsp::LanguageServer;
@@ -39,14 +41,19 @@ impl LanguageServer for Backend {
     }
 
     async fn initialized(&self, _: InitializedParams) {
-        if !self.workspace.watches() {
+        let requests = self.workspace.requests();
+        let registrations = capabilities::registrations(requests);
+        if requests.configuration {
+            self.workspace.ask_configuration();
+        }
+        if registrations.is_empty() {
             return;
         }
         let client = self.workspace.client.clone();
         // The client may answer late or never; no handler waits for it.
         tokio::spawn(async move {
-            if let Err(reason) = client.register_capability(vec![capabilities::watched_manifests()]).await {
-                tracing::warn!("the client does not watch manifests: {reason}");
+            if let Err(reason) = client.register_capability(registrations).await {
+                tracing::warn!("the client does not watch files: {reason}");
             }
         });
     }
@@ -74,20 +81,16 @@ impl LanguageServer for Backend {
 
     async fn goto_definition(&self, params: GotoDefinitionParams) -> Result<Option<GotoDefinitionResponse>> {
         let at = params.text_document_position_params;
-        Ok(with_open(&at.text_document.uri, |open, place| {
-            let spans = ide::definition(place.document, place.offset(at.position));
-            let locations = spans.into_iter().map(|span| Location::new(open.uri.clone(), place.range(span)));
-            Some(GotoDefinitionResponse::Array(locations.collect()))
-        }))
+        whole(at.text_document.uri, move |around, place| across::definition(around, place, at.position)).await
     }
 
     async fn references(&self, params: ReferenceParams) -> Result<Option<Vec<Location>>> {
         let at = params.text_document_position;
         let with_declaration = params.context.include_declaration;
-        Ok(with_open(&at.text_document.uri, |open, place| {
-            let spans = ide::references(place.document, place.offset(at.position), with_declaration);
-            Some(spans.into_iter().map(|span| Location::new(open.uri.clone(), place.range(span))).collect())
-        }))
+        whole(at.text_document.uri, move |around, place| {
+            across::references(around, place, at.position, with_declaration)
+        })
+        .await
     }
 
     async fn prepare_rename(
@@ -102,21 +105,69 @@ impl LanguageServer for Backend {
 
     async fn rename(&self, params: RenameParams) -> Result<Option<WorkspaceEdit>> {
         let at = params.text_document_position;
-        let renamed = with_open(&at.text_document.uri, |open, place| {
-            let edits = ide::rename(place.document, place.offset(at.position), &params.new_name);
-            Some(edits.map(|edits| workspace_edit(open, place.edits(&edits))))
+        let uri = at.text_document.uri;
+        let unknown = SNAPSHOT.with(|snapshot| snapshot.is_incomplete(snapshot.open(&uri)?));
+        if let Some(reason) = unknown {
+            return Err(refused(reason));
+        }
+        let renamed = whole(uri.clone(), move |around, place| {
+            across::rename(around, place, at.position, &params.new_name)
         });
-        renamed.transpose().map_err(refused)
+        self.unless_changed(&uri, renamed.await)?.transpose().map_err(refused)
     }
 
     async fn document_symbol(&self, params: DocumentSymbolParams) -> Result<Option<DocumentSymbolResponse>> {
-        whole(params.text_document.uri, |_, place| {
-            let nodes = ide::symbols(place.document, place.language)
-                .into_iter()
-                .map(|node| to_proto::symbol(place, node));
-            DocumentSymbolResponse::Nested(nodes.collect())
+        whole(params.text_document.uri, |around, place| {
+            to_proto::outline(place, ide::symbols(place.document, place.language), &around.here().uri)
         })
         .await
+    }
+
+    async fn symbol(&self, params: WorkspaceSymbolParams) -> Result<Option<WorkspaceSymbolResponse>> {
+        let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
+        let found = beside(move |cancelled| {
+            let everything = snapshot.everything()?.cancellable(cancelled);
+            Some(WorkspaceSymbolResponse::Nested(across::symbols(
+                &everything,
+                &params.query,
+                snapshot.manner,
+            )))
+        });
+        found.await
+    }
+
+    async fn prepare_call_hierarchy(
+        &self,
+        params: CallHierarchyPrepareParams,
+    ) -> Result<Option<Vec<CallHierarchyItem>>> {
+        let at = params.text_document_position_params;
+        whole(at.text_document.uri, move |around, place| across::prepare_calls(around, place, at.position))
+            .await
+    }
+
+    async fn incoming_calls(
+        &self,
+        params: CallHierarchyIncomingCallsParams,
+    ) -> Result<Option<Vec<CallHierarchyIncomingCall>>> {
+        whole(params.item.uri.clone(), move |around, place| {
+            across::incoming_calls(around, place, &params.item)
+        })
+        .await
+    }
+
+    async fn outgoing_calls(
+        &self,
+        params: CallHierarchyOutgoingCallsParams,
+    ) -> Result<Option<Vec<CallHierarchyOutgoingCall>>> {
+        whole(params.item.uri.clone(), move |around, place| {
+            across::outgoing_calls(around, place, &params.item)
+        })
+        .await
+    }
+
+    async fn document_link(&self, params: DocumentLinkParams) -> Result<Option<Vec<DocumentLink>>> {
+        let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
+        beside(move |_| across::links(&snapshot, &params.text_document.uri)).await
     }
 
     async fn folding_range(&self, params: FoldingRangeParams) -> Result<Option<Vec<FoldingRange>>> {
@@ -131,8 +182,10 @@ impl LanguageServer for Backend {
         params: SemanticTokensParams,
     ) -> Result<Option<SemanticTokensResult>> {
         let workspace = self.workspace.clone();
-        aside(params.text_document.uri, move |open, place| workspace.tokens.full(&open.uri, place).into())
-            .await
+        aside(params.text_document.uri, move |around, place| {
+            workspace.tokens.full(&around.here().uri, place).into()
+        })
+        .await
     }
 
     async fn semantic_tokens_full_delta(
@@ -140,8 +193,8 @@ impl LanguageServer for Backend {
         params: SemanticTokensDeltaParams,
     ) -> Result<Option<SemanticTokensFullDeltaResult>> {
         let workspace = self.workspace.clone();
-        aside(params.text_document.uri, move |open, place| {
-            workspace.tokens.delta(&open.uri, &params.previous_result_id, place)
+        aside(params.text_document.uri, move |around, place| {
+            workspace.tokens.delta(&around.here().uri, &params.previous_result_id, place)
         })
         .await
     }
@@ -169,21 +222,22 @@ impl LanguageServer for Backend {
 
     async fn formatting(&self, params: DocumentFormattingParams) -> Result<Option<Vec<TextEdit>>> {
         let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
-        whole(params.text_document.uri, move |open, place| {
-            place.edits(&ide::format(place.document, settings.style(&open.manifest)))
-        })
-        .await
+        let uri = params.text_document.uri;
+        let edits = whole(uri.clone(), move |around, place| {
+            place.edits(&ide::format(place.document, settings.style(&around.here().manifest)))
+        });
+        self.unless_changed(&uri, edits.await)
     }
 
     async fn code_action(&self, params: CodeActionParams) -> Result<Option<CodeActionResponse>> {
         let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
         let resolves = self.resolves_actions.load(Ordering::Relaxed);
-        whole(params.text_document.uri.clone(), move |open, place| {
-            let found = check::all(&open.document, &open.severities);
+        whole(params.text_document.uri.clone(), move |around, place| {
+            let (open, found) = (around.here(), around.findings());
             let fixes = ide::fixes(&found, place.span(params.range)).into_iter();
-            let fixes = fixes.map(|fix| quick_fix(open, place, &fix).into());
+            let fixes = fixes.map(|fix| quick_fix(around, place, &fix));
             let edits = editing::actions(open, place, &params, settings.style(&open.manifest), resolves);
-            fixes.chain(edits.into_iter().map(CodeActionOrCommand::from)).collect()
+            fixes.chain(edits).map(|action| across::code_action(action, place.abilities)).collect()
         })
         .await
     }
@@ -233,20 +287,49 @@ impl LanguageServer for Backend {
     async fn diagnostic(&self, params: DocumentDiagnosticParams) -> Result<DocumentDiagnosticReportResult> {
         let manner = SNAPSHOT.with(|snapshot| snapshot.manner);
         let uri = params.text_document.uri;
-        let items = whole(uri, move |open, _| {
-            to_proto::diagnostics(open, check::all(&open.document, &open.severities), manner)
+        let items = whole(uri, move |around, _| to_proto::diagnostics(around, around.findings(), manner));
+        let items = items.await?.unwrap_or_default();
+        Ok(pulled::of_document(items, params.previous_result_id.as_deref()))
+    }
+
+    async fn workspace_diagnostic(
+        &self,
+        params: WorkspaceDiagnosticParams,
+    ) -> Result<WorkspaceDiagnosticReportResult> {
+        let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
+        let client = self.workspace.client.clone();
+        let title = Message::new("project.checking").render(snapshot.manner.language);
+        let progress = Progress::of_request(&client, params.work_done_progress_params.work_done_token, title);
+        let (parts, mut received) = tokio::sync::mpsc::unbounded_channel();
+        let token = params.partial_result_params.partial_result_token;
+        let parts = token.is_some().then_some(parts);
+        let work = beside(move |cancelled| {
+            let is_cancelled = || cancelled.load(Ordering::Relaxed);
+            let previous = params.previous_result_ids;
+            Some(pulled::of_workspace(&snapshot, previous, parts.as_ref(), &progress, is_cancelled))
         });
-        Ok(report(items.await?.unwrap_or_default(), params.previous_result_id))
+        let send_parts = async {
+            while let (Some(value), Some(token)) = (received.recv().await, token.clone()) {
+                let params = PartialReportParams { token, value };
+                client.send_notification::<PartialReport>(params).await;
+            }
+        };
+        let (report, ()) = tokio::join!(work, send_parts);
+        let empty = WorkspaceDiagnosticReport { items: Vec::new() };
+        Ok(WorkspaceDiagnosticReportResult::Report(report?.unwrap_or(empty)))
     }
 
     async fn execute_command(&self, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
+        if params.command == capabilities::APPLY {
+            return self.apply(params.arguments);
+        }
         let Some(uri) =
             params.arguments.first().and_then(|value| value.as_str()).and_then(|text| text.parse().ok())
         else {
             return Err(refused(Message::new("request.no-document").with("command", params.command)));
         };
         match params.command.as_str() {
-            "rungwise.check" => whole(uri, |open, place| check_summary(open, place.language)).await,
+            "rungwise.check" => whole(uri, |around, place| check_summary(around, place.language)).await,
             "rungwise.format" => self.format(uri).await,
             other => Err(refused(Message::new("request.no-command").with("command", other))),
         }
@@ -254,6 +337,29 @@ impl LanguageServer for Backend {
 }
 
 impl Backend {
+    /// Edits that were made for a text that has changed meanwhile help nobody.
+    fn unless_changed<T>(&self, uri: &Uri, answer: Result<Option<T>>) -> Result<Option<T>> {
+        let version = |snapshot: &Snapshot| snapshot.open(uri).map(|open| open.version);
+        let now = version(&self.workspace.snapshot());
+        if now != SNAPSHOT.with(version) { Err(Error::content_modified()) } else { answer }
+    }
+
+    /// Has the client apply the edit that a code action stands for in a client that only knows commands.
+    fn apply(&self, arguments: Vec<Value>) -> Result<Option<LSPAny>> {
+        let edit = arguments.into_iter().next().and_then(|value| serde_json::from_value(value).ok());
+        let Some(edit) = edit else {
+            return Err(refused(Message::new("request.no-edit").with("command", capabilities::APPLY)));
+        };
+        let client = self.workspace.client.clone();
+        // The client may answer late or never; no handler waits for it.
+        tokio::spawn(async move {
+            if let Err(reason) = client.apply_edit(edit).await {
+                tracing::warn!("the client did not apply the edits: {reason}");
+            }
+        });
+        Ok(None)
+    }
+
     /// `rungwise/edit`
     pub(super) async fn edit(&self, params: editing::EditParams) -> Result<Option<editing::EditResult>> {
         let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
@@ -274,9 +380,10 @@ impl Backend {
     /// Computes the edits and asks the client to apply them; the answer says how many there are.
     async fn format(&self, uri: Uri) -> Result<Option<LSPAny>> {
         let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
-        let edit = whole(uri, move |open, place| {
-            let edits = place.edits(&ide::format(place.document, settings.style(&open.manifest)));
-            (edits.len(), workspace_edit(open, edits))
+        let edit = whole(uri, move |around, place| {
+            let open = around.here();
+            let edits = ide::format(place.document, settings.style(&open.manifest));
+            (edits.len(), across::workspace_edit([(open.clone(), edits)], place.manner()))
         });
         let Some((count, edit)) = edit.await? else { return Ok(None) };
         let client = self.workspace.client.clone();
@@ -297,47 +404,65 @@ fn with_open<T>(uri: &Uri, answer: impl FnOnce(&Open, Place<'_>) -> Option<T>) -
     answer(open, Place::new(&open.document, snapshot.manner))
 }
 
-/// The same for answers that walk the whole document: they run on a thread of their own, and the trees that they read
-/// go away with them.
+/// The same for answers that walk the whole document or other files: they run on a thread of their own, and the trees
+/// that they read go away with them.
 async fn whole<T: Send + 'static>(
     uri: Uri,
-    answer: impl FnOnce(&Open, Place<'_>) -> T + Send + 'static,
+    answer: impl FnOnce(&Around, Place<'_>) -> T + Send + 'static,
 ) -> Result<Option<T>> {
-    aside(uri, move |open, place| answer(open, Place { document: &place.document.lean(), ..place })).await
+    aside(uri, move |around, place| answer(around, Place { document: &place.document.lean(), ..place })).await
 }
 
 /// The same on a thread of its own, for answers that look at much of a document but read no trees.
 async fn aside<T: Send + 'static>(
     uri: Uri,
-    answer: impl FnOnce(&Open, Place<'_>) -> T + Send + 'static,
+    answer: impl FnOnce(&Around, Place<'_>) -> T + Send + 'static,
 ) -> Result<Option<T>> {
     let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
-    let work = tokio::task::spawn_blocking(move || {
-        let open = snapshot.open(&uri)?;
-        Some(answer(open, Place::new(&open.document, snapshot.manner)))
+    beside(move |cancelled| {
+        // What was named by an answer of before, such as a call in a file that is not open, is a file of a project.
+        let around = match snapshot.open(&uri) {
+            Some(open) => snapshot.around(open),
+            None => snapshot.around_closed(&uri)?,
+        };
+        let around = around.cancellable(cancelled);
+        Some(answer(&around, Place::new(&around.here().document, snapshot.manner)))
+    })
+    .await
+}
+
+/// Sets its flag when the handler that has it is dropped: the request was cancelled.
+struct Waiting(Arc<AtomicBool>);
+
+impl Drop for Waiting {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Work on a thread of its own, with the flag that tells it that nobody waits any more.
+async fn beside<T: Send + 'static>(
+    work: impl FnOnce(&Arc<AtomicBool>) -> Option<T> + Send + 'static,
+) -> Result<Option<T>> {
+    let waiting = Waiting(Arc::default());
+    let cancelled = waiting.0.clone();
+    let done = tokio::task::spawn_blocking(move || {
+        // Cancelled while all threads were busy.
+        if cancelled.load(Ordering::Relaxed) { None } else { work(&cancelled) }
     });
-    work.await.map_err(|failure| {
+    done.await.map_err(|failure| {
         tracing::error!("a request failed: {failure}");
         Error::internal_error()
     })
 }
 
-fn workspace_edit(open: &Open, edits: Vec<TextEdit>) -> WorkspaceEdit {
-    let identifier =
-        OptionalVersionedTextDocumentIdentifier { uri: open.uri.clone(), version: Some(open.version) };
-    let edits = edits.into_iter().map(OneOf::Left).collect();
-    let document_changes =
-        DocumentChanges::Edits(vec![TextDocumentEdit { text_document: identifier, edits }]);
-    WorkspaceEdit { document_changes: Some(document_changes), ..WorkspaceEdit::default() }
-}
-
-fn quick_fix(open: &Open, place: Place<'_>, fix: &ide::FixOf<'_>) -> CodeAction {
+fn quick_fix(around: &Around, place: Place<'_>, fix: &ide::FixOf<'_>) -> CodeAction {
     // Plain changes reach every client, also one that knows no versioned edits.
-    let changes = HashMap::from([(open.uri.clone(), place.edits(&fix.fix.edits))]);
+    let changes = HashMap::from([(around.here().uri.clone(), place.edits(&fix.fix.edits))]);
     CodeAction {
         title: fix.fix.title.render(place.language),
         kind: Some(CodeActionKind::QUICKFIX),
-        diagnostics: Some(vec![to_proto::diagnostic(open, fix.diagnostic, place.manner())]),
+        diagnostics: Some(vec![to_proto::diagnostic(around, fix.diagnostic, place.manner())]),
         edit: Some(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }),
         is_preferred: Some(fix.is_preferred),
         ..CodeAction::default()
@@ -345,10 +470,9 @@ fn quick_fix(open: &Open, place: Place<'_>, fix: &ide::FixOf<'_>) -> CodeAction 
 }
 
 /// `{"errors", "warnings", "hints", "rungs", "steps", "capacity", "message"}`
-fn check_summary(open: &Open, language: Language) -> Value {
-    let found: Vec<Diagnostic> = check::all(&open.document, &open.severities);
+fn check_summary(around: &Around, language: Language) -> Value {
     let mut summary = ide::Summary::default();
-    summary.add(&open.document, &found);
+    summary.add(&around.here().document, &around.findings());
     json!({
         "errors": summary.errors,
         "warnings": summary.warnings,
@@ -358,30 +482,6 @@ fn check_summary(open: &Open, language: Language) -> Value {
         "capacity": summary.capacity,
         "message": summary.sentence().render(language),
     })
-}
-
-/// The pulled report; its `resultId` stands for the content, so that nothing is sent twice.
-fn report(
-    items: Vec<tower_lsp::ls_types::Diagnostic>,
-    previous: Option<String>,
-) -> DocumentDiagnosticReportResult {
-    let hash = rustc_hash::FxBuildHasher.hash_one(serde_json::to_string(&items).unwrap_or_default());
-    let result_id = format!("{hash:016x}");
-    let report = if previous.as_deref() == Some(result_id.as_str()) {
-        DocumentDiagnosticReport::Unchanged(RelatedUnchangedDocumentDiagnosticReport {
-            related_documents: None,
-            unchanged_document_diagnostic_report: UnchangedDocumentDiagnosticReport { result_id },
-        })
-    } else {
-        DocumentDiagnosticReport::Full(RelatedFullDocumentDiagnosticReport {
-            related_documents: None,
-            full_document_diagnostic_report: FullDocumentDiagnosticReport {
-                result_id: Some(result_id),
-                items,
-            },
-        })
-    };
-    DocumentDiagnosticReportResult::Report(report)
 }
 
 /// A refusal that the editor shows to the user.

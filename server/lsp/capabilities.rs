@@ -1,11 +1,16 @@
 //! What the server offers, and what the client can do.
 
+use super::abilities::{Abilities, Requests};
 use super::{editing, to_proto};
 use crate::text::Encoding;
+use serde_json::json;
 use tower_lsp::ls_types::*;
 
 /// The commands of `workspace/executeCommand`.
-pub(super) const COMMANDS: &[&str] = &["rungwise.check", "rungwise.format"];
+pub(super) const COMMANDS: &[&str] = &["rungwise.check", "rungwise.format", APPLY];
+
+/// Applies the `WorkspaceEdit` that is its argument: what a code action does where clients know commands alone.
+pub(super) const APPLY: &str = "rungwise.applyEdit";
 
 /// The best encoding that the client offers: bytes cost nothing, UTF-16 is what every client knows.
 pub(super) fn encoding_for(client: &ClientCapabilities) -> Encoding {
@@ -22,20 +27,25 @@ pub(super) fn encoding_for(client: &ClientCapabilities) -> Encoding {
     }
 }
 
-/// Whether the client takes registrations of watched files.
-pub(super) fn can_watch(client: &ClientCapabilities) -> bool {
-    let watching =
-        client.workspace.as_ref().and_then(|workspace| workspace.did_change_watched_files.as_ref());
-    watching.is_some_and(|watching| watching.dynamic_registration == Some(true))
-}
-
-/// Asks for `workspace/didChangeWatchedFiles` about manifests.
-pub(super) fn watched_manifests() -> Registration {
-    Registration {
-        id: "rungwise-manifests".to_string(),
-        method: "workspace/didChangeWatchedFiles".to_string(),
-        register_options: Some(serde_json::json!({"watchers": [{"globPattern": "**/rungwise.toml"}]})),
-    }
+/// What the client is asked to tell about while the server runs: files of projects, and its configuration.
+pub(super) fn registrations(requests: Requests) -> Vec<Registration> {
+    let registration = |id: &str, method: &str, register_options| Registration {
+        id: id.to_string(),
+        method: method.to_string(),
+        register_options,
+    };
+    let watchers = json!({"watchers": [
+        {"globPattern": "**/rungwise.toml"},
+        {"globPattern": "**/*.{lad,LAD,il,IL,csv,CSV}"},
+    ]});
+    let files = requests
+        .watch
+        .then(|| registration("rungwise-files", "workspace/didChangeWatchedFiles", Some(watchers)));
+    let configuration = requests.watch_configuration.then(|| {
+        let section = json!({"section": "rungwise"});
+        registration("rungwise-configuration", "workspace/didChangeConfiguration", Some(section))
+    });
+    files.into_iter().chain(configuration).collect()
 }
 
 /// The answer to `initialize`. `pulls` is the setting that turns pushed diagnostics off.
@@ -45,8 +55,8 @@ pub(super) fn offered(client: &ClientCapabilities, encoding: Encoding, pulls: bo
     let diagnostic_provider = (pulls || !can_pull).then(|| {
         DiagnosticServerCapabilities::Options(DiagnosticOptions {
             identifier: Some("rungwise".to_string()),
-            inter_file_dependencies: false,
-            workspace_diagnostics: false,
+            inter_file_dependencies: true,
+            workspace_diagnostics: true,
             ..DiagnosticOptions::default()
         })
     });
@@ -64,14 +74,30 @@ pub(super) fn offered(client: &ClientCapabilities, encoding: Encoding, pulls: bo
             ..CompletionOptions::default()
         }),
         definition_provider: Some(OneOf::Left(true)),
+        workspace_symbol_provider: Some(OneOf::Left(true)),
+        call_hierarchy_provider: Some(CallHierarchyServerCapability::Simple(true)),
+        document_link_provider: Some(DocumentLinkOptions {
+            resolve_provider: Some(false),
+            work_done_progress_options: WorkDoneProgressOptions::default(),
+        }),
+        workspace: Some(WorkspaceServerCapabilities {
+            workspace_folders: Some(WorkspaceFoldersServerCapabilities {
+                supported: Some(true),
+                change_notifications: Some(OneOf::Left(true)),
+            }),
+            ..WorkspaceServerCapabilities::default()
+        }),
         references_provider: Some(OneOf::Left(true)),
         document_symbol_provider: Some(OneOf::Left(true)),
         folding_range_provider: Some(FoldingRangeProviderCapability::Simple(true)),
         document_formatting_provider: Some(OneOf::Left(true)),
-        rename_provider: Some(OneOf::Right(RenameOptions {
-            prepare_provider: Some(true),
-            work_done_progress_options: WorkDoneProgressOptions::default(),
-        })),
+        rename_provider: Some(match Abilities::of(client).prepare_rename {
+            true => OneOf::Right(RenameOptions {
+                prepare_provider: Some(true),
+                work_done_progress_options: WorkDoneProgressOptions::default(),
+            }),
+            false => OneOf::Left(true),
+        }),
         code_action_provider: Some(CodeActionProviderCapability::Options(CodeActionOptions {
             code_action_kinds: Some(vec![CodeActionKind::QUICKFIX, CodeActionKind::REFACTOR_REWRITE]),
             resolve_provider: Some(true),

@@ -4,16 +4,22 @@
 //! gives every request the snapshot of that moment; [`backend`] answers from the snapshot; [`publisher`] sends
 //! diagnostics.
 
+mod abilities;
+mod across;
 mod backend;
 mod capabilities;
 mod editing;
 mod fences;
+mod folders;
 mod frames;
 mod keeper;
+mod linking;
 mod manifests;
 mod outlet;
+mod progress;
 mod projects;
 mod publisher;
+mod pulled;
 mod recording;
 mod service;
 mod settings;

@@ -22,6 +22,8 @@ pub(super) struct Settings {
     language: Option<Language>,
     /// `inlayHints.enabled`
     pub inlay_hints: bool,
+    /// `diagnostics.scope` is `project` and not `open`: files of a project that are not open are reported, too.
+    pub whole_project: bool,
     /// `diagnostics.mode` is `pull` and not `push`. A client that shows both kinds would show everything twice.
     pulls: bool,
 }
@@ -46,6 +48,7 @@ impl Default for Settings {
             width: None,
             language: None,
             inlay_hints: true,
+            whole_project: true,
             pulls: false,
         }
     }
@@ -84,6 +87,7 @@ impl Settings {
             width: width.map(|width| width.min(u64::from(MOST_WIDTH)) as u32),
             language,
             inlay_hints: part("inlayHints", "enabled").and_then(Value::as_bool).unwrap_or(true),
+            whole_project: word(part("diagnostics", "scope")).as_deref() != Some("open"),
             pulls: word(part("diagnostics", "mode")).as_deref() == Some("pull"),
         })
     }
@@ -104,6 +108,12 @@ impl Settings {
     /// The language of all messages.
     pub(super) fn language(&self, speech: Speech) -> Language {
         self.language.or(speech.asked).or(speech.client).unwrap_or(speech.otherwise)
+    }
+
+    /// Whether the same text is the same program with both.
+    pub(super) fn reads_like(&self, other: &Settings) -> bool {
+        let name = |settings: &Settings| settings.target.map(|target| target.name);
+        (name(self), self.notation) == (name(other), other.notation)
     }
 
     pub(super) fn pulls(&self) -> bool {

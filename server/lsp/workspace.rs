@@ -1,16 +1,17 @@
 //! The state of the server: settings and open documents, changed in message order, read through snapshots.
 
+use super::abilities::{Abilities, Requests};
 use super::capabilities;
 use super::keeper::Keeper;
 use super::manifests::Manifests;
-use super::projects::{Loaded, Projects, canonical, file_path};
-use super::publisher::Publisher;
+use super::projects::{Projects, canonical, file_path};
+use super::publisher::{Closing, Publisher};
 use super::settings::{Settings, Speech};
-use super::tokens::SentTokens;
 use super::to_proto::Manner;
+use super::tokens::SentTokens;
 use crate::check::Severities;
 use crate::document::{Document, Edit, Notation};
-use crate::project::{Manifest, Project, decide};
+use crate::project::{MANIFEST_NAME, Manifest, Project, decide};
 use crate::target::{Model, Target};
 use crate::text::{Encoding, Language, LineColumn};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -18,20 +19,23 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use tokio::task::JoinHandle;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::time::Duration;
 use tower_lsp::Client;
 use tower_lsp::ls_types::{
-    DidChangeConfigurationParams, DidChangeTextDocumentParams, DidCloseTextDocumentParams,
-    DidOpenTextDocumentParams, DidSaveTextDocumentParams, InitializeParams, LSPAny,
-    TextDocumentContentChangeEvent, TextDocumentItem, Uri,
+    DidChangeTextDocumentParams, DidCloseTextDocumentParams, DidOpenTextDocumentParams,
+    DidSaveTextDocumentParams, InitializeParams, LSPAny, TextDocumentContentChangeEvent, TextDocumentItem,
+    Uri,
 };
 
 /// A document up to this size, a rung or so, is looked at after each edit for what it is; a longer one when it is
 /// saved, lest a half-typed word turn the whole of it into another language.
 const UNDECIDED_BYTES: usize = 128;
+
+/// A document whose project is read for the first time is published without it after this time.
+const AWAITED: Duration = Duration::from_millis(150);
 
 tokio::task_local! {
     /// The state at the moment when the request was read.
@@ -75,16 +79,24 @@ pub(super) struct Workspace {
     shut_down: AtomicBool,
 }
 
+/// What may change while messages are read.
 #[derive(Default)]
-struct State {
-    snapshot: Snapshot,
+pub(super) struct State {
+    pub snapshot: Snapshot,
     publishers: FxHashMap<Uri, Publisher>,
     /// Publishers of closed documents that are not done yet.
-    closing: FxHashMap<Uri, JoinHandle<()>>,
+    closing: FxHashMap<Uri, Closing>,
     manifests: Manifests,
-    keeper: Option<Keeper>,
-    speech: Speech,
-    watches: bool,
+    pub keeper: Option<Keeper>,
+    pub speech: Speech,
+    /// Projects that are read for the first time: their documents wait for what the other files declare.
+    pub awaited: FxHashSet<Arc<Path>>,
+    /// Folders that the client has open, as it spells them.
+    pub folders: Vec<(Uri, PathBuf)>,
+    /// The settings as the client sent them.
+    pub settings_source: Option<Value>,
+    pub requests: Requests,
+    this: Weak<Workspace>,
 }
 
 impl Snapshot {
@@ -96,6 +108,17 @@ impl Snapshot {
     /// The open document of the file at a canonical path.
     pub(super) fn open_at(&self, path: &Arc<Path>) -> Option<&Arc<Open>> {
         self.documents.get(self.paths.get(path)?)
+    }
+
+    /// The open documents that belong to a project.
+    pub(super) fn opens_of(&self, project: &Arc<Path>) -> Vec<Arc<Open>> {
+        let opens = self.documents.values().filter(|open| open.project.as_ref() == Some(project));
+        opens.cloned().collect()
+    }
+
+    /// All open documents, in no order.
+    pub(super) fn opens(&self) -> impl Iterator<Item = &Arc<Open>> {
+        self.documents.values()
     }
 
     /// How many documents are open.
@@ -124,9 +147,9 @@ impl Workspace {
         self.shut_down.load(Ordering::Relaxed)
     }
 
-    /// Whether the client wants to be asked to watch files.
-    pub(super) fn watches(&self) -> bool {
-        self.state().watches
+    /// What the client may be asked for.
+    pub(super) fn requests(&self) -> Requests {
+        self.state().requests
     }
 
     /// Takes from a message what it says about the life of the server. What `initialize` says is in force before the
@@ -153,9 +176,18 @@ impl Workspace {
         state.snapshot.manner = Manner {
             encoding: capabilities::encoding_for(&params.capabilities),
             language: settings.language(state.speech),
+            abilities: Abilities::of(&params.capabilities),
         };
+        state.settings_source = params.initialization_options.clone();
         state.snapshot.settings = Arc::new(settings);
-        state.watches = capabilities::can_watch(&params.capabilities);
+        state.requests = Requests::of(&params.capabilities);
+        // A client that sends its settings of its own accord would answer with something else, such as its defaults.
+        if state.settings_source.as_ref().is_some_and(|source| !source.is_null()) {
+            state.requests.configuration = false;
+            state.requests.watch_configuration = false;
+        }
+        state.this = Arc::downgrade(self);
+        self.take_folders(&mut state, params);
         self.initialised.store(true, Ordering::Relaxed);
     }
 
@@ -163,7 +195,7 @@ impl Workspace {
     ///
     /// A notification that cannot be read changes nothing: the client would not look at an answer, the log has it.
     /// Before `initialize` and after `shutdown` they are dropped, as the protocol wants.
-    pub(super) fn apply(&self, method: &str, params: Option<&LSPAny>) -> bool {
+    pub(super) fn apply(self: &Arc<Workspace>, method: &str, params: Option<&LSPAny>) -> bool {
         let runs = self.initialised.load(Ordering::Relaxed) && !self.was_shut_down();
         match method {
             _ if !runs => return is_change_of_state(method),
@@ -171,14 +203,15 @@ impl Workspace {
             "textDocument/didChange" => self.with(params, Workspace::change),
             "textDocument/didClose" => self.with(params, Workspace::close),
             "textDocument/didSave" => self.with(params, Workspace::save),
-            "workspace/didChangeConfiguration" => self.with(params, Workspace::configure),
-            "workspace/didChangeWatchedFiles" => self.reread_projects(),
+            "workspace/didChangeConfiguration" => self.with(params, |_, params| self.configure(&params)),
+            "workspace/didChangeWatchedFiles" => self.with(params, Workspace::change_files),
+            "workspace/didChangeWorkspaceFolders" => self.with(params, Workspace::change_folders),
             _ => return false,
         }
         true
     }
 
-    fn with<P: DeserializeOwned>(&self, params: Option<&LSPAny>, apply: fn(&Workspace, P)) {
+    fn with<P: DeserializeOwned>(&self, params: Option<&LSPAny>, apply: impl FnOnce(&Workspace, P)) {
         match P::deserialize(params.unwrap_or(&Value::Null)) {
             Ok(params) => apply(self, params),
             Err(reason) => tracing::warn!("a notification could not be read: {reason}"),
@@ -188,21 +221,32 @@ impl Workspace {
     fn open(&self, params: DidOpenTextDocumentParams) {
         let TextDocumentItem { uri, language_id, version, text } = params.text_document;
         let mut state = self.state();
+        // A document that is opened a second time was closed in the client's eyes.
+        if let Some(publisher) = state.publishers.remove(&uri) {
+            let closing = publisher.close(uri.clone(), None);
+            state.closing.insert(uri.clone(), closing);
+        }
+        // Before the text is read, which may take a while: what was published is not to be cleared.
+        let before = state.closing.remove(&uri).map(Closing::superseded);
         let Belonging { manifest, project, .. } = self.belonging(&mut state, &uri);
         let path = file_path(&uri).map(|path| canonical(&path));
         let manifest = Arc::new(manifest);
         let is_ladder = language_id == "ladder";
         let (notation, target) = decided(&uri, &text, &manifest, &state.snapshot.settings, is_ladder);
-        let document = read(&text, notation, target);
-        // A document that is opened a second time was closed in the client's eyes.
-        if let Some(publisher) = state.publishers.remove(&uri) {
-            let task = publisher.close(uri.clone());
-            state.closing.insert(uri.clone(), task);
-        }
-        let before = state.closing.remove(&uri);
+        let document = match is_manifest(&uri) {
+            true => Document::unread(&text, notation, target),
+            false => read(&text, notation, target),
+        };
+        let loaded = project.as_ref().and_then(|key| state.snapshot.projects.get(key));
+        let document = match loaded {
+            Some(loaded) => loaded.placed(document, path.as_ref()),
+            None => document,
+        };
         let snapshot = &state.snapshot;
-        let publisher = Publisher::start(self.client.clone(), snapshot.manner, &snapshot.settings, before);
-        state.publishers.insert(uri.clone(), publisher);
+        if !is_manifest(&uri) {
+            let publisher = Publisher::start(state.this.clone(), &self.client, snapshot, before);
+            state.publishers.insert(uri.clone(), publisher);
+        }
         let severities = Arc::new(manifest.severities());
         if let Some(path) = &path {
             Arc::make_mut(&mut state.snapshot.paths).entry(path.clone()).or_insert_with(|| uri.clone());
@@ -222,6 +266,10 @@ impl Workspace {
         for change in params.content_changes {
             let edit = edit_of(&open.document, change, state.snapshot.manner.encoding);
             let (notation, target) = (open.document.notation(), open.document.target());
+            if is_manifest(&open.uri) {
+                open.document = Document::unread(&spliced(&open.document, &edit), notation, target);
+                continue;
+            }
             let edited = guarded(|| {
                 let mut document = open.document.clone();
                 document.apply(std::slice::from_ref(&edit));
@@ -247,13 +295,13 @@ impl Workspace {
         let uri = params.text_document.uri;
         self.tokens.forget(&uri);
         let closed = Arc::make_mut(&mut state.snapshot.documents).remove(&uri);
-        if let Some(closed) = closed {
-            state.forget_path(&closed);
-        }
+        let Some(closed) = closed else { return };
+        state.forget_path(&closed);
         if let Some(publisher) = state.publishers.remove(&uri) {
-            state.closing.retain(|_, task| !task.is_finished());
-            let task = publisher.close(uri.clone());
-            state.closing.insert(uri, task);
+            state.closing.retain(|_, closing| !closing.is_done());
+            let heir = state.heir(&closed);
+            let closing = publisher.close(uri.clone(), heir);
+            state.closing.insert(uri, closing);
         }
     }
 
@@ -264,20 +312,12 @@ impl Workspace {
             open.decide_again(&state.snapshot.settings);
             state.put(open);
         }
-    }
-
-    fn configure(&self, params: DidChangeConfigurationParams) {
-        // A client without settings says so with `null`; what `initialize` said stays in force.
-        let Some(settings) = Settings::read(Some(&params.settings)) else { return };
-        let mut state = self.state();
-        state.snapshot.manner.language = settings.language(state.speech);
-        state.snapshot.settings = Arc::new(settings);
         drop(state);
-        self.reread_projects();
+        self.look_around(&params.text_document.uri);
     }
 
     /// Reads manifests anew, and the documents whose language, target or severities thereby change.
-    fn reread_projects(&self) {
+    pub(super) fn reread_projects(&self) {
         let mut state = self.state();
         let opens: Vec<Arc<Open>> = state.snapshot.documents.values().cloned().collect();
         let mut seen = FxHashSet::default();
@@ -285,7 +325,10 @@ impl Workspace {
             let Belonging { manifest, place, project } = self.belonging(&mut state, &open.uri);
             seen.extend(place);
             let mut open = Open::clone(&open);
-            open.project = project;
+            if open.project != project {
+                open.document = open.document.unlinked();
+                open.project = project;
+            }
             if *open.manifest != manifest {
                 open.severities = Arc::new(manifest.severities());
                 open.manifest = Arc::new(manifest);
@@ -309,26 +352,36 @@ impl Workspace {
         };
         let place = state.manifests.note(&self.client, &project, state.snapshot.manner);
         let key = canonical(&project.root);
-        if !state.snapshot.projects.contains_key(&key)
-            && let Some(keeper) = &state.keeper
-        {
-            keeper.read(key.clone(), project.root.clone());
+        if !state.snapshot.projects.contains_key(&key) && state.awaited.insert(key.clone()) {
+            state.await_project(&key, &project.root);
         }
         Belonging { manifest: project.manifest, place, project: Some(key) }
     }
 
-    /// Takes a project as it was read, or forgets one whose manifest is gone.
-    pub(super) fn adopt(&self, key: &Arc<Path>, loaded: Option<Loaded>) {
-        let mut state = self.state();
-        let projects = Arc::make_mut(&mut state.snapshot.projects);
-        match loaded {
-            Some(loaded) => _ = projects.insert(key.clone(), Arc::new(loaded)),
-            None => _ = projects.remove(key),
+    /// Has the client ask again for what other files have a part in. Nobody waits for it.
+    pub(super) fn refresh(&self) {
+        let state = self.state();
+        let (requests, pulls) = (state.requests, state.snapshot.settings.pulls());
+        let client = self.client.clone();
+        tokio::spawn(async move {
+            if requests.refresh_diagnostics && pulls {
+                let _ = client.workspace_diagnostic_refresh().await;
+            }
+            if requests.refresh_hints {
+                let _ = client.inlay_hint_refresh().await;
+            }
+        });
+    }
+
+    /// A document changed in a way that the other files of its project see.
+    pub(super) fn note_change(&self, key: &Arc<Path>, uri: &Uri) {
+        if let Some(keeper) = &self.state().keeper {
+            keeper.changed(key.clone(), uri.clone());
         }
     }
 
     /// A panic while the lock was held leaves whole values behind it: each is put in one assignment.
-    fn state(&self) -> MutexGuard<'_, State> {
+    pub(super) fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -344,6 +397,29 @@ struct Belonging {
 }
 
 impl State {
+    /// Who publishes about the file of `closed` from now on, if it belongs to a project.
+    fn heir(&self, closed: &Open) -> Option<(Keeper, Arc<Path>)> {
+        let key = closed.project.as_ref()?;
+        self.snapshot.projects.get(key)?.number_of(closed)?;
+        Some((self.keeper.clone()?, key.clone()))
+    }
+
+    /// Has a project read for the first time. Its documents wait for it, but not for long.
+    fn await_project(&mut self, key: &Arc<Path>, root: &Path) {
+        let Some(keeper) = &self.keeper else {
+            self.awaited.remove(key);
+            return;
+        };
+        keeper.read(key.clone(), root.to_path_buf());
+        let (workspace, key) = (self.this.clone(), key.clone());
+        tokio::spawn(async move {
+            tokio::time::sleep(AWAITED).await;
+            if let Some(workspace) = workspace.upgrade() {
+                workspace.wait_no_longer(&key);
+            }
+        });
+    }
+
     /// Takes note that `closed` is no longer open; its file may still be so under another spelling.
     fn forget_path(&mut self, closed: &Open) {
         let Some(path) = &closed.path else { return };
@@ -357,10 +433,11 @@ impl State {
     }
 
     /// Makes `open` the document's state, and publishes it.
-    fn put(&mut self, open: Open) {
+    pub(super) fn put(&mut self, open: Open) {
+        let is_awaited = open.project.as_ref().is_some_and(|project| self.awaited.contains(project));
         let open = Arc::new(open);
         Arc::make_mut(&mut self.snapshot.documents).insert(open.uri.clone(), open.clone());
-        if let Some(publisher) = self.publishers.get(&open.uri) {
+        if let Some(publisher) = self.publishers.get(&open.uri).filter(|_| !is_awaited) {
             publisher.publish(open, self.snapshot.manner);
         }
     }
@@ -370,6 +447,9 @@ impl Open {
     /// Decides anew in which language and for which target the document is written, and reads it anew if that
     /// changed: what is typed into an empty file says what it is only after some lines.
     fn decide_again(&mut self, settings: &Settings) {
+        if is_manifest(&self.uri) {
+            return;
+        }
         let text = self.document.text();
         let is_ladder = self.document.notation() == Notation::Ladder;
         let (notation, target) = decided(&self.uri, &text, &self.manifest, settings, is_ladder);
@@ -397,9 +477,20 @@ pub(super) fn decided(
         .unwrap_or((Notation::FxIl, Target::of(Model::Fx2n)))
 }
 
-pub(super) fn read(text: &str, notation: Notation, target: &'static Target) -> Document {
+/// A file of the disk, of which nothing is kept that can be read again.
+pub(super) fn frugal(text: &str, notation: Notation, target: &'static Target) -> Document {
+    guarded(|| Document::frugal(text, notation, target))
+        .unwrap_or_else(|| Document::unread(text, notation, target))
+}
+
+fn read(text: &str, notation: Notation, target: &'static Target) -> Document {
     guarded(|| Document::new(text, notation, target))
         .unwrap_or_else(|| Document::unread(text, notation, target))
+}
+
+/// Whether a document is a manifest: its text is kept for the links in it, and it is no program.
+fn is_manifest(uri: &Uri) -> bool {
+    uri.path().as_str().rsplit('/').next() == Some(MANIFEST_NAME)
 }
 
 /// The value, or nothing and a line in the log if making it panics.

@@ -176,6 +176,7 @@ macro_rules! catalogue_in {
                 include_str!(concat!("messages/", $tag, "/ide.toml")),
                 include_str!(concat!("messages/", $tag, "/devices.toml")),
                 include_str!(concat!("messages/", $tag, "/cli.toml")),
+                include_str!(concat!("messages/", $tag, "/project.toml")),
                 include_str!(concat!("messages/", $tag, "/pages.toml")),
                 include_str!(concat!("messages/", $tag, "/conversions.toml")),
                 include_str!(concat!("messages/", $tag, "/ldmicro.toml")),

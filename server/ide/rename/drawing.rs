@@ -2,13 +2,16 @@
 //! of its line stays in its column.
 
 use crate::document::{Chunk, Document, Mention, Tree};
-use crate::text::{Encoding, LineColumn, Message, Span, TextEdit, cell_width};
+use crate::text::{Encoding, LineColumn, Span, TextEdit, cell_width};
 
 /// What may be shortened and lengthened.
 const WIRES: &[char] = &['-', '─', '━', '═', '_'];
 
 /// The edits that put `new` at all of `places`, which are sorted, one edit for each line.
-pub(super) fn edits(document: &Document, places: &[Span], new: &str) -> Result<Vec<TextEdit>, Message> {
+///
+/// # Errors
+/// With the place for which there is no room.
+pub(super) fn edits(document: &Document, places: &[Span], new: &str) -> Result<Vec<TextEdit>, Span> {
     let line_of = |span: &Span| document.position(span.start as usize, Encoding::Utf8).line;
     let mut edits = Vec::new();
     for run in places.chunk_by(|left, right| line_of(left) == line_of(right)) {
@@ -21,7 +24,7 @@ pub(super) fn edits(document: &Document, places: &[Span], new: &str) -> Result<V
             .map(|span| Span::new(span.start as usize - start, span.end as usize - start))
             .collect();
         let Some(redrawn) = redrawn(&old, &inside, new) else {
-            return Err(Message::new("rename.drawing").with("name", new).with("line", line + 1));
+            return Err(run[0]);
         };
         edits.push(smallest(&old, &redrawn, start));
     }
