@@ -198,72 +198,93 @@ fn hover_on_devices() {
         "LD X0\nOUT M50$00\nLD M500\nOR M500\nANI M500\nMOV K4M496 D0\nEND\n",
         fx,
         &expect![[r#"
-        2:5 `M500`
-        **M500** auxiliary relay, latched (M500–M1023)
+            2:5 `M500`
+            **M500** auxiliary relay, latched (M500–M1023)
 
-        Keeps its value without power.
+            Keeps its value without power.
 
-        - Written: line 2
-        - Read: lines 3, 4, 5, 6
-    "#]],
+            Written:
+            - rung 1, line 2: `OUT M500`
+
+            Read:
+            - rung 2, line 3: `LD M500`
+            - rung 2, line 4: `OR M500`
+            - rung 2, line 5: `ANI M500`
+            - rung 2, line 6: `MOV K4M496 D0`
+        "#]],
     );
     check_hover(
         "LD $0T0\nOUT Y0\nLD X0\nOUT T0 K50\nEND\n",
         fx,
         &expect![[r#"
-        1:4 `T0`
-        **T0** timer, 100 ms (T0–T191)
+            1:4 `T0`
+            **T0** timer, 100 ms (T0–T191)
 
-        Preset `K50` = 5 s
+            Preset `K50` = 5 s
 
-        - Written: line 4
-        - Read: line 1
-    "#]],
+            Written:
+            - rung 2, line 4: `OUT T0 K50`
+
+            Read:
+            - rung 1, line 1: `LD T0`
+        "#]],
     );
     check_hover(
         "LD $0M8013\nOUT Y0\n",
         fx,
         &expect![[r#"
-        1:4 `M8013`
-        **M8013** auxiliary relay, special (M8000–M8255)
+            1:4 `M8013`
+            **M8013** auxiliary relay, special (M8000–M8255)
 
-        Clock of 1 s: 0.5 s on, 0.5 s off. A program only reads it.
+            Clock of 1 s: 0.5 s on, 0.5 s off. A program only reads it.
 
-        - Read: line 1
-    "#]],
+            Read:
+            - rung 1, line 1: `LD M8013`
+        "#]],
     );
     check_hover(
         "LD M9$0000\nOUT Y0\n",
         fx,
         &expect![[r#"
-        1:4 `M9000`
-        **M9000** auxiliary relay: FX2N has none of this number; it has M0–M499, M500–M1023, M1024–M3071, M8000–M8255
+            1:4 `M9000`
+            **M9000** auxiliary relay: FX2N has none of this number; it has M0–M499, M500–M1023, M1024–M3071, M8000–M8255
 
-        - Read: line 1
-    "#]],
+            Read:
+            - rung 1, line 1: `LD M9000`
+        "#]],
     );
     check_hover(
         "LD X0\nMOV $0K4M0Z1 D0\n",
         fx,
         &expect![[r#"
-        2:7 `M0`
-        **M0** auxiliary relay, general (M0–M499)
+            2:7 `M0`
+            **M0** auxiliary relay, general (M0–M499)
 
-        `M0 × 16` covers M0 to M15.
+            `M0 × 16` covers M0 to M15.
 
-        - Read: line 2
-    "#]],
+            Read:
+            - rung 1, line 2: `MOV K4M0Z1 D0`
+        "#]],
     );
     let many = format!("{}LD $0X0\nOUT Y0\n", "LD X0\nOUT Y0\n".repeat(12));
     check_hover(
         &many,
         fx,
         &expect![[r#"
-        25:4 `X0`
-        **X0** input relay (X0–X377)
+            25:4 `X0`
+            **X0** input relay (X0–X377)
 
-        - Read: lines 1, 3, 5, 7, 9, 11, 13, 15 and 5 more
-    "#]],
+            Read:
+            - rung 1, line 1: `LD X0`
+            - rung 2, line 3: `LD X0`
+            - rung 3, line 5: `LD X0`
+            - rung 4, line 7: `LD X0`
+            - rung 5, line 9: `LD X0`
+            - rung 6, line 11: `LD X0`
+            - rung 7, line 13: `LD X0`
+            - rung 8, line 15: `LD X0`
+            - and 5 more
+        "#]],
     );
 }
 
@@ -305,12 +326,15 @@ fn hover_on_constants_and_labels() {
         "LD X0\nCJ $0P0\nLD X1\nOUT Y0\nP0\nEND\n",
         fx,
         &expect![[r#"
-        2:4 `P0`
-        **P0** pointer (P0–P62)
+            2:4 `P0`
+            **P0** pointer (P0–P62)
 
-        - Defined: line 5
-        - Jumps and calls: line 2
-    "#]],
+            Defined:
+            - line 5: `P0`
+
+            Jumps and calls:
+            - rung 1, line 2: `CJ P0`
+        "#]],
     );
     check_hover(
         "LD X0 ; $0X0 is it\n",
@@ -327,25 +351,27 @@ fn hover_in_ladder() {
         &marked(MOTOR, "|$0/|"),
         ladder,
         &expect![[r#"
-        3:15 `|/|`
-        Normally closed contact: passes power while `X1` is off.
+            3:15 `|/|`
+            Normally closed contact: passes power while `X1` is off.
 
-        **X1** input relay (X0–X377)
+            **X1** input relay (X0–X377)
 
-        - Read: line 2
-    "#]],
+            Read:
+            - rung 1, line 2: `X0 /X1 Y0 → Y0`
+        "#]],
     );
     check_hover(
         &marked(MOTOR, "(T0$0 K50"),
         ladder,
         &expect![[r#"
-        8:43 `T0`
-        **T0** timer, 100 ms (T0–T191)
+            8:43 `T0`
+            **T0** timer, 100 ms (T0–T191)
 
-        Preset `K50` = 5 s
+            Preset `K50` = 5 s
 
-        - Written: line 8
-    "#]],
+            Written:
+            - rung 2, line 8: `Y0 → T0 K50, MOV K10 D0`
+        "#]],
     );
     check_hover(
         &marked(MOTOR, "K50"),
@@ -366,14 +392,18 @@ fn hover_in_iec() {
         &marked(DELAY, "LD St$0art"),
         iec,
         &expect![[r#"
-        8:8 `Start`
-        ```iec
-        VAR Start AT %IX0.0 : BOOL
-        ```
+            8:8 `Start`
+            ```iec
+            VAR Start AT %IX0.0 : BOOL
+            ```
 
-        - Declared: line 3
-        - Read: lines 8, 10
-    "#]],
+            Declared:
+            - line 3: `Start AT %IX0.0 : BOOL;`
+
+            Read:
+            - rung 1, line 8: `LD Start`
+            - rung 1, line 10: `CAL Delay(IN := Start, PT := T#1m30s)`
+        "#]],
     );
     check_hover(
         &marked(DELAY, "Delay.$0Q"),
@@ -405,40 +435,52 @@ fn hover_in_iec() {
         &marked(DELAY, "JMPC Fin$0ish"),
         iec,
         &expect![[r#"
-        12:10 `Finish`
-        **Finish** label
+            12:10 `Finish`
+            **Finish** label
 
-        - Defined: line 14
-        - Jumps and calls: line 12
-    "#]],
+            Defined:
+            - rung 3, line 14: `Finish:`
+
+            Jumps and calls:
+            - rung 2, line 12: `JMPC Finish`
+        "#]],
     );
     check_hover(
         &marked(DELAY, ": Ga$0te"),
         iec,
         &expect![[r#"
-        6:13 `Gate`
-        ```iec
-        FUNCTION_BLOCK Gate
-        VAR_INPUT Open : BOOL
-        ```
+            6:13 `Gate`
+            ```iec
+            FUNCTION_BLOCK Gate
+            VAR_INPUT Open : BOOL
+            ```
 
-        - Declared: line 19
-        - Read: line 6
-    "#]],
+            Declared:
+            - line 19: `FUNCTION_BLOCK Gate`
+
+            Read:
+            - line 6: `Valve : Gate;`
+        "#]],
     );
     check_hover(
         &marked(DELAY, "Valve.Op$0en"),
         iec,
         &expect![[r#"
-        9:14 `Open`
-        ```iec
-        VAR_INPUT Open : BOOL
-        ```
+            9:14 `Open`
+            ```iec
+            VAR_INPUT Open : BOOL
+            ```
 
-        - Declared: line 21
-        - Written: lines 9, 17
-        - Read: line 26
-    "#]],
+            Declared:
+            - line 21: `Open : BOOL;`
+
+            Written:
+            - rung 1, line 9: `ST Valve.Open`
+            - rung 3, line 17: `CAL Valve(Open := Motor)`
+
+            Read:
+            - rung 4, line 26: `LD Open`
+        "#]],
     );
     for (word, heading) in
         [("JM$0PC", "### JMP"), ("T$0ON", "### TON"), ("CA$0L", "### CAL"), ("S$0T", "### ST")]
@@ -1426,14 +1468,17 @@ fn ladder_of_iec_variables() {
         &marked(TANK, "$0Level_low  |"),
         tank,
         &expect![[r#"
-        10:4 `Level_low`
-        ```iec
-        VAR Level_low AT %IX0.0 : BOOL
-        ```
+            10:4 `Level_low`
+            ```iec
+            VAR Level_low AT %IX0.0 : BOOL
+            ```
 
-        - Declared: line 3
-        - Read: line 10
-    "#]],
+            Declared:
+            - line 3: `Level_low AT %IX0.0 : BOOL;`
+
+            Read:
+            - rung 1, line 10: `Level_low T#5s → Pump`
+        "#]],
     );
     check_hover(
         &marked(TANK, "T#$05s"),

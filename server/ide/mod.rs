@@ -52,7 +52,17 @@ mod status;
 
 /// What stands at `offset`: the page of an instruction, the meaning and range of a device, where it is used.
 pub fn hover(document: &Document, offset: usize, language: Language) -> Option<Hover> {
-    hover::at(document, offset, language)
+    hover::at(&ProjectView::alone(document), offset, language, &|_, _| None)
+}
+
+/// The same among the files of a project; `link` gives the address of a line (from 0) of the file with a number.
+pub fn hover_in(
+    view: &ProjectView<'_>,
+    offset: usize,
+    language: Language,
+    link: &dyn Fn(usize, u32) -> Option<String>,
+) -> Option<Hover> {
+    hover::at(view, offset, language, link)
 }
 
 /// What could be written at `offset`.
