@@ -536,54 +536,53 @@ fn completion_of_fx_operands() {
         fx,
         6,
         &expect![[r#"
-        M0 | auxiliary relay, used 2 times | LD M0
-        X0 | input relay, used once | LD X0
-        X1 | input relay, used once | LD X1
-        Y0 | output relay, used once | LD Y0
-        M1 | auxiliary relay, used once | LD M1
-        T0 | timer, used once | LD T0
-        …
-    "#]],
+            M0 | auxiliary relay, read in 2 places | LD M0
+            X0 | input relay, read in 1 place | LD X0
+            X1 | input relay, read in 1 place | LD X1
+            Y0 | output relay, written in rung 1 | LD Y0
+            M1 | auxiliary relay, read in 1 place | LD M1
+            T0 | timer, written in rung 3 | LD T0
+            …
+        "#]],
     );
     check_completions(
         &format!("{program}OUT $0"),
         fx,
         6,
         &expect![[r#"
-        M0 | auxiliary relay, used 2 times | OUT M0
-        Y0 | output relay, used once | OUT Y0
-        M1 | auxiliary relay, used once | OUT M1
-        T0 | timer, used once | OUT T0
-        Y1 | output relay, free | OUT Y1
-        M2 | auxiliary relay, general, free | OUT M2
-        …
-    "#]],
+            Y1 | output relay, free | OUT Y1
+            M2 | auxiliary relay, general, free | OUT M2
+            M500 | auxiliary relay, latched, free | OUT M500
+            S0 | state, initial, free | OUT S0
+            S10 | state, state for returning home, free | OUT S10
+            S20 | state, general, free | OUT S20
+            …
+        "#]],
     );
     check_completions(
         &format!("{program}OUT T$0"),
         fx,
         6,
         &expect![[r#"
-        T0 | timer, used once | OUT T0
-        T1 | timer, 100 ms, free | OUT T1
-        T192 | timer, 100 ms timer for subroutines and interrupts, free | OUT T192
-        T200 | timer, 10 ms, free | OUT T200
-        T246 | timer, 1 ms retentive, free | OUT T246
-        T250 | timer, 100 ms retentive, free | OUT T250
-    "#]],
+            T1 | timer, 100 ms, free | OUT T1
+            T192 | timer, 100 ms timer for subroutines and interrupts, free | OUT T192
+            T200 | timer, 10 ms, free | OUT T200
+            T246 | timer, 1 ms retentive, free | OUT T246
+            T250 | timer, 100 ms retentive, free | OUT T250
+            T0 | timer, written in rung 3 | OUT T0
+        "#]],
     );
     check_completions(
         &format!("{program}OUT T200 $0"),
         fx,
         6,
         &expect![[r#"
-        K | decimal constant, 1–32767, × 10 ms | OUT T200 K${1:1}
-        D0 | data register, general, free | OUT T200 D0
-        D200 | data register, latched, free | OUT T200 D200
-        D512 | data register, latched, free | OUT T200 D512
-        D1000 | data register, latched register, may hold file registers, free | OUT T200 D1000
-        H | hexadecimal constant | OUT T200 H${1:0}
-    "#]],
+            K | decimal constant, 1–32767, × 10 ms | OUT T200 K${1:1}
+            D0 | data register, general, free | OUT T200 D0
+            D200 | data register, latched, free | OUT T200 D200
+            D1000 | data register, latched register, may hold file registers, free | OUT T200 D1000
+            H | hexadecimal constant | OUT T200 H${1:0}
+        "#]],
     );
     check_completions(&format!("{program}OUT Y0 $0"), fx, 6, &expect![[""]]);
     check_completions(
@@ -591,63 +590,60 @@ fn completion_of_fx_operands() {
         fx,
         12,
         &expect![[r#"
-        M801 | auxiliary relay, used once | LD M801
-        M8011 | Clock of 10 ms: 5 ms on, 5 ms off | LD M8011
-        M8012 | Clock of 100 ms: 50 ms on, 50 ms off | LD M8012
-        M8013 | Clock of 1 s: 0.5 s on, 0.5 s off | LD M8013
-        M8014 | Clock of 1 min: 30 s on, 30 s off | LD M8014
-        M8015 | Stops the clock; it starts with what D8013 to D8019 hold when this goes off | LD M8015
-        M8016 | Freezes D8013 to D8019 for reading; the clock itself goes on | LD M8016
-        M8017 | On a rising edge rounds the clock to the nearest minute | LD M8017
-        M8018 | On while a real-time clock is fitted | LD M8018
-        M8019 | The clock was set to an impossible date or time | LD M8019
-    "#]],
+            M8011 | Clock of 10 ms: 5 ms on, 5 ms off | LD M8011
+            M8012 | Clock of 100 ms: 50 ms on, 50 ms off | LD M8012
+            M8013 | Clock of 1 s: 0.5 s on, 0.5 s off | LD M8013
+            M8014 | Clock of 1 min: 30 s on, 30 s off | LD M8014
+            M8015 | Stops the clock; it starts with what D8013 to D8019 hold when this goes off | LD M8015
+            M8016 | Freezes D8013 to D8019 for reading; the clock itself goes on | LD M8016
+            M8017 | On a rising edge rounds the clock to the nearest minute | LD M8017
+            M8018 | On while a real-time clock is fitted | LD M8018
+            M8019 | The clock was set to an impossible date or time | LD M8019
+        "#]],
     );
     check_completions(
         &format!("{program}OUT M801$0"),
         fx,
         12,
         &expect![[r#"
-        M801 | auxiliary relay, used once | OUT M801
-        M8015 | Stops the clock; it starts with what D8013 to D8019 hold when this goes off | OUT M8015
-        M8016 | Freezes D8013 to D8019 for reading; the clock itself goes on | OUT M8016
-        M8017 | On a rising edge rounds the clock to the nearest minute | OUT M8017
-    "#]],
+            M8015 | Stops the clock; it starts with what D8013 to D8019 hold when this goes off | OUT M8015
+            M8016 | Freezes D8013 to D8019 for reading; the clock itself goes on | OUT M8016
+            M8017 | On a rising edge rounds the clock to the nearest minute | OUT M8017
+        "#]],
     );
     check_completions(
         &format!("{program}CJ $0"),
         fx,
         4,
         &expect![[r#"
-        P1 | label, line 8 | CJ P1
-        P0 | free label | CJ P0
-    "#]],
+            P1 | label, rung 3, line 8, jumped to 1 × | CJ P1
+            P0 | free label | CJ P0
+        "#]],
     );
     check_completions(
         &format!("{program}MOV K1 $0"),
         fx,
         40,
         &expect![[r#"
-        T0 | timer, used once | MOV K1 T0
-        D0 | data register, general, free | MOV K1 D0
-        D200 | data register, latched, free | MOV K1 D200
-        D512 | data register, latched, free | MOV K1 D512
-        D1000 | data register, latched register, may hold file registers, free | MOV K1 D1000
-        T1 | timer, 100 ms, free | MOV K1 T1
-        T192 | timer, 100 ms timer for subroutines and interrupts, free | MOV K1 T192
-        T200 | timer, 10 ms, free | MOV K1 T200
-        T246 | timer, 1 ms retentive, free | MOV K1 T246
-        T250 | timer, 100 ms retentive, free | MOV K1 T250
-        C0 | counter, 16-bit up, free | MOV K1 C0
-        C100 | counter, latched 16-bit up, free | MOV K1 C100
-        C200 | counter, 32-bit up/down, free | MOV K1 C200
-        C220 | counter, latched 32-bit up/down, free | MOV K1 C220
-        V0 | index register, free | MOV K1 V0
-        Z0 | index register, free | MOV K1 Z0
-        K4Y0 | 16 × output relay | MOV K1 K${1:4}Y${2:0}
-        K4M0 | 16 × auxiliary relay | MOV K1 K${1:4}M${2:0}
-        K4S0 | 16 × state | MOV K1 K${1:4}S${2:0}
-    "#]],
+            T0 | timer, written in rung 3 | MOV K1 T0
+            D0 | data register, general, free | MOV K1 D0
+            D200 | data register, latched, free | MOV K1 D200
+            D1000 | data register, latched register, may hold file registers, free | MOV K1 D1000
+            T1 | timer, 100 ms, free | MOV K1 T1
+            T192 | timer, 100 ms timer for subroutines and interrupts, free | MOV K1 T192
+            T200 | timer, 10 ms, free | MOV K1 T200
+            T246 | timer, 1 ms retentive, free | MOV K1 T246
+            T250 | timer, 100 ms retentive, free | MOV K1 T250
+            C0 | counter, 16-bit up, free | MOV K1 C0
+            C100 | counter, latched 16-bit up, free | MOV K1 C100
+            C200 | counter, 32-bit up/down, free | MOV K1 C200
+            C220 | counter, latched 32-bit up/down, free | MOV K1 C220
+            V0 | index register, free | MOV K1 V0
+            Z0 | index register, free | MOV K1 Z0
+            K4Y0 | 16 × output relay | MOV K1 K${1:4}Y${2:0}
+            K4M0 | 16 × auxiliary relay | MOV K1 K${1:4}M${2:0}
+            K4S0 | 16 × state | MOV K1 K${1:4}S${2:0}
+        "#]],
     );
 }
 
@@ -669,12 +665,12 @@ fn completion_in_ladder() {
         ladder,
         4,
         &expect![[r#"
-        Y0 | output relay, used 3 times | |   Y0    |Y0                                      |
-        X0 | input relay, used once | |   Y0    |X0                                      |
-        X1 | input relay, used once | |   Y0    |X1                                      |
-        T0 | timer, used once | |   Y0    |T0                                      |
-        …
-    "#]],
+            Y0 | output relay, written in rung 1, read in 2 places | |   Y0    |Y0                                      |
+            X0 | input relay, read in 1 place | |   Y0    |X0                                      |
+            X1 | input relay, read in 1 place | |   Y0    |X1                                      |
+            T0 | timer, written in rung 2 | |   Y0    |T0                                      |
+            …
+        "#]],
     );
     check_completions(
         "|   X0\n+---| |--$0--------( )-+\n",
@@ -706,11 +702,11 @@ fn completion_in_ladder() {
         ladder,
         3,
         &expect![[r#"
-        D0 | data register, general, free | +---| |----[MOV K1 D0
-        D200 | data register, latched, free | +---| |----[MOV K1 D200
-        D512 | data register, latched, free | +---| |----[MOV K1 D512
-        …
-    "#]],
+            D0 | data register, general, free | +---| |----[MOV K1 D0
+            D200 | data register, latched, free | +---| |----[MOV K1 D200
+            D1000 | data register, latched register, may hold file registers, free | +---| |----[MOV K1 D1000
+            …
+        "#]],
     );
     check_completions(
         "|   X0\n+---| |----(T0 $0)\n",
@@ -779,8 +775,8 @@ fn completion_in_iec() {
         iec,
         12,
         &expect![[r#"
-        Finish | label, line 14 |     JMPC FinishFinish
-    "#]],
+            Finish | complete.label 14 |     JMPC FinishFinish
+        "#]],
     );
     check_completions(
         &marked(DELAY, "CAL $0Delay"),

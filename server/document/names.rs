@@ -76,6 +76,11 @@ impl Names {
         found.ok().and_then(|number| self.accesses.get(number).copied()).unwrap_or_default()
     }
 
+    /// Every symbol with the number of its mentions, and of these how many read and how many write it; sorted.
+    pub fn tallies(&self) -> impl Iterator<Item = (&Symbol, (u32, (u32, u32)))> {
+        self.symbols.iter().zip(&self.accesses).map(|((symbol, count), access)| (symbol, (*count, *access)))
+    }
+
     /// Whether a run of several devices covers `device`.
     pub fn in_run(&self, device: Device) -> bool {
         self.runs.iter().any(|(first, count)| {

@@ -24,6 +24,8 @@ mod declared;
 
 mod uses;
 
+mod bookkeeping;
+
 mod hover;
 
 mod completion;
@@ -67,7 +69,12 @@ pub fn hover_in(
 
 /// What could be written at `offset`.
 pub fn completions(document: &Document, offset: usize, language: Language) -> Vec<Completion> {
-    completion::at(document, offset, language)
+    completion::at(&ProjectView::alone(document), offset, language)
+}
+
+/// The same among the files of a project: devices that another file uses are not free.
+pub fn completions_in(view: &ProjectView<'_>, offset: usize, language: Language) -> Vec<Completion> {
+    completion::at(view, offset, language)
 }
 
 /// Where the name at `offset` is declared or, for a device, driven.
