@@ -30,6 +30,12 @@ mod hover;
 
 mod completion;
 
+mod signature;
+pub use signature::{Signature, SignatureParameter};
+
+mod highlight;
+pub use highlight::{Highlight, HighlightKind};
+
 mod definition;
 
 mod references;
@@ -75,6 +81,16 @@ pub fn completions(document: &Document, offset: usize, language: Language) -> Ve
 /// The same among the files of a project: devices that another file uses are not free.
 pub fn completions_in(view: &ProjectView<'_>, offset: usize, language: Language) -> Vec<Completion> {
     completion::at(view, offset, language)
+}
+
+/// The instruction or call in which `offset` stands, and which of its operands is being written.
+pub fn signature(document: &Document, offset: usize, language: Language) -> Option<Signature> {
+    signature::at(document, offset, language)
+}
+
+/// What belongs to the word at `offset`: all uses of a name, the partners of FOR, MC, MPS, a parenthesis.
+pub fn highlights(document: &Document, offset: usize) -> Vec<Highlight> {
+    highlight::at(document, offset)
 }
 
 /// Where the name at `offset` is declared or, for a device, driven.
