@@ -36,6 +36,12 @@ pub use signature::{Signature, SignatureParameter};
 mod highlight;
 pub use highlight::{Highlight, HighlightKind};
 
+mod usage;
+pub use usage::{Usage, UsageAt, UsageKey, UsageRow};
+
+mod lens;
+pub use lens::{Lens, LensKind, LensSettings};
+
 mod definition;
 
 mod references;
@@ -93,6 +99,21 @@ pub fn highlights(document: &Document, offset: usize) -> Vec<Highlight> {
     highlight::at(document, offset)
 }
 
+/// The list of used devices of a project.
+pub fn usage(view: &ProjectView<'_>) -> Usage {
+    usage::of(view)
+}
+
+/// The lenses above rungs, without their words.
+pub fn lenses(document: &Document, wanted: LensSettings) -> Vec<Lens> {
+    lens::of(document, wanted)
+}
+
+/// The words of a lens that stands at `offset`.
+pub fn lens_title(view: &ProjectView<'_>, offset: usize, kind: &LensKind, language: Language) -> Option<String> {
+    lens::title(view, offset, kind, language)
+}
+
 /// Where the name at `offset` is declared or, for a device, driven.
 pub fn definition(document: &Document, offset: usize) -> Vec<Span> {
     definition::of(document, offset)
@@ -133,12 +154,22 @@ pub fn semantic_tokens(document: &Document) -> Vec<Token> {
 
 /// What the editor may show between the words of `span`.
 pub fn inlay_hints(document: &Document, span: Span, language: Language) -> Vec<InlayHint> {
-    inlay_hints::within(document, span, language)
+    inlay_hints::within(document, span, language, true)
+}
+
+/// The same without the comments of devices.
+pub fn value_hints(document: &Document, span: Span, language: Language) -> Vec<InlayHint> {
+    inlay_hints::within(document, span, language, false)
 }
 
 /// The edits that make the document canonical; none if it is.
 pub fn format(document: &Document, style: Style) -> Vec<TextEdit> {
     format::edits(document, style)
+}
+
+/// The edits that make the rungs and lines canonical that `spans` touch.
+pub fn format_ranges(document: &Document, style: Style, spans: &[Span]) -> Vec<TextEdit> {
+    format::edits_within(document, style, spans)
 }
 
 /// The fixes of `diagnostics` that touch `span`.

@@ -2,7 +2,7 @@
 
 use super::devices;
 use super::names::{self, Named, Thing};
-use crate::document::{ChunkRef, Document, Names, ProjectView, Symbol, Tree, Use};
+use crate::document::{Chunk, ChunkRef, Document, Names, ProjectView, Symbol, Tree, Use};
 use crate::ladder::{CoilKind, ContactKind, ElementKind, Rung};
 use crate::target::{DeviceKind, Operand};
 use crate::text::{Language, Message};
@@ -161,11 +161,7 @@ fn preset_at(thing: &Thing, place: &Named<'_>) -> Option<(Operand, String)> {
 
 /// The number of the rung at byte `inside` of the chunk `at`, from 1 in its document; nothing outside of rungs.
 pub(super) fn rung_number(document: &Document, at: ChunkRef<'_>, inside: usize) -> Option<usize> {
-    let own = match at.chunk.tree() {
-        Tree::Ladder(tree) => tree.rungs.iter().position(|rung| rung.span.touches(inside))?,
-        _ if at.chunk.size().rungs == 0 => return None,
-        _ => 0,
-    };
+    let own = rung_in(at.chunk, inside)?;
     let (mut before, mut start) = (0, 0);
     for page in document.pages() {
         if start + page.bytes() <= at.start {
@@ -175,13 +171,21 @@ pub(super) fn rung_number(document: &Document, at: ChunkRef<'_>, inside: usize) 
         }
         for chunk in page.chunks() {
             if start >= at.start {
-                return Some(before + own + 1);
+                return Some(before + own);
             }
             before += chunk.size().rungs;
             start += chunk.len();
         }
     }
-    Some(before + own + 1)
+    Some(before + own)
+}
+
+/// The number of the rung at byte `inside` of `chunk`, from 1 in the chunk.
+pub(super) fn rung_in(chunk: &Chunk, inside: usize) -> Option<usize> {
+    match chunk.tree() {
+        Tree::Ladder(tree) => tree.rungs.iter().position(|rung| rung.span.touches(inside)).map(|own| own + 1),
+        _ => (chunk.size().rungs > 0).then_some(1),
+    }
 }
 
 /// What stands at byte `inside` of a chunk, on one line.
