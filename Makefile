@@ -6,7 +6,7 @@ SHELL := /bin/bash
 .DEFAULT_GOAL := help
 RUNGWISE := target/release/rungwise
 
-.PHONY: help demo test test-rust test-editors lint bench vscode neovim clean linker
+.PHONY: help demo test test-rust test-editors lint bench fuzz vscode neovim clean linker
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -39,6 +39,14 @@ test-editors: $(RUNGWISE) ## extension, grammars, real Neovim, real VS Code
 
 bench: linker ## measure; the figures of BENCHMARKS.md
 	cargo bench --bench bench
+
+# The flags of the sanitizers are not stable, but without sanitizers the stable compiler has all that is needed.
+fuzz: linker ## look for bytes that break a promise, FUZZ_SECONDS=60 for each target
+	command -v cargo-fuzz >/dev/null || cargo install cargo-fuzz
+	cd fuzz && for target in $$(sed -n 's/^name = "\([a-z]*\)"$$/\1/p' Cargo.toml); do \
+	  RUSTC_BOOTSTRAP=1 cargo fuzz run --sanitizer none $$target -- \
+	    -max_total_time=$${FUZZ_SECONDS:-60} -timeout=10 -max_len=4096; \
+	done
 
 vscode: $(RUNGWISE) ## build the VS Code extension with the server inside and install it
 	cd vscode-extension && npm ci --no-audit --no-fund && npm run package

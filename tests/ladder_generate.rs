@@ -178,6 +178,7 @@ impl Builder {
 
     fn block(&mut self, n: u16) -> Element {
         let pin = |builder: &mut Builder, name: &str, wire: PinWire, row: u32| Pin {
+            implied: "",
             name: Some(builder.word(name)),
             negated: n.is_multiple_of(5) && wire == PinWire::Power,
             row,
@@ -193,7 +194,7 @@ impl Builder {
         } else {
             vec!["D0".to_string(), "D1".to_string()]
         };
-        let block = Block { instance, type_name, rows: Vec::new(), inputs, outputs };
+        let block = Block { instance, type_name, rows: Vec::new(), inputs, outputs, ldmicro: None };
         self.finish(ElementKind::Block(Box::new(block)), &operands)
     }
 

@@ -127,6 +127,7 @@ fn element_words(element: &Element, text: &str) -> String {
                 CoilKind::Reset => "R ",
                 CoilKind::Rising => "P ",
                 CoilKind::Falling => "N ",
+                CoilKind::Toggle => "T ",
             };
             format!("({mark}{operands})")
         }

@@ -1,7 +1,8 @@
 //! What a rule may look at.
 
-use crate::document::{Chunk, Document, Notation, Pou, Scopes};
-use crate::target::Target;
+use crate::document::{Chunk, ChunkRef, Document, Notation, Pou, Scopes};
+use crate::target::{Model, Target};
+use crate::text::{Diagnostic, Span};
 
 /// A chunk and what it depends on. Offsets are those of the chunk.
 pub struct ChunkContext<'a> {
@@ -24,8 +25,121 @@ impl ChunkContext<'_> {
     }
 }
 
-/// A whole program. Offsets are those of the document.
+/// A whole program: the files that run as one. Its offsets are those of the files put one behind the other in the order
+/// of execution; the engine brings what is found back to the files.
 pub struct ProgramContext<'a> {
-    /// The document.
+    files: Vec<ProgramFile<'a>>,
+    /// The only file about which the findings are wanted, if not all.
+    wanted: Option<usize>,
+}
+
+/// A file of a program.
+#[derive(Clone, Copy)]
+pub struct ProgramFile<'a> {
+    /// Its number in the project.
+    pub number: usize,
+    /// Its text.
     pub document: &'a Document,
+    /// Where it starts among the others.
+    pub start: usize,
+}
+
+impl<'a> ProgramFile<'a> {
+    /// Its chunks in order, at their places in the program.
+    pub fn chunks(self) -> impl Iterator<Item = ChunkRef<'a>> + use<'a> {
+        self.document.chunks().map(move |at| ChunkRef { start: at.start + self.start, ..at })
+    }
+}
+
+/// All files of a program together have fewer bytes than this, as offsets have 32 bits.
+const MOST_BYTES: usize = u32::MAX as usize - 1;
+
+impl<'a> ProgramContext<'a> {
+    /// The program of these files, given with their numbers. A program that is too long for its offsets is cut off
+    /// behind a file.
+    pub fn new(files: impl IntoIterator<Item = (usize, &'a Document)>, wanted: Option<usize>) -> Self {
+        let mut start = 0usize;
+        let files = files.into_iter().map(|(number, document)| {
+            let file = ProgramFile { number, document, start };
+            // The end of a file and the start of the next are not the same place.
+            start = start.saturating_add(document.len() + 1);
+            file
+        });
+        let files = files.take_while(|file| file.start.saturating_add(file.document.len()) < MOST_BYTES);
+        ProgramContext { files: files.collect(), wanted }
+    }
+
+    /// The files in order.
+    pub fn files(&self) -> &[ProgramFile<'a>] {
+        &self.files
+    }
+
+    /// The last file; nothing if there is none.
+    pub fn last(&self) -> Option<ProgramFile<'a>> {
+        self.files.last().copied()
+    }
+
+    /// What the program is written for.
+    pub fn target(&self) -> &'static Target {
+        self.files.first().map_or(Target::of(Model::Fx2n), |file| file.document.target())
+    }
+
+    /// The chunks of all files, in order.
+    pub fn chunks(&self) -> impl Iterator<Item = ChunkRef<'a>> + use<'a> {
+        self.files.clone().into_iter().flat_map(|file| file.chunks())
+    }
+
+    /// Calls `judge` for each file about which the findings are wanted, with offsets of that file.
+    pub fn each_file(
+        &self,
+        found: &mut Vec<Diagnostic>,
+        mut judge: impl FnMut(&'a Document, &mut Vec<Diagnostic>),
+    ) {
+        for file in self.files.iter().filter(|file| self.wanted.is_none_or(|wanted| wanted == file.number)) {
+            let mut own = Vec::new();
+            judge(file.document, &mut own);
+            found.extend(own.iter().map(|diagnostic| diagnostic.shifted(file.start)));
+        }
+    }
+
+    /// Gives what was found to the files: each finding with the number of its file and that file's offsets.
+    pub fn distributed(&self, found: Vec<Diagnostic>) -> impl Iterator<Item = (usize, Diagnostic)> + '_ {
+        found.into_iter().filter_map(|diagnostic| {
+            let file = self.file_at(diagnostic.span)?;
+            if self.wanted.is_some_and(|wanted| wanted != file.number) {
+                return None;
+            }
+            Some((file.number, self.in_file(diagnostic, file)))
+        })
+    }
+
+    fn file_at(&self, span: Span) -> Option<ProgramFile<'a>> {
+        let behind = self.files.partition_point(|file| file.start <= span.start as usize);
+        self.files.get(behind.checked_sub(1)?).copied()
+    }
+
+    fn in_file(&self, mut diagnostic: Diagnostic, file: ProgramFile<'a>) -> Diagnostic {
+        let is_alone = self.files.len() == 1;
+        if is_alone {
+            return diagnostic;
+        }
+        diagnostic.span = back(diagnostic.span, file.start);
+        for related in &mut diagnostic.related {
+            let Some(other) = self.file_at(related.span) else { continue };
+            related.file = (other.number != file.number).then_some(other.number);
+            related.span = back(related.span, other.start);
+        }
+        // A fix mends the file in which the finding stands; one that reaches beyond is none of it.
+        let end = file.start + file.document.len();
+        let is_inside = |span: Span| span.start as usize >= file.start && span.end as usize <= end;
+        diagnostic.fixes.retain(|fix| fix.edits.iter().all(|edit| is_inside(edit.span)));
+        for edit in diagnostic.fixes.iter_mut().flat_map(|fix| &mut fix.edits) {
+            edit.span = back(edit.span, file.start);
+        }
+        diagnostic
+    }
+}
+
+fn back(span: Span, start: usize) -> Span {
+    Span::new(span.start as usize - start, span.end as usize - start)
 }

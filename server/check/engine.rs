@@ -1,7 +1,7 @@
 //! Runs the rules and puts their findings together.
 
-use super::{ChunkContext, ProgramContext, RULES, Rule, Run};
-use crate::document::{Document, LIMIT_BYTES, Page};
+use super::{ChunkContext, ProgramContext, RULES, Rule, Run, program_around, programs};
+use crate::document::{Document, LIMIT_BYTES, Page, ProjectView};
 use crate::text::{Diagnostic, Message, Severity, Span};
 use rustc_hash::{FxHashMap, FxHasher};
 use std::hash::{Hash, Hasher};
@@ -49,16 +49,43 @@ pub fn realtime(document: &Document, severities: &Severities) -> Vec<Diagnostic>
     with_severities(diagnostics, severities)
 }
 
-/// What the batch tier finds.
+/// What the batch tier finds in a document that stands alone.
 pub fn program(document: &Document, severities: &Severities) -> Vec<Diagnostic> {
-    let mut diagnostics = Vec::new();
-    let context = ProgramContext { document };
-    for rule in RULES.iter() {
-        if let Rule { run: Run::Program(judge) | Run::Both(_, judge), .. } = rule {
-            judge(&context, &mut diagnostics);
+    let found = judge_program(&ProgramContext::new([(0, document)], None));
+    with_severities(found.into_iter().map(|(_, diagnostic)| diagnostic).collect(), severities)
+}
+
+/// What the batch tier finds in the file of the project that is looked at. Other files are seen, and named by their
+/// numbers where they have to do with a finding.
+pub fn within_project(view: &ProjectView<'_>, severities: &Severities) -> Vec<Diagnostic> {
+    let files = program_around(view).into_iter().map(|number| (number, view.members()[number].document));
+    let found = judge_program(&ProgramContext::new(files, Some(view.here_number())));
+    with_severities(found.into_iter().map(|(_, diagnostic)| diagnostic).collect(), severities)
+}
+
+/// What both tiers find in each file of a project, in their order, sorted by place.
+pub fn project(view: &ProjectView<'_>, severities: &Severities) -> Vec<Vec<Diagnostic>> {
+    let document = |number: usize| view.members()[number].document;
+    let mut by_file: Vec<Vec<Diagnostic>> =
+        (0..view.members().len()).map(|number| realtime(document(number), severities)).collect();
+    for program in programs(view) {
+        let files = program.into_iter().map(|number| (number, document(number)));
+        for (number, diagnostic) in judge_program(&ProgramContext::new(files, None)) {
+            by_file[number].extend(with_severities(vec![diagnostic], severities));
         }
     }
-    with_severities(diagnostics, severities)
+    by_file.into_iter().map(sorted).collect()
+}
+
+/// What the rules of the batch tier find, with the number of the file.
+fn judge_program(context: &ProgramContext<'_>) -> Vec<(usize, Diagnostic)> {
+    let mut found = Vec::new();
+    for rule in RULES.iter() {
+        if let Rule { run: Run::Program(judge) | Run::Both(_, judge), .. } = rule {
+            judge(context, &mut found);
+        }
+    }
+    context.distributed(found).collect()
 }
 
 /// By place, then gravity, then code.

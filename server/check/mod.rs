@@ -7,10 +7,13 @@ mod rule;
 pub use rule::{Rule, Run};
 
 mod context;
-pub use context::{ChunkContext, ProgramContext};
+pub use context::{ChunkContext, ProgramContext, ProgramFile};
+
+mod programs;
+pub use programs::{program_around, programs};
 
 mod engine;
-pub use engine::{Severities, all, program, realtime, sorted};
+pub use engine::{Severities, all, program, project, realtime, sorted, within_project};
 
 mod statements;
 

@@ -1,6 +1,6 @@
 //! A program as one sequence of instructions and labels, for the rules that look at the whole of it.
 //!
-//! Lines of FX instruction list and elements of FX ladders come alike; offsets count from the document's start.
+//! Lines of FX instruction list and elements of FX ladders come alike, whichever file of the program they stand in.
 
 use super::ProgramContext;
 use crate::document::{ChunkRef, Document, Notation, Operation, Tree};
@@ -43,17 +43,17 @@ pub(super) fn is_fx_program(document: &Document) -> bool {
     }
 }
 
-/// All statements, in the order of the text; none if it is no FX program.
-pub(super) fn statements(document: &Document) -> impl Iterator<Item = Statement<'_>> {
-    let chunks = is_fx_program(document).then(|| document.chunks());
-    chunks.into_iter().flatten().flat_map(of_chunk)
-}
+impl<'a> ProgramContext<'a> {
+    /// All statements, in the order of execution; none if it is no FX program.
+    pub(super) fn statements(&self) -> impl Iterator<Item = Statement<'a>> + use<'a> {
+        let is_fx = self.files().first().is_some_and(|file| is_fx_program(file.document));
+        is_fx.then(|| self.chunks()).into_iter().flatten().flat_map(of_chunk)
+    }
 
-impl ProgramContext<'_> {
     /// The statements up to END, it included: what the PLC executes.
-    pub(super) fn executed(&self) -> impl Iterator<Item = Statement<'_>> {
+    pub(super) fn executed(&self) -> impl Iterator<Item = Statement<'a>> + use<'a> {
         let mut ended = false;
-        statements(self.document).take_while(move |statement| {
+        self.statements().take_while(move |statement| {
             let goes_on = !ended;
             ended |= statement.flow() == Some(Flow::ProgramEnd);
             goes_on

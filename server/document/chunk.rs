@@ -1,6 +1,6 @@
 //! A chunk: a piece of text with what it says, shared by all snapshots that contain it.
 
-use super::{Mention, Notation, Size, mention};
+use super::{Mention, Notation, Size, exported, mention};
 use crate::il::{fx, iec};
 use crate::ladder::{self, LadderTree};
 use crate::target::Target;
@@ -35,10 +35,11 @@ impl Chunk {
     /// Reads `text`, which must be one of the pieces that [`split`] makes.
     pub fn read(text: &str, notation: Notation, target: &Target) -> Chunk {
         let tree = match notation {
-            Notation::Ladder if ladder::kind_of(text) == ladder::ChunkKind::Declarations => {
-                Tree::Iec(iec::parse(text, target))
-            }
-            Notation::Ladder => Tree::Ladder(ladder::parse(text, target)),
+            Notation::Ladder => match ladder::kind_of(text) {
+                ladder::ChunkKind::Declarations => Tree::Iec(iec::parse(text, target)),
+                ladder::ChunkKind::Ldmicro if exported::declares(text) => Tree::Iec(exported::read(text)),
+                _ => Tree::Ladder(ladder::parse(text, target)),
+            },
             Notation::FxIl => Tree::Fx(fx::parse(text, target)),
             Notation::IecIl => Tree::Iec(iec::parse(text, target)),
         };

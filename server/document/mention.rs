@@ -209,7 +209,7 @@ fn of_ladder(text: &str, tree: &LadderTree, mentions: &mut Vec<Mention>) {
                     mentions.push(one(Symbol::variable(instance.of(text)), instance, Use::ReadWrite));
                 }
                 if let Some(name) = block.type_name {
-                    mentions.push(one(Symbol::Pou(folded(name.of(text))), name, Use::Read));
+                    mentions.push(one(Symbol::Pou(folded(block.type_text(text).unwrap_or(""))), name, Use::Read));
                 }
                 let outputs = block.outputs.iter().filter_map(|pin| match pin.wire {
                     crate::ladder::PinWire::Operand(index) => Some(index),

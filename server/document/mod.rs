@@ -13,6 +13,8 @@ pub use snapshot::{ChunkRef, Document, Edit, LIMIT_BYTES};
 mod chunk;
 pub use chunk::{Chunk, Tree};
 
+mod exported;
+
 mod pages;
 pub use pages::Page;
 

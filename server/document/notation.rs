@@ -64,6 +64,11 @@ pub fn detect_notation(text: &str) -> Notation {
 /// `MO`) or mnemonic is still meant for the FX, so that it is reported and not taken for a variable.
 pub fn detect_ladder_target(text: &str) -> &'static Target {
     let header = text.lines().any(|line| line.split_whitespace().next().is_some_and(is_declaration_keyword));
+    let exported = text
+        .trim_start_matches('\u{feff}')
+        .lines()
+        .take(3)
+        .any(|line| line.starts_with("LDmicro export text"));
     let foreign = || {
         drawing_words(text).any(|word| {
             word.chars().any(char::is_alphabetic)
@@ -72,7 +77,7 @@ pub fn detect_ladder_target(text: &str) -> &'static Target {
                 && !resembles_device(word)
         })
     };
-    if header || foreign() { Target::of(Model::Iec) } else { Target::of(Model::Fx2n) }
+    if header || exported || foreign() { Target::of(Model::Iec) } else { Target::of(Model::Fx2n) }
 }
 
 /// The words of a drawing that can be operands: comments, network headers, the letters of symbols and the mnemonics

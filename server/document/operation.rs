@@ -84,6 +84,7 @@ fn coil_mnemonic(kind: CoilKind) -> &'static str {
         CoilKind::Reset => "RST",
         CoilKind::Rising => "PLS",
         CoilKind::Falling => "PLF",
+        CoilKind::Toggle => "ALTP",
     }
 }
 

@@ -18,6 +18,7 @@ pub struct Member<'a> {
 pub struct ProjectView<'a> {
     members: Vec<Member<'a>>,
     here: usize,
+    is_listed: bool,
 }
 
 /// A place in a file of a project.
@@ -32,12 +33,18 @@ pub struct At<T> {
 impl<'a> ProjectView<'a> {
     /// A document without others.
     pub fn alone(document: &'a Document) -> ProjectView<'a> {
-        ProjectView { members: vec![Member { name: "", document }], here: 0 }
+        ProjectView { members: vec![Member { name: "", document }], here: 0, is_listed: false }
     }
 
-    /// The files `members`, seen from number `here`; nothing if there is no such number.
-    pub fn new(members: Vec<Member<'a>>, here: usize) -> Option<ProjectView<'a>> {
-        (here < members.len()).then_some(ProjectView { members, here })
+    /// The files `members`, seen from number `here`; nothing if there is no such number. `is_listed` says that the
+    /// manifest lists them and they are not just all files of the folder.
+    pub fn new(members: Vec<Member<'a>>, here: usize, is_listed: bool) -> Option<ProjectView<'a>> {
+        (here < members.len()).then_some(ProjectView { members, here, is_listed })
+    }
+
+    /// Whether the manifest lists the files.
+    pub fn is_listed(&self) -> bool {
+        self.is_listed
     }
 
     /// The document that is looked at.
@@ -63,6 +70,6 @@ impl<'a> ProjectView<'a> {
     /// The same files seen from another one; from the same one if there is no such number.
     pub fn from(&self, here: usize) -> ProjectView<'a> {
         let here = if here < self.members.len() { here } else { self.here };
-        ProjectView { members: self.members.clone(), here }
+        ProjectView { members: self.members.clone(), here, is_listed: self.is_listed }
     }
 }

@@ -3,6 +3,7 @@
 use super::names::{self, Thing};
 use crate::document::{DeclaredType, Document, Scopes, Tree, Use};
 use crate::il::iec::{IecTree, ItemKind, PouKind, SectionKind};
+use crate::ladder::{ChunkKind, kind_of, table_rows};
 use crate::target::iec::FunctionBlock;
 use crate::text::Span;
 
@@ -23,9 +24,23 @@ pub(super) fn source(document: &Document, thing: &Thing) -> Option<String> {
     let (chunk, name) = found?;
     let Tree::Iec(tree) = chunk.tree() else { return None };
     let text = chunk.text();
+    if let Some(row) = table_row(text, name) {
+        return Some(row);
+    }
     let (keyword, span) = declaration_at(tree, name)?;
     let written: Vec<&str> = span.of(text).split_whitespace().collect();
     Some(format!("{keyword} {}", written.join(" ")).trim_start().to_string())
+}
+
+/// The row of an LDmicro export's table in which the name at `name` stands: `XStart AT 2 : Digital input`.
+fn table_row(text: &str, name: Span) -> Option<String> {
+    if kind_of(text) != ChunkKind::Ldmicro {
+        return None;
+    }
+    let row = table_rows(text).into_iter().find(|row| row.name == name)?;
+    let pin = row.pin.map_or(String::new(), |pin| format!(" AT {}", pin.of(text)));
+    let kind = row.kind.map_or(String::new(), |kind| format!(" : {}", kind.of(text)));
+    Some(format!("{}{pin}{kind}", name.of(text)))
 }
 
 /// The section's keywords and all of the declaration in which the name at `name` is declared.

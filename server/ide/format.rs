@@ -46,6 +46,8 @@ fn edits_where(document: &Document, style: Style, wanted: impl Fn(Span) -> bool)
                 None
             }
             _ if !wanted(Span::new(at.start, at.start + text.len())) => None,
+            // The tables of an LDmicro export are declarations, but not as the standard writes them.
+            Tree::Iec(_) if ladder::kind_of(text) == ladder::ChunkKind::Ldmicro => None,
             Tree::Iec(tree) => Some(iec::format_chunk(text, tree, &iec::FormatOptions::default())),
             Tree::Ladder(tree) => ladder::format_chunk(text, tree, document.reader(), &page),
         };

@@ -94,7 +94,7 @@ impl View<'_> {
                     return self.name(span);
                 }
                 let row = *block.rows.iter().find(|row| row.touches(inside))?;
-                let page = self.pou_page(block.type_name?.of(self.chunk.text()))?;
+                let page = self.pou_page(block.type_text(self.chunk.text())?)?;
                 Some((row, page))
             }
             _ if element.span.touches(inside) => {

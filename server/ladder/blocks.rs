@@ -119,6 +119,7 @@ fn read_block(grid: &mut Grid, frame: Frame, text: &str, target: &Target) -> Sym
         rows: (frame.top..=frame.bottom).map(row_span).collect(),
         inputs: Vec::new(),
         outputs: Vec::new(),
+        ldmicro: None,
     };
     let mut operands = Vec::new();
     let mut power_row = None;
@@ -135,7 +136,7 @@ fn read_block(grid: &mut Grid, frame: Frame, text: &str, target: &Target) -> Sym
                 }
             };
             let present = name.is_some() || wire != PinWire::Open;
-            present.then(|| Pin { name, negated, row: grid.line(row), wire })
+            present.then(|| Pin { name, implied: "", negated, row: grid.line(row), wire })
         };
         if block.type_name.is_none() && !words.is_empty() {
             // The type stands in the middle of the first line with words.

@@ -1,7 +1,8 @@
 //! Cuts a document into chunks, so that an edit re-reads only what it touched.
 
 use super::glyph::Arms;
-use super::lines::{Line, LineKind, Lines, has_word, is_blank};
+use super::ldmicro::is_row;
+use super::lines::{LDMICRO_DRAWING, Line, LineKind, Lines, has_word, is_blank};
 use crate::text::Span;
 
 /// What a chunk holds.
@@ -59,7 +60,7 @@ pub fn kind_of(chunk: &str) -> ChunkKind {
         state.takes(&line, chunk);
         match state.phase {
             Phase::Declarations(_) => return ChunkKind::Declarations,
-            Phase::Ldmicro(_) => return ChunkKind::Ldmicro,
+            Phase::Ldmicro { .. } | Phase::Table => return ChunkKind::Ldmicro,
             Phase::Header { .. } | Phase::Drawing => return ChunkKind::Drawing,
             Phase::Start | Phase::Comments | Phase::After => {}
         }
@@ -81,8 +82,10 @@ enum Phase {
     Drawing,
     /// Declarations, with the keyword that ends the open section.
     Declarations(Option<&'static str>),
-    /// A part of an LDmicro export, with the start of its last line, empty once that is seen.
-    Ldmicro(Option<&'static str>),
+    /// The head of an LDmicro export; `open` until the line that ends it.
+    Ldmicro { open: bool },
+    /// A table of an LDmicro export.
+    Table,
     /// Blank lines at the end.
     After,
 }
@@ -114,10 +117,14 @@ impl Chunk {
         if let Phase::Declarations(Some(last)) = self.phase {
             return self.takes_declaration(line, last, text);
         }
-        if let Phase::Ldmicro(Some(last)) = self.phase {
-            let ends = !last.is_empty() && line.span.of(text).trim_start().starts_with(last);
-            self.phase = Phase::Ldmicro((!ends).then_some(last));
-            return true;
+        let words = line.span.of(text).trim_matches(is_blank);
+        if self.phase == (Phase::Ldmicro { open: true }) {
+            // Without its last line the head ends where the drawing starts.
+            self.phase = Phase::Ldmicro { open: !words.starts_with(LDMICRO_DRAWING) };
+            return !words.starts_with('|');
+        }
+        if self.phase == Phase::Table {
+            return words.is_empty() || is_row(words);
         }
         let kind = line.kind(text);
         let next = match (self.phase, &kind) {
@@ -129,7 +136,7 @@ impl Chunk {
                 Phase::Header { complete }
             }
             (Phase::Drawing | Phase::Comments | Phase::After, LineKind::Blank) => Phase::After,
-            (Phase::Declarations(_) | Phase::Ldmicro(_), LineKind::Blank) => Phase::After,
+            (Phase::Declarations(_) | Phase::Ldmicro { .. }, LineKind::Blank) => Phase::After,
             (Phase::Start | Phase::Comments, LineKind::Comment) => Phase::Comments,
             (Phase::Start | Phase::Comments, LineKind::Header(header)) => {
                 Phase::Header { complete: header.label.is_some() }
@@ -140,7 +147,8 @@ impl Chunk {
             (Phase::Start | Phase::Comments | Phase::Declarations(_), LineKind::Declaration(section)) => {
                 Phase::Declarations(*section)
             }
-            (Phase::Start | Phase::Comments, LineKind::Ldmicro(last)) => Phase::Ldmicro(Some(last)),
+            (Phase::Start | Phase::Comments, LineKind::Ldmicro) => Phase::Ldmicro { open: true },
+            (Phase::Start | Phase::Comments, LineKind::Table) => Phase::Table,
             (Phase::Start | Phase::Comments | Phase::Header { .. } | Phase::Drawing, LineKind::Drawing) => {
                 Phase::Drawing
             }

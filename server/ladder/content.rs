@@ -211,10 +211,10 @@ fn read_compare(pieces: &[Piece], target: &Target) -> Option<Reading> {
     }
 }
 
-fn compare_operator(text: &str, wide: bool) -> Option<CompareOperator> {
+pub(super) fn compare_operator(text: &str, wide: bool) -> Option<CompareOperator> {
     Some(match text {
         "=" | "==" => CompareOperator::Equal { wide },
-        "<>" | "!=" | "≠" => CompareOperator::NotEqual { wide },
+        "<>" | "!=" | "/=" | "≠" => CompareOperator::NotEqual { wide },
         ">" => CompareOperator::Greater { wide },
         "<" => CompareOperator::Less { wide },
         ">=" | "=>" | "≥" => CompareOperator::GreaterOrEqual { wide },
@@ -258,7 +258,7 @@ fn contact_mnemonic(word: &Piece) -> Option<ContactKind> {
 
 /// The kind that the first word in parentheses gives a coil; `alone` if nothing follows it.
 fn coil_kind(word: &Piece, alone: bool) -> Option<CoilKind> {
-    const MARKS: [(&str, CoilKind); 9] = [
+    const MARKS: [(&str, CoilKind); 10] = [
         ("/", CoilKind::Negated),
         ("S", CoilKind::Set),
         ("L", CoilKind::Set),
@@ -266,6 +266,7 @@ fn coil_kind(word: &Piece, alone: bool) -> Option<CoilKind> {
         ("U", CoilKind::Reset),
         ("P", CoilKind::Rising),
         ("N", CoilKind::Falling),
+        ("T", CoilKind::Toggle),
         ("↑", CoilKind::Rising),
         ("↓", CoilKind::Falling),
     ];

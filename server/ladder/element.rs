@@ -1,5 +1,7 @@
 //! What stands on the wires of a rung.
 
+use super::ldmicro::{BoxKind, time_literal};
+use crate::target::iec::{Literal, LiteralValue};
 use crate::target::{Device, Form, Operand, Role};
 use crate::text::{Span, Spanned};
 use std::borrow::Cow;
@@ -83,7 +85,18 @@ impl Element {
     /// so that `START` over `BUTTON` is the variable `START_BUTTON`.
     pub fn operand_text<'t>(&self, index: usize, chunk: &'t str) -> Cow<'t, str> {
         if index > 0 || self.name_lines.len() < 2 {
-            return Cow::Borrowed(self.operands.get(index).map_or("", |operand| operand.span.of(chunk)));
+            let Some(operand) = self.operands.get(index) else { return Cow::Borrowed("") };
+            let word = operand.span.of(chunk);
+            return match operand.value {
+                // An LDmicro export writes `1.000 s` and draws a gap for a contact that is never on.
+                Operand::Literal(Literal { value: LiteralValue::Time(_), .. }) if !word.contains('#') => {
+                    time_literal(word).map_or(Cow::Borrowed(word), Cow::Owned)
+                }
+                Operand::Literal(Literal { value: LiteralValue::Bool(false), .. }) if word.starts_with('+') => {
+                    Cow::Borrowed("FALSE")
+                }
+                _ => Cow::Borrowed(word),
+            };
         }
         let mut name = String::new();
         for line in &self.name_lines {
@@ -154,6 +167,8 @@ pub enum CoilKind {
     Rising,
     /// `(N)`
     Falling,
+    /// `(T)`: turns its device over when power comes, as the toggling coil of LDmicro and ALTP do.
+    Toggle,
 }
 
 /// Comparison operators; `wide` is the 32-bit form (`[D>= D0 K10]`).
@@ -181,6 +196,18 @@ pub struct Block {
     pub inputs: Vec<Pin>,
     /// Output pins, top to bottom.
     pub outputs: Vec<Pin>,
+    /// Which box of an LDmicro export it is, if it is one: its cells are brackets, not a frame.
+    pub ldmicro: Option<&'static BoxKind>,
+}
+
+impl Block {
+    /// The name of its type or function.
+    pub fn type_text<'t>(&self, chunk: &'t str) -> Option<&'t str> {
+        match self.ldmicro {
+            Some(kind) => Some(kind.type_name),
+            None => self.type_name.map(|name| name.of(chunk)),
+        }
+    }
 }
 
 /// A pin of a function block.
@@ -188,12 +215,21 @@ pub struct Block {
 pub struct Pin {
     /// The formal name inside the box, if written.
     pub name: Option<Span>,
+    /// The formal name that the box stands for without writing it; empty where there is none.
+    pub implied: &'static str,
     /// Whether a negation circle `O` stands at the edge.
     pub negated: bool,
     /// The line of the chunk, from 0.
     pub row: u32,
     /// What is connected.
     pub wire: PinWire,
+}
+
+impl Pin {
+    /// The formal name, written or implied; empty if it has none.
+    pub fn formal<'t>(&self, chunk: &'t str) -> &'t str {
+        self.name.map_or(self.implied, |name| name.of(chunk))
+    }
 }
 
 /// What is connected to a pin.

@@ -101,11 +101,13 @@ impl Element {
             ElementKind::Block(block) => {
                 let word = |span: Option<crate::text::Span>| span.map_or("", |span| span.of(chunk));
                 let pin = |pin: &Pin| {
-                    format!("{}{}{:?}", word(pin.name), if pin.negated { "!" } else { "" }, pin.wire)
+                    let name = pin.formal(chunk);
+                    format!("{name}{}{:?}", if pin.negated { "!" } else { "" }, pin.wire)
                 };
                 let pins = |pins: &[Pin]| pins.iter().map(pin).collect::<Vec<_>>().join(",");
                 let (inputs, outputs) = (pins(&block.inputs), pins(&block.outputs));
-                format!("Block {}:{}({inputs};{outputs})", word(block.instance), word(block.type_name))
+                let type_name = block.type_text(chunk).unwrap_or("");
+                format!("Block {}:{type_name}({inputs};{outputs})", word(block.instance))
             }
             kind => format!("{kind:?}"),
         };

@@ -1,6 +1,7 @@
 //! Lines of a document: where they end, what in them is comment, and what kind of line each is.
 
 use super::glyph::Arms;
+use super::ldmicro::is_title;
 use crate::text::{Span, cell_width};
 
 /// A line of the text with the comments in it.
@@ -14,6 +15,8 @@ pub(super) struct Line {
     pub(super) comments: Vec<Span>,
     /// Whether it starts inside a comment that an earlier line opened.
     pub(super) continues: bool,
+    /// Whether it is a comment between the double rails of an LDmicro export.
+    pub(super) railed: bool,
 }
 
 /// A comment that is open at the end of a line.
@@ -68,8 +71,15 @@ impl Iterator for Lines<'_> {
         let ending = if bytes[end..].starts_with(b"\r\n") { 2 } else { usize::from(end < bytes.len()) };
         self.offset = end + ending;
         let continues = self.open.is_some();
-        let comments = if suspicious { self.comments(start, end) } else { Vec::new() };
-        Some(Line { span: Span::new(start, end), next: self.offset, comments, continues })
+        let railed = suspicious && !continues;
+        let railed = railed.then(|| railed_comment(self.text.get(start..end)?, start)).flatten();
+        let comments = match railed {
+            Some(comment) => vec![comment],
+            None if suspicious => self.comments(start, end),
+            None => Vec::new(),
+        };
+        let span = Span::new(start, end);
+        Some(Line { span, next: self.offset, comments, continues, railed: railed.is_some() })
     }
 }
 
@@ -117,6 +127,17 @@ impl Lines<'_> {
     }
 }
 
+/// The comment of a line such as ` 3 ||  ; text    ||`, which an LDmicro export draws between its double rails.
+fn railed_comment(line: &str, start: usize) -> Option<Span> {
+    let inner = line.trim_start_matches(|c: char| c == ' ' || c.is_ascii_digit()).strip_prefix("||")?;
+    let comment = inner.trim_start_matches(' ');
+    let comment = comment.strip_prefix(';').map(|_| comment)?;
+    let at = start + line.len() - comment.len();
+    let comment = comment.trim_end();
+    let comment = comment.strip_suffix("||").unwrap_or(comment).trim_end();
+    Some(Span::new(at, at + comment.len()))
+}
+
 /// One past the first `*)` from `at` on.
 fn close_of_comment(bytes: &[u8], at: usize) -> Option<usize> {
     let tail = bytes.get(at..)?;
@@ -146,13 +167,18 @@ pub(super) enum LineKind {
     Header(HeaderLine),
     /// A keyword of a declaration, with the keyword that closes the section, if it opens one.
     Declaration(Option<&'static str>),
-    /// The first line of a part of an LDmicro export that is no drawing, with what its last line starts with.
-    Ldmicro(&'static str),
+    /// The first line of an LDmicro export; its head goes on to the line that [`LDMICRO_DRAWING`] starts.
+    Ldmicro,
+    /// The title of a table behind the drawing of an LDmicro export.
+    Table,
     /// Bars and blanks only: the columns of the bars, neighbours taken together.
     Bars(Vec<u32>),
     /// Anything else belongs to a drawing.
     Drawing,
 }
+
+/// Starts the line below which the drawing of an LDmicro export begins.
+pub(super) const LDMICRO_DRAWING: &str = "LADDER DIAGRAM:";
 
 /// The parts of a line that starts a network.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
@@ -177,9 +203,16 @@ impl Line {
                 LineKind::Comment
             };
         };
+        if self.railed {
+            return LineKind::Comment;
+        }
         let words = content.of(text);
-        if Arms::of(words.chars().next().unwrap_or(' ')).is_upright() {
-            return self.bars(text).map_or(LineKind::Drawing, LineKind::Bars);
+        // A number may stand beside a double rail, also beside one with nothing to its right.
+        let number = words.len() - words.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+        let numbered = number > 0 && words[number..].trim_start().starts_with("||");
+        if numbered || Arms::of(words.chars().next().unwrap_or(' ')).is_upright() {
+            let from = content.start as usize + number;
+            return self.bars(text, from).map_or(LineKind::Drawing, LineKind::Bars);
         }
         if let Some(header) = read_header(words, content.start as usize) {
             return LineKind::Header(header);
@@ -187,9 +220,12 @@ impl Line {
         if let Some(section) = declaration(words) {
             return LineKind::Declaration(section);
         }
-        match ldmicro(words) {
-            Some(last) => LineKind::Ldmicro(last),
-            None => LineKind::Drawing,
+        if words.starts_with("LDmicro export text") {
+            LineKind::Ldmicro
+        } else if is_title(words) {
+            LineKind::Table
+        } else {
+            LineKind::Drawing
         }
     }
 
@@ -211,12 +247,12 @@ impl Line {
         content
     }
 
-    /// The columns of its bars, if it consists of bars and blanks only.
-    fn bars(&self, text: &str) -> Option<Vec<u32>> {
+    /// The columns of its bars, if it consists of bars and blanks only from the byte `from` on.
+    fn bars(&self, text: &str, from: usize) -> Option<Vec<u32>> {
         let mut bars = Vec::new();
         let mut last = None;
-        for (column, _, character) in self.cells(text) {
-            if is_blank(character) {
+        for (column, offset, character) in self.cells(text) {
+            if is_blank(character) || offset < from {
                 continue;
             }
             if !Arms::of(character).is_vertical() {
@@ -343,12 +379,4 @@ fn declaration(words: &str) -> Option<Option<&'static str>> {
 /// Whether `word` stands in `line`, letter case aside.
 pub(super) fn has_word(line: &str, word: &str) -> bool {
     line.split(|c: char| !super::glyph::continues_word(c)).any(|part| part.eq_ignore_ascii_case(word))
-}
-
-/// The parts of an LDmicro export around its drawing; the tables after it run to the end of the text.
-fn ldmicro(words: &str) -> Option<&'static str> {
-    if words.starts_with("LDmicro export text") {
-        return Some("LADDER DIAGRAM:");
-    }
-    (words.starts_with("I/O ASSIGNMENT:") || words.starts_with("VAR LIST:")).then_some("")
 }

@@ -8,7 +8,7 @@ mod chunks;
 pub use chunks::{ChunkKind, chunk_ends, kind_of, split};
 
 mod reader;
-pub use reader::{parse, parse_with};
+pub use reader::{Choice, parse, parse_choosing, parse_with};
 
 mod lines;
 pub use lines::column_after;
@@ -19,6 +19,9 @@ mod grid;
 
 mod blocks;
 
+mod ldmicro;
+pub use ldmicro::{BoxKind, NameKind, TableRow, table_rows, time_literal};
+
 mod scan;
 
 mod content;
@@ -26,6 +29,7 @@ mod content;
 mod uprights;
 
 mod ragged;
+pub use ragged::TWO_READINGS;
 
 mod wires;
 

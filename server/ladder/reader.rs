@@ -4,6 +4,7 @@ use super::blocks::find_blocks;
 use super::chunks::{ChunkKind, kind_of};
 use super::glyph::Arms;
 use super::grid::{Grid, MOST_COLUMNS, MOST_ROWS};
+use super::ldmicro::find_boxes;
 use super::lines::{HeaderLine, LineKind, Lines, OpenComment};
 use super::names::{Named, Naming};
 use super::rungs::build_rungs;
@@ -26,6 +27,24 @@ pub fn parse(chunk: &str, target: &Target) -> LadderTree {
 /// As [`parse`], with the document's habit of placing names above or below, which decides in a drawing that shows
 /// none of its own.
 pub fn parse_with(chunk: &str, target: &Target, habit: NameHabit) -> LadderTree {
+    read(chunk, target, habit, None)
+}
+
+/// Which of two readings is meant, see [`TWO_READINGS`](super::TWO_READINGS).
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Choice {
+    /// The end that can be joined in two ways: where the problem was reported.
+    pub end: Span,
+    /// What it is to be joined with: one of the problem's related places.
+    pub joint: Span,
+}
+
+/// As [`parse_with`], with one doubt decided.
+pub fn parse_choosing(chunk: &str, target: &Target, habit: NameHabit, choice: Choice) -> LadderTree {
+    read(chunk, target, habit, Some(choice))
+}
+
+fn read(chunk: &str, target: &Target, habit: NameHabit, choice: Option<Choice>) -> LadderTree {
     let mut tree = LadderTree::default();
     let is_drawing = !matches!(kind_of(chunk), ChunkKind::Declarations | ChunkKind::Ldmicro);
     let mut grid = Grid::default();
@@ -54,16 +73,23 @@ pub fn parse_with(chunk: &str, target: &Target, habit: NameHabit) -> LadderTree 
                 Message::new("rung-too-large.grid").with("rows", MOST_ROWS).with("columns", MOST_COLUMNS);
             tree.problems.push(Diagnostic::new("rung-too-large", span, message));
         }
-        Some(_) => read_drawing(grid, chunk, target, habit, &mut tree),
+        Some(_) => read_drawing(grid, chunk, target, (habit, choice), &mut tree),
         None => {}
     }
     tree.problems.sort_by_key(|problem| problem.span);
     tree
 }
 
-fn read_drawing(mut grid: Grid, text: &str, target: &Target, habit: NameHabit, tree: &mut LadderTree) {
+fn read_drawing(
+    mut grid: Grid,
+    text: &str,
+    target: &Target,
+    (habit, choice): (NameHabit, Option<Choice>),
+    tree: &mut LadderTree,
+) {
     let left = left_column(&grid);
-    let (symbols, blocks) = find_blocks(&mut grid, text, target);
+    let (mut symbols, mut blocks) = find_blocks(&mut grid, text, target);
+    find_boxes(&mut grid, text, target, &mut symbols, &mut blocks);
     let problems = &mut tree.problems;
     let scanner = Scanner { grid: &grid, text, target, left, symbols, problems };
     let mut tokens = scanner.scan(&blocks);
@@ -72,7 +98,7 @@ fn read_drawing(mut grid: Grid, text: &str, target: &Target, habit: NameHabit, t
         report_text(&grid, &tokens, problems);
         return;
     }
-    let uprights = Uprights::find(&grid, &tokens, left, problems);
+    let uprights = Uprights::find(&grid, &tokens, left, choice, problems);
     uprights.report(&grid, &tokens, problems);
     let wiring = Tracer::new(&grid, &tokens, &uprights, problems).trace();
     let naming = Naming { grid: &grid, text, target, tokens: &mut tokens, left, problems };

@@ -104,10 +104,10 @@ fn row_groups(tokens: &Tokens, uprights: &Uprights) -> Vec<(usize, usize)> {
         let (first, last) = (upright.cells[0].row, upright.cells[upright.cells.len() - 1].row);
         reach[first] = reach[first].max(last);
     }
-    for symbol in tokens.symbols.iter().filter(|symbol| symbol.element.block().is_some()) {
+    for symbol in &tokens.symbols {
         let height = symbol.element.block().map_or(0, |block| block.rows.len());
         let first = symbol.row.saturating_sub(symbol.depth);
-        reach[first] = reach[first].max(first + height.saturating_sub(1));
+        reach[first] = reach[first].max(symbol.row).max(first + height.saturating_sub(1));
     }
     let live =
         |row: usize| tokens.rows[row].iter().any(|token| matches!(token.what, What::Wire | What::Symbol(_)));

@@ -61,6 +61,8 @@ pub(super) struct Extent {
     pub(super) drawn: Option<(usize, usize)>,
     /// Start of the first symbol, start and end of the last one.
     pub(super) symbols: Option<(usize, usize, usize)>,
+    /// One past the last wire or symbol and what is joined to it.
+    pub(super) wires: Option<usize>,
 }
 
 impl Tokens {
@@ -510,6 +512,9 @@ fn extent(line: &[Token]) -> Extent {
         if let What::Symbol(_) = token.what {
             let first = extent.symbols.map_or(token.start, |(first, ..)| first);
             extent.symbols = Some((first, token.start, token.end));
+        }
+        if matches!(token.what, What::Symbol(_) | What::Wire) || extent.wires == Some(token.start) {
+            extent.wires = Some(token.end);
         }
     }
     extent

@@ -144,6 +144,7 @@ fn coil(kind: CoilKind, words: &[String], style: StyleKind) -> Option<Symbol> {
         CoilKind::Reset => 'R',
         CoilKind::Rising => 'P',
         CoilKind::Falling => 'N',
+        CoilKind::Toggle => 'T',
     };
     Some(match (style, mark) {
         (StyleKind::Brackets, ' ') => set(Setting::Coil, format!("({name})")),
@@ -177,11 +178,11 @@ fn figure(block: &Block, words: &[String], element: &Element, source: &str) -> O
             PinWire::Operand(index) => words.get(index)?.clone(),
             _ => String::new(),
         };
-        let name = pin.name.map_or(String::new(), |name| name.of(source).to_string());
+        let name = pin.formal(source).to_string();
         Some(FigurePin { name, negated: pin.negated, power: pin.wire == PinWire::Power, operand })
     };
     let figure = Figure {
-        type_name: word(block.type_name?.of(source))?,
+        type_name: word(block.type_text(source)?)?,
         inputs: block.inputs.iter().map(pin).collect::<Option<_>>()?,
         outputs: block.outputs.iter().map(pin).collect::<Option<_>>()?,
     };

@@ -1,7 +1,9 @@
 //! Vertical wires: which bars and junctions belong together, and what each of them is.
 
+use super::Choice;
 use super::glyph::Arms;
 use super::grid::Grid;
+use super::ragged::{Mender, is_left_rail, report_left_rail};
 use super::scan::{Token, Tokens, What};
 use crate::text::{Diagnostic, Message};
 
@@ -63,16 +65,18 @@ impl Uprights {
         grid: &Grid,
         tokens: &Tokens,
         left: usize,
+        choice: Option<Choice>,
         problems: &mut Vec<Diagnostic>,
     ) -> Uprights {
         let mut found = Uprights::linked(tokens);
-        super::ragged::mend(&mut found, grid, tokens, left, problems);
+        Mender { uprights: &mut found, grid, tokens, left, choice, problems }.mend();
         let right =
             tokens.rows.iter().flatten().filter(|token| token.is_drawn()).map(|t| t.end).max().unwrap_or(0);
         for upright in found.all.iter_mut().filter(|upright| !upright.cells.is_empty()) {
             join(upright, tokens);
             upright.role = role_of(upright, tokens, left, right);
         }
+        report_left_rail(&found, grid, tokens, problems);
         found
     }
 
@@ -166,7 +170,7 @@ fn join(upright: &mut Upright, tokens: &Tokens) {
 
 fn role_of(upright: &Upright, tokens: &Tokens, left: usize, right: usize) -> Role {
     let first = &upright.cells[0];
-    if tokens.rows[first.row][first.token].start <= left {
+    if tokens.rows[first.row][first.token].start <= left || is_left_rail(upright, tokens, left) {
         return Role::LeftRail;
     }
     let any_left = upright.cells.iter().any(|cell| cell.left);
@@ -179,7 +183,10 @@ fn role_of(upright: &Upright, tokens: &Tokens, left: usize, right: usize) -> Rol
         let arms = arms(tokens, cell);
         let token = &tokens.rows[cell.row][cell.token];
         cell.left
-            && (arms.is_vertical() || arms.is_left_tee() || token.end == right || after_output(tokens, cell))
+            && (arms.is_vertical()
+                || arms.is_left_tee()
+                || token.end == right
+                || reached_from_output(tokens, cell.row, cell.token))
     };
     if any_left && !any_right && nothing_beyond() && upright.cells.iter().any(looks_like_rail) {
         return Role::RightRail;
@@ -194,10 +201,11 @@ fn role_of(upright: &Upright, tokens: &Tokens, left: usize, right: usize) -> Rol
     }
 }
 
-/// Whether the wire that reaches the cell from the left comes from an output.
-fn after_output(tokens: &Tokens, cell: &Cell) -> bool {
-    let mut edge = tokens.rows[cell.row][cell.token].start;
-    for token in tokens.rows[cell.row][..cell.token].iter().rev() {
+/// Whether the wire that reaches a token of a row from the left comes from an output.
+pub(super) fn reached_from_output(tokens: &Tokens, row: usize, number: usize) -> bool {
+    let line = &tokens.rows[row];
+    let mut edge = line[number].start;
+    for token in line[..number].iter().rev() {
         match token.what {
             _ if token.end != edge => return false,
             What::Wire => edge = token.start,

@@ -1,6 +1,7 @@
 //! Tokens to links: which wire leads from where to where.
 
 use super::grid::Grid;
+use super::ragged::ASIDE;
 use super::scan::{Token, Tokens, What};
 use super::uprights::{Cell, Role, Upright, Uprights};
 use super::{ElementKind, PinWire};
@@ -65,6 +66,8 @@ pub(super) struct Tracer<'a> {
     problems: &'a mut Vec<Diagnostic>,
     /// Elements that have been reported to stand on a vertical wire.
     reported: FxHashSet<Span>,
+    /// The column of the left rail, if there is one.
+    left_rail: Option<usize>,
 }
 
 impl<'a> Tracer<'a> {
@@ -77,7 +80,23 @@ impl<'a> Tracer<'a> {
         let wiring = Wiring::default();
         let on_vertical = problems.iter().filter(|problem| problem.code == "contact-on-vertical");
         let reported = on_vertical.map(|problem| problem.span).collect();
-        Tracer { grid, tokens, uprights, wiring, row: 0, end: 0, tail: None, start: 0, problems, reported }
+        let rails = || uprights.all.iter().filter(|upright| upright.role == Role::LeftRail);
+        let column = |cell: &Cell| tokens.rows[cell.row][cell.token].start;
+        let wired = rails().flat_map(|rail| &rail.cells).filter(|cell| cell.right).map(column).min();
+        let left_rail = wired.or_else(|| rails().flat_map(|rail| &rail.cells).map(column).min());
+        Tracer {
+            grid,
+            tokens,
+            uprights,
+            wiring,
+            row: 0,
+            end: 0,
+            tail: None,
+            start: 0,
+            problems,
+            reported,
+            left_rail,
+        }
     }
 
     /// The wires of all rows.
@@ -105,7 +124,7 @@ impl<'a> Tracer<'a> {
 
     fn wire(&mut self, token: Token) {
         if self.tail.is_none() {
-            let end = self.loose(token.start);
+            let end = self.left_end(token);
             self.follow(end);
         }
         self.add_cells(token);
@@ -127,7 +146,7 @@ impl<'a> Tracer<'a> {
             if self.tail.is_none() {
                 // A connector brings its own power; it stands at the left rail as every start of a path.
                 let starts = matches!(element.kind, ElementKind::ConnectorIn(_));
-                let end = if starts { Node::LeftRail } else { self.loose(token.start) };
+                let end = if starts { Node::LeftRail } else { self.left_end(token) };
                 self.follow(end);
             }
             self.link(Node::Symbol(symbol, 0));
@@ -217,6 +236,21 @@ impl<'a> Tracer<'a> {
         let message = Message::new("contact-on-vertical.element");
         let problem = Diagnostic::new("contact-on-vertical", element.span, message);
         self.problems.push(problem.related(wire, Message::new("contact-on-vertical.wire")));
+    }
+
+    /// Where a wire or an element comes from that nothing leads to: the left rail, if that was only left out in this
+    /// row, else nothing.
+    fn left_end(&mut self, token: Token) -> Node {
+        let first = self.tokens.extent(self.row).drawn.is_some_and(|(first, _)| first == token.start);
+        match self.left_rail {
+            Some(rail) if first && token.start <= rail + ASIDE => {
+                let span = self.grid.span(self.row, token.start, token.start + 1);
+                let message = Message::new("ragged-drawing.no-rail");
+                self.problems.push(Diagnostic::new("ragged-drawing", span, message));
+                Node::LeftRail
+            }
+            _ => self.loose(token.start),
+        }
     }
 
     /// A loose end in a cell of this row.

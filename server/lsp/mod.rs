@@ -18,6 +18,7 @@ mod to_proto;
 mod workspace;
 
 use service::Ordered;
+use tokio::io::{AsyncRead, AsyncWrite};
 use tower_lsp::{LspService, Server};
 use workspace::Workspace;
 
@@ -27,6 +28,14 @@ const CONCURRENCY: usize = 4096;
 /// Serves one client on standard input and output until it says `exit` or goes away.
 /// Returns the process's exit code: 0 after a `shutdown`, else 1, as the protocol wants.
 pub async fn serve() -> u8 {
+    serve_between(tokio::io::stdin(), tokio::io::stdout()).await
+}
+
+/// Serves one client that sends `input` and reads `output`; ends and returns as [`serve`] does.
+pub async fn serve_between(
+    input: impl AsyncRead + Send + Unpin + 'static,
+    output: impl AsyncWrite + Send + Unpin,
+) -> u8 {
     let mut workspace = None;
     let (service, socket) = LspService::new(|client| {
         let shared = Workspace::new(client);
@@ -35,7 +44,7 @@ pub async fn serve() -> u8 {
     });
     let Some(workspace) = workspace else { return 1 };
     let ordered = Ordered::new(service, workspace.clone());
-    Server::new(frames::sound(tokio::io::stdin()), tokio::io::stdout(), socket)
+    Server::new(frames::sound(input), output, socket)
         .concurrency_level(CONCURRENCY)
         .serve(ordered)
         .await;

@@ -53,6 +53,7 @@ pub(super) struct Around {
     files: Vec<Arc<Open>>,
     names: Vec<String>,
     here: usize,
+    is_listed: bool,
 }
 
 impl Around {
@@ -60,7 +61,7 @@ impl Around {
     pub fn view(&self) -> ProjectView<'_> {
         let members = self.files.iter().zip(&self.names);
         let members = members.map(|(file, name)| Member { name, document: &file.document }).collect();
-        ProjectView::new(members, self.here)
+        ProjectView::new(members, self.here, self.is_listed)
             .unwrap_or_else(|| ProjectView::alone(&self.files[self.here].document))
     }
 
@@ -78,8 +79,9 @@ impl Around {
 impl Snapshot {
     /// The project around `open` at this moment.
     pub(super) fn around(&self, open: &Arc<Open>) -> Around {
-        let mut around = Around { files: Vec::new(), names: Vec::new(), here: usize::MAX };
+        let mut around = Around { files: Vec::new(), names: Vec::new(), here: usize::MAX, is_listed: false };
         if let Some(loaded) = open.project.as_ref().and_then(|key| self.projects.get(key)) {
+            around.is_listed = loaded.manifest.files.is_some();
             for (file, name) in self.files_of(loaded) {
                 if Some(&file.path) == Some(&open.path) {
                     around.here = around.files.len();
@@ -92,7 +94,7 @@ impl Snapshot {
             }
         }
         if around.here == usize::MAX {
-            return Around { files: vec![open.clone()], names: vec![String::new()], here: 0 };
+            return Around { files: vec![open.clone()], names: vec![String::new()], here: 0, is_listed: false };
         }
         around
     }

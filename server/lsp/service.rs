@@ -73,7 +73,6 @@ mod tests {
     use crate::lsp::backend::Backend;
     use serde_json::json;
     use std::pin::Pin;
-    use std::sync::Arc;
     use std::task::{Context, Poll};
     use tower::Service;
     use tower_lsp::jsonrpc::{Id, Request, Response};

@@ -26,7 +26,7 @@ pub struct Diagnostic {
     pub span: Span,
     /// What is wrong, and what was expected.
     pub message: Message,
-    /// Other places that belong to it, in the same text.
+    /// Other places that belong to it.
     pub related: Vec<Related>,
     /// What would mend it, best first.
     pub fixes: Vec<Fix>,
@@ -35,6 +35,8 @@ pub struct Diagnostic {
 /// A place that belongs to a diagnostic, and why.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub struct Related {
+    /// The file of the project, by its number there, if it is another one.
+    pub file: Option<usize>,
     /// Where.
     pub span: Span,
     /// What is there.
@@ -58,7 +60,7 @@ impl Diagnostic {
 
     /// With another place that belongs to it.
     pub fn related(mut self, span: Span, message: Message) -> Diagnostic {
-        self.related.push(Related { span, message });
+        self.related.push(Related { file: None, span, message });
         self
     }
 
@@ -83,8 +85,11 @@ impl Diagnostic {
     }
 
     fn mapped(&self, place: impl Fn(Span) -> Span) -> Diagnostic {
-        let related =
-            self.related.iter().map(|r| Related { span: place(r.span), message: r.message.clone() });
+        let related = self.related.iter().map(|r| {
+            // Other files stay where they are.
+            let span = if r.file.is_none() { place(r.span) } else { r.span };
+            Related { file: r.file, span, message: r.message.clone() }
+        });
         let fixes = self.fixes.iter().map(|fix| Fix {
             title: fix.title.clone(),
             edits: fix.edits.iter().map(|edit| TextEdit::new(place(edit.span), edit.text.clone())).collect(),

@@ -1,4 +1,4 @@
-// Bundles the extension into dist/extension.js and copies the grammars in.
+// Bundles the extension into dist/extension.js and dist/web.js, and copies the grammars and the example in.
 //
 // Usage: node scripts/build.mjs [--production] [--tests]
 //   --production  minified, no source map
@@ -22,16 +22,16 @@ for (const name of readdirSync(join(root, '..', 'syntaxes'))) {
   }
 }
 
+rmSync(join(root, 'examples'), { recursive: true, force: true });
+for (const name of ['getting-started', 'getting-started-zh-cn']) {
+  cpSync(join(root, '..', 'examples', name), join(root, 'examples', name), { recursive: true });
+}
+
 rmSync(join(root, 'dist'), { recursive: true, force: true });
-await build({
-  ...common,
-  entryPoints: ['src/extension.ts'],
-  outfile: 'dist/extension.js',
-  format: 'cjs',
-  external: ['vscode'],
-  minify: production,
-  sourcemap: !production,
-});
+const bundle = { ...common, format: 'cjs', external: ['vscode'], minify: production, sourcemap: !production };
+await build({ ...bundle, entryPoints: ['src/extension.ts'], outfile: 'dist/extension.js' });
+// The edition for the browser alone, which has no Node.
+await build({ ...bundle, platform: 'browser', target: 'es2022', entryPoints: ['src/web.ts'], outfile: 'dist/web.js' });
 
 if (process.argv.includes('--tests')) {
   rmSync(join(root, 'out'), { recursive: true, force: true });

@@ -27,3 +27,10 @@ export function serverPathSetting(): string {
 export function currentServerArguments(): string[] {
   return serverArguments(vscode.workspace.getConfiguration(SECTION).get('server.extraArgs'));
 }
+
+/** Language of messages and pages as the command line takes it: `en` or `zh-CN`. */
+export function currentLanguage(): string {
+  const chosen = vscode.workspace.getConfiguration(SECTION).get('language', 'auto');
+  const language = chosen === 'auto' ? vscode.env.language : chosen;
+  return language.toLowerCase().startsWith('zh') ? 'zh-CN' : 'en';
+}

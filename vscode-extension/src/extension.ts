@@ -3,9 +3,15 @@
 import * as vscode from 'vscode';
 import { registerCommands } from './commands';
 import { currentSettings } from './configuration';
+import { DrawingEditor } from './drawing';
+import { registerExample } from './example';
+import { Pages } from './pages';
 import { ServerController } from './server';
 import type { ProgramStatus, ServerState } from './status';
 import { StatusBar } from './statusBar';
+import { RungwiseTasks } from './tasks';
+import { UsageView } from './usageView';
+import { registerWalkthrough } from './walkthrough';
 
 /** What other extensions and the tests may use. */
 export interface RungwiseApi {
@@ -25,7 +31,18 @@ export async function activate(context: vscode.ExtensionContext): Promise<Rungwi
   const statusBar = new StatusBar();
   const controller = new ServerController(context, output, statusBar);
   server = controller;
-  context.subscriptions.push(output, statusBar, controller, ...registerCommands(controller, output, statusBar));
+  context.subscriptions.push(
+    output,
+    statusBar,
+    controller,
+    ...registerCommands(controller, output, statusBar),
+    new DrawingEditor(controller, output),
+    new Pages(controller, statusBar),
+    new UsageView(controller),
+    RungwiseTasks.register(controller),
+    registerExample(context),
+    registerWalkthrough(),
+  );
   context.subscriptions.push(
     vscode.workspace.onDidChangeConfiguration(async (event) => {
       if (event.affectsConfiguration('rungwise.server')) {

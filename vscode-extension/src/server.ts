@@ -17,10 +17,12 @@ import {
 import { currentServerArguments, currentSettings, serverPathSetting } from './configuration';
 import { CRASH_WINDOW_MS, CrashPolicy } from './crashPolicy';
 import { brokenServerMessage, crashedServerMessage, missingServerMessage } from './failure';
+import { pageUri } from './pageUri';
 import { probeServer } from './probe';
 import { locateServer, type ServerLocation } from './serverPath';
 import { configurationChange, type ServerSettings } from './settings';
 import { parseStatus } from './status';
+import type { ServerReport } from './statusPage';
 import type { StatusBar } from './statusBar';
 
 const STOP_TIMEOUT_MS = 2_000;
@@ -76,9 +78,43 @@ export class ServerController implements vscode.Disposable {
   /** Runs a command of the server. Rejects when there is no server or it answers with an error. */
   async executeCommand(command: string, args: readonly unknown[]): Promise<unknown> {
     if (this.client === undefined || !this.client.isRunning()) {
-      throw new Error('the language server is not running');
+      throw new Error(vscode.l10n.t('the language server is not running'));
     }
     return this.client.sendRequest(ExecuteCommandRequest.type, { command, arguments: [...args] });
+  }
+
+  /** Sends a request of the server's own kind. Rejects as `executeCommand` does. */
+  async request(method: string, params: unknown): Promise<unknown> {
+    if (this.client === undefined || !this.client.isRunning()) {
+      throw new Error(vscode.l10n.t('the language server is not running'));
+    }
+    return this.client.sendRequest(method, params);
+  }
+
+  /** A document's address as it was given to the server. */
+  protocolUri(uri: vscode.Uri): string {
+    return this.client?.code2ProtocolConverter.asUri(uri) ?? uri.toString();
+  }
+
+  /** Path of the program; `undefined` if there is none. */
+  program(): string | undefined {
+    const location = this.locate();
+    return location.kind === 'found' ? location.file : undefined;
+  }
+
+  /** What the page "Show Status" says about the server. */
+  report(): ServerReport {
+    const location = this.locate();
+    return {
+      state: this.statusBar.serverState,
+      version: this.runningVersion,
+      program: location.kind === 'found' ? location.file : undefined,
+      origin: location.origin,
+      tried: location.kind === 'found' ? [] : location.tried,
+      arguments: currentServerArguments(),
+      settings: currentSettings(),
+      extensionVersion: String((this.context.extension.packageJSON as { version?: unknown }).version),
+    };
   }
 
   dispose(): void {
@@ -152,6 +188,7 @@ export class ServerController implements vscode.Disposable {
       revealOutputChannelOn: RevealOutputChannelOn.Never,
       initializationOptions: currentSettings,
       synchronize: { fileEvents: this.watcher },
+      middleware: { handleDiagnostics: (uri, diagnostics, next) => next(uri, diagnostics.map(linkCode)) },
       errorHandler: {
         error: () => ({ action: ErrorAction.Continue, handled: true }),
         closed: () => this.serverClosed(),
@@ -216,6 +253,14 @@ export class ServerController implements vscode.Disposable {
       await this.restart();
     }
   }
+}
+
+/** Makes the code of a diagnostic a link to the page of its rule, unless the server gave another address. */
+function linkCode(diagnostic: vscode.Diagnostic): vscode.Diagnostic {
+  if (typeof diagnostic.code === 'string' && diagnostic.source === 'rungwise') {
+    diagnostic.code = { value: diagnostic.code, target: pageUri(diagnostic.code) };
+  }
+  return diagnostic;
 }
 
 function isExecutable(file: string): boolean {

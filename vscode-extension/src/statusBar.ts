@@ -32,6 +32,11 @@ export class StatusBar implements vscode.Disposable {
     return this.programs.get(key(uri));
   }
 
+  /** The last status of every open program. */
+  allPrograms(): ProgramStatus[] {
+    return [...this.programs.values()];
+  }
+
   setServerState(state: ServerState): void {
     this.state = state;
     this.refresh();

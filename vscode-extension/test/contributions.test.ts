@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import { existsSync, readdirSync, readFileSync } from 'node:fs';
 import { test } from 'node:test';
+import { STRUCTURAL_EDITS } from '../src/structuralEdits';
 
 interface Snippet {
   prefix: string;
@@ -70,13 +71,58 @@ test('devices, comparisons, addresses and literals are words', () => {
 });
 
 test('all files that package.json names exist', () => {
-  const { languages, grammars, snippets } = manifest.contributes;
+  const { languages, grammars, snippets, walkthroughs, tomlValidation } = manifest.contributes;
   const files = [manifest.icon, ...[...languages, ...grammars, ...snippets].flatMap((c: any) => [c.configuration, c.path])];
+  files.push(manifest.main, manifest.browser, ...tomlValidation.map((c: any) => c.url));
   for (const language of languages) {
     files.push(language.icon.light, language.icon.dark);
   }
+  for (const step of walkthroughs.flatMap((walkthrough: any) => walkthrough.steps)) {
+    files.push(step.media.svg);
+  }
   for (const file of files.filter(Boolean)) {
     assert.ok(existsSync(file), `${file} is missing`);
+  }
+});
+
+test('both languages of package.json have every key, and no other', () => {
+  const used = [...readFileSync('package.json', 'utf8').matchAll(/"%([^%"]+)%"/g)].map(([, key]) => key).sort();
+  for (const file of ['package.nls.json', 'package.nls.zh-cn.json']) {
+    assert.deepEqual(Object.keys(json(file)).sort(), [...new Set(used)], file);
+  }
+});
+
+test('every sentence of the sources has a translation', () => {
+  const translated = json('l10n/bundle.l10n.zh-cn.json');
+  // A sentence may be written as several strings with + between them.
+  const call = /\bt\(\s*((?:'(?:[^'\\]|\\.)*'\s*\+?\s*)+)/g;
+  for (const name of readdirSync('src')) {
+    for (const [, strings = ''] of readFileSync(`src/${name}`, 'utf8').matchAll(call)) {
+      const sentence = [...strings.matchAll(/'((?:[^'\\]|\\.)*)'/g)].map(([, text]) => text).join('');
+      assert.ok(sentence in translated, `${name}: "${sentence}" has no translation`);
+      const places = (text: string) => [...text.matchAll(/\{\d+\}/g)].map(String).sort();
+      assert.deepEqual(places(translated[sentence]), places(sentence), sentence);
+    }
+  }
+});
+
+test('no two commands have the same keys, and all keys are for programs only', () => {
+  const { keybindings } = manifest.contributes;
+  for (const system of ['key', 'mac']) {
+    const keys = keybindings.map((binding: any) => binding[system]);
+    assert.equal(new Set(keys).size, keys.length, `${system}: the same keys twice`);
+  }
+  for (const binding of keybindings) {
+    assert.match(binding.when, /editorTextFocus && .*editorLangId == ladder/, binding.command);
+  }
+});
+
+test('links of the walkthrough are commands that there are', () => {
+  const commands = manifest.contributes.commands.map((entry: any) => entry.command);
+  for (const file of ['package.nls.json', 'package.nls.zh-cn.json']) {
+    const links = [...readFileSync(file, 'utf8').matchAll(/\(command:([\w.]+)\)/g)].map(([, command]) => command);
+    assert.ok(links.length >= 6);
+    assert.deepEqual(links.filter((command) => !commands.includes(command)), [], file);
   }
 });
 
@@ -97,8 +143,14 @@ test('each keyword entry of the grammar is one pattern, longest word first', () 
 });
 
 test('the commands of the palette are all implemented', () => {
-  const sources = readdirSync('src').map((name) => readFileSync(`src/${name}`, 'utf8')).join('\n');
+  const sources = readdirSync('src').filter((name) => name !== 'web.ts').map((name) => readFileSync(`src/${name}`, 'utf8')).join('\n');
   for (const { command } of manifest.contributes.commands) {
-    assert.ok(sources.includes(`register('${command}'`), `${command} is not registered`);
+    const edit = STRUCTURAL_EDITS.some((name) => `rungwise.${name}` === command);
+    assert.ok(edit || sources.includes(`register('${command}'`) || sources.includes(`registerCommand('${command}'`), command);
+  }
+  for (const edit of STRUCTURAL_EDITS) {
+    const has = (list: any[]) => list.some(({ command }) => command === `rungwise.${edit}`);
+    const { commands, keybindings, menus } = manifest.contributes;
+    assert.ok(has(commands) && has(keybindings) && has(menus['rungwise.drawing']), `${edit} has no command, key or menu entry`);
   }
 });

@@ -33,7 +33,7 @@
 //! END_PROGRAM
 //! ```
 
-use crate::check::iec::views;
+use crate::check::iec::views_of;
 use crate::check::{ProgramContext, Rule, Run};
 use crate::il::iec::{ItemKind, SectionKind};
 use crate::target::{DirectAddress, Location, Operand, Width};
@@ -56,13 +56,14 @@ struct Located<'a> {
     /// Its bits where words are counted, and where bytes are counted.
     counted: Range<u64>,
     by_bytes: Range<u64>,
-    /// The POU; none for global variables.
-    pou: Option<usize>,
+    /// The file and POU; none for global variables.
+    pou: Option<(usize, Option<usize>)>,
 }
 
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let mut located = Vec::new();
-    for (start, view) in views(context) {
+    let views = context.files().iter().flat_map(|file| views_of(*file).map(|at| (file.number, at)));
+    for (file, (start, view)) in views {
         for item in &view.tree.items {
             let ItemKind::Section { kind, declarations, .. } = item.kind else { continue };
             for declaration in declarations.of(&view.tree.declarations) {
@@ -83,7 +84,7 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
                         location: address.location,
                         counted,
                         by_bytes,
-                        pou: if kind == SectionKind::Global { None } else { view.pou },
+                        pou: if kind == SectionKind::Global { None } else { Some((file, view.pou)) },
                     });
                 }
             }

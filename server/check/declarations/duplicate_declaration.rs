@@ -4,7 +4,8 @@
 //! sections; two program units, types, tasks or instances; two members of a structure. Which of the two a use means
 //! nobody can tell, and their types or addresses may differ.
 //!
-//! The first declaration holds for the other rules; the later ones are reported.
+//! The first declaration holds for the other rules; the later ones are reported. Program units, types and global
+//! variables are known in all files of a project, so their names must differ across the files, too.
 //!
 //! ```iec
 //! PROGRAM Gate
@@ -34,7 +35,7 @@
 //! END_PROGRAM
 //! ```
 
-use crate::check::iec::{View, folded, views};
+use crate::check::iec::{View, folded, views_of};
 use crate::check::{ProgramContext, Rule, Run};
 use crate::il::iec::{ItemKind, Run as Records, SectionKind, TypeSpec};
 use crate::text::{Diagnostic, Message, Severity, Span};
@@ -67,45 +68,65 @@ impl Names {
     }
 }
 
+#[derive(Default)]
+struct Scope {
+    /// Those of the whole project.
+    units: Names,
+    types: Names,
+    globals: Names,
+    /// Those of one program unit.
+    variables: Names,
+    /// Tasks and instances of one resource.
+    runtime: Names,
+}
+
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
-    let (mut units, mut types, mut globals) = (Names::default(), Names::default(), Names::default());
-    let (mut variables, mut runtime) = (Names::default(), Names::default());
-    for (start, view) in views(context) {
+    let mut scope = Scope::default();
+    for file in context.files() {
+        scope.variables = Names::default();
+        for (start, view) in views_of(*file) {
+            scope.take(start, &view, found);
+            inside_types(&view, start, found);
+        }
+    }
+}
+
+impl Scope {
+    fn take(&mut self, start: usize, view: &View<'_>, found: &mut Vec<Diagnostic>) {
         for item in &view.tree.items {
             match item.kind {
                 ItemKind::Pou { name, .. } => {
-                    variables = Names::default();
+                    self.variables = Names::default();
                     if let Some(name) = name {
-                        units.add(&view, start, name, found);
+                        self.units.add(view, start, name, found);
                     }
                 }
                 ItemKind::Section { kind, declarations, .. } => {
                     let names = match kind {
-                        SectionKind::Global => &mut globals,
+                        SectionKind::Global => &mut self.globals,
                         // Their names are paths to variables that are declared elsewhere.
                         SectionKind::Access | SectionKind::Config => continue,
-                        _ => &mut variables,
+                        _ => &mut self.variables,
                     };
-                    each_name(&view, declarations, |name| names.add(&view, start, name, found));
+                    each_name(view, declarations, |name| names.add(view, start, name, found));
                 }
                 ItemKind::Types { declarations } => {
-                    each_name(&view, declarations, |name| types.add(&view, start, name, found));
+                    each_name(view, declarations, |name| self.types.add(view, start, name, found));
                 }
-                ItemKind::Configuration { .. } | ItemKind::Resource { .. } => runtime = Names::default(),
+                ItemKind::Configuration { .. } | ItemKind::Resource { .. } => self.runtime = Names::default(),
                 ItemKind::Task(index) => {
                     if let Some(name) = view.tree.tasks.get(index as usize).and_then(|task| task.name) {
-                        runtime.add(&view, start, name, found);
+                        self.runtime.add(view, start, name, found);
                     }
                 }
                 ItemKind::Instance(index) => {
                     if let Some(name) = view.tree.instances.get(index as usize).and_then(|one| one.name) {
-                        runtime.add(&view, start, name, found);
+                        self.runtime.add(view, start, name, found);
                     }
                 }
                 _ => {}
             }
         }
-        inside_types(&view, start, found);
     }
 }
 

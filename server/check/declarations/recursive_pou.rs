@@ -52,8 +52,8 @@
 //! END_FUNCTION_BLOCK
 //! ```
 
-use crate::check::iec::{View, folded, views};
-use crate::check::{ProgramContext, Rule, Run};
+use crate::check::iec::{View, folded, views_of};
+use crate::check::{ProgramContext, ProgramFile, Rule, Run};
 use crate::document::Pou;
 use crate::il::iec::{ItemKind, PouKind, SectionKind, TypeSpec};
 use crate::text::{Diagnostic, Message, Severity, Span};
@@ -72,21 +72,26 @@ pub(super) const RULE: Rule = Rule {
 type Edge = (usize, Span);
 
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
-    let pous = &context.document.scopes().pous;
+    let of_file = |file: &ProgramFile<'_>| file.document.scopes().own_pous().to_vec();
+    let pous: Vec<Arc<Pou>> = context.files().iter().flat_map(of_file).collect();
     let mut numbers: FxHashMap<SmolStr, usize> = FxHashMap::default();
     for (number, pou) in pous.iter().enumerate() {
         numbers.entry(folded(&pou.name)).or_insert(number);
     }
     let mut uses: Vec<Vec<Edge>> = vec![Vec::new(); pous.len()];
-    for (start, view) in views(context) {
-        let Some(own) = view.pou.and_then(|number| uses.get_mut(number)) else { continue };
-        for (name, span) in used(&view) {
-            if let Some(other) = numbers.get(&folded(name)) {
-                own.push((*other, span.shifted(start)));
+    let mut first = 0;
+    for file in context.files() {
+        for (start, view) in views_of(*file) {
+            let Some(own) = view.pou.and_then(|number| uses.get_mut(first + number)) else { continue };
+            for (name, span) in used(&view) {
+                if let Some(other) = numbers.get(&folded(name)) {
+                    own.push((*other, span.shifted(start)));
+                }
             }
         }
+        first += file.document.scopes().own_pous().len();
     }
-    find_cycles(pous, &uses, found);
+    find_cycles(&pous, &uses, found);
 }
 
 /// The function blocks and functions that a chunk contains or calls.

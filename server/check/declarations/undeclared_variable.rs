@@ -40,7 +40,7 @@
 use super::guess::types_of;
 use crate::check::iec::{View, folded};
 use crate::check::{ProgramContext, Rule, Run};
-use crate::document::{ChunkRef, Mention, Pou, Scopes, Symbol, Tree, Use};
+use crate::document::{ChunkRef, DeclaredType, Document, Mention, Pou, Scopes, Symbol, Tree, Use};
 use crate::il::iec::{IecTree, ItemKind, PouKind, SectionKind, TypeSpec};
 use crate::target::iec::{Function, FunctionBlock, nearest};
 use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
@@ -70,14 +70,18 @@ struct Unit<'a> {
 }
 
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
-    let scopes = context.document.scopes();
+    context.each_file(found, check_file);
+}
+
+fn check_file(document: &Document, found: &mut Vec<Diagnostic>) {
+    let scopes = document.scopes();
     if scopes.own_pous().is_empty() {
         return;
     }
-    let enumerators = enumerators(context);
+    let enumerators = enumerators(document);
     let mut unit = Unit::default();
     let mut pou: Option<usize> = None;
-    for at in context.document.chunks() {
+    for at in document.chunks() {
         let started = at.chunk.pou_starts();
         if started > 0 {
             std::mem::take(&mut unit).report(scopes, pou, found);
@@ -124,9 +128,17 @@ fn is_declared(scopes: &Scopes, pou: usize, name: &str, mention: &Mention) -> bo
 }
 
 /// The folded names of all values of enumerations.
-fn enumerators(context: &ProgramContext<'_>) -> FxHashSet<SmolStr> {
+fn enumerators(document: &Document) -> FxHashSet<SmolStr> {
     let mut names = FxHashSet::default();
-    for at in context.document.chunks() {
+    let scopes = document.scopes();
+    // Those of other files are known through what they declare.
+    let variables = scopes.globals.values().map(|variable| &variable.declared);
+    for declared in scopes.types.values().chain(variables) {
+        if let DeclaredType::Enumeration(values) = declared {
+            names.extend(values.iter().cloned());
+        }
+    }
+    for at in document.chunks() {
         let Tree::Iec(tree) = at.chunk.tree() else { continue };
         for written in &tree.types {
             if let TypeSpec::Enumeration { values } = written.value {

@@ -1,7 +1,8 @@
 //! # unused-variable
 //!
-//! A variable is declared and never named again in its program unit. Either it is left over, or the name that should
-//! have been used is another one: an interlock that was declared and then forgotten is worth a look.
+//! A variable is declared and never named again in its program unit, or a global one in no file of the project. Either
+//! it is left over, or the name that should have been used is another one: an interlock that was declared and then
+//! forgotten is worth a look.
 //!
 //! Variables with an address are left out, because a list of the terminals is useful by itself; so are units
 //! without instructions.
@@ -63,29 +64,31 @@ struct Unit<'a> {
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let mut unit = Unit::default();
     let mut globals = Unit::default();
-    for at in context.document.chunks() {
-        if at.chunk.pou_starts() > 0 {
-            std::mem::take(&mut unit).report(found);
-        }
-        match at.chunk.tree() {
-            Tree::Iec(tree) => {
-                unit.has_body |= tree.items.iter().any(|item| is_instruction(&item.kind));
-                sections(at, tree, &mut unit, &mut globals);
+    for file in context.files() {
+        for at in file.chunks() {
+            if at.chunk.pou_starts() > 0 {
+                std::mem::take(&mut unit).report(found);
             }
-            _ => unit.has_body = true,
-        }
-        for mention in at.chunk.mentions() {
-            if let Symbol::Variable(name) = &mention.symbol
-                && mention.usage != Use::Declare
-            {
-                unit.used.insert(name);
-                globals.used.insert(name);
+            match at.chunk.tree() {
+                Tree::Iec(tree) => {
+                    unit.has_body |= tree.items.iter().any(|item| is_instruction(&item.kind));
+                    sections(at, tree, &mut unit, &mut globals);
+                }
+                _ => unit.has_body = true,
+            }
+            for mention in at.chunk.mentions() {
+                if let Symbol::Variable(name) = &mention.symbol
+                    && mention.usage != Use::Declare
+                {
+                    unit.used.insert(name);
+                    globals.used.insert(name);
+                }
             }
         }
+        std::mem::take(&mut unit).report(found);
+        // A file of globals alone is used by other files.
+        globals.has_body |= !file.document.scopes().own_pous().is_empty();
     }
-    unit.report(found);
-    // A file of globals alone is used by other files.
-    globals.has_body = !context.document.scopes().pous.is_empty();
     globals.report(found);
 }
 

@@ -25,9 +25,13 @@ pub(super) const RULE: Rule = Rule {
 };
 
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
-    let Some(first) = first_tab(context.document) else { return };
+    context.each_file(found, check_file);
+}
+
+fn check_file(document: &Document, found: &mut Vec<Diagnostic>) {
+    let Some(first) = first_tab(document) else { return };
     let diagnostic = Diagnostic::new(RULE.code, first, Message::new("tab-in-drawing.found"));
-    found.push(diagnostic.fix(Message::new("tab-in-drawing.expand"), expanded(context.document)));
+    found.push(diagnostic.fix(Message::new("tab-in-drawing.expand"), expanded(document)));
 }
 
 /// The first tab on the lines of a rung; tabs in comments and declarations move nothing.

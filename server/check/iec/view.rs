@@ -1,6 +1,6 @@
 //! An IEC chunk with the scopes around it, and the types of its operands.
 
-use crate::check::{ChunkContext, ProgramContext};
+use crate::check::{ChunkContext, ProgramContext, ProgramFile};
 use crate::document::{DeclaredType, Pou, Scopes, Tree, Variable};
 use crate::il::iec::{Direction, IecTree, ItemKind, OperandId, Parameter, ParameterValue, PouKind};
 use crate::target::iec::{ElementaryType, FunctionBlock, Literal, LiteralValue, OperatorRole};
@@ -253,11 +253,16 @@ fn member_ends(path: &str) -> Vec<usize> {
     ends
 }
 
-/// Every IEC chunk of a document with its start.
-pub fn views<'a>(context: &ProgramContext<'a>) -> impl Iterator<Item = (usize, View<'a>)> {
-    let scopes: &'a Scopes = context.document.scopes();
+/// Every IEC chunk of a program with its start. Numbers of POUs are those of the scopes of its own file.
+pub fn views<'a>(context: &ProgramContext<'a>) -> impl Iterator<Item = (usize, View<'a>)> + use<'a> {
+    context.files().to_vec().into_iter().flat_map(views_of)
+}
+
+/// Every IEC chunk of a file of a program.
+pub fn views_of(file: ProgramFile<'_>) -> impl Iterator<Item = (usize, View<'_>)> {
+    let scopes: &Scopes = file.document.scopes();
     let mut started = 0usize;
-    context.document.chunks().filter_map(move |at| {
+    file.chunks().filter_map(move |at| {
         started += at.chunk.pou_starts();
         match at.chunk.tree() {
             Tree::Iec(tree) => {

@@ -2,7 +2,8 @@
 //!
 //! Instructions stand behind `END`. The PLC never reaches them: the scan starts again at step 0. Mostly `END` was left
 //! where a program once ended, and the rungs added behind it do nothing on the machine. Subroutines stand before
-//! `END`, between it and `FEND`.
+//! `END`, between it and `FEND`. Where a project lists its files in the order of execution, `END` stands in the last of
+//! them alone.
 //!
 //! ```fx
 //! LD X0
@@ -33,7 +34,7 @@
 //!    ^^^
 //! ```
 
-use crate::check::statements::{Statement, statements};
+use crate::check::statements::Statement;
 use crate::check::{ProgramContext, Rule, Run};
 use crate::target::Flow;
 use crate::text::{Diagnostic, Message, Severity};
@@ -49,7 +50,7 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let mut end: Option<Statement<'_>> = None;
     let mut behind: Option<Statement<'_>> = None;
     let mut count = 0;
-    for statement in statements(context.document) {
+    for statement in context.statements() {
         match (end, statement.flow()) {
             (_, Some(Flow::Nothing)) => {}
             (None, Some(Flow::ProgramEnd)) => end = Some(statement),

@@ -44,7 +44,8 @@
 //! +--| |-------( )-+
 //! ```
 //!
-//! In IEC programs a label belongs to its POU.
+//! The files of an FX project are one program, so a label may stand in one of them only. In IEC programs a label
+//! belongs to its POU.
 //!
 //! ```iec
 //! PROGRAM Main

@@ -1,6 +1,6 @@
 //! The labels of a program and the jumps to them, once for all rules about labels.
 
-use crate::check::ProgramContext;
+use crate::check::{ProgramContext, ProgramFile};
 use crate::check::statements::{Statement, StatementKind, is_fx_program};
 use crate::document::{Symbol, Use};
 use crate::target::{Device, DeviceKind, Flow, Operand};
@@ -40,7 +40,11 @@ pub(super) struct Jump {
 impl Labels {
     /// The labels of the program; those of each POU apart.
     pub fn of(context: &ProgramContext<'_>) -> Vec<Labels> {
-        if is_fx_program(context.document) { vec![Labels::of_fx(context)] } else { Labels::of_pous(context) }
+        let documents = context.files().iter().map(|file| file.document);
+        match documents.into_iter().any(is_fx_program) {
+            true => vec![Labels::of_fx(context)],
+            false => context.files().iter().flat_map(|file| Labels::of_pous(*file)).collect(),
+        }
     }
 
     /// Those that jumps name.
@@ -81,14 +85,14 @@ impl Labels {
         }
     }
 
-    fn of_pous(context: &ProgramContext<'_>) -> Vec<Labels> {
+    fn of_pous(file: ProgramFile<'_>) -> Vec<Labels> {
         let mut pous: FxHashMap<usize, Labels> = FxHashMap::default();
         let mut pou = 0;
-        for at in context.document.chunks() {
+        for at in file.document.chunks() {
             pou += at.chunk.pou_starts();
             for mention in at.chunk.mentions().iter().filter(|m| matches!(m.symbol, Symbol::Label(_))) {
                 let labels = pous.entry(pou).or_default();
-                let (symbol, span) = (mention.symbol.clone(), mention.span.shifted(at.start));
+                let (symbol, span) = (mention.symbol.clone(), mention.span.shifted(at.start + file.start));
                 match mention.usage {
                     Use::Declare => labels.declared.push(Label { symbol, span, removal: None }),
                     Use::Jump => labels.jumps.push(Jump { symbol, span }),

@@ -3,6 +3,8 @@
 //! A program in instruction list has no `END`. The PLC would go on through its whole empty memory, so it refuses to run
 //! without it, and the maker's tools add none. The fix appends it.
 //!
+//! Of the files of a project only the one that is executed last needs it.
+//!
 //! A drawing needs no `END`: it ends with its last rung. Only where `FEND` divides it into a main program and
 //! subroutines is the `END` asked for, as the end of the last part.
 //!
@@ -34,9 +36,9 @@
 //! +--------[SRET]--+
 //! ```
 
-use crate::check::statements::{StatementKind, statements};
-use crate::check::{ProgramContext, Rule, Run};
-use crate::document::Notation;
+use crate::check::statements::StatementKind;
+use crate::check::{ProgramContext, ProgramFile, Rule, Run};
+use crate::document::{Document, Notation};
 use crate::target::Flow;
 use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
 
@@ -48,15 +50,16 @@ pub(super) const RULE: Rule = Rule {
 };
 
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
-    let document = context.document;
+    let Some(ProgramFile { document, start, .. }) = context.last() else { return };
     let (mut last, mut last_main_end) = (None, None);
-    for statement in statements(document) {
+    for statement in context.statements() {
         match statement.kind {
             StatementKind::Instruction(Flow::ProgramEnd) => return,
             StatementKind::Instruction(Flow::MainEnd) => last_main_end = Some(statement.span),
             _ => {}
         }
-        last = Some(statement.span);
+        // The program ends in its last file, and only there END is missing.
+        last = Some(statement.span).filter(|span| span.start as usize >= start);
     }
     let is_list = document.notation() == Notation::FxIl;
     let Some(span) = (if is_list { last } else { last_main_end }) else { return };
@@ -68,14 +71,13 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     }
     let diagnostic = Diagnostic::new(RULE.code, span, Message::new("missing-end.found"));
     found.push(match is_list {
-        true => diagnostic.fix(Message::new("missing-end.append"), vec![appended(context)]),
+        true => diagnostic.fix(Message::new("missing-end.append"), vec![appended(document).shifted(start)]),
         false => diagnostic,
     });
 }
 
 /// END on a line of its own at the end of the text.
-fn appended(context: &ProgramContext<'_>) -> TextEdit {
-    let document = context.document;
+fn appended(document: &Document) -> TextEdit {
     let text = document.chunk_at(document.len()).map_or("", |at| at.chunk.text());
     let newline = if text.contains("\r\n") { "\r\n" } else { "\n" };
     let before = if text.ends_with('\n') { "" } else { newline };

@@ -79,7 +79,7 @@ fn check_program(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
 }
 
 fn loops(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
-    let limit = context.document.target().limits.loops;
+    let limit = context.target().limits.loops;
     let mut depth = 0;
     for statement in context.executed() {
         match statement.flow() {
@@ -103,7 +103,7 @@ type Call = (Device, Span);
 /// Goes down the levels of calls, from the main program on; what is called at a level calls at the next. Programs
 /// have few levels, so each routine is looked at a few times at most.
 fn calls(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
-    let limit = context.document.target().limits.calls;
+    let limit = context.target().limits.calls;
     let (main, routines) = bodies(context);
     let mut level: Vec<(Device, Vec<Device>)> = Vec::new();
     let mut seen: FxHashSet<Device> = FxHashSet::default();

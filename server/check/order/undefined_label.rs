@@ -52,7 +52,7 @@ pub(super) const RULE: Rule = Rule {
 };
 
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
-    let target = context.document.target();
+    let target = context.target();
     for labels in Labels::of(context) {
         let placed = labels.placed();
         for jump in labels.jumps.iter().filter(|jump| !placed.contains(&jump.symbol)) {

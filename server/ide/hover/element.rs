@@ -49,6 +49,7 @@ fn coil(kind: CoilKind, device: Option<DeviceKind>) -> Message {
         (CoilKind::Reset, _) => Message::new("element.coil-reset"),
         (CoilKind::Rising, _) => Message::new("element.coil-rising"),
         (CoilKind::Falling, _) => Message::new("element.coil-falling"),
+        (CoilKind::Toggle, _) => Message::new("element.coil-toggle"),
     }
 }
 

@@ -9,7 +9,7 @@
 use super::layout::Layout;
 use super::scan::Scanner;
 use super::token::{Region, Token, TokenKind};
-use super::{IecTree, parse};
+use super::{IecTree, parse, split};
 use crate::target::iec::is_keyword;
 use crate::target::{Model, Target};
 use crate::text::{Severity, Span};
@@ -38,8 +38,13 @@ pub fn format_chunk(chunk: &str, tree: &IecTree, options: &FormatOptions) -> Str
     let formatted = Printer::new(chunk, tree, options).print();
     // A broken text may read otherwise once it is moved; then it stays as it is, for a formatter must change nothing.
     let target = Target::of(Model::Iec);
+    // What stood on one line may be several chunks on lines of its own.
+    let mut start = 0;
+    let stable = split(&formatted).into_iter().all(|end| {
+        let part = &formatted[std::mem::replace(&mut start, end)..end];
+        part == Printer::new(part, &parse(part, target), options).print()
+    });
     let again = parse(&formatted, target);
-    let stable = formatted == Printer::new(&formatted, &again, options).print();
     if stable && meaning(chunk, tree) == meaning(&formatted, &again) { formatted } else { chunk.to_string() }
 }
 

