@@ -12,6 +12,9 @@ pub use context::{ChunkContext, ProgramContext, ProgramFile};
 mod programs;
 pub use programs::{program_around, programs};
 
+mod surface;
+pub use surface::surface;
+
 mod engine;
 pub use engine::{Severities, all, program, project, realtime, sorted, within_project};
 

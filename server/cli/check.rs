@@ -2,7 +2,7 @@
 
 use super::input::{Program, caution, programs, say};
 use super::{Format, Outcome, paths_or_here, render};
-use crate::check;
+use crate::document::Document;
 use crate::ide;
 use crate::target::Target;
 use crate::text::{Diagnostic, Encoding, Fix, Language, Severity, Span};
@@ -55,13 +55,7 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         let reason = format!("{}: not UTF-8, what cannot be read counts as \u{fffd}", program.path.display());
         caution("not-utf-8", &reason, "save the file as UTF-8");
     }
-    let checked: Vec<(Program, Vec<Diagnostic>)> = programs
-        .into_iter()
-        .map(|program| {
-            let diagnostics = check::all(&program.document, &program.manifest.severities());
-            (program, diagnostics)
-        })
-        .collect();
+    let checked = super::across::checked(programs, arguments.target);
     let summary = Summary::of(&checked);
     match arguments.format {
         Format::Text => say_text(&checked, &summary, language),
@@ -122,7 +116,7 @@ fn say_text(checked: &[(Program, Vec<Diagnostic>)], summary: &Summary, language:
         let name = program.path.display().to_string();
         let (drawn, listed) = diagnostics.split_at(diagnostics.len().min(MOST_DRAWN));
         for diagnostic in drawn {
-            say(&render::diagnostic(&name, &program.document, diagnostic, &colours, language));
+            say(&render::diagnostic(&name, program, diagnostic, &colours, language));
         }
         for diagnostic in listed {
             say(&render::headline(&name, &program.document, diagnostic, &colours, language));
@@ -163,16 +157,18 @@ fn as_json(checked: &[(Program, Vec<Diagnostic>)], summary: &Summary, language: 
 
 fn diagnostic_json(program: &Program, diagnostic: &Diagnostic, language: Language) -> Value {
     let path = program.path.display().to_string();
-    let range = |span: Span| {
+    let range_in = |document: &Document, span: Span| {
         let position = |offset: u32| {
-            let position = program.document.position(offset as usize, Encoding::Utf32);
+            let position = document.position(offset as usize, Encoding::Utf32);
             json!({"line": position.line + 1, "column": position.column + 1})
         };
         json!({"start": position(span.start), "end": position(span.end)})
     };
+    let range = |span: Span| range_in(&program.document, span);
     let related = diagnostic.related.iter().map(|related| {
         let message = related.message.render(language);
-        json!({"path": path, "range": range(related.span), "message": message})
+        let (path, document) = program.file(related, &path);
+        json!({"path": path, "range": range_in(document, related.span), "message": message})
     });
     let fix = |fix: &Fix| {
         let edits =

@@ -1,9 +1,11 @@
 //! Reading programs from files, folders and projects, and telling what cannot be read.
 
 use crate::document::Document;
-use crate::project::{MANIFEST_NAME, Manifest, Project, is_program_file, open_document, program_files};
+use crate::project::{
+    MANIFEST_NAME, Manifest, Project, is_program_file, open_document, program_files, projects_in,
+};
 use crate::target::Target;
-use crate::text::{Encoding, Language, LineColumn};
+use crate::text::{Encoding, Language, LineColumn, Related};
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -13,8 +15,26 @@ pub(super) struct Program {
     pub path: PathBuf,
     pub document: Document,
     pub manifest: Arc<Manifest>,
+    /// The files of its project, by the numbers that findings give them; none where it stands alone.
+    pub beside: Arc<[Beside]>,
     /// Whether the file was no UTF-8; broken bytes are replaced and `fmt` must not write it.
     pub damaged: bool,
+}
+
+impl Program {
+    /// The path and text in which `related` lies; `own` is how the program's own path is shown.
+    pub(super) fn file<'a>(&'a self, related: &Related, own: &'a str) -> (&'a str, &'a Document) {
+        match related.file.and_then(|number| self.beside.get(number)) {
+            Some(beside) => (&beside.path, &beside.document),
+            None => (own, &self.document),
+        }
+    }
+}
+
+/// A file of a project that a finding in another file names.
+pub(super) struct Beside {
+    pub path: String,
+    pub document: Document,
 }
 
 /// The programs at `paths`, or nothing after complaints about what cannot be read or that there are none.
@@ -100,10 +120,13 @@ fn files_at(path: &Path, language: Language) -> Result<Vec<(PathBuf, Arc<Manifes
         return Ok(vec![(path.to_path_buf(), manifest)]);
     }
     if path.join(MANIFEST_NAME).is_file() {
-        let project = Project::read(path);
-        let manifest = usable(&project, language)?;
-        let files = project.files().map_err(|reason| format!("{}: {reason}", path.display()))?;
-        return Ok(files.into_iter().map(|file| (file, manifest.clone())).collect());
+        let mut files = Vec::new();
+        for project in projects_in(path).iter().map(|folder| Project::read(folder)) {
+            let manifest = usable(&project, language)?;
+            let own = project.files().map_err(|reason| format!("{}: {reason}", project.root.display()))?;
+            files.extend(own.into_iter().map(|file| (file, manifest.clone())));
+        }
+        return Ok(files);
     }
     let files = program_files(path).map_err(|reason| format!("{}: {reason}", path.display()))?;
     files.into_iter().map(|file| manifest_for(&file, language).map(|manifest| (file, manifest))).collect()
@@ -125,7 +148,7 @@ fn usable(project: &Project, language: Language) -> Result<Arc<Manifest>, String
     Err(format!("{}:{}:{}: {reason}", path.display(), line + 1, column + 1))
 }
 
-fn read_program(
+pub(super) fn read_program(
     path: &Path,
     manifest: Arc<Manifest>,
     target: Option<&'static Target>,
@@ -136,5 +159,5 @@ fn read_program(
         Err(broken) => (String::from_utf8_lossy(broken.as_bytes()).into_owned(), true),
     };
     let document = open_document(&path.to_string_lossy(), &text, &manifest, target, None);
-    Ok(Program { path: path.to_path_buf(), document, manifest, damaged })
+    Ok(Program { path: path.to_path_buf(), document, manifest, beside: Arc::default(), damaged })
 }

@@ -1,5 +1,6 @@
 //! The command line: one short function for each verb, and the only place with exit codes.
 
+mod across;
 mod check;
 mod explain;
 mod fmt;

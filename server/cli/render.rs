@@ -1,6 +1,7 @@
 //! Diagnostics for people: the rung as it is drawn, with carets under the cells.
 
 use super::check::severity_word;
+use super::input::Program;
 use crate::document::{Document, Notation};
 use crate::text::{Diagnostic, Encoding, Language, LineColumn, Severity, Span, cell_width};
 
@@ -61,11 +62,12 @@ pub(super) fn headline(
 /// The headline, the rung with carets, related places and fixes.
 pub(super) fn diagnostic(
     path: &str,
-    document: &Document,
+    program: &Program,
     found: &Diagnostic,
     colours: &Colours,
     language: Language,
 ) -> String {
+    let document = &program.document;
     let (colour, off, dim) = (colours.of(found.severity), colours.off, colours.dim);
     let mut text = headline(path, document, found, colours, language);
     let (first, last) = shown_lines(document, found.span);
@@ -80,6 +82,7 @@ pub(super) fn diagnostic(
         }
     }
     for related in &found.related {
+        let (path, document) = program.file(related, path);
         let LineColumn { line, column } = document.position(related.span.start as usize, Encoding::Utf32);
         let message = related.message.render(language);
         text += &format!("  note: {path}:{}:{}: {message}\n", line + 1, column + 1);
@@ -93,7 +96,9 @@ pub(super) fn diagnostic(
 
 /// The diagnostic's own cells and those of its related places.
 fn marks(found: &Diagnostic) -> impl Iterator<Item = (Span, char)> {
-    std::iter::once((found.span, '^')).chain(found.related.iter().map(|related| (related.span, '~')))
+    std::iter::once((found.span, '^')).chain(
+        found.related.iter().filter(|related| related.file.is_none()).map(|related| (related.span, '~')),
+    )
 }
 
 /// The lines of the rung in a drawing, a few lines around in instruction list.

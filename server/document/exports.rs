@@ -58,6 +58,12 @@ impl Outer {
         Outer { files }
     }
 
+    /// Whether file number `own` learns the same from both.
+    pub fn is_same_for(&self, other: &Outer, own: usize) -> bool {
+        let pairs = || self.files.iter().zip(&other.files).enumerate().filter(|(number, _)| *number != own);
+        self.files.len() == other.files.len() && pairs().all(|(_, (left, right))| left.key == right.key)
+    }
+
     /// Those of each file.
     pub fn files(&self) -> &[Arc<Exports>] {
         &self.files

@@ -1,11 +1,11 @@
 //! The handlers: a few lines each, from the snapshot of the request to the answer of `ide`.
 
 use super::capabilities;
+use super::projects::Around;
 use super::to_proto::{self, Place};
 use super::workspace::{Open, SNAPSHOT, Snapshot, Workspace};
-use crate::check;
 use crate::ide;
-use crate::text::{Diagnostic, Language, Message};
+use crate::text::{Language, Message};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::hash::BuildHasher;
@@ -33,14 +33,19 @@ impl LanguageServer for Backend {
     }
 
     async fn initialized(&self, _: InitializedParams) {
-        if !self.workspace.watches() {
+        let requests = self.workspace.requests();
+        let registrations = capabilities::registrations(requests);
+        if requests.configuration {
+            self.workspace.ask_configuration();
+        }
+        if registrations.is_empty() {
             return;
         }
         let client = self.workspace.client.clone();
         // The client may answer late or never; no handler waits for it.
         tokio::spawn(async move {
-            if let Err(reason) = client.register_capability(vec![capabilities::watched_manifests()]).await {
-                tracing::warn!("the client does not watch manifests: {reason}");
+            if let Err(reason) = client.register_capability(registrations).await {
+                tracing::warn!("the client does not watch files: {reason}");
             }
         });
     }
@@ -143,17 +148,17 @@ impl LanguageServer for Backend {
 
     async fn formatting(&self, params: DocumentFormattingParams) -> Result<Option<Vec<TextEdit>>> {
         let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
-        whole(params.text_document.uri, move |open, place| {
-            place.edits(&ide::format(place.document, settings.style(&open.manifest)))
+        whole(params.text_document.uri, move |around, place| {
+            place.edits(&ide::format(place.document, settings.style(&around.here().manifest)))
         })
         .await
     }
 
     async fn code_action(&self, params: CodeActionParams) -> Result<Option<CodeActionResponse>> {
-        whole(params.text_document.uri, move |open, place| {
-            let found = check::all(&open.document, &open.severities);
+        whole(params.text_document.uri, move |around, place| {
+            let found = around.findings();
             let fixes = ide::fixes(&found, place.span(params.range)).into_iter();
-            fixes.map(|fix| quick_fix(open, place, &fix).into()).collect()
+            fixes.map(|fix| quick_fix(around, place, &fix).into()).collect()
         })
         .await
     }
@@ -161,9 +166,7 @@ impl LanguageServer for Backend {
     async fn diagnostic(&self, params: DocumentDiagnosticParams) -> Result<DocumentDiagnosticReportResult> {
         let manner = SNAPSHOT.with(|snapshot| snapshot.manner);
         let uri = params.text_document.uri;
-        let items = whole(uri, move |open, _| {
-            to_proto::diagnostics(open, check::all(&open.document, &open.severities), manner)
-        });
+        let items = whole(uri, move |around, _| to_proto::diagnostics(around, around.findings(), manner));
         Ok(report(items.await?.unwrap_or_default(), params.previous_result_id))
     }
 
@@ -177,7 +180,7 @@ impl LanguageServer for Backend {
             )));
         };
         match params.command.as_str() {
-            "rungwise.check" => whole(uri, |open, place| check_summary(open, place.language)).await,
+            "rungwise.check" => whole(uri, |around, place| check_summary(around, place.language)).await,
             "rungwise.format" => self.format(uri).await,
             other => Err(Error::invalid_params(format!("no such command: {other}"))),
         }
@@ -188,7 +191,8 @@ impl Backend {
     /// Computes the edits and asks the client to apply them; the answer says how many there are.
     async fn format(&self, uri: Uri) -> Result<Option<LSPAny>> {
         let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
-        let edit = whole(uri, move |open, place| {
+        let edit = whole(uri, move |around, place| {
+            let open = around.here();
             let edits = place.edits(&ide::format(place.document, settings.style(&open.manifest)));
             (edits.len(), workspace_edit(open, edits))
         });
@@ -214,12 +218,12 @@ fn with_open<T>(uri: &Uri, answer: impl FnOnce(&Open, Place<'_>) -> Option<T>) -
 /// The same for answers that walk the whole document: they run on a thread of their own.
 async fn whole<T: Send + 'static>(
     uri: Uri,
-    answer: impl FnOnce(&Open, Place<'_>) -> T + Send + 'static,
+    answer: impl FnOnce(&Around, Place<'_>) -> T + Send + 'static,
 ) -> Result<Option<T>> {
     let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
     let work = tokio::task::spawn_blocking(move || {
-        let open = snapshot.open(&uri)?;
-        Some(answer(open, Place::new(&open.document, snapshot.manner)))
+        let around = snapshot.around(snapshot.open(&uri)?);
+        Some(answer(&around, Place::new(&around.here().document, snapshot.manner)))
     });
     work.await.map_err(|failure| {
         tracing::error!("a request failed: {failure}");
@@ -236,13 +240,13 @@ fn workspace_edit(open: &Open, edits: Vec<TextEdit>) -> WorkspaceEdit {
     WorkspaceEdit { document_changes: Some(document_changes), ..WorkspaceEdit::default() }
 }
 
-fn quick_fix(open: &Open, place: Place<'_>, fix: &ide::FixOf<'_>) -> CodeAction {
+fn quick_fix(around: &Around, place: Place<'_>, fix: &ide::FixOf<'_>) -> CodeAction {
     // Plain changes reach every client, also one that knows no versioned edits.
-    let changes = HashMap::from([(open.uri.clone(), place.edits(&fix.fix.edits))]);
+    let changes = HashMap::from([(around.here().uri.clone(), place.edits(&fix.fix.edits))]);
     CodeAction {
         title: fix.fix.title.render(place.language),
         kind: Some(CodeActionKind::QUICKFIX),
-        diagnostics: Some(vec![to_proto::diagnostic(open, fix.diagnostic, place.manner())]),
+        diagnostics: Some(vec![to_proto::diagnostic(around, fix.diagnostic, place.manner())]),
         edit: Some(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }),
         is_preferred: Some(fix.is_preferred),
         ..CodeAction::default()
@@ -250,13 +254,13 @@ fn quick_fix(open: &Open, place: Place<'_>, fix: &ide::FixOf<'_>) -> CodeAction 
 }
 
 /// `{"errors", "warnings", "hints", "rungs", "steps", "capacity", "message"}`
-fn check_summary(open: &Open, language: Language) -> Value {
-    let found: Vec<Diagnostic> = check::all(&open.document, &open.severities);
+fn check_summary(around: &Around, language: Language) -> Value {
+    let found = around.findings();
     let count = |severity| found.iter().filter(|diagnostic| diagnostic.severity == severity).count();
     let [errors, warnings, hints] =
         [crate::text::Severity::Error, crate::text::Severity::Warning, crate::text::Severity::Hint]
             .map(count);
-    let status = ide::status(&open.document);
+    let status = ide::status(&around.here().document);
     let key = match (errors + warnings, status.steps) {
         (0, Some(_)) => "summary.passed-steps",
         (0, None) => "summary.passed",

@@ -1,7 +1,9 @@
 //! What the server offers, and what the client can do.
 
+use super::abilities::Requests;
 use super::to_proto;
 use crate::text::Encoding;
+use serde_json::json;
 use tower_lsp::ls_types::*;
 
 /// The commands of `workspace/executeCommand`.
@@ -22,20 +24,25 @@ pub(super) fn encoding_for(client: &ClientCapabilities) -> Encoding {
     }
 }
 
-/// Whether the client takes registrations of watched files.
-pub(super) fn can_watch(client: &ClientCapabilities) -> bool {
-    let watching =
-        client.workspace.as_ref().and_then(|workspace| workspace.did_change_watched_files.as_ref());
-    watching.is_some_and(|watching| watching.dynamic_registration == Some(true))
-}
-
-/// Asks for `workspace/didChangeWatchedFiles` about manifests.
-pub(super) fn watched_manifests() -> Registration {
-    Registration {
-        id: "rungwise-manifests".to_string(),
-        method: "workspace/didChangeWatchedFiles".to_string(),
-        register_options: Some(serde_json::json!({"watchers": [{"globPattern": "**/rungwise.toml"}]})),
-    }
+/// What the client is asked to tell about while the server runs: files of projects, and its configuration.
+pub(super) fn registrations(requests: Requests) -> Vec<Registration> {
+    let registration = |id: &str, method: &str, register_options| Registration {
+        id: id.to_string(),
+        method: method.to_string(),
+        register_options,
+    };
+    let watchers = json!({"watchers": [
+        {"globPattern": "**/rungwise.toml"},
+        {"globPattern": "**/*.{lad,LAD,il,IL,csv,CSV}"},
+    ]});
+    let files = requests
+        .watch
+        .then(|| registration("rungwise-files", "workspace/didChangeWatchedFiles", Some(watchers)));
+    let configuration = requests.watch_configuration.then(|| {
+        let section = json!({"section": "rungwise"});
+        registration("rungwise-configuration", "workspace/didChangeConfiguration", Some(section))
+    });
+    files.into_iter().chain(configuration).collect()
 }
 
 /// The answer to `initialize`. `pulls` is the setting that turns pushed diagnostics off.

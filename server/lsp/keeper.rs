@@ -1,70 +1,285 @@
-//! Reads the files of projects in the background: one task, so that the disk is asked once at a time.
+//! The task that looks after projects: it reads their files, links them, and publishes what is found in those that are
+//! not open. One task, so that the disk is asked once at a time and no two pictures of a project compete.
 
 use super::projects::{Loaded, OnDisk, Stamp, canonical};
 use super::settings::Settings;
-use super::workspace::{Open, Workspace, decided, read};
-use crate::project::{MANIFEST_NAME, MOST_FILE_BYTES, MOST_FILES, MOST_PROJECT_BYTES, Project};
-use rustc_hash::FxHashMap;
+use super::to_proto;
+use super::workspace::{Open, Snapshot, Workspace, decided, read};
+use crate::check;
+use crate::document::{Document, Exports};
+use crate::project::{
+    MANIFEST_NAME, MOST_FILE_BYTES, MOST_FILES, MOST_PROJECT_BYTES, Manifest, Project, projects_in,
+};
+use crate::text::Message;
+use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
+use std::hash::BuildHasher;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Weak};
+use std::time::Duration;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
-use tower_lsp::ls_types::Uri;
+use tower_lsp::ls_types::{Diagnostic, MessageType, Uri};
+
+/// Changes in quick succession are taken together.
+const PAUSE: Duration = Duration::from_millis(60);
 
 /// Gives orders to the task.
+#[derive(Clone)]
 pub(super) struct Keeper {
     orders: UnboundedSender<Order>,
 }
 
-/// A project that is to be read, or read again.
-struct Order {
-    /// The canonical folder.
-    key: Arc<Path>,
-    /// The folder as the client spells it.
-    root: PathBuf,
+/// What is to be done.
+enum Order {
+    /// Read the project with this canonical folder, which the client spells `root`; files that did not change on the
+    /// disk are kept.
+    Read { key: Arc<Path>, root: PathBuf },
+    /// Read all projects in this folder and below.
+    Search { folder: PathBuf },
+    /// The project is no longer of interest.
+    Forget { key: Arc<Path> },
+    /// A document changed in a way that other files see.
+    Changed { key: Arc<Path>, uri: Uri },
+    /// A document was closed, and its publisher has said its last word.
+    Closed { key: Arc<Path>, uri: Uri },
 }
 
 impl Keeper {
     /// The task lives as long as the workspace.
     pub(super) fn start(workspace: &Arc<Workspace>) -> Keeper {
         let (orders, receiver) = unbounded_channel();
-        tokio::spawn(run(Arc::downgrade(workspace), receiver));
+        let task = Task {
+            workspace: Arc::downgrade(workspace),
+            published: FxHashMap::default(),
+            told: FxHashSet::default(),
+        };
+        tokio::spawn(task.run(receiver));
         Keeper { orders }
     }
 
-    /// Reads the project in `root`; files that did not change on the disk are kept.
+    /// Reads the project in `root`, or reads it again.
     pub(super) fn read(&self, key: Arc<Path>, root: PathBuf) {
+        self.send(Order::Read { key, root });
+    }
+
+    /// Reads all projects in `folder` and below.
+    pub(super) fn search(&self, folder: PathBuf) {
+        self.send(Order::Search { folder });
+    }
+
+    /// Forgets a project, and takes back what was published about its files.
+    pub(super) fn forget(&self, key: Arc<Path>) {
+        self.send(Order::Forget { key });
+    }
+
+    /// The open document `uri` changed in a way that the other files of its project see.
+    pub(super) fn changed(&self, key: Arc<Path>, uri: Uri) {
+        self.send(Order::Changed { key, uri });
+    }
+
+    /// The document `uri` is open no more; the file on the disk counts from now on.
+    pub(super) fn closed(&self, key: Arc<Path>, uri: Uri) {
+        self.send(Order::Closed { key, uri });
+    }
+
+    fn send(&self, order: Order) {
         // Without the task there is no workspace either.
-        let _ = self.orders.send(Order { key, root });
+        let _ = self.orders.send(order);
     }
 }
 
-async fn run(workspace: Weak<Workspace>, mut orders: UnboundedReceiver<Order>) {
-    while let Some(first) = orders.recv().await {
-        // What came meanwhile is taken together: a project is read once for many changes of its files.
-        let mut roots = FxHashMap::from_iter([(first.key, first.root)]);
-        while let Ok(next) = orders.try_recv() {
-            roots.insert(next.key, next.root);
-        }
-        for (key, root) in roots {
-            let Some(workspace) = workspace.upgrade() else { return };
-            let snapshot = workspace.snapshot();
-            let work = {
-                let key = key.clone();
-                move || {
-                    read_project(
-                        &key,
-                        &root,
-                        snapshot.projects.get(&key).map(|old| &**old),
-                        snapshot.settings,
-                    )
-                }
-            };
-            match tokio::task::spawn_blocking(work).await {
-                Ok(loaded) => workspace.adopt(&key, loaded),
-                Err(failure) => tracing::error!("reading a project failed: {failure}"),
+/// What the task remembers.
+struct Task {
+    workspace: Weak<Workspace>,
+    /// For each file that is not open what was published about it, as a hash; none stands for an empty list.
+    published: FxHashMap<Uri, Option<u64>>,
+    /// Projects of which the user was told that they are too large.
+    told: FxHashSet<Arc<Path>>,
+}
+
+/// Orders that came together.
+#[derive(Default)]
+struct Batch {
+    reads: FxHashMap<Arc<Path>, PathBuf>,
+    changed: FxHashMap<Arc<Path>, Vec<Uri>>,
+    folders: Vec<PathBuf>,
+    forgotten: Vec<Arc<Path>>,
+}
+
+impl Task {
+    async fn run(mut self, mut orders: UnboundedReceiver<Order>) {
+        while let Some(first) = orders.recv().await {
+            if matches!(first, Order::Changed { .. }) {
+                tokio::time::sleep(PAUSE).await;
+            }
+            let Some(workspace) = self.workspace.upgrade() else { return };
+            let mut batch = Batch::default();
+            self.take(&workspace, first, &mut batch);
+            while let Ok(next) = orders.try_recv() {
+                self.take(&workspace, next, &mut batch);
+            }
+            for key in std::mem::take(&mut batch.forgotten) {
+                self.forget(&workspace, &key).await;
+            }
+            for folder in std::mem::take(&mut batch.folders) {
+                let found = tokio::task::spawn_blocking(move || projects_in(&folder)).await;
+                let found = found.unwrap_or_default().into_iter();
+                batch.reads.extend(found.map(|root| (canonical(&root), root)));
+            }
+            for (key, root) in &batch.reads {
+                self.read(&workspace, key, root).await;
+            }
+            let keys: FxHashSet<&Arc<Path>> = batch.reads.keys().chain(batch.changed.keys()).collect();
+            for key in keys {
+                let is_read = batch.reads.contains_key(key);
+                let by = batch.changed.get(key).filter(|by| !is_read && by.len() == 1);
+                self.link(&workspace, key, by.map_or(&[][..], Vec::as_slice)).await;
             }
         }
     }
+
+    fn take(&mut self, workspace: &Arc<Workspace>, order: Order, batch: &mut Batch) {
+        match order {
+            Order::Read { key, root } => _ = batch.reads.insert(key, root),
+            Order::Changed { key, uri } => {
+                let uris = batch.changed.entry(key).or_default();
+                if !uris.contains(&uri) {
+                    uris.push(uri);
+                }
+            }
+            Order::Search { folder } => batch.folders.push(folder),
+            Order::Forget { key } => batch.forgotten.push(key),
+            Order::Closed { key, uri } => {
+                // What the editor's text made be published is not known here, so it is replaced in any case.
+                self.published.insert(uri, Some(0));
+                if let Some(loaded) = workspace.snapshot().projects.get(&key) {
+                    batch.reads.insert(key, loaded.root.clone());
+                }
+            }
+        }
+    }
+
+    async fn forget(&mut self, workspace: &Arc<Workspace>, key: &Arc<Path>) {
+        let snapshot = workspace.snapshot();
+        let Some(loaded) = snapshot.projects.get(key) else { return };
+        workspace.adopt(key, None);
+        for file in loaded.files.iter().filter_map(|file| file.file.as_ref()) {
+            self.publish(workspace, file.uri.clone(), Vec::new()).await;
+            self.published.remove(&file.uri);
+        }
+    }
+
+    async fn read(&mut self, workspace: &Arc<Workspace>, key: &Arc<Path>, root: &Path) {
+        let snapshot = workspace.snapshot();
+        let progress = workspace.progress(Message::new("project.reading")).await;
+        let work = {
+            let (key, root) = (key.clone(), root.to_path_buf());
+            move || {
+                let old = snapshot.projects.get(&key).map(|old| &**old);
+                read_project(&key, &root, old, snapshot.settings, &progress)
+            }
+        };
+        match tokio::task::spawn_blocking(work).await {
+            Ok(loaded) => {
+                self.tell_size(workspace, key, loaded.as_ref()).await;
+                workspace.adopt(key, loaded);
+            }
+            Err(failure) => tracing::error!("reading a project failed: {failure}"),
+        }
+    }
+
+    /// Says once that files of a project were passed over.
+    async fn tell_size(&mut self, workspace: &Workspace, key: &Arc<Path>, loaded: Option<&Loaded>) {
+        let Some(loaded) = loaded.filter(|loaded| loaded.passed_over > 0) else {
+            self.told.remove(key);
+            return;
+        };
+        if self.told.insert(key.clone()) {
+            let message = Message::new("project.too-large")
+                .with("folder", loaded.root.display())
+                .with("count", loaded.passed_over)
+                .with("files", MOST_FILES)
+                .with("megabytes", MOST_PROJECT_BYTES >> 20);
+            let language = workspace.snapshot().manner.language;
+            workspace.client.show_message(MessageType::WARNING, message.render(language)).await;
+        }
+    }
+
+    /// Links the files of a project and publishes what changed thereby; `by` is the only document that changed, if
+    /// it was one: it is published already.
+    async fn link(&mut self, workspace: &Arc<Workspace>, key: &Arc<Path>, by: &[Uri]) {
+        let linking = {
+            let (workspace, key) = (workspace.clone(), key.clone());
+            tokio::task::spawn_blocking(move || workspace.link(&key)).await
+        };
+        let mut done = linking.unwrap_or_default();
+        done.extend_from_slice(by);
+        workspace.publish_project(key, &done);
+        self.publish_closed(workspace, key).await;
+        workspace.refresh_pulled();
+    }
+
+    /// Publishes what is found in the files of a project that are not open.
+    async fn publish_closed(&mut self, workspace: &Arc<Workspace>, key: &Arc<Path>) {
+        let snapshot = workspace.snapshot();
+        let wanted = !snapshot.settings.pulls() && snapshot.settings.whole_project;
+        let folder = snapshot.projects.get(key).map(|loaded| loaded.root.clone());
+        let found = match wanted {
+            true => {
+                let (snapshot, key) = (snapshot.clone(), key.clone());
+                tokio::task::spawn_blocking(move || closed_findings(&snapshot, &key))
+                    .await
+                    .unwrap_or_default()
+            }
+            false => Vec::new(),
+        };
+        let mut gone: FxHashSet<Uri> = match &folder {
+            Some(folder) => self.published.keys().filter(|uri| is_below(uri, folder)).cloned().collect(),
+            None => FxHashSet::default(),
+        };
+        for (uri, diagnostics) in found {
+            gone.remove(&uri);
+            self.publish(workspace, uri, diagnostics).await;
+        }
+        for uri in gone {
+            self.publish(workspace, uri.clone(), Vec::new()).await;
+            self.published.remove(&uri);
+        }
+    }
+
+    async fn publish(&mut self, workspace: &Workspace, uri: Uri, diagnostics: Vec<Diagnostic>) {
+        if workspace.snapshot().open(&uri).is_some() {
+            self.published.remove(&uri);
+            return;
+        }
+        let text = serde_json::to_string(&diagnostics).unwrap_or_default();
+        let hash = (!diagnostics.is_empty()).then(|| FxBuildHasher.hash_one(text) | 1);
+        if self.published.get(&uri).copied().flatten() == hash {
+            return;
+        }
+        self.published.insert(uri.clone(), hash);
+        workspace.client.publish_diagnostics(uri.clone(), diagnostics, None).await;
+        // Opened in this moment, it would show what the disk had.
+        workspace.publish_again(&uri);
+    }
+}
+
+fn is_below(uri: &Uri, folder: &Path) -> bool {
+    super::projects::file_path(uri).is_some_and(|path| path.starts_with(folder))
+}
+
+/// What is found in each file of a project that is not open.
+fn closed_findings(snapshot: &Snapshot, key: &Arc<Path>) -> Vec<(Uri, Vec<Diagnostic>)> {
+    let Some(around) = snapshot.project(key) else { return Vec::new() };
+    let Some(severities) = around.files().first().map(|file| file.severities.clone()) else {
+        return Vec::new();
+    };
+    let found = check::project(&around.view(), &severities);
+    let of_file = |(number, found)| {
+        let seen = around.from(number)?;
+        let uri = seen.here().uri.clone();
+        (!seen.here().is_open).then(|| (uri, to_proto::diagnostics(&seen, found, snapshot.manner)))
+    };
+    (0..).zip(found).filter_map(of_file).collect()
 }
 
 /// The project in `root`; nothing if there is no manifest any more.
@@ -73,6 +288,7 @@ fn read_project(
     root: &Path,
     old: Option<&Loaded>,
     settings: Arc<Settings>,
+    progress: &super::progress::Progress,
 ) -> Option<Loaded> {
     if !root.join(MANIFEST_NAME).is_file() {
         return None;
@@ -88,54 +304,48 @@ fn read_project(
         root: root.to_path_buf(),
         passed_over: paths.len().saturating_sub(MOST_FILES),
         manifest: Arc::new(project.manifest),
-        files: Vec::new(),
         settings,
+        ..Loaded::default()
     };
     let severities = Arc::new(loaded.manifest.severities());
-    let mut bytes = 0;
-    for path in paths.into_iter().take(MOST_FILES) {
+    let (mut bytes, total) = (0, paths.len().min(MOST_FILES));
+    for (number, path) in paths.into_iter().take(MOST_FILES).enumerate() {
+        progress.report(number, total);
         let canonical_path = canonical(&path);
         let name = path.strip_prefix(root).unwrap_or(&path).to_string_lossy().replace('\\', "/");
-        let stamp = stamp_of(&path);
-        let old = known.get(&canonical_path).filter(|old| same && old.stamp == stamp);
+        let stamp = Stamp::of(&path);
         let length = stamp.map_or(0, |stamp| stamp.bytes);
-        bytes += length;
-        let too_large = length > MOST_FILE_BYTES || bytes > MOST_PROJECT_BYTES;
+        let too_large = length > MOST_FILE_BYTES || bytes + length > MOST_PROJECT_BYTES;
         if too_large {
-            bytes -= length;
             loaded.passed_over += 1;
+        } else {
+            bytes += length;
         }
-        let file = match old {
-            Some(old) => old.file.clone(),
-            None if too_large => None,
-            None => read_file(&path, &loaded.settings, &loaded.manifest).map(|(uri, document)| {
-                Arc::new(Open {
-                    uri,
-                    version: 0,
-                    is_open: false,
-                    path: Some(canonical_path.clone()),
-                    project: Some(key.clone()),
-                    document,
-                    manifest: loaded.manifest.clone(),
-                    severities: severities.clone(),
-                })
-            }),
-        };
-        loaded.files.push(OnDisk { path: canonical_path, name, stamp, file });
+        if let Some(old) = known.get(&canonical_path).filter(|old| same && old.stamp == stamp) {
+            loaded.files.push(OnDisk { name, ..OnDisk::clone(old) });
+            continue;
+        }
+        let read = if too_large { None } else { read_file(&path, &loaded.settings, &loaded.manifest) };
+        let exports = read.as_ref().map(|(_, document)| Arc::new(Exports::of(document)));
+        let file = read.map(|(uri, document)| {
+            Arc::new(Open {
+                uri,
+                version: 0,
+                is_open: false,
+                path: Some(canonical_path.clone()),
+                project: Some(key.clone()),
+                document,
+                manifest: loaded.manifest.clone(),
+                severities: severities.clone(),
+            })
+        });
+        let exports = exports.unwrap_or_default();
+        loaded.files.push(OnDisk { path: canonical_path, name, stamp, file, exports });
     }
     Some(loaded)
 }
 
-fn stamp_of(path: &Path) -> Option<Stamp> {
-    let data = std::fs::metadata(path).ok().filter(|data| data.is_file())?;
-    Some(Stamp { modified: data.modified().ok(), bytes: data.len() })
-}
-
-fn read_file(
-    path: &Path,
-    settings: &Settings,
-    manifest: &crate::project::Manifest,
-) -> Option<(Uri, crate::document::Document)> {
+fn read_file(path: &Path, settings: &Settings, manifest: &Manifest) -> Option<(Uri, Document)> {
     let uri = Uri::from_file_path(path)?;
     let bytes = std::fs::read(path).ok()?;
     let text = String::from_utf8_lossy(&bytes);

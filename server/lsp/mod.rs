@@ -4,11 +4,15 @@
 //! gives every request the snapshot of that moment; [`backend`] answers from the snapshot; [`publisher`] sends
 //! diagnostics.
 
+mod abilities;
 mod backend;
 mod capabilities;
+mod folders;
 mod frames;
 mod keeper;
+mod linking;
 mod manifests;
+mod progress;
 mod projects;
 mod publisher;
 mod service;

@@ -2,8 +2,10 @@
 
 use super::settings::Settings;
 use super::workspace::{Open, Snapshot};
-use crate::document::{Member, ProjectView};
+use crate::check;
+use crate::document::{Exports, Member, Outer, ProjectView};
 use crate::project::Manifest;
+use crate::text::Diagnostic;
 use rustc_hash::FxHashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -14,7 +16,7 @@ use tower_lsp::ls_types::Uri;
 pub(super) type Projects = FxHashMap<Arc<Path>, Arc<Loaded>>;
 
 /// A project as it was read from the disk.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Loaded {
     /// The folder of the manifest, as the client spells it.
     pub root: PathBuf,
@@ -26,6 +28,8 @@ pub(super) struct Loaded {
     pub passed_over: usize,
     /// What the user wanted when the files were read.
     pub settings: Arc<Settings>,
+    /// What the files declare for each other, in their order.
+    pub outer: Arc<Outer>,
 }
 
 /// A program file of a project on the disk.
@@ -39,6 +43,8 @@ pub(super) struct OnDisk {
     pub stamp: Option<Stamp>,
     /// What was read; nothing if the file is not there, too large or unreadable.
     pub file: Option<Arc<Open>>,
+    /// What it declares for the other files.
+    pub exports: Arc<Exports>,
 }
 
 /// What tells a changed file from an unchanged one without reading it.
@@ -48,7 +54,16 @@ pub(super) struct Stamp {
     pub bytes: u64,
 }
 
+impl Stamp {
+    /// That of the file at `path`; nothing if there is none.
+    pub(super) fn of(path: &Path) -> Option<Stamp> {
+        let data = std::fs::metadata(path).ok().filter(|data| data.is_file())?;
+        Some(Stamp { modified: data.modified().ok(), bytes: data.len() })
+    }
+}
+
 /// The files of the project of a document; a document that belongs to none stands alone.
+#[derive(Clone)]
 pub(super) struct Around {
     files: Vec<Arc<Open>>,
     names: Vec<String>,
@@ -63,6 +78,39 @@ impl Around {
         let members = members.map(|(file, name)| Member { name, document: &file.document }).collect();
         ProjectView::new(members, self.here, self.is_listed)
             .unwrap_or_else(|| ProjectView::alone(&self.files[self.here].document))
+    }
+
+    /// The file that is looked at.
+    pub fn here(&self) -> &Arc<Open> {
+        &self.files[self.here]
+    }
+
+    /// What both tiers find in the file that is looked at, sorted by place.
+    pub fn findings(&self) -> Vec<Diagnostic> {
+        let open = self.here();
+        if self.files.len() == 1 {
+            return check::all(&open.document, &open.severities);
+        }
+        let mut found = check::realtime(&open.document, &open.severities);
+        found.extend(check::within_project(&self.view(), &open.severities));
+        check::sorted(found)
+    }
+
+    /// The same files seen from file number `here`.
+    pub fn from(&self, here: usize) -> Option<Around> {
+        (here < self.files.len()).then(|| Around { here, ..self.clone() })
+    }
+
+    /// The same files with a newer text of the one that is looked at.
+    pub fn with_here(&self, open: &Arc<Open>) -> Around {
+        let mut around = self.clone();
+        around.files[self.here] = open.clone();
+        around
+    }
+
+    /// A file without others.
+    pub fn alone(open: &Arc<Open>) -> Around {
+        Around { files: vec![open.clone()], names: vec![String::new()], here: 0, is_listed: false }
     }
 
     /// File number `number`.
@@ -94,9 +142,24 @@ impl Snapshot {
             }
         }
         if around.here == usize::MAX {
-            return Around { files: vec![open.clone()], names: vec![String::new()], here: 0, is_listed: false };
+            return Around::alone(open);
         }
         around
+    }
+
+    /// The file of an open document as the disk has it.
+    pub(super) fn on_disk(&self, open: &Open) -> Option<&Arc<Open>> {
+        let loaded = self.projects.get(open.project.as_ref()?)?;
+        loaded.files.get(loaded.number_of(open)?)?.file.as_ref()
+    }
+
+    /// All of a project, seen from its first file; nothing if it has none.
+    pub(super) fn project(&self, key: &Arc<Path>) -> Option<Around> {
+        let loaded = self.projects.get(key)?;
+        let (files, names): (Vec<_>, Vec<_>) =
+            self.files_of(loaded).map(|(file, name)| (file, name.to_string())).unzip();
+        let is_listed = loaded.manifest.files.is_some();
+        (!files.is_empty()).then_some(Around { files, names, here: 0, is_listed })
     }
 
     /// The files of a project in order with their names, those that cannot be read left out.

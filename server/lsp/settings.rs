@@ -19,13 +19,23 @@ pub(super) struct Settings {
     width: Option<u32>,
     /// `inlayHints.enabled`
     pub inlay_hints: bool,
+    /// `diagnostics.scope` is `project` and not `open`: files of a project that are not open are reported, too.
+    pub whole_project: bool,
     /// `diagnostics.mode` is `pull` and not `push`. A client that shows both kinds would show everything twice.
     pulls: bool,
 }
 
 impl Default for Settings {
     fn default() -> Settings {
-        Settings { target: None, notation: None, style: None, width: None, inlay_hints: true, pulls: false }
+        Settings {
+            target: None,
+            notation: None,
+            style: None,
+            width: None,
+            inlay_hints: true,
+            whole_project: true,
+            pulls: false,
+        }
     }
 }
 
@@ -56,6 +66,7 @@ impl Settings {
             style,
             width: width.map(|width| width.min(u64::from(MOST_WIDTH)) as u32),
             inlay_hints: part("inlayHints", "enabled").and_then(Value::as_bool).unwrap_or(true),
+            whole_project: word(part("diagnostics", "scope")).as_deref() != Some("open"),
             pulls: word(part("diagnostics", "mode")).as_deref() == Some("pull"),
         })
     }

@@ -1,5 +1,7 @@
 //! From plain structs to the protocol's types.
 
+use super::abilities::{Abilities, plain_text};
+use super::projects::Around;
 use super::workspace::Open;
 use crate::document::Document;
 use crate::ide;
@@ -14,6 +16,7 @@ const DIAGNOSTICS_LIMIT: usize = 1000;
 pub(super) struct Manner {
     pub encoding: Encoding,
     pub language: Language,
+    pub abilities: Abilities,
 }
 
 /// Where answers about one document go: its offsets, the client's way to count and to speak.
@@ -22,15 +25,17 @@ pub(super) struct Place<'a> {
     pub document: &'a Document,
     pub encoding: Encoding,
     pub language: Language,
+    pub abilities: Abilities,
 }
 
 impl<'a> Place<'a> {
     pub(super) fn new(document: &'a Document, manner: Manner) -> Place<'a> {
-        Place { document, encoding: manner.encoding, language: manner.language }
+        let Manner { encoding, language, abilities } = manner;
+        Place { document, encoding, language, abilities }
     }
 
     pub(super) fn manner(self) -> Manner {
-        Manner { encoding: self.encoding, language: self.language }
+        Manner { encoding: self.encoding, language: self.language, abilities: self.abilities }
     }
 }
 
@@ -70,10 +75,10 @@ pub(super) fn encoding(encoding: Encoding) -> lsp::PositionEncodingKind {
     }
 }
 
-pub(super) fn diagnostics(open: &Open, found: Vec<Diagnostic>, manner: Manner) -> Vec<lsp::Diagnostic> {
+pub(super) fn diagnostics(around: &Around, found: Vec<Diagnostic>, manner: Manner) -> Vec<lsp::Diagnostic> {
     let total = found.len();
     let mut shown: Vec<_> =
-        found.iter().take(DIAGNOSTICS_LIMIT).map(|found| diagnostic(open, found, manner)).collect();
+        found.iter().take(DIAGNOSTICS_LIMIT).map(|found| diagnostic(around, found, manner)).collect();
     if let Some(last) = shown.last_mut().filter(|_| total > DIAGNOSTICS_LIMIT) {
         let message =
             crate::text::Message::new("limits.more-diagnostics").with("count", total - DIAGNOSTICS_LIMIT + 1);
@@ -88,12 +93,17 @@ pub(super) fn diagnostics(open: &Open, found: Vec<Diagnostic>, manner: Manner) -
     shown
 }
 
-pub(super) fn diagnostic(open: &Open, found: &Diagnostic, manner: Manner) -> lsp::Diagnostic {
-    let place = Place::new(&open.document, manner);
-    let related = found.related.iter().map(|related| lsp::DiagnosticRelatedInformation {
-        location: lsp::Location { uri: open.uri.clone(), range: place.range(related.span) },
-        message: related.message.render(manner.language),
+/// `around` has the files that the diagnostic names by their numbers.
+pub(super) fn diagnostic(around: &Around, found: &Diagnostic, manner: Manner) -> lsp::Diagnostic {
+    let place = Place::new(&around.here().document, manner);
+    let related = found.related.iter().filter_map(|related| {
+        let file = related.file.map_or(Some(around.here()), |number| around.file(number))?;
+        Some(lsp::DiagnosticRelatedInformation {
+            location: location(file, related.span, manner),
+            message: related.message.render(manner.language),
+        })
     });
+    let has_related = !found.related.is_empty() && manner.abilities.related_information;
     lsp::Diagnostic {
         range: place.range(found.span),
         severity: Some(match found.severity {
@@ -104,19 +114,41 @@ pub(super) fn diagnostic(open: &Open, found: &Diagnostic, manner: Manner) -> lsp
         code: Some(lsp::NumberOrString::String(found.code.to_string())),
         source: Some("rungwise".to_string()),
         message: found.message.render(manner.language),
-        related_information: (!found.related.is_empty()).then(|| related.collect()),
+        related_information: has_related.then(|| related.collect()),
         ..lsp::Diagnostic::default()
     }
 }
 
+/// A place in a file.
+pub(super) fn location(file: &Open, span: Span, manner: Manner) -> lsp::Location {
+    lsp::Location { uri: file.uri.clone(), range: Place::new(&file.document, manner).range(span) }
+}
+
 pub(super) fn hover(place: Place<'_>, hover: ide::Hover) -> lsp::Hover {
-    let contents = lsp::MarkupContent { kind: lsp::MarkupKind::Markdown, value: hover.markdown };
+    let contents = markup(hover.markdown, place.abilities.markdown_hover);
     lsp::Hover { contents: lsp::HoverContents::Markup(contents), range: Some(place.range(hover.span)) }
 }
 
-pub(super) fn completion(place: Place<'_>, proposal: ide::Completion) -> lsp::CompletionItem {
-    let documentation = lsp::MarkupContent { kind: lsp::MarkupKind::Markdown, value: proposal.documentation };
+/// Markdown, or the text of it for a client that shows no Markdown.
+fn markup(markdown: String, is_known: bool) -> lsp::MarkupContent {
+    match is_known {
+        true => lsp::MarkupContent { kind: lsp::MarkupKind::Markdown, value: markdown },
+        false => lsp::MarkupContent { kind: lsp::MarkupKind::PlainText, value: plain_text(&markdown) },
+    }
+}
+
+pub(super) fn completion(place: Place<'_>, mut proposal: ide::Completion) -> lsp::CompletionItem {
+    let abilities = place.abilities;
+    let documentation = markup(proposal.documentation, abilities.markdown_completion);
+    if proposal.is_snippet && !abilities.snippets {
+        proposal.edit.text = without_places(&proposal.edit.text);
+        proposal.is_snippet = false;
+    }
+    let label_details = (abilities.label_details && !proposal.detail.is_empty()).then(|| {
+        lsp::CompletionItemLabelDetails { detail: None, description: Some(proposal.detail.clone()) }
+    });
     lsp::CompletionItem {
+        label_details,
         kind: Some(completion_kind(proposal.kind)),
         detail: (!proposal.detail.is_empty()).then_some(proposal.detail),
         documentation: (!documentation.value.is_empty())
@@ -128,6 +160,29 @@ pub(super) fn completion(place: Place<'_>, proposal: ide::Completion) -> lsp::Co
         label: proposal.label,
         ..lsp::CompletionItem::default()
     }
+}
+
+/// The text of a snippet for a client that knows none: places are left out, their names stay.
+fn without_places(snippet: &str) -> String {
+    let mut text = String::with_capacity(snippet.len());
+    let mut characters = snippet.chars().peekable();
+    let mut depth = 0usize;
+    while let Some(character) = characters.next() {
+        match character {
+            '\\' => text.extend(characters.next()),
+            '$' => {
+                let named = characters.next_if_eq(&'{').is_some();
+                while characters.next_if(char::is_ascii_digit).is_some() {}
+                if named {
+                    depth += 1;
+                    characters.next_if_eq(&':');
+                }
+            }
+            '}' if depth > 0 => depth -= 1,
+            other => text.push(other),
+        }
+    }
+    text
 }
 
 fn completion_kind(kind: ide::CompletionKind) -> lsp::CompletionItemKind {

@@ -1,10 +1,11 @@
 //! The state of the server: settings and open documents, changed in message order, read through snapshots.
 
+use super::abilities::{Abilities, Requests};
 use super::capabilities;
 use super::keeper::Keeper;
 use super::manifests::Manifests;
-use super::projects::{Loaded, Projects, canonical, file_path};
-use super::publisher::Publisher;
+use super::projects::{Projects, canonical, file_path};
+use super::publisher::{Closing, Publisher};
 use super::settings::Settings;
 use super::to_proto::Manner;
 use crate::check::Severities;
@@ -17,20 +18,23 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use tokio::task::JoinHandle;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::time::Duration;
 use tower_lsp::Client;
 use tower_lsp::ls_types::{
-    DidChangeConfigurationParams, DidChangeTextDocumentParams, DidCloseTextDocumentParams,
-    DidOpenTextDocumentParams, DidSaveTextDocumentParams, InitializeParams, LSPAny,
-    TextDocumentContentChangeEvent, TextDocumentItem, Uri,
+    DidChangeTextDocumentParams, DidCloseTextDocumentParams, DidOpenTextDocumentParams,
+    DidSaveTextDocumentParams, InitializeParams, LSPAny, TextDocumentContentChangeEvent, TextDocumentItem,
+    Uri,
 };
 
 /// A document up to this size, a rung or so, is looked at after each edit for what it is; a longer one when it is
 /// saved, lest a half-typed word turn the whole of it into another language.
 const UNDECIDED_BYTES: usize = 128;
+
+/// A document whose project is read for the first time is published without it after this time.
+const AWAITED: Duration = Duration::from_millis(150);
 
 tokio::task_local! {
     /// The state at the moment when the request was read.
@@ -73,15 +77,23 @@ pub(super) struct Workspace {
     shut_down: AtomicBool,
 }
 
+/// What may change while messages are read.
 #[derive(Default)]
-struct State {
-    snapshot: Snapshot,
+pub(super) struct State {
+    pub snapshot: Snapshot,
     publishers: FxHashMap<Uri, Publisher>,
     /// Publishers of closed documents that are not done yet.
-    closing: FxHashMap<Uri, JoinHandle<()>>,
+    closing: FxHashMap<Uri, Closing>,
     manifests: Manifests,
-    keeper: Option<Keeper>,
-    watches: bool,
+    pub keeper: Option<Keeper>,
+    /// Projects that are read for the first time: their documents wait for what the other files declare.
+    pub awaited: FxHashSet<Arc<Path>>,
+    /// Folders that the client has open, as it spells them.
+    pub folders: Vec<(Uri, PathBuf)>,
+    /// The settings as the client sent them.
+    pub settings_source: Option<Value>,
+    pub requests: Requests,
+    this: Weak<Workspace>,
 }
 
 impl Snapshot {
@@ -93,6 +105,17 @@ impl Snapshot {
     /// The open document of the file at a canonical path.
     pub(super) fn open_at(&self, path: &Arc<Path>) -> Option<&Arc<Open>> {
         self.documents.get(self.paths.get(path)?)
+    }
+
+    /// The open documents that belong to a project.
+    pub(super) fn opens_of(&self, project: &Arc<Path>) -> Vec<Arc<Open>> {
+        let opens = self.documents.values().filter(|open| open.project.as_ref() == Some(project));
+        opens.cloned().collect()
+    }
+
+    /// All open documents, in no order.
+    pub(super) fn opens(&self) -> impl Iterator<Item = &Arc<Open>> {
+        self.documents.values()
     }
 
     /// How many documents are open.
@@ -120,9 +143,9 @@ impl Workspace {
         self.shut_down.load(Ordering::Relaxed)
     }
 
-    /// Whether the client wants to be asked to watch files.
-    pub(super) fn watches(&self) -> bool {
-        self.state().watches
+    /// What the client may be asked for.
+    pub(super) fn requests(&self) -> Requests {
+        self.state().requests
     }
 
     /// Takes from a message what it says about the life of the server. What `initialize` says is in force before the
@@ -147,10 +170,14 @@ impl Workspace {
         state.snapshot.manner = Manner {
             encoding: capabilities::encoding_for(&params.capabilities),
             language: params.locale.as_deref().map(Language::of_locale).unwrap_or_default(),
+            abilities: Abilities::of(&params.capabilities),
         };
         let settings = Settings::read(params.initialization_options.as_ref());
+        state.settings_source = params.initialization_options.clone();
         state.snapshot.settings = Arc::new(settings.unwrap_or_default());
-        state.watches = capabilities::can_watch(&params.capabilities);
+        state.requests = Requests::of(&params.capabilities);
+        state.this = Arc::downgrade(self);
+        self.take_folders(&mut state, params);
         self.initialised.store(true, Ordering::Relaxed);
     }
 
@@ -158,7 +185,7 @@ impl Workspace {
     ///
     /// A notification that cannot be read changes nothing: the client would not look at an answer, the log has it.
     /// Before `initialize` and after `shutdown` they are dropped, as the protocol wants.
-    pub(super) fn apply(&self, method: &str, params: Option<&LSPAny>) -> bool {
+    pub(super) fn apply(self: &Arc<Workspace>, method: &str, params: Option<&LSPAny>) -> bool {
         let runs = self.initialised.load(Ordering::Relaxed) && !self.was_shut_down();
         match method {
             _ if !runs => return is_change_of_state(method),
@@ -166,14 +193,15 @@ impl Workspace {
             "textDocument/didChange" => self.with(params, Workspace::change),
             "textDocument/didClose" => self.with(params, Workspace::close),
             "textDocument/didSave" => self.with(params, Workspace::save),
-            "workspace/didChangeConfiguration" => self.with(params, Workspace::configure),
-            "workspace/didChangeWatchedFiles" => self.reread_projects(),
+            "workspace/didChangeConfiguration" => self.with(params, |_, params| self.configure(&params)),
+            "workspace/didChangeWatchedFiles" => self.with(params, Workspace::change_files),
+            "workspace/didChangeWorkspaceFolders" => self.with(params, Workspace::change_folders),
             _ => return false,
         }
         true
     }
 
-    fn with<P: DeserializeOwned>(&self, params: Option<&LSPAny>, apply: fn(&Workspace, P)) {
+    fn with<P: DeserializeOwned>(&self, params: Option<&LSPAny>, apply: impl FnOnce(&Workspace, P)) {
         match P::deserialize(params.unwrap_or(&Value::Null)) {
             Ok(params) => apply(self, params),
             Err(reason) => tracing::warn!("a notification could not be read: {reason}"),
@@ -189,14 +217,19 @@ impl Workspace {
         let is_ladder = language_id == "ladder";
         let (notation, target) = decided(&uri, &text, &manifest, &state.snapshot.settings, is_ladder);
         let document = read(&text, notation, target);
+        let loaded = project.as_ref().and_then(|key| state.snapshot.projects.get(key));
+        let document = match loaded {
+            Some(loaded) => loaded.placed(document, path.as_ref()),
+            None => document,
+        };
         // A document that is opened a second time was closed in the client's eyes.
         if let Some(publisher) = state.publishers.remove(&uri) {
-            let task = publisher.close(uri.clone());
-            state.closing.insert(uri.clone(), task);
+            let closing = publisher.close(uri.clone(), None);
+            state.closing.insert(uri.clone(), closing);
         }
-        let before = state.closing.remove(&uri);
+        let before = state.closing.remove(&uri).map(Closing::superseded);
         let snapshot = &state.snapshot;
-        let publisher = Publisher::start(self.client.clone(), snapshot.manner, &snapshot.settings, before);
+        let publisher = Publisher::start(state.this.clone(), &self.client, snapshot, before);
         state.publishers.insert(uri.clone(), publisher);
         let severities = Arc::new(manifest.severities());
         if let Some(path) = &path {
@@ -241,13 +274,13 @@ impl Workspace {
         let mut state = self.state();
         let uri = params.text_document.uri;
         let closed = Arc::make_mut(&mut state.snapshot.documents).remove(&uri);
-        if let Some(closed) = closed {
-            state.forget_path(&closed);
-        }
+        let Some(closed) = closed else { return };
+        state.forget_path(&closed);
         if let Some(publisher) = state.publishers.remove(&uri) {
-            state.closing.retain(|_, task| !task.is_finished());
-            let task = publisher.close(uri.clone());
-            state.closing.insert(uri, task);
+            state.closing.retain(|_, closing| !closing.is_done());
+            let heir = state.heir(&closed);
+            let closing = publisher.close(uri.clone(), heir);
+            state.closing.insert(uri, closing);
         }
     }
 
@@ -258,17 +291,12 @@ impl Workspace {
             open.decide_again(&state.snapshot.settings);
             state.put(open);
         }
-    }
-
-    fn configure(&self, params: DidChangeConfigurationParams) {
-        // A client without settings says so with `null`; what `initialize` said stays in force.
-        let Some(settings) = Settings::read(Some(&params.settings)) else { return };
-        self.state().snapshot.settings = Arc::new(settings);
-        self.reread_projects();
+        drop(state);
+        self.look_around(&params.text_document.uri);
     }
 
     /// Reads manifests anew, and the documents whose language, target or severities thereby change.
-    fn reread_projects(&self) {
+    pub(super) fn reread_projects(&self) {
         let mut state = self.state();
         let opens: Vec<Arc<Open>> = state.snapshot.documents.values().cloned().collect();
         let mut seen = FxHashSet::default();
@@ -276,7 +304,10 @@ impl Workspace {
             let Belonging { manifest, place, project } = self.belonging(&mut state, &open.uri);
             seen.extend(place);
             let mut open = Open::clone(&open);
-            open.project = project;
+            if open.project != project {
+                open.document = open.document.unlinked();
+                open.project = project;
+            }
             if *open.manifest != manifest {
                 open.severities = Arc::new(manifest.severities());
                 open.manifest = Arc::new(manifest);
@@ -300,26 +331,31 @@ impl Workspace {
         };
         let place = state.manifests.note(&self.client, &project, state.snapshot.manner);
         let key = canonical(&project.root);
-        if !state.snapshot.projects.contains_key(&key)
-            && let Some(keeper) = &state.keeper
-        {
-            keeper.read(key.clone(), project.root.clone());
+        if !state.snapshot.projects.contains_key(&key) && state.awaited.insert(key.clone()) {
+            state.await_project(&key, &project.root);
         }
         Belonging { manifest: project.manifest, place, project: Some(key) }
     }
 
-    /// Takes a project as it was read, or forgets one whose manifest is gone.
-    pub(super) fn adopt(&self, key: &Arc<Path>, loaded: Option<Loaded>) {
-        let mut state = self.state();
-        let projects = Arc::make_mut(&mut state.snapshot.projects);
-        match loaded {
-            Some(loaded) => _ = projects.insert(key.clone(), Arc::new(loaded)),
-            None => _ = projects.remove(key),
+    /// Has a client that pulls diagnostics ask again.
+    pub(super) fn refresh_pulled(&self) {
+        let state = self.state();
+        if state.requests.refresh_diagnostics && state.snapshot.settings.pulls() {
+            let client = self.client.clone();
+            // Nobody waits for the client.
+            tokio::spawn(async move { client.workspace_diagnostic_refresh().await });
+        }
+    }
+
+    /// A document changed in a way that the other files of its project see.
+    pub(super) fn note_change(&self, key: &Arc<Path>, uri: &Uri) {
+        if let Some(keeper) = &self.state().keeper {
+            keeper.changed(key.clone(), uri.clone());
         }
     }
 
     /// A panic while the lock was held leaves whole values behind it: each is put in one assignment.
-    fn state(&self) -> MutexGuard<'_, State> {
+    pub(super) fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -335,6 +371,29 @@ struct Belonging {
 }
 
 impl State {
+    /// Who publishes about the file of `closed` from now on, if it belongs to a project.
+    fn heir(&self, closed: &Open) -> Option<(Keeper, Arc<Path>)> {
+        let key = closed.project.as_ref()?;
+        self.snapshot.projects.get(key)?.number_of(closed)?;
+        Some((self.keeper.clone()?, key.clone()))
+    }
+
+    /// Has a project read for the first time. Its documents wait for it, but not for long.
+    fn await_project(&mut self, key: &Arc<Path>, root: &Path) {
+        let Some(keeper) = &self.keeper else {
+            self.awaited.remove(key);
+            return;
+        };
+        keeper.read(key.clone(), root.to_path_buf());
+        let (workspace, key) = (self.this.clone(), key.clone());
+        tokio::spawn(async move {
+            tokio::time::sleep(AWAITED).await;
+            if let Some(workspace) = workspace.upgrade() {
+                workspace.wait_no_longer(&key);
+            }
+        });
+    }
+
     /// Takes note that `closed` is no longer open; its file may still be so under another spelling.
     fn forget_path(&mut self, closed: &Open) {
         let Some(path) = &closed.path else { return };
@@ -348,10 +407,11 @@ impl State {
     }
 
     /// Makes `open` the document's state, and publishes it.
-    fn put(&mut self, open: Open) {
+    pub(super) fn put(&mut self, open: Open) {
+        let is_awaited = open.project.as_ref().is_some_and(|project| self.awaited.contains(project));
         let open = Arc::new(open);
         Arc::make_mut(&mut self.snapshot.documents).insert(open.uri.clone(), open.clone());
-        if let Some(publisher) = self.publishers.get(&open.uri) {
+        if let Some(publisher) = self.publishers.get(&open.uri).filter(|_| !is_awaited) {
             publisher.publish(open);
         }
     }

@@ -62,8 +62,13 @@ impl Project {
 
     /// The project to which `path` belongs: the nearest manifest in its folder or above.
     pub fn of(path: &Path) -> Option<Project> {
+        Project::folder_of(path).map(|folder| Project::read(&folder))
+    }
+
+    /// The folder of that project.
+    pub fn folder_of(path: &Path) -> Option<PathBuf> {
         let start = if path.is_dir() { path } else { path.parent()? };
-        start.ancestors().find(|folder| folder.join(MANIFEST_NAME).is_file()).map(Project::read)
+        start.ancestors().find(|folder| folder.join(MANIFEST_NAME).is_file()).map(Path::to_path_buf)
     }
 
     /// The program files in order of execution: those that the manifest lists, else all in the folder, by name.

@@ -110,6 +110,7 @@ macro_rules! catalogue_in {
                 include_str!(concat!("messages/", $tag, "/ide.toml")),
                 include_str!(concat!("messages/", $tag, "/devices.toml")),
                 include_str!(concat!("messages/", $tag, "/cli.toml")),
+                include_str!(concat!("messages/", $tag, "/project.toml")),
             ])
         })
     };

@@ -1,0 +1,118 @@
+//! Checks the files of a project together, also where only some of them were asked for.
+
+use super::input::{Beside, Program, read_program};
+use crate::check;
+use crate::document::{Exports, Member, Outer, ProjectView};
+use crate::project::{MOST_PROJECT_BYTES, Project};
+use crate::target::Target;
+use crate::text::Diagnostic;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// What is found in each program; programs of one project see each other and the project's other files.
+pub(super) fn checked(
+    programs: Vec<Program>,
+    target: Option<&'static Target>,
+) -> Vec<(Program, Vec<Diagnostic>)> {
+    let mut groups: BTreeMap<PathBuf, Vec<usize>> = BTreeMap::new();
+    for (number, program) in programs.iter().enumerate() {
+        if let Some(root) = root_of(&program.path) {
+            groups.entry(root).or_default().push(number);
+        }
+    }
+    let mut found: Vec<Option<Vec<Diagnostic>>> = programs.iter().map(|_| None).collect();
+    let mut programs = programs;
+    for (root, numbers) in groups {
+        check_project(&root, &numbers, &mut programs, &mut found, target);
+    }
+    let alone = |program: &Program| check::all(&program.document, &program.manifest.severities());
+    let results = programs.into_iter().zip(found);
+    results
+        .map(|(program, found)| {
+            let found = found.unwrap_or_else(|| alone(&program));
+            (program, found)
+        })
+        .collect()
+}
+
+/// The folder of the project to which a file belongs.
+fn root_of(path: &Path) -> Option<PathBuf> {
+    Project::folder_of(&path.canonicalize().ok()?)
+}
+
+/// A file of a project, and its number among the programs that were asked for.
+struct File {
+    name: String,
+    asked: Option<usize>,
+    program: Option<Program>,
+}
+
+fn check_project(
+    root: &Path,
+    numbers: &[usize],
+    programs: &mut [Program],
+    found: &mut [Option<Vec<Diagnostic>>],
+    target: Option<&'static Target>,
+) {
+    let project = Project::read(root);
+    let Some(first) = numbers.first().and_then(|number| programs.get(*number)) else { return };
+    let manifest = first.manifest.clone();
+    let canonical_of = |number: &usize| Some((programs[*number].path.canonicalize().ok()?, *number));
+    let asked_for: BTreeMap<PathBuf, usize> = numbers.iter().filter_map(canonical_of).collect();
+    let mut bytes = 0;
+    let mut files: Vec<File> = Vec::new();
+    for path in project.files_in_reach() {
+        let name = path.strip_prefix(root).unwrap_or(&path).display().to_string();
+        let asked = path.canonicalize().ok().and_then(|path| asked_for.get(&path).copied());
+        bytes += std::fs::metadata(&path).map_or(0, |data| data.len());
+        // What was not asked for and cannot be read or kept is left out; who asks for it is told.
+        let program = match asked {
+            None if bytes <= MOST_PROJECT_BYTES => match read_program(&path, manifest.clone(), target) {
+                Ok(program) => Some(program),
+                Err(_) => continue,
+            },
+            None => continue,
+            Some(_) => None,
+        };
+        files.push(File { name, asked, program });
+    }
+    if files.len() < 2 {
+        return;
+    }
+    let documents = |programs: &[Program]| {
+        let of = |file: &File| match (&file.program, file.asked) {
+            (Some(program), _) => program.document.clone(),
+            (None, asked) => programs[asked.unwrap_or(0)].document.clone(),
+        };
+        files.iter().map(of).collect::<Vec<_>>()
+    };
+    let unlinked = documents(programs);
+    let outer =
+        Arc::new(Outer::new(unlinked.iter().map(|document| Arc::new(Exports::of(document))).collect()));
+    let linked: Vec<_> =
+        unlinked.iter().enumerate().map(|(own, document)| document.linked(outer.clone(), own)).collect();
+    let members = files.iter().zip(&linked).map(|(file, document)| Member { name: &file.name, document });
+    let is_listed = manifest.files.is_some();
+    let Some(view) = ProjectView::new(members.collect(), 0, is_listed) else { return };
+    let results = check::project(&view, &manifest.severities());
+    let beside: Arc<[Beside]> = files
+        .iter()
+        .zip(&linked)
+        .map(|(file, document)| Beside { path: shown_path(file, programs), document: document.clone() })
+        .collect();
+    for ((file, document), diagnostics) in files.iter().zip(linked).zip(results) {
+        let Some(number) = file.asked else { continue };
+        found[number] = Some(diagnostics);
+        programs[number].document = document;
+        programs[number].beside = beside.clone();
+    }
+}
+
+fn shown_path(file: &File, programs: &[Program]) -> String {
+    let path = match (&file.program, file.asked) {
+        (Some(program), _) => &program.path,
+        (None, asked) => &programs[asked.unwrap_or(0)].path,
+    };
+    path.display().to_string()
+}
