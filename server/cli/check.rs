@@ -55,7 +55,9 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         let reason = format!("{}: not UTF-8, what cannot be read counts as \u{fffd}", program.path.display());
         caution("not-utf-8", &reason, "save the file as UTF-8");
     }
-    let checked = super::across::checked(programs, arguments.target);
+    let tables = super::comments::findings(&programs);
+    let mut checked = super::across::checked(programs, arguments.target);
+    checked.extend(tables);
     let summary = Summary::of(&checked);
     match arguments.format {
         Format::Text => say_text(&checked, &summary, language),

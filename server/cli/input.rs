@@ -159,5 +159,6 @@ pub(super) fn read_program(
         Err(broken) => (String::from_utf8_lossy(broken.as_bytes()).into_owned(), true),
     };
     let document = open_document(&path.to_string_lossy(), &text, &manifest, target, None);
+    let document = document.commented(&super::comments::of(path, &manifest));
     Ok(Program { path: path.to_path_buf(), document, manifest, beside: Arc::default(), damaged })
 }

@@ -2,10 +2,12 @@
 
 mod across;
 mod check;
+mod comments;
 mod explain;
 mod fmt;
 mod input;
 mod render;
+mod usage;
 
 use crate::text::Language;
 use clap::{Parser, Subcommand, ValueEnum};
@@ -36,6 +38,8 @@ enum Verb {
     Check(check::Arguments),
     /// Write files in canonical form.
     Fmt(fmt::Arguments),
+    /// List the devices that programs use: where read, where written, comment.
+    Usage(usage::Arguments),
     /// Show the page of a rule, an instruction, a function or a function block.
     Explain(explain::Arguments),
 }
@@ -77,6 +81,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Verb::Lsp { stdio: _ } => serve(),
         Verb::Check(arguments) => check::run(&arguments, language).into(),
         Verb::Fmt(arguments) => fmt::run(&arguments, language).into(),
+        Verb::Usage(arguments) => usage::run(&arguments, language).into(),
         Verb::Explain(arguments) => explain::run(&arguments).into(),
     }
 }

@@ -42,6 +42,9 @@ pub use usage::{Usage, UsageAt, UsageKey, UsageRow};
 mod lens;
 pub use lens::{Lens, LensKind, LensSettings};
 
+mod aliases;
+pub use aliases::{Rewrite, SymbolRename};
+
 mod definition;
 
 mod references;
@@ -126,7 +129,7 @@ pub fn references(document: &Document, offset: usize, with_declaration: bool) ->
 
 /// The name at `offset`, if it can be renamed.
 pub fn renamable(document: &Document, offset: usize) -> Option<Span> {
-    rename::renamable(document, offset)
+    aliases::span_at(document, offset).or_else(|| rename::renamable(document, offset))
 }
 
 /// The edits that give the name at `offset` the name `new`.
@@ -135,6 +138,28 @@ pub fn renamable(document: &Document, offset: usize) -> Option<Span> {
 /// Where there is no name, where `new` is none of its kind, or where it is taken.
 pub fn rename(document: &Document, offset: usize, new: &str) -> Result<Vec<TextEdit>, Message> {
     rename::rename(document, offset, new)
+}
+
+/// Renames the symbol of a device at `offset` in all files and in the comments file; nothing if no symbol stands there.
+pub fn rename_symbol(
+    view: &ProjectView<'_>,
+    offset: usize,
+    new: &str,
+) -> Option<Result<SymbolRename, Message>> {
+    aliases::rename(view, offset, new)
+}
+
+/// The edit of the comments file that goes with the renaming of the device at `offset`.
+///
+/// # Errors
+/// If the file has a line for the new device already.
+pub fn rename_in_comments(document: &Document, offset: usize, new: &str) -> Result<Option<TextEdit>, Message> {
+    aliases::table_edit(document, offset, new)
+}
+
+/// What may be written instead at `offset`: a symbol for a device, a device for a symbol.
+pub fn rewrites(document: &Document, offset: usize) -> Vec<Rewrite> {
+    aliases::rewrites(document, offset)
 }
 
 /// The outline.

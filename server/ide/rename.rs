@@ -1,6 +1,7 @@
 //! Renaming: the same program with another name, and the drawing kept whole. What would change the program's meaning
 //! is refused with a reason.
 
+use super::aliases;
 use super::names::{self, Named, Thing};
 use crate::document::{Document, Mention, Symbol, Tree};
 use crate::target::iec::{is_identifier, is_keyword};
@@ -8,7 +9,7 @@ use crate::target::{Device, DeviceKind, DirectAddress, Operand};
 use crate::text::{Encoding, Message, Span, TextEdit};
 use smol_str::SmolStr;
 
-mod drawing;
+pub(super) mod drawing;
 
 pub(super) fn renamable(document: &Document, offset: usize) -> Option<Span> {
     let named = names::at(document, offset)?;
@@ -32,6 +33,10 @@ pub(super) fn rename(document: &Document, offset: usize, new: &str) -> Result<Ve
         thing => thing,
     };
     names::visit(document, &thing, |place| {
+        // A symbol stays: the comments file gives it the new device.
+        if aliases::written_at(document, place.span).is_some() {
+            return;
+        }
         let is_drawn = matches!(place.chunk.tree(), Tree::Ladder(_));
         places.push((place.span, is_drawn));
     });
@@ -42,7 +47,7 @@ pub(super) fn rename(document: &Document, offset: usize, new: &str) -> Result<Ve
     let mut edits: Vec<TextEdit> = plain.map(|(span, _)| TextEdit::new(*span, written.as_str())).collect();
     edits.extend(drawing::edits(document, &drawn, &written)?);
     edits.sort_by_key(|edit| edit.span);
-    match drawing::still_say_the_same(document, &edits, &drawn) {
+    match drawing::still_say_the_same(document, document.reader(), &edits, &drawn) {
         Ok(()) => Ok(edits),
         Err(span) => {
             Err(Message::new("rename.drawing").with("name", written).with("line", line_of(document, span)))

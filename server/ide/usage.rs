@@ -69,6 +69,23 @@ pub struct UsageAt {
 }
 
 impl UsageRow {
+    /// The name, behind that of its unit for a variable of one.
+    pub fn full_name(&self) -> String {
+        match &self.key {
+            UsageKey::Variable(unit, _) if !unit.is_empty() => format!("{unit}.{}", self.name),
+            _ => self.name.clone(),
+        }
+    }
+
+    /// The letter of a device, `address` or `variable`.
+    pub fn kind_word(&self) -> String {
+        match &self.key {
+            UsageKey::Device(device) => device.kind.letter().to_string(),
+            UsageKey::Direct(_) => "address".to_string(),
+            UsageKey::Variable(..) => "variable".to_string(),
+        }
+    }
+
     /// Whether the program reads it.
     pub fn is_read(&self) -> bool {
         self.uses.iter().any(|at| at.usage.reads())

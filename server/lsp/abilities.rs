@@ -1,5 +1,6 @@
 //! What the client can show and do, as it said in `initialize`.
 
+use serde_json::Value;
 use tower_lsp::ls_types::*;
 
 /// What answers depend on. A client that says nothing at all about a side of the protocol is taken for one that knows
@@ -46,6 +47,29 @@ pub(super) struct Requests {
     pub refresh_tokens: bool,
     /// `workspace/applyEdit`.
     pub apply_edit: bool,
+    /// Parts of LSP 3.18 that the protocol's types do not know yet.
+    pub newer: Newer,
+}
+
+/// What a client of LSP 3.18 takes registrations for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(super) struct Newer {
+    /// `workspace/textDocumentContent`.
+    pub content: bool,
+    /// `textDocument/rangesFormatting`.
+    pub ranges: bool,
+}
+
+impl Newer {
+    /// From the parameters of `initialize` as they were sent.
+    pub(super) fn of(params: Option<&Value>) -> Newer {
+        let is = |path: &str| params.and_then(|params| params.pointer(path)).and_then(Value::as_bool) == Some(true);
+        let ranges = "/capabilities/textDocument/rangeFormatting";
+        Newer {
+            content: is("/capabilities/workspace/textDocumentContent/dynamicRegistration"),
+            ranges: is(&format!("{ranges}/dynamicRegistration")) && is(&format!("{ranges}/rangesSupport")),
+        }
+    }
 }
 
 impl Default for Abilities {
@@ -123,6 +147,7 @@ impl Requests {
                 .as_ref()
                 .is_some_and(|one| one.refresh_support == Some(true)),
             apply_edit: workspace.apply_edit == Some(true),
+            newer: Newer::default(),
         }
     }
 }

@@ -7,6 +7,7 @@
 mod abilities;
 mod backend;
 mod capabilities;
+mod features;
 mod folders;
 mod frames;
 mod keeper;
@@ -16,6 +17,7 @@ mod progress;
 mod projects;
 mod publisher;
 mod service;
+mod sheets;
 mod settings;
 mod status;
 mod to_proto;
@@ -41,11 +43,14 @@ pub async fn serve_between(
     output: impl AsyncWrite + Send + Unpin,
 ) -> u8 {
     let mut workspace = None;
-    let (service, socket) = LspService::new(|client| {
+    let (service, socket) = LspService::build(|client| {
         let shared = Workspace::new(client);
         workspace = Some(shared.clone());
         backend::Backend::new(shared)
-    });
+    })
+    .custom_method("textDocument/rangesFormatting", backend::Backend::ranges_formatting)
+    .custom_method("workspace/textDocumentContent", backend::Backend::content)
+    .finish();
     let Some(workspace) = workspace else { return 1 };
     let ordered = Ordered::new(service, workspace.clone());
     Server::new(frames::sound(input), output, socket)

@@ -2,13 +2,14 @@
 //! of its line stays in its column.
 
 use crate::document::{Chunk, Document, Mention, Tree};
+use crate::target::Target;
 use crate::text::{Encoding, LineColumn, Message, Span, TextEdit, cell_width};
 
 /// What may be shortened and lengthened.
 const WIRES: &[char] = &['-', '─', '━', '═', '_'];
 
 /// The edits that put `new` at all of `places`, which are sorted, one edit for each line.
-pub(super) fn edits(document: &Document, places: &[Span], new: &str) -> Result<Vec<TextEdit>, Message> {
+pub(in crate::ide) fn edits(document: &Document, places: &[Span], new: &str) -> Result<Vec<TextEdit>, Message> {
     let line_of = |span: &Span| document.position(span.start as usize, Encoding::Utf8).line;
     let mut edits = Vec::new();
     for run in places.chunk_by(|left, right| line_of(left) == line_of(right)) {
@@ -28,10 +29,11 @@ pub(super) fn edits(document: &Document, places: &[Span], new: &str) -> Result<V
     Ok(edits)
 }
 
-/// Whether the drawings touched by `edits` still say the same, but for the renamed places. Names belong to elements
+/// Whether the drawings touched by `edits`, read with `reader`, say the same but for the renamed places. Names belong to elements
 /// by their columns, so only reading them again can tell.
-pub(super) fn still_say_the_same(
+pub(in crate::ide) fn still_say_the_same(
     document: &Document,
+    reader: &Target,
     edits: &[TextEdit],
     places: &[Span],
 ) -> Result<(), Span> {
@@ -52,7 +54,7 @@ pub(super) fn still_say_the_same(
             continue;
         }
         let redrawn = TextEdit::apply_all(&inside, at.chunk.text());
-        let redrawn = Chunk::read(&redrawn, document.notation(), document.reader());
+        let redrawn = Chunk::read(&redrawn, document.notation(), reader);
         let is_renamed = |mention: &Mention| places.binary_search(&mention.span.shifted(at.start)).is_ok();
         let pairs = at.chunk.mentions().iter().zip(redrawn.mentions());
         let same = |(old, new): (&Mention, &Mention)| {

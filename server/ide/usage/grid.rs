@@ -99,10 +99,7 @@ fn listed(row: &UsageRow, view: &ProjectView<'_>, language: Language) -> String 
         (false, false) => format!("{}: {}", row.symbol, row.comment),
         _ => format!("{}{}", row.symbol, row.comment),
     };
-    let name = match &row.key {
-        UsageKey::Variable(unit, _) if !unit.is_empty() => format!("{unit}.{}", row.name),
-        _ => row.name.clone(),
-    };
+    let name = row.full_name();
     let width: usize = name.chars().map(cell_width).sum();
     let blanks = " ".repeat(9usize.saturating_sub(width).max(1));
     let mut text = format!("{name}{blanks}{}", [said.as_str(), row.preset.as_str()].join("  ").trim());
