@@ -9,12 +9,16 @@
 )]
 
 mod cli;
+mod cli_usage;
+mod comments;
 mod corpus;
 mod document;
 mod extremes;
 mod fuzz;
 mod grammar;
 mod ide;
+mod ide_devices;
+mod ide_signature;
 mod il_fx;
 mod il_iec;
 mod ladder_by_hand;
@@ -23,6 +27,7 @@ mod ladder_print;
 mod ladder_read;
 mod lsp;
 mod lsp_client;
+mod lsp_within;
 mod manifest_schema;
 mod mistakes;
 mod rules;

@@ -250,12 +250,13 @@ fn open_call(text: &str) -> Option<OpenCall> {
         let head = text[..open.at].trim_end();
         let start = head.trim_end_matches(|c: char| c.is_alphanumeric() || "_.".contains(c)).len();
         let callee = &head[start..];
-        let is_operator = Operator::written(callee).is_some() && Function::named(callee).is_none();
+        let name = text[open.last..].split_once(":=").or_else(|| text[open.last..].split_once("=>"));
+        let name = name.map(|(name, _)| name.split_whitespace().last().unwrap_or("").to_string());
+        // `ADD(` is an operator, but with named parameters the function of that name.
+        let is_operator = Operator::written(callee).is_some() && name.is_none();
         if callee.is_empty() || is_operator {
             return None;
         }
-        let name = text[open.last..].split_once(":=").or_else(|| text[open.last..].split_once("=>"));
-        let name = name.map(|(name, _)| name.split_whitespace().last().unwrap_or("").to_string());
         Some(OpenCall { callee: callee.to_string(), before: open.commas, name, takes_result: false })
     })
 }
