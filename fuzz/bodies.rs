@@ -136,8 +136,9 @@ fn holds(document: &Document) {
 fn serve(input: Vec<u8>) {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build();
     let Ok(runtime) = runtime else { return };
+    let input = std::io::Cursor::new(input);
     let served = runtime.block_on(async {
-        let session = rungwise::lsp::serve_between(std::io::Cursor::new(input), tokio::io::sink());
+        let session = rungwise::lsp::serve_between(input, tokio::io::sink(), None, Language::English);
         tokio::time::timeout(std::time::Duration::from_secs(10), session).await
     });
     assert!(served.is_ok(), "the server hangs");

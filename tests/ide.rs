@@ -176,7 +176,7 @@ fn check_tokens(document: &Document, expected: &Expect) {
 
 #[test]
 fn hover_on_an_instruction_is_its_page() {
-    let page = ide::instruction_page(Form::named("DMOVP").unwrap());
+    let page = ide::instruction_page(Form::named("DMOVP").unwrap(), Language::English);
     for part in ["DMOVP", "32 bit", "`MOV`", "`DMOV`", "| S |", "9 steps", "FX2N", "```il"] {
         assert!(page.contains(part), "{part} in {page}");
     }

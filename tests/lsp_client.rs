@@ -25,6 +25,7 @@ impl Client {
     pub fn spawn() -> Client {
         let mut server = Command::new(env!("CARGO_BIN_EXE_rungwise"))
             .arg("lsp")
+            .env("LC_ALL", "C")
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
@@ -135,6 +136,13 @@ impl Client {
                 }
             }
         }
+    }
+
+    /// The first message that came already and that `wanted` takes.
+    pub fn take(&mut self, wanted: impl Fn(&Value) -> bool) -> Option<Value> {
+        self.kept.extend(self.messages.try_iter());
+        let place = self.kept.iter().position(wanted)?;
+        Some(self.kept.remove(place))
     }
 
     /// Whether nothing that `unwanted` takes comes within `time`.

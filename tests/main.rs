@@ -8,6 +8,7 @@
     reason = "a test that fails says so by a panic"
 )]
 
+mod chinese;
 mod cli;
 mod cli_usage;
 mod comments;
@@ -25,8 +26,11 @@ mod ladder_by_hand;
 mod ladder_generate;
 mod ladder_print;
 mod ladder_read;
+mod ldmicro;
 mod lsp;
 mod lsp_client;
+mod lsp_project;
+mod lsp_robust;
 mod lsp_within;
 mod manifest_schema;
 mod mistakes;

@@ -43,7 +43,7 @@ fn codes_are_unique_and_pages_start_with_them() {
     for rule in RULES.iter() {
         assert!(seen.insert(rule.code), "{} twice", rule.code);
         assert!(rule.page().starts_with(&format!("# {}\n", rule.code)), "{}: the page's title", rule.code);
-        assert!(rule.summary().len() > 20, "{}: the page's first sentence", rule.code);
+        assert!(rule.summary(Language::English).len() > 20, "{}: the page's first sentence", rule.code);
     }
     assert!(!RULES.is_empty());
 }

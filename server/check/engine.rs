@@ -5,7 +5,12 @@ use crate::document::{Document, LIMIT_BYTES, Page, ProjectView};
 use crate::text::{Diagnostic, Message, Severity, Span};
 use rustc_hash::{FxHashMap, FxHasher};
 use std::hash::{Hash, Hasher};
-use std::sync::LazyLock;
+use std::num::NonZero;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, LazyLock};
+
+/// So many pages are worth the start of threads: a page takes longer to judge than a thread to start.
+const WORTH_THREADS: usize = 4;
 
 /// What a project makes of the rules' severities: a code maps to its severity here, or to `None` if it is off.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
@@ -37,16 +42,47 @@ pub fn realtime(document: &Document, severities: &Severities) -> Vec<Diagnostic>
         let message = Message::new("text-too-large.found").with("limit", LIMIT_BYTES >> 20);
         return with_severities(vec![Diagnostic::new("text-too-large", Span::at(0), message)], severities);
     }
-    let scopes = document.scopes();
-    let (mut start, mut pou_number) = (0, 0);
+    let judged = judged_pages(document);
+    let mut start = 0;
     let mut diagnostics = Vec::new();
-    for page in document.pages() {
-        let found = page.found(hash_of((scopes.key, pou_number)), || judge_page(document, page, pou_number));
+    for (page, found) in document.pages().iter().zip(judged) {
         diagnostics.extend(found.iter().map(|diagnostic| diagnostic.shifted(start)));
         start += page.bytes();
-        pou_number += page.chunks().iter().map(|chunk| chunk.pou_starts()).sum::<usize>();
     }
     with_severities(diagnostics, severities)
+}
+
+/// The findings in each page, from the page's start. Many pages are judged by several threads.
+fn judged_pages(document: &Document) -> Vec<Arc<[Diagnostic]>> {
+    let scopes = document.scopes();
+    let mut pou_number = 0;
+    let mut tasks = Vec::with_capacity(document.pages().len());
+    for page in document.pages() {
+        tasks.push((page, pou_number));
+        pou_number += page.pou_starts();
+    }
+    let judge = |(page, pou_number): (&Arc<Page>, usize)| {
+        page.found(hash_of((scopes.key, pou_number)), || judge_page(document, page, pou_number))
+    };
+    let is_new =
+        |(page, pou_number): &(&Arc<Page>, usize)| !page.has_found(hash_of((scopes.key, *pou_number)));
+    let new: Vec<_> = tasks.iter().copied().filter(is_new).collect();
+    if new.len() >= WORTH_THREADS {
+        let threads = std::thread::available_parallelism().map_or(1, NonZero::get).min(new.len());
+        let next = AtomicUsize::new(0);
+        let work = || {
+            while let Some(task) = new.get(next.fetch_add(1, Ordering::Relaxed)) {
+                judge(*task);
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 1..threads {
+                scope.spawn(work);
+            }
+            work();
+        });
+    }
+    tasks.into_iter().map(judge).collect()
 }
 
 /// What the batch tier finds in a document that stands alone.
@@ -68,7 +104,7 @@ pub fn project(view: &ProjectView<'_>, severities: &Severities) -> Vec<Vec<Diagn
     let document = |number: usize| view.members()[number].document;
     let mut by_file: Vec<Vec<Diagnostic>> =
         (0..view.members().len()).map(|number| realtime(document(number), severities)).collect();
-    for program in programs(view) {
+    for program in programs(view).into_iter().take_while(|_| !view.is_cancelled()) {
         let files = program.into_iter().map(|number| (number, document(number)));
         for (number, diagnostic) in judge_program(&ProgramContext::new(files, None)) {
             by_file[number].extend(with_severities(vec![diagnostic], severities));
@@ -101,7 +137,7 @@ fn judge_page(document: &Document, page: &Page, mut pou_number: usize) -> Vec<Di
     let mut start = 0;
     for chunk in page.chunks() {
         pou_number += chunk.pou_starts();
-        let found = chunk.found(hash_of((scopes.key, pou_number)), || {
+        let found = chunk.found(hash_of((scopes.key, pou_number)), |chunk| {
             let mut found = chunk.problems().to_vec();
             let context = ChunkContext {
                 chunk,

@@ -1,7 +1,7 @@
 //! What a rule is.
 
 use super::{ChunkContext, ProgramContext};
-use crate::text::{Diagnostic, Severity};
+use crate::text::{self, Book, Diagnostic, Language, Severity};
 
 /// One rule: a row of [`RULES`](super::RULES), one file each, whose `//!` text is its page.
 pub struct Rule {
@@ -40,6 +40,21 @@ impl Rule {
     /// Fences say their notation: `lad`, `fx` or `iec`, and perhaps a target (`fx fx1n`). `^^^` marks the characters
     /// in the line above which are reported; a fence without marks is clean. All fences run as tests.
     pub fn page(&self) -> String {
+        self.page_in(Language::English)
+    }
+
+    /// The page in `language`; the examples are the same in all of them.
+    pub fn page_in(&self, language: Language) -> String {
+        match text::prose(Book::Rules, self.code, language) {
+            Some(_) => {
+                let page = text::page(Book::Rules, self.code, &self.english(), language).into_owned();
+                format!("# {}\n\n{page}", self.code)
+            }
+            None => self.english(),
+        }
+    }
+
+    fn english(&self) -> String {
         let head = self.source.lines().take_while(|line| line.starts_with("//!"));
         let mut page = String::new();
         for line in head {
@@ -51,12 +66,16 @@ impl Rule {
     }
 
     /// The first sentence of its page.
-    pub fn summary(&self) -> String {
-        let page = self.page();
+    pub fn summary(&self, language: Language) -> String {
+        let page = self.page_in(language);
         let text = page.split_once("\n\n").map_or("", |(_, text)| text);
         let paragraph = text.split("\n\n").next().unwrap_or("").replace('\n', " ");
-        match paragraph.find(". ") {
-            Some(end) => paragraph[..=end].to_string(),
+        let end = match language {
+            Language::English => paragraph.find(". ").map(|end| end + 1),
+            Language::SimplifiedChinese => paragraph.find('。').map(|end| end + '。'.len_utf8()),
+        };
+        match end {
+            Some(end) => paragraph[..end].to_string(),
             None => paragraph.trim().to_string(),
         }
     }

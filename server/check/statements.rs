@@ -2,36 +2,28 @@
 //!
 //! Lines of FX instruction list and elements of FX ladders come alike, whichever file of the program they stand in.
 
-use super::ProgramContext;
-use crate::document::{ChunkRef, Document, Notation, Operation, Tree};
-use crate::il::fx::LineKind;
-use crate::ladder::{Element, ElementKind};
-use crate::target::{Device, DeviceKind, Flow, Operand};
+use super::{ProgramContext, ProgramFile};
+use crate::document::{ChunkRef, Document, Notation};
+use crate::target::{Device, Flow, Operand};
 use crate::text::{Span, Spanned, TextEdit};
+
+pub(super) use crate::document::MilestoneKind as StatementKind;
 
 /// An instruction or a label of an FX program.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Statement<'a> {
     /// What it is.
     pub kind: StatementKind,
+    /// How many statements it stands for: itself, and those before it that are left out because they are like it.
+    pub count: usize,
     /// The mnemonic, the label, or the cells of a drawn element.
     pub word: Span,
     /// From the mnemonic to the last operand.
     pub span: Span,
-    /// The first operand.
+    /// The first operand of a statement that has a part in the structure.
     pub first: Option<Spanned<Operand>>,
     at: ChunkRef<'a>,
-}
-
-/// What a statement is.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum StatementKind {
-    /// A label.
-    Label(Device),
-    /// An instruction, by its part in the structure of the program.
-    Instruction(Flow),
-    /// A word that the table does not have.
-    Unknown,
+    is_list: bool,
 }
 
 /// Whether the document is an FX program, in a list or drawn.
@@ -44,10 +36,12 @@ pub(super) fn is_fx_program(document: &Document) -> bool {
 }
 
 impl<'a> ProgramContext<'a> {
-    /// All statements, in the order of execution; none if it is no FX program.
+    /// All statements, in the order of execution; none if it is no FX program. Of a run of equal statements that have
+    /// no part in the structure only the first and the last are there.
     pub(super) fn statements(&self) -> impl Iterator<Item = Statement<'a>> + use<'a> {
         let is_fx = self.files().first().is_some_and(|file| is_fx_program(file.document));
-        is_fx.then(|| self.chunks()).into_iter().flatten().flat_map(of_chunk)
+        let files = if is_fx { self.files().to_vec() } else { Vec::new() };
+        files.into_iter().flat_map(of_file)
     }
 
     /// The statements up to END, it included: what the PLC executes.
@@ -101,7 +95,7 @@ impl<'a> Statement<'a> {
 
     /// The text of its chunk, if that is a list.
     fn list(&self) -> Option<&'a str> {
-        matches!(self.at.chunk.tree(), Tree::Fx(_)).then(|| self.at.chunk.text())
+        self.is_list.then(|| self.at.chunk.text())
     }
 
     fn relative(&self, span: Span) -> Span {
@@ -139,62 +133,29 @@ pub(super) fn removal(text: &str, span: Span) -> TextEdit {
     }
 }
 
-fn of_chunk(at: ChunkRef<'_>) -> impl Iterator<Item = Statement<'_>> {
-    // A chunk is a list or a drawing; the other half is empty.
-    let (list, drawing) = match at.chunk.tree() {
-        Tree::Fx(tree) => (Some(tree), None),
-        Tree::Ladder(tree) => (None, Some(tree)),
-        Tree::Iec(_) => (None, None),
-    };
-    let lines = list.into_iter().flat_map(move |tree| {
-        tree.lines.iter().map(move |line| {
-            let kind = match line.kind {
-                LineKind::Label(device) => StatementKind::Label(device),
-                LineKind::Instruction(form) => StatementKind::Instruction(form.instruction.flow()),
-                LineKind::Unknown => StatementKind::Unknown,
-            };
-            statement(at, kind, line.mnemonic, line.span, tree.operands(line).first().copied())
+fn of_file(file: ProgramFile<'_>) -> impl Iterator<Item = Statement<'_>> {
+    let is_list = file.document.notation() == Notation::FxIl;
+    let mut end = file.start;
+    file.document.pages().iter().flat_map(move |page| {
+        let page_start = end;
+        end += page.bytes();
+        // Milestones come in order, so the way through the page's chunks is gone once.
+        let (mut number, mut start) = (0, page_start);
+        page.milestones().iter().filter_map(move |milestone| {
+            while number < milestone.chunk() {
+                start += page.chunks().get(number)?.len();
+                number += 1;
+            }
+            let first = milestone.first();
+            Some(Statement {
+                kind: milestone.kind,
+                count: milestone.count as usize,
+                word: milestone.word.shifted(page_start),
+                span: milestone.span.shifted(page_start),
+                first: first.map(|first| Spanned::new(first.value, first.span.shifted(page_start))),
+                at: ChunkRef { start, chunk: page.chunks().get(number)? },
+                is_list,
+            })
         })
-    });
-    let header = drawing.and_then(|tree| tree.header.as_ref()).and_then(|header| header.label);
-    let label = header.and_then(|label| {
-        let device = pointer(label.of(at.chunk.text()))?;
-        Some(statement(at, StatementKind::Label(device), label, label, None))
-    });
-    let elements = drawing.into_iter().flat_map(|tree| &tree.rungs).flat_map(|rung| &rung.graph.elements);
-    lines.chain(label).chain(elements.filter_map(move |element| of_element(at, element)))
-}
-
-fn of_element<'a>(at: ChunkRef<'a>, element: &'a Element) -> Option<Statement<'a>> {
-    if let ElementKind::Jump(label) = element.kind {
-        let target = pointer(label.of(at.chunk.text()))?;
-        let first = Spanned::new(Operand::Device(target), label);
-        let kind = StatementKind::Instruction(Flow::Jump);
-        return Some(statement(at, kind, element.span, element.span.to(label), Some(first)));
-    }
-    let operation = Operation::of_element(element)?;
-    let kind = match operation.form {
-        Some(form) => StatementKind::Instruction(form.instruction.flow()),
-        None => StatementKind::Unknown,
-    };
-    let last = operation.operands.last().filter(|_| operation.is_word);
-    let span = last.map_or(operation.symbol, |operand| operation.symbol.to(operand.span));
-    Some(statement(at, kind, operation.symbol, span, operation.operands.first().copied()))
-}
-
-fn statement<'a>(
-    at: ChunkRef<'a>,
-    kind: StatementKind,
-    word: Span,
-    span: Span,
-    first: Option<Spanned<Operand>>,
-) -> Statement<'a> {
-    let first = first.map(|operand| Spanned::new(operand.value, operand.span.shifted(at.start)));
-    Statement { kind, word: word.shifted(at.start), span: span.shifted(at.start), first, at }
-}
-
-/// The pointer of the PLC that a label names.
-fn pointer(name: &str) -> Option<Device> {
-    let device = Operand::read(name, crate::target::Model::Fx3u).device()?;
-    matches!(device.kind, DeviceKind::P | DeviceKind::I).then_some(device)
+    })
 }

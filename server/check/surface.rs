@@ -2,8 +2,7 @@
 
 use super::ProgramContext;
 use super::statements::{StatementKind, is_fx_program};
-use crate::document::{Document, Exports, Tree};
-use crate::il::iec::ItemKind;
+use crate::document::{Document, Exports, Symbol, Tree};
 use crate::target::Flow;
 use rustc_hash::FxHasher;
 use std::hash::{Hash, Hasher};
@@ -35,21 +34,26 @@ fn of_fx(document: &Document, hasher: &mut FxHasher) {
     is_empty.hash(hasher);
 }
 
-/// What it declares for others, which names it uses, and what lies at an address.
+/// What it declares for others, which shared names it uses, and what lies at an address.
 fn of_iec(document: &Document, hasher: &mut FxHasher) {
+    let scopes = document.scopes();
     Exports::of(document).key.hash(hasher);
     for page in document.pages() {
         for (symbol, _) in page.names().symbols() {
-            symbol.hash(hasher);
+            let is_shared = match symbol {
+                Symbol::Variable(name) => scopes.globals.contains_key(name),
+                Symbol::Pou(_) | Symbol::Type(_) => true,
+                _ => false,
+            };
+            if is_shared {
+                symbol.hash(hasher);
+            }
         }
     }
-    for at in document.chunks() {
+    for at in document.chunks().filter(|at| at.chunk.is_iec()) {
         let Tree::Iec(tree) = at.chunk.tree() else { continue };
-        let declares = |item: &crate::il::iec::Item| {
-            matches!(item.kind, ItemKind::Section { .. } | ItemKind::Types { .. } | ItemKind::Task(_))
-        };
-        if tree.items.iter().any(declares) {
-            at.chunk.text().hash(hasher);
+        for declaration in tree.declarations.iter().filter(|declaration| declaration.address.is_some()) {
+            declaration.span.of(at.chunk.text()).hash(hasher);
         }
     }
 }

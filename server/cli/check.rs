@@ -5,7 +5,7 @@ use super::{Format, Outcome, paths_or_here, render};
 use crate::document::Document;
 use crate::ide;
 use crate::target::Target;
-use crate::text::{Diagnostic, Encoding, Fix, Language, Severity, Span};
+use crate::text::{Diagnostic, Encoding, Fix, Language, Message, Severity, Span};
 use clap::ValueEnum;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -52,8 +52,8 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         return Outcome::Unusable;
     };
     for program in programs.iter().filter(|program| program.damaged) {
-        let reason = format!("{}: not UTF-8, what cannot be read counts as \u{fffd}", program.path.display());
-        caution("not-utf-8", &reason, "save the file as UTF-8");
+        let reason = Message::new("cli.not-utf-8").with("path", program.path.display()).render(language);
+        caution("not-utf-8", &reason, &Message::new("cli.save-as-utf-8").render(language), language);
     }
     let tables = super::comments::findings(&programs);
     let mut checked = super::across::checked(programs, arguments.target);
@@ -92,24 +92,31 @@ impl Summary {
     }
 
     /// `check passed: 4 rungs, 31 of 8000 steps`, or the numbers of what was found.
-    fn sentence(&self) -> String {
+    fn sentence(&self) -> Message {
+        let rungs = counted(self.rungs, "counted.rung", "counted.rungs");
+        let hints = counted(self.hints, "counted.hint", "counted.hints");
         let size = match self.capacity {
-            0 => plural(self.rungs, "rung"),
-            capacity => format!("{}, {} of {capacity} steps", plural(self.rungs, "rung"), self.steps),
+            0 => rungs,
+            capacity => Message::new("counted.size")
+                .with_messages("rungs", vec![rungs])
+                .with("steps", self.steps)
+                .with("capacity", capacity),
         };
-        match (self.errors, self.warnings, self.hints) {
-            (0, 0, 0) => format!("check passed: {size}"),
-            (0, 0, hints) => format!("check passed: {size}; {}", plural(hints, "hint")),
-            (errors, warnings, hints) => {
-                let counts = [plural(errors, "error"), plural(warnings, "warning"), plural(hints, "hint")];
-                format!("check failed: {}; {size}", counts.join(", "))
+        let message = match (self.errors, self.warnings, self.hints) {
+            (0, 0, 0) => Message::new("counted.passed"),
+            (0, 0, _) => Message::new("counted.passed-with-hints").with_messages("hints", vec![hints]),
+            (errors, warnings, _) => {
+                let errors = counted(errors, "counted.error", "counted.errors");
+                let warnings = counted(warnings, "counted.warning", "counted.warnings");
+                Message::new("counted.failed").with_messages("counts", vec![errors, warnings, hints])
             }
-        }
+        };
+        message.with_messages("size", vec![size])
     }
 }
 
-fn plural(count: usize, word: &str) -> String {
-    if count == 1 { format!("1 {word}") } else { format!("{count} {word}s") }
+fn counted(count: usize, one: &'static str, many: &'static str) -> Message {
+    Message::new(if count == 1 { one } else { many }).with("count", count)
 }
 
 fn say_text(checked: &[(Program, Vec<Diagnostic>)], summary: &Summary, language: Language) {
@@ -124,7 +131,7 @@ fn say_text(checked: &[(Program, Vec<Diagnostic>)], summary: &Summary, language:
             say(&render::headline(&name, &program.document, diagnostic, &colours, language));
         }
     }
-    say(&format!("{}\n", summary.sentence()));
+    say(&format!("{}\n", summary.sentence().render(language)));
 }
 
 fn as_json(checked: &[(Program, Vec<Diagnostic>)], summary: &Summary, language: Language) -> Value {
@@ -197,7 +204,7 @@ pub(super) fn severity_word(severity: Severity) -> &'static str {
 
 fn target_named(name: &str) -> Result<&'static Target, String> {
     Target::named(name).ok_or_else(|| {
-        let names: Vec<&str> = Target::ALL.iter().map(|target| target.name).collect();
-        format!("no such target; {} are", names.join(", "))
+        let names = Target::ALL.iter().map(|target| target.name);
+        Message::new("cli.no-such-target").with_words("names", names, ", ").render(super::language::spoken())
     })
 }

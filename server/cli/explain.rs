@@ -3,9 +3,11 @@
 use super::Outcome;
 use super::input::{complain, say};
 use crate::check::{RULES, Rule};
+use crate::ide;
 use crate::target::iec::{Function, FunctionBlock, Operator};
 use crate::target::instructions::suggestions;
 use crate::target::{Form, Model};
+use crate::text::{Language, Message};
 
 #[derive(clap::Args)]
 pub(super) struct Arguments {
@@ -13,18 +15,17 @@ pub(super) struct Arguments {
     word: Option<String>,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Outcome {
+pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     let Some(word) = &arguments.word else {
         for rule in RULES.iter() {
-            say(&format!("{:<26} {}\n", rule.code, rule.summary()));
+            say(&format!("{:<26} {}\n", rule.code, rule.summary(language)));
         }
         return Outcome::Clean;
     };
-    let pages = pages(word);
+    let pages = pages(word, language);
     if pages.is_empty() {
-        let near = nearest(word);
-        let help = if near.is_empty() { "`rungwise explain` lists all rules".to_string() } else { near };
-        complain("unknown-word", &format!("`{word}` is neither a rule nor an instruction"), &help);
+        let reason = Message::new("cli.unknown-word").with("word", word).render(language);
+        complain("unknown-word", &reason, &nearest(word).render(language), language);
         return Outcome::Unusable;
     }
     say(&pages.join("\n"));
@@ -32,17 +33,21 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
 }
 
 /// Every page under `word`: a rule; an FX instruction and an IEC operator, function or block of the same name.
-fn pages(word: &str) -> Vec<String> {
-    let rule = Rule::named(&word.to_ascii_lowercase()).map(Rule::page);
-    let instruction = Form::named(word).map(crate::ide::instruction_page);
-    let operator = Operator::written(word).map(|written| crate::ide::operator_page(written.operator));
-    let function = Function::named(word).map(crate::ide::function_page);
-    let block = FunctionBlock::named(word).map(crate::ide::block_page);
+fn pages(word: &str, language: Language) -> Vec<String> {
+    let rule = Rule::named(&word.to_ascii_lowercase()).map(|rule| rule.page_in(language));
+    let instruction = Form::named(word).map(|form| ide::instruction_page(form, language));
+    let operator = Operator::written(word).map(|written| ide::operator_page(written.operator, language));
+    let function = Function::named(word).map(|function| ide::function_page(function, language));
+    let block = FunctionBlock::named(word).map(|block| ide::block_page(block, language));
     [rule, instruction, operator, function, block].into_iter().flatten().collect()
 }
 
-fn nearest(word: &str) -> String {
+/// Names that are spelled nearly so, or where to find all.
+fn nearest(word: &str) -> Message {
     let codes = RULES.iter().map(|rule| rule.code).filter(|code| code.contains(&word.to_ascii_lowercase()));
     let near: Vec<String> = codes.map(str::to_string).chain(suggestions(word, Model::Fx3u)).collect();
-    if near.is_empty() { String::new() } else { format!("near it are: {}", near.join(", ")) }
+    if near.is_empty() {
+        return Message::new("cli.all-rules");
+    }
+    Message::new("cli.near").with_words("near", near, ", ")
 }

@@ -4,7 +4,7 @@ use super::input::{Program, complain, programs, say};
 use super::{Outcome, paths_or_here};
 use crate::ide::{self, Style};
 use crate::project::FormatStyle;
-use crate::text::{Language, TextEdit};
+use crate::text::{Language, Message, TextEdit};
 use clap::ValueEnum;
 use std::path::PathBuf;
 
@@ -36,7 +36,7 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     };
     let mut outcome = Outcome::Clean;
     for program in programs {
-        let result = format_one(&program, arguments);
+        let result = format_one(&program, arguments, language);
         if outcome != Outcome::Unusable && result != Outcome::Clean {
             outcome = result;
         }
@@ -44,10 +44,11 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     outcome
 }
 
-fn format_one(program: &Program, arguments: &Arguments) -> Outcome {
+fn format_one(program: &Program, arguments: &Arguments, language: Language) -> Outcome {
     let path = program.path.display();
     if program.damaged {
-        complain("not-utf-8", &format!("{path}: not UTF-8, left as it is"), "save the file as UTF-8");
+        let reason = Message::new("cli.not-utf-8-left").with("path", path).render(language);
+        complain("not-utf-8", &reason, &Message::new("cli.save-as-utf-8").render(language), language);
         return Outcome::Unusable;
     }
     let style = style_of(program, arguments.style);
@@ -64,13 +65,20 @@ fn format_one(program: &Program, arguments: &Arguments) -> Outcome {
         say(&format!("{path}\n"));
         return Outcome::Findings;
     }
+    // Renaming would replace a file that its owner locked.
+    if std::fs::metadata(&program.path).is_ok_and(|file| file.permissions().readonly()) {
+        let reason = Message::new("cli.read-only").with("path", path).render(language);
+        complain("unwritable", &reason, &Message::new("cli.file-as-it-was").render(language), language);
+        return Outcome::Unusable;
+    }
     match write_whole(&program.path, &formatted) {
         Ok(()) => {
             say(&format!("{path}\n"));
             Outcome::Clean
         }
         Err(reason) => {
-            complain("unwritable", &format!("{path}: {reason}"), "the file is as it was");
+            let help = Message::new("cli.file-as-it-was").render(language);
+            complain("unwritable", &format!("{path}: {reason}"), &help, language);
             Outcome::Unusable
         }
     }
@@ -89,10 +97,6 @@ fn style_of(program: &Program, name: Option<StyleName>) -> Style {
 /// Writes beside the file and then renames, so that a full disk or a pulled plug never leaves half a program.
 fn write_whole(path: &std::path::Path, text: &str) -> std::io::Result<()> {
     let path = path.canonicalize()?;
-    // Renaming would replace a file that its owner locked.
-    if std::fs::metadata(&path)?.permissions().readonly() {
-        return Err(std::io::Error::new(std::io::ErrorKind::PermissionDenied, "the file is read-only"));
-    }
     let mut name = path.file_name().unwrap_or_default().to_os_string();
     name.push(".rungwise-new");
     let beside = path.with_file_name(name);

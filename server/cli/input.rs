@@ -5,7 +5,7 @@ use crate::project::{
     MANIFEST_NAME, Manifest, Project, is_program_file, open_document, program_files, projects_in,
 };
 use crate::target::Target;
-use crate::text::{Encoding, Language, LineColumn, Related};
+use crate::text::{Encoding, Language, LineColumn, Message, Related};
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -53,23 +53,23 @@ pub(super) fn programs(
                         Ok(program) => programs.push(program),
                         Err(reason) => {
                             failed = true;
-                            complain(
-                                "unreadable-input",
-                                &format!("{}: {reason}", file.display()),
-                                "check the path",
-                            );
+                            let help = Message::new("cli.check-path").render(language);
+                            let reason = format!("{}: {reason}", file.display());
+                            complain("unreadable-input", &reason, &help, language);
                         }
                     }
                 }
             }
             Err(reason) => {
                 failed = true;
-                complain("unreadable-input", &reason, "give a .lad or .il file, a folder, or a project");
+                let help = Message::new("cli.give-program").render(language);
+                complain("unreadable-input", &reason, &help, language);
             }
         }
     }
     if programs.is_empty() && !failed {
-        complain("no-programs", "there are no .lad or .il files here", "give a file, a folder or a project");
+        let reason = Message::new("cli.no-programs").render(language);
+        complain("no-programs", &reason, &Message::new("cli.give-input").render(language), language);
         return None;
     }
     (!failed).then_some(programs)
@@ -81,19 +81,23 @@ pub(super) fn say(text: &str) {
     let mut output = std::io::stdout().lock();
     let Err(reason) = output.write_all(text.as_bytes()).and_then(|()| output.flush()) else { return };
     if reason.kind() != ErrorKind::BrokenPipe {
-        complain("unwritable-output", &reason.to_string(), "make room, or send the result elsewhere");
+        let language = super::language::spoken();
+        let help = Message::new("cli.make-room").render(language);
+        complain("unwritable-output", &reason.to_string(), &help, language);
         std::process::exit(2);
     }
 }
 
 /// An error on standard error: `error[code]: reason`, and a sentence that helps.
-pub(super) fn complain(code: &str, reason: &str, help: &str) {
-    let _ = writeln!(std::io::stderr(), "error[{code}]: {reason}\n  help: {help}");
+pub(super) fn complain(code: &str, reason: &str, help: &str, language: Language) {
+    let help = Message::new("cli.help").with("help", help).render(language);
+    let _ = writeln!(std::io::stderr(), "error[{code}]: {reason}\n  {help}");
 }
 
 /// A warning on standard error, of the same form; it changes no exit code.
-pub(super) fn caution(code: &str, reason: &str, help: &str) {
-    let _ = writeln!(std::io::stderr(), "warning[{code}]: {reason}\n  help: {help}");
+pub(super) fn caution(code: &str, reason: &str, help: &str, language: Language) {
+    let help = Message::new("cli.help").with("help", help).render(language);
+    let _ = writeln!(std::io::stderr(), "warning[{code}]: {reason}\n  {help}");
 }
 
 /// Whether standard output takes colours: a terminal, and no `NO_COLOR`.
@@ -104,7 +108,7 @@ pub(super) fn coloured() -> bool {
 /// The files at `path` with the manifest of their project.
 fn files_at(path: &Path, language: Language) -> Result<Vec<(PathBuf, Arc<Manifest>)>, String> {
     if !path.exists() {
-        return Err(format!("{}: there is no such file or folder", path.display()));
+        return Err(Message::new("cli.no-such-file").with("path", path.display()).render(language));
     }
     if path.file_name().is_some_and(|name| name == MANIFEST_NAME) {
         return files_at(
@@ -114,7 +118,7 @@ fn files_at(path: &Path, language: Language) -> Result<Vec<(PathBuf, Arc<Manifes
     }
     if path.is_file() {
         if !is_program_file(path) {
-            return Err(format!("{}: neither a .lad nor an .il file", path.display()));
+            return Err(Message::new("cli.no-program-file").with("path", path.display()).render(language));
         }
         let manifest = manifest_for(path, language)?;
         return Ok(vec![(path.to_path_buf(), manifest)]);

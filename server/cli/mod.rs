@@ -5,11 +5,13 @@ mod check;
 mod comments;
 mod explain;
 mod fmt;
+mod help;
 mod input;
+mod language;
 mod render;
 mod usage;
 
-use crate::text::Language;
+use crate::text::{Language, Message};
 use clap::{Parser, Subcommand, ValueEnum};
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -21,9 +23,9 @@ use std::process::ExitCode;
 struct Arguments {
     #[command(subcommand)]
     verb: Verb,
-    /// The language of messages: en, zh-CN.
-    #[arg(long = "lang", value_name = "LANGUAGE", global = true, default_value = "en", value_parser = language_named)]
-    language: Language,
+    /// The language of messages: en, zh-CN; that of the system if left out.
+    #[arg(long = "lang", value_name = "LANGUAGE", global = true, value_parser = language::named)]
+    language: Option<Language>,
 }
 
 #[derive(Subcommand)]
@@ -67,40 +69,39 @@ enum Outcome {
 /// Runs the command that `arguments` say, the program's name first, and returns the exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     start_log();
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let words: Vec<OsString> = arguments.into_iter().collect();
+    let language = language::choose(&words);
+    let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => arguments,
         Err(error) => {
             let usage = error.use_stderr();
             // Nothing can be told to anybody if neither stream takes it.
-            let _ = error.print();
+            let _ = help::translated(error, &words, language).print();
             return if usage { Outcome::Unusable.into() } else { Outcome::Clean.into() };
         }
     };
-    let language = arguments.language;
     match arguments.verb {
-        Verb::Lsp { stdio: _ } => serve(),
+        Verb::Lsp { stdio: _ } => serve(arguments.language),
         Verb::Check(arguments) => check::run(&arguments, language).into(),
         Verb::Fmt(arguments) => fmt::run(&arguments, language).into(),
         Verb::Usage(arguments) => usage::run(&arguments, language).into(),
-        Verb::Explain(arguments) => explain::run(&arguments).into(),
+        Verb::Explain(arguments) => explain::run(&arguments, language).into(),
     }
 }
 
 /// Does not return to the caller: a thread that still reads standard input would hold the runtime, and the process,
-/// for as long as the client keeps it open.
-fn serve() -> ExitCode {
+/// for as long as the client keeps it open. `asked` is the language that `--lang` says; it goes before the client's.
+fn serve(asked: Option<Language>) -> ExitCode {
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().worker_threads(4).build();
     match runtime {
         Ok(runtime) => {
-            let code = runtime.block_on(crate::lsp::serve());
+            let code = runtime.block_on(crate::lsp::serve(asked, language::spoken()));
             std::process::exit(i32::from(code))
         }
         Err(reason) => {
-            input::complain(
-                "no-runtime",
-                &reason.to_string(),
-                "the system refuses threads; close other programs",
-            );
+            let language = language::spoken();
+            let help = Message::new("cli.no-threads").render(language);
+            input::complain("no-runtime", &reason.to_string(), &help, language);
             Outcome::Unusable.into()
         }
     }
@@ -121,14 +122,6 @@ impl From<Outcome> for ExitCode {
             Outcome::Findings => ExitCode::from(1),
             Outcome::Unusable => ExitCode::from(2),
         }
-    }
-}
-
-fn language_named(name: &str) -> Result<Language, String> {
-    match name {
-        "en" => Ok(Language::English),
-        "zh-CN" | "zh" => Ok(Language::SimplifiedChinese),
-        _ => Err("messages are in en and zh-CN".to_string()),
     }
 }
 

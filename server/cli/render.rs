@@ -3,7 +3,7 @@
 use super::check::severity_word;
 use super::input::Program;
 use crate::document::{Document, Notation};
-use crate::text::{Diagnostic, Encoding, Language, LineColumn, Severity, Span, cell_width};
+use crate::text::{Diagnostic, Encoding, Language, LineColumn, Message, Severity, Span, cell_width};
 
 /// Lines shown above and below the marked one in instruction list.
 const CONTEXT_LINES: u32 = 2;
@@ -84,11 +84,14 @@ pub(super) fn diagnostic(
     for related in &found.related {
         let (path, document) = program.file(related, path);
         let LineColumn { line, column } = document.position(related.span.start as usize, Encoding::Utf32);
-        let message = related.message.render(language);
-        text += &format!("  note: {path}:{}:{}: {message}\n", line + 1, column + 1);
+        let place = format!("{path}:{}:{}", line + 1, column + 1);
+        let note = Message::new("cli.note").with("place", place);
+        let note = note.with_messages("message", vec![related.message.clone()]);
+        text += &format!("  {}\n", note.render(language));
     }
     for fix in &found.fixes {
-        text += &format!("  fix: {}\n", fix.title.render(language));
+        let fix = Message::new("cli.fix").with_messages("title", vec![fix.title.clone()]);
+        text += &format!("  {}\n", fix.render(language));
     }
     text.push('\n');
     text

@@ -1,20 +1,89 @@
 //! A chunk: a piece of text with what it says, shared by all snapshots that contain it.
 
-use super::{Mention, Notation, Size, exported, mention};
+use super::milestone::{self, Milestone};
+use super::{Mention, Notation, Size, Token, exported, mention, tokens};
 use crate::il::{fx, iec};
 use crate::ladder::{self, LadderTree};
 use crate::target::Target;
 use crate::text::Diagnostic;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::ops::Deref;
+use std::sync::{Arc, LazyLock, Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// A piece of a document that can be read by itself. Its offsets start at 0.
+///
+/// What it says is read from its text when it is asked for. A drawing's tree is fifty times as large as its text, so a
+/// large document keeps only what is [known](Known) of each chunk; who walks all chunks looks at them through
+/// [`Chunk::reading`], whose trees go away with it.
 #[derive(Debug)]
 pub struct Chunk {
+    known: Arc<Known>,
+    tree: OnceLock<Box<Tree>>,
+}
+
+/// What stays of a chunk.
+#[derive(Debug)]
+struct Known {
     text: Box<str>,
-    tree: Tree,
-    mentions: OnceLock<Box<[Mention]>>,
-    size: OnceLock<Size>,
+    kind: Kind,
+    dialect: Arc<Dialect>,
+    /// Whether the tree is kept once it was read.
+    keeps_tree: bool,
+    summary: OnceLock<Summary>,
+    tokens: OnceLock<Box<[Token]>>,
     found: Kept,
+}
+
+/// How the chunks of a document are read.
+#[derive(Debug)]
+pub(super) struct Dialect {
+    pub(super) notation: Notation,
+    pub(super) target: &'static Target,
+    /// The target with the symbols of the project, if it has any.
+    pub(super) symbols: Option<Target>,
+}
+
+impl Dialect {
+    /// The target as words of the text are read.
+    pub(super) fn reader(&self) -> &Target {
+        self.symbols.as_ref().unwrap_or(self.target)
+    }
+}
+
+/// Which reader reads a chunk.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Kind {
+    Ladder,
+    Fx,
+    Iec,
+    /// The tables of an LDmicro export, which say the same as IEC declarations.
+    Tables,
+}
+
+/// What all readers of the whole document need of a chunk.
+#[derive(Debug)]
+struct Summary {
+    mentions: Box<[Mention]>,
+    size: Size,
+    milestones: Box<[Milestone]>,
+}
+
+/// A chunk for reading: its own tree is kept if it has one, else it goes away with this.
+pub enum Reading<'a> {
+    /// The chunk itself.
+    Own(&'a Chunk),
+    /// Another one of the same text.
+    Twin(Chunk),
+}
+
+impl Deref for Reading<'_> {
+    type Target = Chunk;
+
+    fn deref(&self) -> &Chunk {
+        match self {
+            Reading::Own(chunk) => chunk,
+            Reading::Twin(chunk) => chunk,
+        }
+    }
 }
 
 /// Diagnostics and the key under which they hold.
@@ -32,49 +101,93 @@ pub enum Tree {
 }
 
 impl Chunk {
-    /// Reads `text`, which must be one of the pieces that [`split`] makes.
-    pub fn read(text: &str, notation: Notation, target: &Target) -> Chunk {
-        let tree = match notation {
+    /// The chunk of `text`, which must be one of the pieces that [`split`] makes.
+    /// `keeps_tree` says whether it stands in a document so small that all trees are kept.
+    pub(super) fn new(text: &str, dialect: &Arc<Dialect>, keeps_tree: bool) -> Chunk {
+        let kind = match dialect.notation {
             Notation::Ladder => match ladder::kind_of(text) {
-                ladder::ChunkKind::Declarations => Tree::Iec(iec::parse(text, target)),
-                ladder::ChunkKind::Ldmicro if exported::declares(text) => Tree::Iec(exported::read(text)),
-                _ => Tree::Ladder(ladder::parse(text, target)),
+                ladder::ChunkKind::Declarations => Kind::Iec,
+                ladder::ChunkKind::Ldmicro if exported::declares(text) => Kind::Tables,
+                _ => Kind::Ladder,
             },
-            Notation::FxIl => Tree::Fx(fx::parse(text, target)),
-            Notation::IecIl => Tree::Iec(iec::parse(text, target)),
+            Notation::FxIl => Kind::Fx,
+            Notation::IecIl => Kind::Iec,
         };
-        Chunk {
+        let known = Known {
             text: text.into(),
-            tree,
-            mentions: OnceLock::new(),
-            size: OnceLock::new(),
+            kind,
+            dialect: dialect.clone(),
+            // Rules about whole programs look at trees of IEC 61131-3.
+            keeps_tree: keeps_tree || matches!(kind, Kind::Iec | Kind::Tables),
+            summary: OnceLock::new(),
+            tokens: OnceLock::new(),
             found: Mutex::new(None),
+        };
+        Chunk { known: Arc::new(known), tree: OnceLock::new() }
+    }
+
+    /// The same chunk for a look at its tree.
+    pub fn reading(&self) -> Reading<'_> {
+        match self.tree.get().is_some() || self.known.keeps_tree {
+            true => Reading::Own(self),
+            false => Reading::Twin(self.lean()),
         }
+    }
+
+    /// Whether its tree is kept once it was read.
+    pub(super) fn keeps_tree(&self) -> bool {
+        self.known.keeps_tree
+    }
+
+    /// The same chunk without a tree.
+    pub(super) fn lean(&self) -> Chunk {
+        Chunk { known: self.known.clone(), tree: OnceLock::new() }
     }
 
     /// Its text.
     pub fn text(&self) -> &str {
-        &self.text
+        &self.known.text
     }
 
-    /// What it says.
+    /// What it says. The tree is kept with the chunk; see [`Chunk::reading`].
     pub fn tree(&self) -> &Tree {
-        &self.tree
+        self.tree.get_or_init(|| {
+            let target = self.known.dialect.reader();
+            Box::new(match self.known.kind {
+                Kind::Ladder => Tree::Ladder(ladder::parse(self.text(), target)),
+                Kind::Fx => Tree::Fx(fx::parse(self.text(), target)),
+                Kind::Iec => Tree::Iec(iec::parse(self.text(), target)),
+                Kind::Tables => Tree::Iec(exported::read(self.text())),
+            })
+        })
+    }
+
+    /// Whether it is IEC declarations or statements, told without reading it.
+    pub fn is_iec(&self) -> bool {
+        matches!(self.known.kind, Kind::Iec | Kind::Tables)
+    }
+
+    /// What it says if it is IEC declarations or statements; others are not read for the answer.
+    pub fn iec(&self) -> Option<&iec::IecTree> {
+        match self.is_iec().then(|| self.tree()) {
+            Some(Tree::Iec(tree)) => Some(tree),
+            _ => None,
+        }
     }
 
     /// Length in bytes.
     pub fn len(&self) -> usize {
-        self.text.len()
+        self.known.text.len()
     }
 
     /// Whether it has no text; no document contains such a chunk.
     pub fn is_empty(&self) -> bool {
-        self.text.is_empty()
+        self.known.text.is_empty()
     }
 
     /// What the reader could not read.
     pub fn problems(&self) -> &[Diagnostic] {
-        match &self.tree {
+        match self.tree() {
             Tree::Ladder(tree) => &tree.problems,
             Tree::Fx(tree) => &tree.problems,
             Tree::Iec(tree) => &tree.problems,
@@ -83,33 +196,73 @@ impl Chunk {
 
     /// Every device, variable and label that it names, in the order of the text.
     pub fn mentions(&self) -> &[Mention] {
-        self.mentions.get_or_init(|| mention::of_chunk(self).into_boxed_slice())
+        &self.summary().mentions
+    }
+
+    /// Every word and symbol with what it means, in order, none overlapping, none over more than one line.
+    pub fn tokens(&self) -> &[Token] {
+        self.known.tokens.get_or_init(|| tokens::of_chunk(&self.reading()).into_boxed_slice())
     }
 
     /// How much program it is.
     pub fn size(&self) -> Size {
-        *self.size.get_or_init(|| Size::of(self))
+        self.summary().size
+    }
+
+    /// Its instructions and labels as far as they matter for the structure of a program.
+    pub(super) fn milestones(&self) -> &[Milestone] {
+        &self.summary().milestones
+    }
+
+    fn summary(&self) -> &Summary {
+        self.known.summary.get_or_init(|| {
+            let reading = self.reading();
+            Summary {
+                mentions: mention::of_chunk(&reading).into_boxed_slice(),
+                size: Size::of(&reading),
+                milestones: milestone::of_chunk(&reading).into_boxed_slice(),
+            }
+        })
     }
 
     /// The local diagnostics under `key`, which stands for everything outside of the chunk that they depend on;
-    /// made by `find` unless they are there already.
-    pub fn found(&self, key: u64, find: impl FnOnce() -> Vec<Diagnostic>) -> Arc<[Diagnostic]> {
-        kept(&self.found, key, find)
+    /// made by `find` unless they are there already. What else is known of the chunk is made from the same tree.
+    pub fn found(&self, key: u64, find: impl FnOnce(&Chunk) -> Vec<Diagnostic>) -> Arc<[Diagnostic]> {
+        kept(&self.known.found, key, || {
+            let reading = self.reading();
+            let found = find(&reading);
+            reading.summary();
+            found
+        })
     }
 }
 
 /// The value kept under `key`, or a new one. A panic elsewhere leaves the slot usable: it holds a whole value or none.
 pub(super) fn kept(slot: &Kept, key: u64, make: impl FnOnce() -> Vec<Diagnostic>) -> Arc<[Diagnostic]> {
-    let lock = || slot.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((kept_key, value)) = &*lock()
+    if let Some((kept_key, value)) = &*locked(slot)
         && *kept_key == key
     {
         return value.clone();
     }
-    let value: Arc<[Diagnostic]> = make().into();
-    *lock() = Some((key, value.clone()));
+    let value: Arc<[Diagnostic]> = match make() {
+        found if found.is_empty() => NOTHING.clone(),
+        found => found.into(),
+    };
+    *locked(slot) = Some((key, value.clone()));
     value
 }
+
+/// Whether there is a value under `key`.
+pub(super) fn is_kept(slot: &Kept, key: u64) -> bool {
+    matches!(&*locked(slot), Some((kept_key, _)) if *kept_key == key)
+}
+
+fn locked(slot: &Kept) -> MutexGuard<'_, Option<(u64, Arc<[Diagnostic]>)>> {
+    slot.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Most chunks have no diagnostics, and share that.
+static NOTHING: LazyLock<Arc<[Diagnostic]>> = LazyLock::new(|| Arc::new([]));
 
 /// Ends of the chunks of `text`, which starts at a chunk boundary.
 pub(super) fn split(text: &str, notation: Notation) -> Vec<usize> {

@@ -11,7 +11,7 @@ mod snapshot;
 pub use snapshot::{ChunkRef, Document, Edit, LIMIT_BYTES};
 
 mod chunk;
-pub use chunk::{Chunk, Tree};
+pub use chunk::{Chunk, Reading, Tree};
 
 mod exported;
 
@@ -23,6 +23,12 @@ pub use size::Size;
 
 mod names;
 pub use names::Names;
+
+mod milestone;
+pub use milestone::{Milestone, MilestoneKind};
+
+mod tokens;
+pub use tokens::{Token, TokenKind};
 
 mod operation;
 pub use operation::Operation;

@@ -108,6 +108,9 @@ impl Names {
 impl Chunk {
     /// Whether the text behind it lies inside of a POU; `None` if none starts or ends in it.
     pub fn ends_inside_pou(&self) -> Option<bool> {
+        if !self.is_iec() {
+            return None;
+        }
         let Tree::Iec(tree) = self.tree() else { return None };
         tree.items.iter().rev().find_map(|item| match item.kind {
             ItemKind::Pou { .. } => Some(true),

@@ -1,7 +1,7 @@
 //! The sequence of chunks: pages of some dozens each, so that a snapshot copies one pointer a page and an edit
 //! rebuilds one page.
 
-use super::{Chunk, Names, Size, chunk};
+use super::{Chunk, Milestone, Names, Size, chunk, milestone};
 use crate::text::Diagnostic;
 use std::sync::{Arc, Mutex, OnceLock};
 
@@ -11,21 +11,28 @@ const PAGE_LIMIT: usize = 96;
 /// A run of chunks with what is found in them.
 #[derive(Debug)]
 pub struct Page {
-    chunks: Vec<Arc<Chunk>>,
+    chunks: Box<[Arc<Chunk>]>,
     bytes: usize,
+    has_iec: bool,
     size: OnceLock<Size>,
     names: OnceLock<Names>,
+    pou_starts: OnceLock<usize>,
+    milestones: OnceLock<Box<[Milestone]>>,
     found: chunk::Kept,
 }
 
 impl Page {
-    fn new(chunks: Vec<Arc<Chunk>>) -> Arc<Page> {
+    fn new(chunks: Box<[Arc<Chunk>]>) -> Arc<Page> {
         let bytes = chunks.iter().map(|chunk| chunk.len()).sum();
+        let has_iec = chunks.iter().any(|chunk| chunk.is_iec());
         Arc::new(Page {
             chunks,
             bytes,
+            has_iec,
             size: OnceLock::new(),
             names: OnceLock::new(),
+            pou_starts: OnceLock::new(),
+            milestones: OnceLock::new(),
             found: Mutex::new(None),
         })
     }
@@ -40,6 +47,11 @@ impl Page {
         self.bytes
     }
 
+    /// Whether any of it is IEC declarations or statements.
+    pub(super) fn has_iec(&self) -> bool {
+        self.has_iec
+    }
+
     /// How much program it is.
     pub fn size(&self) -> Size {
         *self.size.get_or_init(|| self.chunks.iter().map(|chunk| chunk.size()).sum())
@@ -48,6 +60,22 @@ impl Page {
     /// What its chunks name.
     pub fn names(&self) -> &Names {
         self.names.get_or_init(|| Names::of(&self.chunks))
+    }
+
+    /// How many POUs start in it.
+    pub fn pou_starts(&self) -> usize {
+        let count = || self.chunks.iter().map(|chunk| chunk.pou_starts()).sum();
+        if self.has_iec { *self.pou_starts.get_or_init(count) } else { 0 }
+    }
+
+    /// Its instructions and labels as far as they matter for the structure of a program, offsets from its start.
+    pub fn milestones(&self) -> &[Milestone] {
+        self.milestones.get_or_init(|| milestone::of_page(&self.chunks))
+    }
+
+    /// Whether there are diagnostics under `key`.
+    pub fn has_found(&self, key: u64) -> bool {
+        chunk::is_kept(&self.found, key)
     }
 
     /// The diagnostics of all its chunks, offsets from the page's start, kept under `key` as those of a chunk are.
@@ -76,6 +104,19 @@ impl Pages {
 
     pub(super) fn pages(&self) -> &[Arc<Page>] {
         &self.pages
+    }
+
+    /// The same chunks without trees that are not kept.
+    pub(super) fn lean(&self) -> Pages {
+        let lean = |chunk: &Arc<Chunk>| match chunk.keeps_tree() {
+            true => chunk.clone(),
+            false => Arc::new(chunk.lean()),
+        };
+        let lean_page = |page: &Arc<Page>| match page.chunks.iter().all(|chunk| chunk.keeps_tree()) {
+            true => page.clone(),
+            false => Page::new(page.chunks.iter().map(lean).collect()),
+        };
+        Pages { pages: self.pages.iter().map(lean_page).collect() }
     }
 
     pub(super) fn get(&self, at: Cursor) -> Option<&Arc<Chunk>> {
@@ -146,18 +187,14 @@ impl Pages {
     }
 }
 
-fn paginate(mut chunks: Vec<Arc<Chunk>>) -> Vec<Arc<Page>> {
-    if chunks.is_empty() {
-        return Vec::new();
-    }
-    if chunks.len() <= PAGE_LIMIT {
-        return vec![Page::new(chunks)];
-    }
+fn paginate(chunks: Vec<Arc<Chunk>>) -> Vec<Arc<Page>> {
     let mut pages = Vec::with_capacity(chunks.len() / (PAGE_LIMIT / 2) + 1);
-    while chunks.len() > PAGE_LIMIT {
-        let rest = chunks.split_off(PAGE_LIMIT * 2 / 3);
-        pages.push(Page::new(std::mem::replace(&mut chunks, rest)));
+    let mut rest = chunks.len();
+    let mut chunks = chunks.into_iter();
+    while rest > 0 {
+        let count = if rest > PAGE_LIMIT { PAGE_LIMIT * 2 / 3 } else { rest };
+        pages.push(Page::new(chunks.by_ref().take(count).collect()));
+        rest -= count;
     }
-    pages.push(Page::new(chunks));
     pages
 }

@@ -1,6 +1,7 @@
 //! The files of a project at one moment, as one of them sees them.
 
 use super::Document;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A file of a project.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +20,7 @@ pub struct ProjectView<'a> {
     members: Vec<Member<'a>>,
     here: usize,
     is_listed: bool,
+    cancelled: Option<&'a AtomicBool>,
 }
 
 /// A place in a file of a project.
@@ -33,13 +35,13 @@ pub struct At<T> {
 impl<'a> ProjectView<'a> {
     /// A document without others.
     pub fn alone(document: &'a Document) -> ProjectView<'a> {
-        ProjectView { members: vec![Member { name: "", document }], here: 0, is_listed: false }
+        ProjectView { members: vec![Member { name: "", document }], here: 0, is_listed: false, cancelled: None }
     }
 
     /// The files `members`, seen from number `here`; nothing if there is no such number. `is_listed` says that the
     /// manifest lists them and they are not just all files of the folder.
     pub fn new(members: Vec<Member<'a>>, here: usize, is_listed: bool) -> Option<ProjectView<'a>> {
-        (here < members.len()).then_some(ProjectView { members, here, is_listed })
+        (here < members.len()).then_some(ProjectView { members, here, is_listed, cancelled: None })
     }
 
     /// Whether the manifest lists the files.
@@ -70,6 +72,22 @@ impl<'a> ProjectView<'a> {
     /// The same files seen from another one; from the same one if there is no such number.
     pub fn from(&self, here: usize) -> ProjectView<'a> {
         let here = if here < self.members.len() { here } else { self.here };
-        ProjectView { members: self.members.clone(), here, is_listed: self.is_listed }
+        ProjectView { members: self.members.clone(), here, ..self.clone() }
+    }
+
+    /// The file that is looked at without the others.
+    pub fn alone_here(&self) -> ProjectView<'a> {
+        ProjectView { members: vec![self.members[self.here]], here: 0, ..self.clone() }
+    }
+
+    /// The same view for work that nobody waits for any more once `flag` is set.
+    pub fn cancellable(mut self, flag: &'a AtomicBool) -> ProjectView<'a> {
+        self.cancelled = Some(flag);
+        self
+    }
+
+    /// Whether nobody waits for the answer any more, so that any answer is as good as the right one.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 }

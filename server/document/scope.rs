@@ -88,6 +88,9 @@ pub enum DeclaredType {
 impl Chunk {
     /// How many POUs start in it.
     pub fn pou_starts(&self) -> usize {
+        if !self.is_iec() {
+            return 0;
+        }
         match self.tree() {
             Tree::Iec(tree) => {
                 tree.items.iter().filter(|item| matches!(item.kind, ItemKind::Pou { .. })).count()
@@ -109,7 +112,8 @@ impl Chunk {
                     | ItemKind::PouEnd(_)
             )
         };
-        matches!(self.tree(), Tree::Iec(tree) if tree.items.iter().any(|item| declares(&item.kind)))
+        self.is_iec()
+            && matches!(self.tree(), Tree::Iec(tree) if tree.items.iter().any(|item| declares(&item.kind)))
     }
 }
 

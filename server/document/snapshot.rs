@@ -1,7 +1,8 @@
 //! The document itself: text, chunks, and how an edit changes both.
 
+use super::chunk::{self, Dialect};
 use super::pages::{Cursor, Page, Pages};
-use super::{Chunk, Comments, Notation, Outer, Scopes, Size, chunk};
+use super::{Chunk, Comments, Notation, Outer, Scopes, Size};
 use crate::target::Target;
 use crate::text::{Encoding, LineColumn, Span, column_of_offset, offset_of_column};
 use ropey::Rope;
@@ -11,15 +12,15 @@ use std::sync::{Arc, OnceLock};
 /// Larger texts are kept and edited, but not read; the check says so.
 pub const LIMIT_BYTES: usize = 64 << 20;
 
+/// In documents up to this size, some five thousand lines, all trees are kept; larger ones would take too much memory.
+const KEPT_TREES_BYTES: usize = 256 << 10;
+
 /// A document at one moment. Cloning copies a pointer for each page of chunks and shares the text.
 #[derive(Clone, Debug)]
 pub struct Document {
     rope: Rope,
-    notation: Notation,
-    target: &'static Target,
+    dialect: Arc<Dialect>,
     comments: Arc<Comments>,
-    /// The target with the symbols of the comments; the target itself if there are none.
-    reader: Option<Arc<Target>>,
     pages: Pages,
     scopes: OnceLock<Arc<Scopes>>,
     /// What the files of its project declare, and which of them it is.
@@ -57,9 +58,10 @@ impl Document {
         target: &'static Target,
         comments: Arc<Comments>,
     ) -> Document {
-        let mut document = Document { comments, ..Document::unread(text, notation, target) };
-        let symbols = document.comments.symbols();
-        document.reader = (!symbols.is_empty()).then(|| Arc::new(target.with_symbols(symbols.clone())));
+        let symbols = comments.symbols();
+        let symbols = (!symbols.is_empty()).then(|| target.with_symbols(symbols.clone()));
+        let dialect = Arc::new(Dialect { notation, target, symbols });
+        let mut document = Document { comments, dialect, ..Document::unread(text, notation, target) };
         document.read_all(text, &[]);
         document
     }
@@ -68,14 +70,18 @@ impl Document {
     pub fn unread(text: &str, notation: Notation, target: &'static Target) -> Document {
         Document {
             rope: Rope::from_str(text),
-            notation,
-            target,
+            dialect: Arc::new(Dialect { notation, target, symbols: None }),
             comments: Arc::default(),
-            reader: None,
             pages: Pages::default(),
             scopes: OnceLock::new(),
             outer: None,
         }
+    }
+
+    /// The same document for a walk through all its chunks: trees that are read on the way and not kept go away with
+    /// it.
+    pub fn lean(&self) -> Document {
+        Document { pages: self.pages.lean(), ..self.clone() }
     }
 
     /// The bytes of `old` that were replaced and those of `self` that replaced them, to whole chunks;
@@ -97,12 +103,12 @@ impl Document {
 
     /// In which language it is written.
     pub fn notation(&self) -> Notation {
-        self.notation
+        self.dialect.notation
     }
 
     /// What it is written for.
     pub fn target(&self) -> &'static Target {
-        self.target
+        self.dialect.target
     }
 
     /// What the project says about its devices.
@@ -112,7 +118,12 @@ impl Document {
 
     /// The target as words of the text are read: with the project's symbols.
     pub fn reader(&self) -> &Target {
-        self.reader.as_deref().unwrap_or(self.target)
+        self.dialect.reader()
+    }
+
+    /// A chunk of this document's language that stands nowhere in it.
+    pub fn chunk_of(&self, text: &str) -> Chunk {
+        Chunk::new(text, &self.dialect, true)
     }
 
     /// The same text read as another language or for another target.
@@ -124,7 +135,8 @@ impl Document {
     /// The same text with other comments; it is read anew only if the symbols differ.
     pub fn commented(&self, comments: &Arc<Comments>) -> Document {
         if self.comments.symbols() != comments.symbols() {
-            let read = Document::with_comments(&self.text(), self.notation, self.target, comments.clone());
+            let read =
+                Document::with_comments(&self.text(), self.notation(), self.target(), comments.clone());
             return Document { outer: self.outer.clone(), ..read };
         }
         Document { comments: comments.clone(), ..self.clone() }
@@ -184,6 +196,25 @@ impl Document {
             let at = ChunkRef { start, chunk };
             start += chunk.len();
             at
+        })
+    }
+
+    /// The chunks of IEC declarations and statements, in order, each with how many POUs have started up to its end.
+    /// Pages without any are passed over.
+    pub fn iec_chunks(&self) -> impl Iterator<Item = (ChunkRef<'_>, usize)> {
+        let (mut end, mut pous) = (0, 0);
+        self.pages.pages().iter().flat_map(move |page| {
+            let mut start = end;
+            end += page.bytes();
+            let chunks = if page.has_iec() { page.chunks() } else { &[] };
+            let mut started = pous;
+            pous += page.pou_starts();
+            chunks.iter().filter_map(move |chunk| {
+                let at = ChunkRef { start, chunk };
+                start += chunk.len();
+                started += chunk.pou_starts();
+                chunk.is_iec().then_some((at, started))
+            })
         })
     }
 
@@ -316,7 +347,7 @@ impl Document {
             let old_length: usize = old.iter().map(|chunk| chunk.len()).sum();
             let window_end = window_start + old_length + inserted - range.len();
             let text = self.slice(Span::new(window_start, window_end));
-            let ends = chunk::split(&text, self.notation);
+            let ends = chunk::split(&text, self.notation());
             let at_text_end = self.pages.next(last).is_none();
             let sentinel = old.last().map_or(0, |chunk| chunk.len());
             let head = old.first().map_or(0, |chunk| chunk.len());
@@ -352,7 +383,8 @@ impl Document {
     fn read_pieces(&self, text: &str, old: &[Arc<Chunk>]) -> Vec<Arc<Chunk>> {
         let known: rustc_hash::FxHashMap<&str, &Arc<Chunk>> =
             old.iter().map(|chunk| (chunk.text(), chunk)).collect();
-        let ends = chunk::split(text, self.notation);
+        let ends = chunk::split(text, self.notation());
+        let keeps_trees = self.len() <= KEPT_TREES_BYTES;
         let mut start = 0;
         ends.into_iter()
             .map(|end| {
@@ -360,7 +392,7 @@ impl Document {
                 start = end;
                 match known.get(piece) {
                     Some(chunk) => Arc::clone(chunk),
-                    None => Arc::new(Chunk::read(piece, self.notation, self.reader())),
+                    None => Arc::new(Chunk::new(piece, &self.dialect, keeps_trees)),
                 }
             })
             .collect()

@@ -1,8 +1,8 @@
 //! Symbols of devices in programs: renamed together with the comments file, and exchanged for their devices.
 
+use super::across;
 use super::names::{self, Thing};
 use super::rename::drawing;
-use super::uses;
 use crate::document::{At, Comments, DeviceComment, Document, ProjectView, Symbol, Tree};
 use crate::target::{Device, Operand, SymbolProblem, Symbols};
 use crate::text::{Message, Span, TextEdit};
@@ -74,10 +74,8 @@ fn renamed(view: &ProjectView<'_>, device: Device, row: &DeviceComment, new: &st
     });
     let comments = Arc::new(Comments::new(rows.collect()));
     let mut renamed = SymbolRename { files: Vec::new(), table: Some(TextEdit::new(row.symbol_span, new)) };
-    let mut files = uses::files_of(view, &Thing::Devices(device, 1));
-    files.sort_unstable();
-    for file in files {
-        let document = view.members()[file].document;
+    for file in across::files(view, &Thing::Devices(device, 1)) {
+        let (file, document) = (file.file, file.document);
         let is_symbol = |span: Span| written_at(document, span) == Some(device);
         let edits = exchanged(document, device, new, &comments, is_symbol)?;
         if !edits.is_empty() {
@@ -107,13 +105,14 @@ fn exchanged(
     let drawn: Vec<Span> = places.iter().filter(|(_, is_drawn)| *is_drawn).map(|(span, _)| *span).collect();
     let plain = places.iter().filter(|(_, is_drawn)| !is_drawn);
     let mut edits: Vec<TextEdit> = plain.map(|(span, _)| TextEdit::new(*span, new)).collect();
-    edits.extend(drawing::edits(document, &drawn, new)?);
-    edits.sort_by_key(|edit| edit.span);
-    let reader = document.target().with_symbols(comments.symbols().clone());
-    drawing::still_say_the_same(document, &reader, &edits, &drawn).map_err(|span| {
+    let no_room = |span: Span| {
         let line = document.line_of(span.start as usize) + 1;
         Message::new("rename.drawing").with("name", new).with("line", line)
-    })?;
+    };
+    edits.extend(drawing::edits(document, &drawn, new).map_err(no_room)?);
+    edits.sort_by_key(|edit| edit.span);
+    let reader = Document::with_comments("", document.notation(), document.target(), comments.clone());
+    drawing::still_say_the_same(document, &reader, &edits, &drawn).map_err(no_room)?;
     Ok(edits)
 }
 

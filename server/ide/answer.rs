@@ -100,36 +100,6 @@ pub enum SymbolKind {
     Configuration,
 }
 
-/// A token for highlighting.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub struct Token {
-    /// Where.
-    pub span: Span,
-    /// What.
-    pub kind: TokenKind,
-    /// Where a value is written or a name declared.
-    pub modification: bool,
-}
-
-/// What a token is. The order is that of the legend that the protocol announces.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
-#[allow(missing_docs, reason = "the names say it")]
-pub enum TokenKind {
-    Comment,
-    Keyword,
-    Instruction,
-    Device,
-    Variable,
-    Label,
-    Number,
-    Text,
-    Function,
-    FunctionBlock,
-    Type,
-    Wire,
-    Element,
-}
-
 /// Text shown behind `offset`.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct InlayHint {

@@ -1,11 +1,12 @@
 //! Declarations of IEC variables in words: the section, the text as written, the names of types.
 
 use super::names::{self, Thing};
-use crate::document::{DeclaredType, Document, Scopes, Tree, Use};
+use crate::document::{DeclaredType, Document, Notation, Scopes, Tree, Use};
 use crate::il::iec::{IecTree, ItemKind, PouKind, SectionKind};
-use crate::ladder::{ChunkKind, kind_of, table_rows};
+use crate::ladder::{ChunkKind, TableRow, kind_of, table_rows};
 use crate::target::iec::FunctionBlock;
 use crate::text::Span;
+use rustc_hash::FxHashMap;
 
 /// The declaration of `thing` as written, with the keyword of its section: `VAR_INPUT Start AT %IX0.0 : BOOL`.
 pub(super) fn source(document: &Document, thing: &Thing) -> Option<String> {
@@ -38,9 +39,28 @@ fn table_row(text: &str, name: Span) -> Option<String> {
         return None;
     }
     let row = table_rows(text).into_iter().find(|row| row.name == name)?;
+    Some(row_words(text, &row))
+}
+
+/// The rows of an LDmicro export's tables by their names, as [`source`] shows them.
+pub(super) fn table_rows_of(document: &Document) -> FxHashMap<String, String> {
+    let mut rows = FxHashMap::default();
+    if document.notation() != Notation::Ladder {
+        return rows;
+    }
+    let is_table = |text: &&str| kind_of(text) == ChunkKind::Ldmicro;
+    let declaring = document.chunks().filter(|at| matches!(at.chunk.tree(), Tree::Iec(_)));
+    for text in declaring.map(|at| at.chunk.text()).filter(is_table) {
+        let words = |row: TableRow| (row.name.of(text).to_string(), row_words(text, &row));
+        rows.extend(table_rows(text).into_iter().map(words));
+    }
+    rows
+}
+
+fn row_words(text: &str, row: &TableRow) -> String {
     let pin = row.pin.map_or(String::new(), |pin| format!(" AT {}", pin.of(text)));
     let kind = row.kind.map_or(String::new(), |kind| format!(" : {}", kind.of(text)));
-    Some(format!("{}{pin}{kind}", name.of(text)))
+    format!("{}{pin}{kind}", row.name.of(text))
 }
 
 /// The section's keywords and all of the declaration in which the name at `name` is declared.

@@ -2,10 +2,15 @@
 
 use crate::document::Chunk;
 use crate::target::{Constant, Device, DeviceKind, DeviceRange, Operand, Target};
-use crate::text::{Language, Message, Spanned};
+use crate::text::{Language, Message, Spanned, phrase};
 
 /// What people call devices of `kind`.
 pub(super) fn kind_name(kind: DeviceKind, language: Language) -> String {
+    kind_message(kind).render(language)
+}
+
+/// The same for a message that is put into words elsewhere.
+pub(super) fn kind_message(kind: DeviceKind) -> Message {
     let key = match kind {
         DeviceKind::X => "device-kind.X",
         DeviceKind::Y => "device-kind.Y",
@@ -21,7 +26,7 @@ pub(super) fn kind_name(kind: DeviceKind, language: Language) -> String {
         DeviceKind::I => "device-kind.I",
         DeviceKind::N => "device-kind.N",
     };
-    Message::new(key).render(language)
+    Message::new(key)
 }
 
 /// `M500–M1023`, or one device where the range has no other.
@@ -33,6 +38,11 @@ pub(super) fn range_name(range: &DeviceRange) -> String {
 /// The kind and what is special about the range: `auxiliary relay, latched`.
 pub(super) fn purpose(range: &DeviceRange, language: Language) -> String {
     let kind = kind_name(range.kind, language);
+    if language == Language::SimplifiedChinese {
+        // The Chinese words for purposes name the kind as well, but for `输入` and `输出`.
+        let purpose = phrase(range.purpose, language);
+        return if kind.starts_with(purpose) { kind } else { purpose.to_string() };
+    }
     // Purposes end with the short word for the kind, and some consist of nothing else.
     let last_word = kind.rsplit(' ').next().unwrap_or("");
     let special = range.purpose.strip_suffix(last_word).unwrap_or(range.purpose).trim();
@@ -52,9 +62,9 @@ pub(super) fn describe(device: Device, target: &Target, language: Language) -> S
     let mut text = message.with("range", range_name(range)).render(language);
     let more = match device.special_on(target) {
         Some(special) if special.writable => {
-            Some(Message::new("hover.special-written").with("meaning", special.meaning))
+            Some(Message::new("hover.special-written").with_phrase("meaning", special.meaning))
         }
-        Some(special) => Some(Message::new("hover.special-read").with("meaning", special.meaning)),
+        Some(special) => Some(Message::new("hover.special-read").with_phrase("meaning", special.meaning)),
         None if range.latched => Some(Message::new("hover.latched")),
         None => None,
     };

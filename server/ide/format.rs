@@ -22,7 +22,9 @@ pub(super) fn edits(document: &Document, style: Style) -> Vec<TextEdit> {
 /// The edits in the rungs, blocks and declarations that one of `spans` touches.
 pub(super) fn edits_within(document: &Document, style: Style, spans: &[Span]) -> Vec<TextEdit> {
     let is_touched = |chunk: Span| {
-        let meets = |span: &Span| span.start < chunk.end && (chunk.start < span.end || span.touches(chunk.start as usize));
+        let meets = |span: &Span| {
+            span.start < chunk.end && (chunk.start < span.end || span.touches(chunk.start as usize))
+        };
         spans.iter().any(meets)
     };
     let mut edits = edits_where(document, style, is_touched);

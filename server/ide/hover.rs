@@ -8,7 +8,7 @@ use crate::il::iec::{IecTree, ItemKind};
 use crate::ladder::{Element, ElementKind, LadderTree};
 use crate::target::iec::{Function, FunctionBlock, LiteralValue, Operator};
 use crate::target::{Constant, Device, DirectAddress, Location, Operand, Width};
-use crate::text::{Language, Message, Span, Spanned};
+use crate::text::{Language, Message, Span, Spanned, phrase};
 
 mod element;
 
@@ -53,7 +53,9 @@ impl View<'_> {
         let line = tree.line_at(inside)?;
         if line.mnemonic.touches(inside) {
             return match line.kind {
-                LineKind::Instruction(form) => Some((line.mnemonic, pages::instruction_page(form))),
+                LineKind::Instruction(form) => {
+                    Some((line.mnemonic, pages::instruction_page(form, self.language)))
+                }
                 LineKind::Label(_) => self.name(line.mnemonic),
                 LineKind::Unknown => None,
             };
@@ -86,7 +88,7 @@ impl View<'_> {
         match &element.kind {
             ElementKind::Instruction { form, mnemonic } if element.span.touches(inside) => {
                 let span = if mnemonic.touches(inside) { *mnemonic } else { element.span };
-                form.map(|form| (span, pages::instruction_page(form)))
+                form.map(|form| (span, pages::instruction_page(form, self.language)))
             }
             ElementKind::Block(block) => {
                 let named = [block.instance, block.type_name].into_iter().flatten();
@@ -114,11 +116,11 @@ impl View<'_> {
         for item in tree.items.iter().filter(|item| item.span.touches(inside)) {
             let (word, page) = match item.kind {
                 ItemKind::Operation { operation, .. } | ItemKind::Open { operation, .. } => {
-                    (operation.word, Some(pages::operator_page(operation.operator)))
+                    (operation.word, Some(pages::operator_page(operation.operator, self.language)))
                 }
-                ItemKind::Jump { word, .. } => (word, operator_page("JMP")),
-                ItemKind::Return { word, .. } => (word, operator_page("RET")),
-                ItemKind::Call { word, .. } => (word, operator_page("CAL")),
+                ItemKind::Jump { word, .. } => (word, operator_page("JMP", self.language)),
+                ItemKind::Return { word, .. } => (word, operator_page("RET", self.language)),
+                ItemKind::Call { word, .. } => (word, operator_page("CAL", self.language)),
                 ItemKind::Function { name, .. } => (name, self.pou_page(name.of(self.chunk.text()))),
                 ItemKind::InputOperator { input, instance } => {
                     (input, self.input_operator(input.of(self.chunk.text()), tree.operand(instance).span))
@@ -145,7 +147,7 @@ impl View<'_> {
             Some(crate::document::DeclaredType::Named(name)) => FunctionBlock::named(&name),
             _ => blocks.into_iter().next(),
         }?;
-        Some(pages::block_page(block))
+        Some(pages::block_page(block, self.language))
     }
 
     fn operand(&self, operand: &Spanned<Operand>, operation: Option<&Operation<'_>>) -> Answer {
@@ -238,7 +240,7 @@ impl View<'_> {
             && let Some(block) = FunctionBlock::named(&name)
             && let Some(pin) = block.input_named(member).or_else(|| block.output_named(member))
         {
-            words += &format!("\n\n{}", pin.meaning);
+            words += &format!("\n\n{}", phrase(pin.meaning, self.language));
         }
         Some((Span::new(path.start as usize, path.start as usize + end), words))
     }
@@ -353,15 +355,15 @@ impl View<'_> {
             }
             return Some(format!("```iec\n{text}\n```"));
         }
-        let function = Function::named(name).map(pages::function_page);
+        let function = Function::named(name).map(|function| pages::function_page(function, self.language));
         function
-            .or_else(|| FunctionBlock::named(name).map(pages::block_page))
-            .or_else(|| Operator::named(name).map(pages::operator_page))
+            .or_else(|| FunctionBlock::named(name).map(|block| pages::block_page(block, self.language)))
+            .or_else(|| operator_page(name, self.language))
     }
 }
 
-fn operator_page(name: &str) -> Option<String> {
-    Operator::named(name).map(pages::operator_page)
+fn operator_page(name: &str, language: Language) -> Option<String> {
+    Operator::named(name).map(|operator| pages::operator_page(operator, language))
 }
 
 /// In the width in which an FX register holds it.

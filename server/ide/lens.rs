@@ -54,6 +54,7 @@ pub(super) fn of(document: &Document, wanted: LensSettings) -> Vec<Lens> {
         lenses.push(Lens { span: Span::at(0), kind: LensKind::NextFree });
     }
     let head = lenses.len();
+    let document = &document.lean();
     for at in document.chunks() {
         for (span, outputs) in rungs(at.chunk) {
             let span = span.shifted(at.start);

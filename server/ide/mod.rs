@@ -1,12 +1,12 @@
 //! Editor features, one file each: offsets of a document in, plain structs out. No protocol, no files, no threads.
 
-use crate::document::Document;
+pub use crate::document::{Token, TokenKind};
+use crate::document::{ChunkRef, Document};
 use crate::text::{Diagnostic, Language, Message, Span, TextEdit};
 
 mod answer;
 pub use answer::{
-    Completion, CompletionKind, Fold, FoldKind, Hover, InlayHint, Status, SymbolKind, SymbolNode, Token,
-    TokenKind,
+    Completion, CompletionKind, Fold, FoldKind, Hover, InlayHint, Status, SymbolKind, SymbolNode,
 };
 
 pub use crate::document::{At, Member, ProjectView};
@@ -45,17 +45,21 @@ pub use lens::{Lens, LensKind, LensSettings};
 mod aliases;
 pub use aliases::{Rewrite, SymbolRename};
 
-mod definition;
+mod across;
 
-mod references;
+mod calls;
+pub use calls::CallItem;
+
+mod search;
+pub use search::FoundSymbol;
+
+mod links;
 
 mod rename;
 
 mod symbols;
 
 mod folding;
-
-mod semantic_tokens;
 
 mod inlay_hints;
 
@@ -119,12 +123,23 @@ pub fn lens_title(view: &ProjectView<'_>, offset: usize, kind: &LensKind, langua
 
 /// Where the name at `offset` is declared or, for a device, driven.
 pub fn definition(document: &Document, offset: usize) -> Vec<Span> {
-    definition::of(document, offset)
+    definition_in(&ProjectView::alone(document), offset).into_iter().map(|at| at.value).collect()
+}
+
+/// The same among the files of a project.
+pub fn definition_in(view: &ProjectView<'_>, offset: usize) -> Vec<At<Span>> {
+    across::definition(view, offset)
 }
 
 /// Every place of the name at `offset`, in order.
 pub fn references(document: &Document, offset: usize, with_declaration: bool) -> Vec<Span> {
-    references::of(document, offset, with_declaration)
+    let found = references_in(&ProjectView::alone(document), offset, with_declaration);
+    found.into_iter().map(|at| at.value).collect()
+}
+
+/// The same among the files of a project.
+pub fn references_in(view: &ProjectView<'_>, offset: usize, with_declaration: bool) -> Vec<At<Span>> {
+    across::references(view, offset, with_declaration)
 }
 
 /// The name at `offset`, if it can be renamed.
@@ -137,7 +152,51 @@ pub fn renamable(document: &Document, offset: usize) -> Option<Span> {
 /// # Errors
 /// Where there is no name, where `new` is none of its kind, or where it is taken.
 pub fn rename(document: &Document, offset: usize, new: &str) -> Result<Vec<TextEdit>, Message> {
-    rename::rename(document, offset, new)
+    let edits = rename::rename(&ProjectView::alone(document), offset, new)?;
+    Ok(edits.into_iter().flat_map(|at| at.value).collect())
+}
+
+/// The same among the files of a project: the edits of each file that has any.
+///
+/// # Errors
+/// The same, in any of the files.
+pub fn rename_in(view: &ProjectView<'_>, offset: usize, new: &str) -> Result<Vec<At<Vec<TextEdit>>>, Message> {
+    rename::rename(view, offset, new)
+}
+
+/// The names in the files of a project that have the letters of `query`, best first.
+pub fn workspace_symbols(view: &ProjectView<'_>, query: &str) -> Vec<FoundSymbol> {
+    search::symbols(view, query)
+}
+
+/// The POU, subroutine or label named at `offset`, else the one in which it stands.
+pub fn call_item(view: &ProjectView<'_>, offset: usize) -> Option<CallItem> {
+    calls::prepare(view, offset)
+}
+
+/// The main program of the file that is looked at.
+pub fn main_item(view: &ProjectView<'_>) -> Option<CallItem> {
+    calls::main_of(view)
+}
+
+/// Who calls `item` or jumps to it, each with the places in its file.
+pub fn incoming_calls(view: &ProjectView<'_>, item: &CallItem) -> Vec<(CallItem, Vec<Span>)> {
+    calls::incoming(view, item)
+}
+
+/// What `item` calls or jumps to, each with the places in the file of `item`.
+pub fn outgoing_calls(view: &ProjectView<'_>, item: &CallItem) -> Vec<(CallItem, Vec<Span>)> {
+    calls::outgoing(view, item)
+}
+
+/// The names of files in the comments of `document`; whether there are such files is not known here.
+pub fn links(document: &Document) -> Vec<(Span, String)> {
+    links::of(document)
+}
+
+/// The names of files in any text, such as a manifest.
+pub fn links_in_text(text: &str) -> Vec<(Span, String)> {
+    links::in_text(text)
 }
 
 /// Renames the symbol of a device at `offset` in all files and in the comments file; nothing if no symbol stands there.
@@ -174,7 +233,11 @@ pub fn folds(document: &Document) -> Vec<Fold> {
 
 /// All tokens that mean something, in order, none overlapping, none over more than one line.
 pub fn semantic_tokens(document: &Document) -> Vec<Token> {
-    semantic_tokens::of(document)
+    let shifted = |at: ChunkRef<'_>| {
+        let tokens = at.chunk.tokens().iter();
+        tokens.map(|token| Token { span: token.span.shifted(at.start), ..*token }).collect::<Vec<_>>()
+    };
+    document.chunks().flat_map(shifted).collect()
 }
 
 /// What the editor may show between the words of `span`.

@@ -113,7 +113,7 @@ impl Thing {
     }
 
     /// The program unit and the name, if it is a variable that other units see as a parameter or a member.
-    fn parameter_of(&self, scopes: &Scopes) -> Option<(usize, &SmolStr)> {
+    pub(super) fn parameter_of(&self, scopes: &Scopes) -> Option<(usize, &SmolStr)> {
         let Thing::Variable { pou: Some(unit), name } = self else { return None };
         let section = scopes.variable(Some(*unit), name)?.section;
         let has_callers = scopes.pous.get(*unit).is_some_and(|pou| pou.kind != PouKind::Program);

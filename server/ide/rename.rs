@@ -2,10 +2,11 @@
 //! is refused with a reason.
 
 use super::aliases;
+use super::across::{self, InFile};
 use super::names::{self, Named, Thing};
-use crate::document::{Document, Mention, Symbol, Tree};
+use crate::document::{At, Document, Mention, ProjectView, Symbol, Tree};
 use crate::target::iec::{is_identifier, is_keyword};
-use crate::target::{Device, DeviceKind, DirectAddress, Operand};
+use crate::target::{Device, DeviceKind, DirectAddress, Operand, Target};
 use crate::text::{Encoding, Message, Span, TextEdit};
 use smol_str::SmolStr;
 
@@ -16,43 +17,36 @@ pub(super) fn renamable(document: &Document, offset: usize) -> Option<Span> {
     fixed(document, &named).is_none().then_some(named.span)
 }
 
-pub(super) fn rename(document: &Document, offset: usize, new: &str) -> Result<Vec<TextEdit>, Message> {
+/// The edits of each file.
+pub(super) fn rename(
+    view: &ProjectView<'_>,
+    offset: usize,
+    new: &str,
+) -> Result<Vec<At<Vec<TextEdit>>>, Message> {
     let new = new.trim();
+    let document = view.here();
     let named = names::at(document, offset).ok_or_else(|| Message::new("rename.nothing"))?;
     if let Some(reason) = fixed(document, &named) {
         return Err(reason);
     }
-    let written = match &named.thing {
-        Thing::Devices(device, _) => device_name(document, *device, new)?,
-        Thing::Direct(address) => direct_name(document, &named, *address, new)?,
-        _ => identifier(document, &named, new)?,
+    let thing = match &named.thing {
+        Thing::Devices(device, _) => Thing::Devices(*device, 1),
+        thing => thing.clone(),
     };
-    let mut places: Vec<(Span, bool)> = Vec::new();
-    let thing = match named.thing {
-        Thing::Devices(device, _) => Thing::Devices(device, 1),
-        thing => thing,
+    let change = Change { view, files: across::files(view, &thing) };
+    let written = match &thing {
+        Thing::Devices(device, _) => change.device_name(*device, new)?,
+        Thing::Direct(address) => change.direct_name(&named, *address, new)?,
+        _ => change.identifier(&thing, new)?,
     };
-    names::visit(document, &thing, |place| {
-        // A symbol stays: the comments file gives it the new device.
-        if aliases::written_at(document, place.span).is_some() {
-            return;
-        }
-        let is_drawn = matches!(place.chunk.tree(), Tree::Ladder(_));
-        places.push((place.span, is_drawn));
-    });
-    places.sort_unstable();
-    places.dedup();
-    let drawn: Vec<Span> = places.iter().filter(|(_, is_drawn)| *is_drawn).map(|(span, _)| *span).collect();
-    let plain = places.iter().filter(|(_, is_drawn)| !is_drawn);
-    let mut edits: Vec<TextEdit> = plain.map(|(span, _)| TextEdit::new(*span, written.as_str())).collect();
-    edits.extend(drawing::edits(document, &drawn, &written)?);
-    edits.sort_by_key(|edit| edit.span);
-    match drawing::still_say_the_same(document, document.reader(), &edits, &drawn) {
-        Ok(()) => Ok(edits),
-        Err(span) => {
-            Err(Message::new("rename.drawing").with("name", written).with("line", line_of(document, span)))
+    let mut changes = Vec::new();
+    for file in &change.files {
+        let edits = change.edits(file, &written)?;
+        if !edits.is_empty() {
+            changes.push(At { file: file.file, value: edits });
         }
     }
+    Ok(changes)
 }
 
 /// Why the name cannot be changed, whatever the new one is.
@@ -75,16 +69,156 @@ fn fixed(document: &Document, named: &Named<'_>) -> Option<Message> {
     }
 }
 
-/// The canonical spelling of `new` if `old` can become that device.
-fn device_name(document: &Document, old: Device, new: &str) -> Result<String, Message> {
-    let target = document.target();
+/// A renaming, and the files in which the thing can be named.
+struct Change<'v, 'a> {
+    view: &'v ProjectView<'a>,
+    files: Vec<InFile<'a>>,
+}
+
+impl<'a> Change<'_, 'a> {
+    /// The edits that write the new name in one file.
+    fn edits(&self, file: &InFile<'a>, written: &str) -> Result<Vec<TextEdit>, Message> {
+        let mut places: Vec<(Span, bool)> = Vec::new();
+        names::visit(file.document, &file.thing, |place| {
+            // A symbol stays: the comments file gives it the new device.
+            if aliases::written_at(file.document, place.span).is_some() {
+                return;
+            }
+            let is_drawn = matches!(place.chunk.tree(), Tree::Ladder(_));
+            places.push((place.span, is_drawn));
+        });
+        places.sort_unstable();
+        places.dedup();
+        let drawn: Vec<Span> =
+            places.iter().filter(|(_, is_drawn)| *is_drawn).map(|(span, _)| *span).collect();
+        let plain = places.iter().filter(|(_, is_drawn)| !is_drawn);
+        let mut edits: Vec<TextEdit> = plain.map(|(span, _)| TextEdit::new(*span, written)).collect();
+        let no_room = |span: Span| {
+            let message = self.placed(["rename.drawing", "rename.drawing-elsewhere"], file, span);
+            message.with("name", written)
+        };
+        edits.extend(drawing::edits(file.document, &drawn, written).map_err(no_room)?);
+        edits.sort_by_key(|edit| edit.span);
+        drawing::still_say_the_same(file.document, file.document, &edits, &drawn).map_err(no_room)?;
+        Ok(edits)
+    }
+
+    /// The first of two messages for a place in the file that is looked at, the second for another file.
+    fn placed(&self, [here, elsewhere]: [&'static str; 2], file: &InFile<'a>, span: Span) -> Message {
+        let line = line_of(file.document, span);
+        if file.file == self.view.here_number() {
+            return Message::new(here).with("line", line);
+        }
+        let name = self.view.members().get(file.file).map_or("", |member| member.name);
+        Message::new(elsewhere).with("line", line).with("file", name)
+    }
+
+    fn taken(&self, file: &InFile<'a>, span: Span, new: impl ToString) -> Message {
+        self.placed(["rename.taken", "rename.taken-elsewhere"], file, span).with("new", new)
+    }
+
+    /// The canonical spelling of `new` if `old` can become that device.
+    fn device_name(&self, old: Device, new: &str) -> Result<String, Message> {
+        let target = self.view.here().target();
+        let device = device_like(old, new, target)?;
+        // Devices that are used together with `old` would stay behind.
+        let mut count = 1;
+        for file in &self.files {
+            names::visit(file.document, &Thing::Devices(old, 1), |place| {
+                if let Thing::Devices(first, run) = place.thing
+                    && first == old
+                {
+                    count = count.max(run);
+                }
+            });
+        }
+        for file in &self.files {
+            let mut torn = None;
+            names::visit(file.document, &Thing::Devices(old, count), |place| {
+                if let Thing::Devices(first, _) = place.thing
+                    && first != old
+                {
+                    torn.get_or_insert((first, place.span));
+                }
+            });
+            if let Some((first, span)) = torn {
+                let message = self.placed(["rename.run", "rename.run-elsewhere"], file, span);
+                return Err(message.with("old", old).with("other", first.min(old)));
+            }
+        }
+        let last = Device::new(device.kind, device.number.saturating_add(u32::from(count) - 1));
+        if last.range_on(target).is_none() {
+            return Err(Message::new("rename.not-on-target").with("target", target.title).with("new", last));
+        }
+        for file in self.files.iter().filter(|_| device != old) {
+            let mut taken = None;
+            names::visit(file.document, &Thing::Devices(device, count), |place| {
+                if !matches!(place.thing, Thing::Devices(first, _) if first == old) {
+                    taken.get_or_insert(place.span);
+                }
+            });
+            if let Some(span) = taken {
+                return Err(self.taken(file, span, device));
+            }
+        }
+        Ok(device.to_string())
+    }
+
+    fn direct_name(&self, named: &Named<'_>, old: DirectAddress, new: &str) -> Result<String, Message> {
+        let new_address = match Operand::read(new, crate::target::Model::Iec) {
+            Operand::Direct(address) if (address.location, address.width) == (old.location, old.width) => {
+                address
+            }
+            _ => {
+                let message = Message::new("rename.no-address").with("name", new);
+                return Err(message.with("old", self.view.here().slice(named.span)));
+            }
+        };
+        for file in self.files.iter().filter(|_| new_address != old) {
+            if let Some(span) = first_place(file.document, &Thing::Direct(new_address)) {
+                return Err(self.taken(file, span, new));
+            }
+        }
+        Ok(new.to_string())
+    }
+
+    /// A name that the language allows and that nothing else has where the old one is known.
+    fn identifier(&self, thing: &Thing, new: &str) -> Result<String, Message> {
+        if !is_identifier(new) {
+            return Err(Message::new("rename.no-identifier").with("name", new));
+        }
+        // Words that the language gives a meaning elsewhere can be labels and connectors, too.
+        if is_keyword(new) {
+            return Err(Message::new("rename.keyword").with("name", new));
+        }
+        let folded =
+            SmolStr::from(if new.is_ascii() { new.to_ascii_lowercase() } else { new.to_lowercase() });
+        let is_same = match thing {
+            Thing::Variable { name, .. }
+            | Thing::Label { name, .. }
+            | Thing::Connector { name, .. }
+            | Thing::Pou(name)
+            | Thing::Type(name) => *name == folded,
+            Thing::Devices(..) | Thing::Direct(_) => false,
+        };
+        for file in self.files.iter().filter(|_| !is_same) {
+            if let Some(span) = taken(file.document, &file.thing, &folded) {
+                return Err(self.taken(file, span, new));
+            }
+        }
+        Ok(new.to_string())
+    }
+}
+
+/// The device called `new` if it can take the part of `old`.
+fn device_like(old: Device, new: &str, target: &'static Target) -> Result<Device, Message> {
     let Operand::Device(device) = Operand::read(new, target.model) else {
         return Err(Message::new("rename.no-device").with("name", new));
     };
     if device.kind != old.kind {
-        let kind = super::devices::kind_name(old.kind, crate::text::Language::English);
+        let kind = super::devices::kind_message(old.kind);
         let message = Message::new("rename.other-kind").with("old", old).with("new", device);
-        return Err(message.with("kind", kind));
+        return Err(message.with_messages("kind", vec![kind]));
     }
     let Some(range) = device.range_on(target) else {
         return Err(Message::new("rename.not-on-target").with("target", target.title).with("new", device));
@@ -96,96 +230,9 @@ fn device_name(document: &Document, old: Device, new: &str) -> Result<String, Me
         && (own.timer_unit_ms, own.bits) != (range.timer_unit_ms, range.bits)
     {
         let message = Message::new("rename.other-purpose").with("old", old).with("new", device);
-        return Err(message.with("purpose", own.purpose));
+        return Err(message.with_phrase("purpose", own.purpose));
     }
-    // Devices that are used together with `old` would stay behind.
-    let mut count = 1;
-    names::visit(document, &Thing::Devices(old, 1), |place| {
-        if let Thing::Devices(first, run) = place.thing
-            && first == old
-        {
-            count = count.max(run);
-        }
-    });
-    let mut torn = None;
-    names::visit(document, &Thing::Devices(old, count), |place| {
-        if let Thing::Devices(first, _) = place.thing
-            && first != old
-        {
-            torn.get_or_insert((first, place.span));
-        }
-    });
-    if let Some((first, span)) = torn {
-        let message = Message::new("rename.run").with("old", old).with("other", first.min(old));
-        return Err(message.with("line", line_of(document, span)));
-    }
-    let last = Device::new(device.kind, device.number.saturating_add(u32::from(count) - 1));
-    if last.range_on(target).is_none() {
-        return Err(Message::new("rename.not-on-target").with("target", target.title).with("new", last));
-    }
-    if device != old {
-        let mut taken = None;
-        names::visit(document, &Thing::Devices(device, count), |place| {
-            if !matches!(place.thing, Thing::Devices(first, _) if first == old) {
-                taken.get_or_insert((place.span, place.thing.clone()));
-            }
-        });
-        if let Some((span, _)) = taken {
-            return Err(Message::new("rename.taken")
-                .with("new", device)
-                .with("line", line_of(document, span)));
-        }
-    }
-    Ok(device.to_string())
-}
-
-fn direct_name(
-    document: &Document,
-    named: &Named<'_>,
-    old: DirectAddress,
-    new: &str,
-) -> Result<String, Message> {
-    let new_address = match Operand::read(new, crate::target::Model::Iec) {
-        Operand::Direct(address) if (address.location, address.width) == (old.location, old.width) => address,
-        _ => {
-            let message = Message::new("rename.no-address").with("name", new);
-            return Err(message.with("old", document.slice(named.span)));
-        }
-    };
-    let taken = first_place(document, &Thing::Direct(new_address)).filter(|_| new_address != old);
-    match taken {
-        Some(span) => {
-            Err(Message::new("rename.taken").with("new", new).with("line", line_of(document, span)))
-        }
-        None => Ok(new.to_string()),
-    }
-}
-
-/// A name that the language allows and that nothing else has where the old one is known.
-fn identifier(document: &Document, named: &Named<'_>, new: &str) -> Result<String, Message> {
-    if !is_identifier(new) {
-        return Err(Message::new("rename.no-identifier").with("name", new));
-    }
-    // Words that the language gives a meaning elsewhere can be labels and connectors, too.
-    if is_keyword(new) {
-        return Err(Message::new("rename.keyword").with("name", new));
-    }
-    let folded = SmolStr::from(if new.is_ascii() { new.to_ascii_lowercase() } else { new.to_lowercase() });
-    let is_same = match &named.thing {
-        Thing::Variable { name, .. }
-        | Thing::Label { name, .. }
-        | Thing::Connector { name, .. }
-        | Thing::Pou(name)
-        | Thing::Type(name) => *name == folded,
-        Thing::Devices(..) | Thing::Direct(_) => false,
-    };
-    let taken = if is_same { None } else { taken(document, &named.thing, &folded) };
-    match taken {
-        Some(span) => {
-            Err(Message::new("rename.taken").with("new", new).with("line", line_of(document, span)))
-        }
-        None => Ok(new.to_string()),
-    }
+    Ok(device)
 }
 
 /// A place where the folded name `new` already means something that the renamed `thing` would meet.

@@ -5,7 +5,7 @@ use crate::document::{DeclaredType, Document, Notation, Tree};
 use crate::il::iec::{PouKind, SectionKind};
 use crate::target::iec::{Function, FunctionBlock, Operator, Parameter};
 use crate::target::{Access, Accepts, DeviceKind, Form, Opcode, Operand};
-use crate::text::{Language, Message, Span};
+use crate::text::{Language, Message, Span, phrase};
 
 /// The shape of an instruction or a call.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -39,7 +39,7 @@ pub(super) fn at(document: &Document, offset: usize, language: Language) -> Opti
     match document.notation() {
         Notation::FxIl => instruction(document, offset, language),
         Notation::Ladder if !is_declared => drawn(document, offset, language),
-        Notation::Ladder | Notation::IecIl => call(document, offset),
+        Notation::Ladder | Notation::IecIl => call(document, offset, language),
     }
 }
 
@@ -130,7 +130,7 @@ fn of_form(document: &Document, form: Form, operands: &[&str], language: Languag
             Access::ReadWrite => Message::new("signature.read-written"),
         };
         let message = Message::new("signature.operand").with("number", place + 1).with("count", specs.len());
-        let message = message.with("name", spec.name).with("meaning", spec.meaning);
+        let message = message.with("name", spec.name).with("meaning", phrase(spec.meaning, language));
         let message = message.with("access", access.render(language)).with("kinds", kinds + &limits);
         let documentation = message.render(language);
         parameters.push(SignatureParameter { span: Span::new(start, label.len()), documentation });
@@ -138,7 +138,7 @@ fn of_form(document: &Document, form: Form, operands: &[&str], language: Languag
     let active = operands.len() - 1;
     Some(Signature {
         label,
-        documentation: form.instruction.title.to_string(),
+        documentation: phrase(form.instruction.title, language).to_string(),
         parameters,
         active: (active < specs.len()).then_some(active),
     })
@@ -163,7 +163,7 @@ struct OpenCall {
     takes_result: bool,
 }
 
-fn call(document: &Document, offset: usize) -> Option<Signature> {
+fn call(document: &Document, offset: usize, language: Language) -> Option<Signature> {
     let found = document.chunk_at(offset)?;
     let inside = offset - found.start;
     let text = found.chunk.text().get(..inside)?;
@@ -182,15 +182,15 @@ fn call(document: &Document, offset: usize) -> Option<Signature> {
             if number <= last { Some(number) } else { extensible.then_some(last) }
         }
     };
-    Some(signature(label, documentation, &formals, extensible, active))
+    Some(signature((label, phrase(&documentation, language)), &formals, extensible, active, language))
 }
 
 fn signature(
-    (name, result): (String, String),
-    documentation: String,
+    ((name, result), title): ((String, String), &str),
     formals: &[Formal],
     extensible: bool,
     active: Option<usize>,
+    language: Language,
 ) -> Signature {
     let mut label = format!("{name}(");
     let mut parameters = Vec::new();
@@ -202,13 +202,13 @@ fn signature(
         let arrow = if formal.is_output { " => " } else { " : " };
         label.push_str(&format!("{}{arrow}{}", formal.name, formal.kind));
         let span = Span::new(start, label.len());
-        parameters.push(SignatureParameter { span, documentation: formal.meaning.to_string() });
+        parameters.push(SignatureParameter { span, documentation: phrase(formal.meaning, language).to_string() });
     }
     label.push_str(if extensible { ", …)" } else { ")" });
     if !result.is_empty() {
         label.push_str(&format!(" : {result}"));
     }
-    Signature { label, documentation, parameters, active }
+    Signature { label, documentation: title.to_string(), parameters, active }
 }
 
 /// The innermost call whose parenthesis is open at the end of `text`.
@@ -306,7 +306,7 @@ fn formals(document: &Document, chunk_start: usize, callee: &str) -> Option<Call
     if let Some(block) = FunctionBlock::named(&unit) {
         let inputs = block.inputs.iter().map(|input| own(input, false));
         let formals = inputs.chain(block.outputs.iter().map(|output| own(output, true)));
-        let title = format!("{}: {}", block.name, block.title);
+        let title = block.title.to_string();
         return Some(((callee.to_string(), String::new()), title, formals.collect(), false));
     }
     let function = Function::named(&unit)?;

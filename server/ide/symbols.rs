@@ -291,7 +291,9 @@ fn title(text: &str, comments: &[Span], rung: u32) -> Option<String> {
     let mut first = *above;
     for comment in comments.iter().rev().filter(|comment| comment.end <= above.start) {
         let between = text.get(comment.end as usize..first.start as usize).unwrap_or("x");
-        if !between.trim().is_empty() || between.matches('\n').count() != 1 {
+        // Between the lines of a comment of an LDmicro export are its rails and the number of the rung.
+        let rails = |c: char| c.is_whitespace() || c.is_ascii_digit() || c == '|';
+        if !between.trim_matches(rails).is_empty() || between.matches('\n').count() != 1 {
             break;
         }
         first = *comment;

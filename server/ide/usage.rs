@@ -107,7 +107,7 @@ pub(super) fn of(view: &ProjectView<'_>) -> Usage {
 }
 
 fn collect(view: &ProjectView<'_>, file: usize, rows: &mut BTreeMap<UsageKey, UsageRow>) {
-    let document = view.members()[file].document;
+    let document = &view.members()[file].document.lean();
     let scopes = document.scopes();
     let mut walk = PouWalk::default();
     let mut rungs = 0;

@@ -1,6 +1,6 @@
 //! Where a thing is used: its writers and readers with the rung, the line and what stands there.
 
-use super::devices;
+use super::{across, devices};
 use super::names::{self, Named, Thing};
 use crate::document::{Chunk, ChunkRef, Document, Names, ProjectView, Symbol, Tree, Use};
 use crate::ladder::{CoilKind, ContactKind, ElementKind, Rung};
@@ -53,25 +53,14 @@ pub(super) struct Uses {
 /// than one look at each page's table of names.
 pub(super) fn collect(view: &ProjectView<'_>, thing: &Thing, most: usize) -> Uses {
     let mut uses = Uses::default();
-    for file in files_of(view, thing) {
-        let document = view.members()[file].document;
-        let mut search = Search { document, file, most, uses: &mut uses };
-        search.run(thing);
+    let mut files = across::files(view, thing);
+    // The file that is looked at comes first: its uses are the ones that one most likely asks about.
+    files.sort_by_key(|file| (file.file != view.here_number(), file.file));
+    for file in files {
+        let mut search = Search { document: file.document, file: file.file, most, uses: &mut uses };
+        search.run(&file.thing);
     }
     uses
-}
-
-/// The numbers of the files in which `thing` can be named: devices and what is global belong to the whole project.
-pub(super) fn files_of(view: &ProjectView<'_>, thing: &Thing) -> Vec<usize> {
-    let shared = match thing {
-        Thing::Devices(..) | Thing::Direct(_) => true,
-        Thing::Variable { pou: None, name } => view.here().scopes().globals.contains_key(name),
-        Thing::Pou(_) | Thing::Type(_) => true,
-        Thing::Variable { .. } | Thing::Label { .. } | Thing::Connector { .. } => false,
-    };
-    // The file that is looked at comes first: its uses are the ones that one most likely asks about.
-    let others = view.others().map(|(number, _)| number).filter(|_| shared);
-    std::iter::once(view.here_number()).chain(others).collect()
 }
 
 struct Search<'v, 'u> {

@@ -292,6 +292,12 @@ fn word_beside(
                     first -= 1;
                 }
             }
+            // ` -5`: a hyphen alone before a number is no wire.
+            let alone = first > 0
+                && grid.at(row, first - 1) == '-'
+                && grid.at(row, first).is_ascii_digit()
+                && (first == 1 || grid.at(row, first - 2) == ' ');
+            first -= usize::from(alone);
         }
         Side::Right => {
             while part(last + 1) {

@@ -121,10 +121,10 @@ impl Chunk {
         if self.phase == (Phase::Ldmicro { open: true }) {
             // Without its last line the head ends where the drawing starts.
             self.phase = Phase::Ldmicro { open: !words.starts_with(LDMICRO_DRAWING) };
-            return !words.starts_with('|');
+            return line.continues || !words.starts_with('|');
         }
         if self.phase == Phase::Table {
-            return words.is_empty() || is_row(words);
+            return line.continues || words.is_empty() || is_row(words);
         }
         let kind = line.kind(text);
         let next = match (self.phase, &kind) {
@@ -230,6 +230,10 @@ fn ends_in_condition(line: &Line, text: &str) -> bool {
     let content = line.content(text).unwrap_or(Span::at(0)).of(text);
     let is_wire = |c: char| is_blank(c) || (Arms::of(c).is_line() && !Arms::of(c).is_vertical());
     let content = content.trim_end_matches(|c| Arms::of(c).is_vertical()).trim_end_matches(is_wire);
+    // Only the left rail is left: the line is the border of a function block.
+    if content.trim_start_matches(|c: char| is_blank(c) || c.is_ascii_digit()).chars().count() < 2 {
+        return false;
+    }
     match content.chars().next_back() {
         Some(']') => {
             let inside = content[..content.len() - 1].rsplit(['[', ']']).next().unwrap_or("");

@@ -5,7 +5,7 @@
 //! another path (a short circuit) or across (a bridge). Two drawings of the same logic contract to the same nodes.
 
 use super::{ArcId, ElementId, ElementKind, Graph, PinWire, VertexId, VertexKind};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// Electrical nodes and the edges between them.
 #[derive(Debug, Default)]
@@ -129,8 +129,8 @@ impl Raw {
                 plain[id.0 as usize] = raw.node(vec![id], kind == VertexKind::LooseEnd);
             }
         }
-        let mut inputs: HashMap<(VertexId, u16), u32> = HashMap::new();
-        let mut outputs: HashMap<(VertexId, u16), u32> = HashMap::new();
+        let mut inputs: FxHashMap<(VertexId, u16), u32> = FxHashMap::default();
+        let mut outputs: FxHashMap<(VertexId, u16), u32> = FxHashMap::default();
         for id in graph.vertex_ids() {
             if let VertexKind::Element(element) = graph.vertex(id).kind {
                 raw.element(graph, id, element, &mut inputs, &mut outputs);
@@ -174,8 +174,8 @@ impl Raw {
         graph: &Graph,
         vertex: VertexId,
         element: ElementId,
-        inputs: &mut HashMap<(VertexId, u16), u32>,
-        outputs: &mut HashMap<(VertexId, u16), u32>,
+        inputs: &mut FxHashMap<(VertexId, u16), u32>,
+        outputs: &mut FxHashMap<(VertexId, u16), u32>,
     ) {
         let kind = &graph.element(element).kind;
         let mut input_pins: Vec<u16> = graph.incoming(vertex).map(|arc| graph.arc(arc).head_pin).collect();
@@ -235,7 +235,7 @@ impl Raw {
                 junction && node.ins.len() == 1 && node.outs.len() == 1
             })
             .collect();
-        let mut replaced: HashMap<u32, u32> = HashMap::new();
+        let mut replaced: FxHashMap<u32, u32> = FxHashMap::default();
         for edge in 0..self.edges.len() {
             if bends[self.edges[edge].tail as usize] {
                 continue;

@@ -364,11 +364,17 @@ fn push_line_between(text: &mut String, line: &str, page: Option<&Page>) {
     let content = line.trim_end_matches(['\n', '\r']);
     let ending = &line[content.len()..];
     let content = content.trim_end_matches([' ', '\t']);
-    let rails = content.split([' ', '\t']).filter(|word| !word.is_empty()).collect::<Vec<_>>();
+    // Counts that an LDmicro export writes beside its rails stay there.
+    let number = content.trim_start().trim_start_matches(|c: char| c.is_ascii_digit());
+    let number = &content[..content.len() - number.len()];
+    let rails = content[number.len()..].split([' ', '\t']).filter(|word| !word.is_empty()).collect::<Vec<_>>();
     let is_rail = |word: &&str| matches!(*word, "|" | "||" | "│" | "││" | "┃" | "!");
     match (rails.as_slice(), page) {
         ([left, right], Some(page)) if is_rail(left) && is_rail(right) && left == right => {
-            text.extend(std::iter::repeat_n(' ', page.margin as usize));
+            let number = number.trim();
+            text.extend(std::iter::repeat_n(' ', (page.margin as usize).saturating_sub(number.len() + 1)));
+            text.push_str(number);
+            text.extend(std::iter::repeat_n(' ', (page.margin as usize).min(1)));
             let rail = if page.kind == StyleKind::Unicode { '│' } else { '|' };
             text.push(rail);
             text.extend(std::iter::repeat_n(' ', (page.rail as usize).saturating_sub(1)));

@@ -37,6 +37,15 @@ impl Grid {
     /// Adds a line as the next row, comments blanked out.
     pub(super) fn push(&mut self, line: &Line, number: u32, text: &str) {
         let mut row = Row { line: number, end: line.span.end, cells: Vec::with_capacity(line.span.len()) };
+        let content = line.span.of(text);
+        if line.comments.is_empty() && content.bytes().all(|byte| byte.is_ascii() && byte != b'\t') {
+            row.cells.extend((line.span.start..).zip(content.bytes()).map(|(start, byte)| {
+                let shown = if is_blank(char::from(byte)) { ' ' } else { char::from(byte) };
+                Cell { character: shown, start, end: start + 1 }
+            }));
+            self.rows.push(row);
+            return;
+        }
         for (column, offset, character) in line.cells(text) {
             let length = text[offset..].chars().next().map_or(0, char::len_utf8);
             let (start, end) = (offset as u32, (offset + length) as u32);

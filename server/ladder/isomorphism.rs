@@ -1,7 +1,7 @@
 //! Whether two graphs say the same, however they are drawn.
 
 use super::contract::{EdgeKind, Nodes};
-use super::{Element, ElementKind, Graph, Pin};
+use super::{Block, Element, ElementKind, Graph, Pin, PinWire};
 use crate::target::Operand;
 use std::collections::VecDeque;
 use std::fmt::Write;
@@ -98,27 +98,37 @@ impl Element {
             ElementKind::Jump(label) => format!("Jump {}", label.of(chunk)),
             ElementKind::ConnectorOut(name) => format!("ConnectorOut {}", name.of(chunk)),
             ElementKind::ConnectorIn(name) => format!("ConnectorIn {}", name.of(chunk)),
-            ElementKind::Block(block) => {
-                let word = |span: Option<crate::text::Span>| span.map_or("", |span| span.of(chunk));
-                let pin = |pin: &Pin| {
-                    let name = pin.formal(chunk);
-                    format!("{name}{}{:?}", if pin.negated { "!" } else { "" }, pin.wire)
-                };
-                let pins = |pins: &[Pin]| pins.iter().map(pin).collect::<Vec<_>>().join(",");
-                let (inputs, outputs) = (pins(&block.inputs), pins(&block.outputs));
-                let type_name = block.type_text(chunk).unwrap_or("");
-                format!("Block {}:{type_name}({inputs};{outputs})", word(block.instance))
-            }
+            ElementKind::Block(block) => return self.block_text(block, chunk),
             kind => format!("{kind:?}"),
         };
-        for (index, operand) in self.operands.iter().enumerate() {
-            let word = self.operand_text(index, chunk);
-            let _ = match operand.value {
-                Operand::Variable => write!(text, " {}", word.to_uppercase()),
-                Operand::Text | Operand::Literal(_) | Operand::Invalid(_) => write!(text, " {word}"),
-                value => write!(text, " {value:?}"),
-            };
+        for index in 0..self.operands.len() {
+            let _ = write!(text, " {}", self.operand_logic(index, chunk));
         }
         text
+    }
+
+    fn operand_logic(&self, index: usize, chunk: &str) -> String {
+        let word = self.operand_text(index, chunk);
+        match self.operands.get(index).map(|operand| operand.value) {
+            Some(Operand::Variable) => word.to_uppercase(),
+            Some(Operand::Text | Operand::Literal(_) | Operand::Invalid(_)) | None => word.into_owned(),
+            Some(value) => format!("{value:?}"),
+        }
+    }
+
+    /// Pins with what is connected to them; the order in which operands were found makes no difference.
+    fn block_text(&self, block: &Block, chunk: &str) -> String {
+        let pin = |pin: &Pin| {
+            let wire = match pin.wire {
+                PinWire::Operand(index) => format!("={}", self.operand_logic(index, chunk)),
+                PinWire::Power => "-".to_string(),
+                PinWire::Open => String::new(),
+            };
+            format!("{}{}{wire}", pin.formal(chunk), if pin.negated { "!" } else { "" })
+        };
+        let pins = |pins: &[Pin]| pins.iter().map(pin).collect::<Vec<_>>().join(",");
+        let instance = block.instance.map_or("", |span| span.of(chunk));
+        let type_name = block.type_text(chunk).unwrap_or("");
+        format!("Block {instance}:{type_name}({};{})", pins(&block.inputs), pins(&block.outputs))
     }
 }

@@ -225,7 +225,8 @@ impl Planner<'_> {
         let Some(symbol) = self.symbols.get(element as usize) else { return 1 };
         let names = symbol.above.len() as i32;
         match &symbol.figure {
-            Some(figure) => names + 2 + pins_above(figure),
+            // Two frames with a corner in the same column would be read as wiring.
+            Some(figure) => names.max(1) + 2 + pins_above(figure),
             // One line at least, in which vertical wires are seen to run.
             None => names.max(1),
         }

@@ -60,7 +60,7 @@ fn read(chunk: &str, target: &Target, habit: NameHabit, choice: Option<Choice>) 
                 _ => drawing = Some(drawing.map_or(line.span, |drawing| drawing.to(line.span))),
             }
             too_large |= grid.height() >= MOST_ROWS || line.span.len() > MOST_COLUMNS * 4;
-            if drawing.is_some() && !too_large {
+            if drawing.is_some() && !too_large && !line.railed {
                 grid.push(&line, number as u32, chunk);
                 too_large |= grid.width(grid.height() - 1) > MOST_COLUMNS;
             }

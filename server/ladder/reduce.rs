@@ -6,9 +6,9 @@ mod bypass;
 pub use bypass::{Bypass, bypasses};
 
 use super::contract::{EdgeKind, Nodes};
-use super::{ElementId, Graph, VertexId};
+use super::{ElementId, Graph, VertexId, VertexKind};
 use crate::text::Span;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::collections::hash_map::Entry;
 
 /// How a rung is put together: series and parallel connections of elements, from the left rail to the right.
@@ -115,6 +115,20 @@ pub fn reduce(graph: &Graph) -> Result<Shape, NotSeriesParallel> {
     reduction.shape(graph)
 }
 
+/// Whether [`reduce`] can find a [`Bridge`] at all, told from the degrees of the vertices: two paths can share a part
+/// of their way only between two junctions, or at a function block with several wires.
+pub fn may_be_mixed(graph: &Graph) -> bool {
+    let mut junctions = 0;
+    for vertex in &graph.vertices {
+        match vertex.kind {
+            VertexKind::Element(_) if vertex.in_degree > 1 || vertex.out_degree > 1 => return true,
+            VertexKind::Junction if vertex.in_degree + vertex.out_degree > 2 => junctions += 1,
+            _ => {}
+        }
+    }
+    junctions > 1
+}
+
 fn find_open_circuit(graph: &Graph, nodes: &Nodes) -> Result<(), NotSeriesParallel> {
     let open = |node: usize, fallback: ElementId| {
         let junction = nodes.nodes[node].vertices.first().copied();
@@ -145,7 +159,7 @@ fn find_open_circuit(graph: &Graph, nodes: &Nodes) -> Result<(), NotSeriesParall
 }
 
 fn vertex_of(graph: &Graph, element: ElementId) -> VertexId {
-    let is = |id: &VertexId| graph.vertex(*id).kind == super::VertexKind::Element(element);
+    let is = |id: &VertexId| graph.vertex(*id).kind == VertexKind::Element(element);
     graph.vertex_ids().find(is).unwrap_or(Graph::LEFT_RAIL)
 }
 
@@ -180,7 +194,7 @@ struct Reduction<'a> {
     labels: Vec<Label>,
     links: Vec<Link>,
     /// The one link between two nodes.
-    between: HashMap<(u32, u32), u32>,
+    between: FxHashMap<(u32, u32), u32>,
     states: Vec<NodeState>,
     waiting: Vec<u32>,
 }
@@ -204,7 +218,7 @@ impl<'a> Reduction<'a> {
             nodes,
             labels: Vec::new(),
             links: Vec::new(),
-            between: HashMap::new(),
+            between: FxHashMap::default(),
             states,
             waiting: Vec::new(),
         }

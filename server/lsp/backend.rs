@@ -1,15 +1,18 @@
 //! The handlers: a few lines each, from the snapshot of the request to the answer of `ide`.
 
+use super::across;
 use super::{capabilities, features};
+use super::progress::Progress;
 use super::projects::Around;
+use super::pulled::{self, PartialReport, PartialReportParams};
 use super::to_proto::{self, Place};
 use super::workspace::{Open, SNAPSHOT, Snapshot, Workspace};
 use crate::ide;
 use crate::text::{Language, Message};
 use serde_json::{Value, json};
 use std::collections::HashMap;
-use std::hash::BuildHasher;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use tower_lsp::LanguageServer;
 use tower_lsp::jsonrpc::{Error, Result};
 use tower_lsp::ls_types::*;
@@ -75,20 +78,16 @@ impl LanguageServer for Backend {
 
     async fn goto_definition(&self, params: GotoDefinitionParams) -> Result<Option<GotoDefinitionResponse>> {
         let at = params.text_document_position_params;
-        Ok(with_open(&at.text_document.uri, |open, place| {
-            let spans = ide::definition(place.document, place.offset(at.position));
-            let locations = spans.into_iter().map(|span| Location::new(open.uri.clone(), place.range(span)));
-            Some(GotoDefinitionResponse::Array(locations.collect()))
-        }))
+        whole(at.text_document.uri, move |around, place| across::definition(around, place, at.position)).await
     }
 
     async fn references(&self, params: ReferenceParams) -> Result<Option<Vec<Location>>> {
         let at = params.text_document_position;
         let with_declaration = params.context.include_declaration;
-        Ok(with_open(&at.text_document.uri, |open, place| {
-            let spans = ide::references(place.document, place.offset(at.position), with_declaration);
-            Some(spans.into_iter().map(|span| Location::new(open.uri.clone(), place.range(span))).collect())
-        }))
+        whole(at.text_document.uri, move |around, place| {
+            across::references(around, place, at.position, with_declaration)
+        })
+        .await
     }
 
     async fn prepare_rename(
@@ -103,32 +102,66 @@ impl LanguageServer for Backend {
 
     async fn rename(&self, params: RenameParams) -> Result<Option<WorkspaceEdit>> {
         let at = params.text_document_position;
+        let uri = at.text_document.uri;
         let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
-        let renamed = with_around(&at.text_document.uri, |around, place| {
-            let offset = place.offset(at.position);
-            if let Some(renamed) = features::rename_symbol(&snapshot, around, offset, &params.new_name) {
-                return Some(renamed);
-            }
-            let edits = ide::rename(place.document, offset, &params.new_name);
-            let edits = edits.and_then(|edits| {
-                let table = ide::rename_in_comments(place.document, offset, &params.new_name)?;
-                let table = table.and_then(|edit| features::table_edit(&snapshot, around, &edit));
-                let own = features::document_edit(around.here(), place.edits(&edits));
-                Ok(features::workspace_edit(&snapshot, std::iter::once(own).chain(table).collect()))
-            });
-            Some(edits)
+        let renamed = whole(uri.clone(), move |around, place| {
+            across::rename(&snapshot, around, place, at.position, &params.new_name)
         });
-        renamed.transpose().map_err(refused)
+        self.unless_changed(&uri, renamed.await)?.transpose().map_err(refused)
     }
 
     async fn document_symbol(&self, params: DocumentSymbolParams) -> Result<Option<DocumentSymbolResponse>> {
-        whole(params.text_document.uri, |_, place| {
-            let nodes = ide::symbols(place.document, place.language)
-                .into_iter()
-                .map(|node| to_proto::symbol(place, node));
-            DocumentSymbolResponse::Nested(nodes.collect())
+        whole(params.text_document.uri, |around, place| {
+            to_proto::outline(place, ide::symbols(place.document, place.language), &around.here().uri)
         })
         .await
+    }
+
+    async fn symbol(&self, params: WorkspaceSymbolParams) -> Result<Option<WorkspaceSymbolResponse>> {
+        let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
+        let found = beside(move |cancelled| {
+            let everything = snapshot.everything()?.cancellable(cancelled);
+            Some(WorkspaceSymbolResponse::Nested(across::symbols(
+                &everything,
+                &params.query,
+                snapshot.manner,
+            )))
+        });
+        found.await
+    }
+
+    async fn prepare_call_hierarchy(
+        &self,
+        params: CallHierarchyPrepareParams,
+    ) -> Result<Option<Vec<CallHierarchyItem>>> {
+        let at = params.text_document_position_params;
+        whole(at.text_document.uri, move |around, place| across::prepare_calls(around, place, at.position))
+            .await
+    }
+
+    async fn incoming_calls(
+        &self,
+        params: CallHierarchyIncomingCallsParams,
+    ) -> Result<Option<Vec<CallHierarchyIncomingCall>>> {
+        whole(params.item.uri.clone(), move |around, place| {
+            across::incoming_calls(around, place, &params.item)
+        })
+        .await
+    }
+
+    async fn outgoing_calls(
+        &self,
+        params: CallHierarchyOutgoingCallsParams,
+    ) -> Result<Option<Vec<CallHierarchyOutgoingCall>>> {
+        whole(params.item.uri.clone(), move |around, place| {
+            across::outgoing_calls(around, place, &params.item)
+        })
+        .await
+    }
+
+    async fn document_link(&self, params: DocumentLinkParams) -> Result<Option<Vec<DocumentLink>>> {
+        let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
+        beside(move |_| across::links(&snapshot, &params.text_document.uri)).await
     }
 
     async fn folding_range(&self, params: FoldingRangeParams) -> Result<Option<Vec<FoldingRange>>> {
@@ -163,10 +196,11 @@ impl LanguageServer for Backend {
 
     async fn formatting(&self, params: DocumentFormattingParams) -> Result<Option<Vec<TextEdit>>> {
         let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
-        whole(params.text_document.uri, move |around, place| {
+        let uri = params.text_document.uri;
+        let edits = whole(uri.clone(), move |around, place| {
             place.edits(&ide::format(place.document, settings.style(&around.here().manifest)))
-        })
-        .await
+        });
+        self.unless_changed(&uri, edits.await)
     }
 
     async fn range_formatting(&self, params: DocumentRangeFormattingParams) -> Result<Option<Vec<TextEdit>>> {
@@ -209,7 +243,7 @@ impl LanguageServer for Backend {
             let fixes = ide::fixes(&found, place.span(params.range)).into_iter();
             let fixes = fixes.map(|fix| quick_fix(around, place, &fix));
             let rewrites = features::rewrites(around.here(), place, params.range);
-            fixes.chain(rewrites).map(CodeActionOrCommand::from).collect()
+            fixes.chain(rewrites).map(|action| across::code_action(action, place.abilities)).collect()
         })
         .await
     }
@@ -218,17 +252,45 @@ impl LanguageServer for Backend {
         let manner = SNAPSHOT.with(|snapshot| snapshot.manner);
         let uri = params.text_document.uri;
         let items = whole(uri, move |around, _| to_proto::diagnostics(around, around.findings(), manner));
-        Ok(report(items.await?.unwrap_or_default(), params.previous_result_id))
+        let items = items.await?.unwrap_or_default();
+        Ok(pulled::of_document(items, params.previous_result_id.as_deref()))
+    }
+
+    async fn workspace_diagnostic(
+        &self,
+        params: WorkspaceDiagnosticParams,
+    ) -> Result<WorkspaceDiagnosticReportResult> {
+        let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
+        let client = self.workspace.client.clone();
+        let title = Message::new("project.checking").render(snapshot.manner.language);
+        let progress = Progress::of_request(&client, params.work_done_progress_params.work_done_token, title);
+        let (parts, mut received) = tokio::sync::mpsc::unbounded_channel();
+        let token = params.partial_result_params.partial_result_token;
+        let parts = token.is_some().then_some(parts);
+        let work = beside(move |cancelled| {
+            let is_cancelled = || cancelled.load(Ordering::Relaxed);
+            let previous = params.previous_result_ids;
+            Some(pulled::of_workspace(&snapshot, previous, parts.as_ref(), &progress, is_cancelled))
+        });
+        let send_parts = async {
+            while let (Some(value), Some(token)) = (received.recv().await, token.clone()) {
+                let params = PartialReportParams { token, value };
+                client.send_notification::<PartialReport>(params).await;
+            }
+        };
+        let (report, ()) = tokio::join!(work, send_parts);
+        let empty = WorkspaceDiagnosticReport { items: Vec::new() };
+        Ok(WorkspaceDiagnosticReportResult::Report(report?.unwrap_or(empty)))
     }
 
     async fn execute_command(&self, params: ExecuteCommandParams) -> Result<Option<LSPAny>> {
+        if params.command == capabilities::APPLY {
+            return self.apply(params.arguments);
+        }
         let Some(uri) =
             params.arguments.first().and_then(|value| value.as_str()).and_then(|text| text.parse().ok())
         else {
-            return Err(Error::invalid_params(format!(
-                "{}: the first argument is a document's URI",
-                params.command
-            )));
+            return Err(refused(Message::new("request.no-document").with("command", params.command)));
         };
         match params.command.as_str() {
             "rungwise.check" => whole(uri, |around, place| check_summary(around, place.language)).await,
@@ -236,7 +298,7 @@ impl LanguageServer for Backend {
             "rungwise.usage" => {
                 whole(uri, |around, place| features::usage_json(around, place.language)).await
             }
-            other => Err(Error::invalid_params(format!("no such command: {other}"))),
+            other => Err(refused(Message::new("request.no-command").with("command", other))),
         }
     }
 }
@@ -263,13 +325,36 @@ impl Backend {
         Ok(text.map(|text| features::Content { text }))
     }
 
+    /// Edits that were made for a text that has changed meanwhile help nobody.
+    fn unless_changed<T>(&self, uri: &Uri, answer: Result<Option<T>>) -> Result<Option<T>> {
+        let version = |snapshot: &Snapshot| snapshot.open(uri).map(|open| open.version);
+        let now = version(&self.workspace.snapshot());
+        if now != SNAPSHOT.with(version) { Err(Error::content_modified()) } else { answer }
+    }
+
+    /// Has the client apply the edit that a code action stands for in a client that only knows commands.
+    fn apply(&self, arguments: Vec<Value>) -> Result<Option<LSPAny>> {
+        let edit = arguments.into_iter().next().and_then(|value| serde_json::from_value(value).ok());
+        let Some(edit) = edit else {
+            return Err(refused(Message::new("request.no-edit").with("command", capabilities::APPLY)));
+        };
+        let client = self.workspace.client.clone();
+        // The client may answer late or never; no handler waits for it.
+        tokio::spawn(async move {
+            if let Err(reason) = client.apply_edit(edit).await {
+                tracing::warn!("the client did not apply the edits: {reason}");
+            }
+        });
+        Ok(None)
+    }
+
     /// Computes the edits and asks the client to apply them; the answer says how many there are.
     async fn format(&self, uri: Uri) -> Result<Option<LSPAny>> {
         let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
         let edit = whole(uri, move |around, place| {
             let open = around.here();
-            let edits = place.edits(&ide::format(place.document, settings.style(&open.manifest)));
-            (edits.len(), workspace_edit(open, edits))
+            let edits = ide::format(place.document, settings.style(&open.manifest));
+            (edits.len(), across::workspace_edit([(open.clone(), edits)], place.manner()))
         });
         let Some((count, edit)) = edit.await? else { return Ok(None) };
         let client = self.workspace.client.clone();
@@ -297,29 +382,49 @@ fn with_around<T>(uri: &Uri, answer: impl FnOnce(&Around, Place<'_>) -> Option<T
     answer(&around, Place::new(&around.here().document, snapshot.manner))
 }
 
-/// The same for answers that walk the whole document: they run on a thread of their own.
+/// The same for answers that walk the whole document or other files: they run on a thread of their own.
 async fn whole<T: Send + 'static>(
     uri: Uri,
     answer: impl FnOnce(&Around, Place<'_>) -> T + Send + 'static,
 ) -> Result<Option<T>> {
     let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
-    let work = tokio::task::spawn_blocking(move || {
-        let around = snapshot.around(snapshot.open(&uri)?);
-        Some(answer(&around, Place::new(&around.here().document, snapshot.manner)))
+    beside(move |cancelled| {
+        // What was named by an answer of before, such as a call in a file that is not open, is a file of a project.
+        let around = match snapshot.open(&uri) {
+            Some(open) => snapshot.around(open),
+            None => snapshot.around_closed(&uri)?,
+        };
+        let around = around.cancellable(cancelled);
+        // The trees of a walk through the whole document go away with it.
+        let document = around.here().document.lean();
+        Some(answer(&around, Place::new(&document, snapshot.manner)))
+    })
+    .await
+}
+
+/// Sets its flag when the handler that has it is dropped: the request was cancelled.
+struct Waiting(Arc<AtomicBool>);
+
+impl Drop for Waiting {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Work on a thread of its own, with the flag that tells it that nobody waits any more.
+async fn beside<T: Send + 'static>(
+    work: impl FnOnce(&Arc<AtomicBool>) -> Option<T> + Send + 'static,
+) -> Result<Option<T>> {
+    let waiting = Waiting(Arc::default());
+    let cancelled = waiting.0.clone();
+    let done = tokio::task::spawn_blocking(move || {
+        // Cancelled while all threads were busy.
+        if cancelled.load(Ordering::Relaxed) { None } else { work(&cancelled) }
     });
-    work.await.map_err(|failure| {
+    done.await.map_err(|failure| {
         tracing::error!("a request failed: {failure}");
         Error::internal_error()
     })
-}
-
-fn workspace_edit(open: &Open, edits: Vec<TextEdit>) -> WorkspaceEdit {
-    let identifier =
-        OptionalVersionedTextDocumentIdentifier { uri: open.uri.clone(), version: Some(open.version) };
-    let edits = edits.into_iter().map(OneOf::Left).collect();
-    let document_changes =
-        DocumentChanges::Edits(vec![TextDocumentEdit { text_document: identifier, edits }]);
-    WorkspaceEdit { document_changes: Some(document_changes), ..WorkspaceEdit::default() }
 }
 
 fn quick_fix(around: &Around, place: Place<'_>, fix: &ide::FixOf<'_>) -> CodeAction {
@@ -364,30 +469,6 @@ fn check_summary(around: &Around, language: Language) -> Value {
         "capacity": status.capacity,
         "message": message.render(language),
     })
-}
-
-/// The pulled report; its `resultId` stands for the content, so that nothing is sent twice.
-fn report(
-    items: Vec<tower_lsp::ls_types::Diagnostic>,
-    previous: Option<String>,
-) -> DocumentDiagnosticReportResult {
-    let hash = rustc_hash::FxBuildHasher.hash_one(serde_json::to_string(&items).unwrap_or_default());
-    let result_id = format!("{hash:016x}");
-    let report = if previous.as_deref() == Some(result_id.as_str()) {
-        DocumentDiagnosticReport::Unchanged(RelatedUnchangedDocumentDiagnosticReport {
-            related_documents: None,
-            unchanged_document_diagnostic_report: UnchangedDocumentDiagnosticReport { result_id },
-        })
-    } else {
-        DocumentDiagnosticReport::Full(RelatedFullDocumentDiagnosticReport {
-            related_documents: None,
-            full_document_diagnostic_report: FullDocumentDiagnosticReport {
-                result_id: Some(result_id),
-                items,
-            },
-        })
-    };
-    DocumentDiagnosticReportResult::Report(report)
 }
 
 /// A refusal that the editor shows to the user.

@@ -1,6 +1,6 @@
 //! What the server offers, and what the client can do.
 
-use super::abilities::Requests;
+use super::abilities::{Abilities, Requests};
 use super::features::USAGE_SCHEME;
 use super::to_proto;
 use crate::text::Encoding;
@@ -8,7 +8,10 @@ use serde_json::json;
 use tower_lsp::ls_types::*;
 
 /// The commands of `workspace/executeCommand`.
-pub(super) const COMMANDS: &[&str] = &["rungwise.check", "rungwise.format", "rungwise.usage"];
+pub(super) const COMMANDS: &[&str] = &["rungwise.check", "rungwise.format", "rungwise.usage", APPLY];
+
+/// Applies the `WorkspaceEdit` that is its argument: what a code action does where clients know commands alone.
+pub(super) const APPLY: &str = "rungwise.applyEdit";
 
 /// The best encoding that the client offers: bytes cost nothing, UTF-16 is what every client knows.
 pub(super) fn encoding_for(client: &ClientCapabilities) -> Encoding {
@@ -67,8 +70,8 @@ pub(super) fn offered(
     let diagnostic_provider = (pulls || !can_pull).then(|| {
         DiagnosticServerCapabilities::Options(DiagnosticOptions {
             identifier: Some("rungwise".to_string()),
-            inter_file_dependencies: false,
-            workspace_diagnostics: false,
+            inter_file_dependencies: true,
+            workspace_diagnostics: true,
             ..DiagnosticOptions::default()
         })
     });
@@ -86,6 +89,19 @@ pub(super) fn offered(
             ..CompletionOptions::default()
         }),
         definition_provider: Some(OneOf::Left(true)),
+        workspace_symbol_provider: Some(OneOf::Left(true)),
+        call_hierarchy_provider: Some(CallHierarchyServerCapability::Simple(true)),
+        document_link_provider: Some(DocumentLinkOptions {
+            resolve_provider: Some(false),
+            work_done_progress_options: WorkDoneProgressOptions::default(),
+        }),
+        workspace: Some(WorkspaceServerCapabilities {
+            workspace_folders: Some(WorkspaceFoldersServerCapabilities {
+                supported: Some(true),
+                change_notifications: Some(OneOf::Left(true)),
+            }),
+            ..WorkspaceServerCapabilities::default()
+        }),
         references_provider: Some(OneOf::Left(true)),
         document_symbol_provider: Some(OneOf::Left(true)),
         folding_range_provider: Some(FoldingRangeProviderCapability::Simple(true)),
@@ -99,10 +115,13 @@ pub(super) fn offered(
             work_done_progress_options: WorkDoneProgressOptions::default(),
         }),
         code_lens_provider: Some(CodeLensOptions { resolve_provider: Some(true) }),
-        rename_provider: Some(OneOf::Right(RenameOptions {
-            prepare_provider: Some(true),
-            work_done_progress_options: WorkDoneProgressOptions::default(),
-        })),
+        rename_provider: Some(match Abilities::of(client).prepare_rename {
+            true => OneOf::Right(RenameOptions {
+                prepare_provider: Some(true),
+                work_done_progress_options: WorkDoneProgressOptions::default(),
+            }),
+            false => OneOf::Left(true),
+        }),
         code_action_provider: Some(CodeActionProviderCapability::Options(CodeActionOptions {
             code_action_kinds: Some(vec![CodeActionKind::QUICKFIX, CodeActionKind::REFACTOR_REWRITE]),
             ..CodeActionOptions::default()

@@ -1,10 +1,11 @@
 //! Answers of features about devices and one document, in the protocol's types.
 //!
 //! `rungwise.usage` takes a document's URI and answers
-//! `{"text", "target", "files": ["main.il", …], "devices": [{"device", "kind", "symbol", "comment", "latched", "preset",
-//! "read", "written", "uses": [{"file", "uri", "line", "column", "rung", "access", "coil", "count", "text"}]}]}`.
-//! `kind` is the device's letter, `address` or `variable`; `file` is the name in `files`; `line` and `column` count from
-//! 1, columns in Unicode scalar values; `rung` counts from 1 in its file or is `null`; `access` is `read`, `write`,
+//! `{"text", "target", "files": ["main.il", …], "devices": [{"device", "kind", "symbol", "comment", "latched",
+//! "preset", "read", "written", "uses": [{"file", "uri", "line", "column", "rung", "access", "coil", "count",
+//! "text"}]}]}`.
+//! `kind` is the device's letter, `address` or `variable`; `file` is the name in `files`; `line` and `column` count
+//! from 1, columns in Unicode scalar values; `rung` counts from 1 in its file or is `null`; `access` is `read`, `write`,
 //! `read-write`, `define` or `jump`; `text` is the same list as a page with a grid for each kind of device.
 //! The page alone is also the content of the virtual document `rungwise-usage:` + the path of the document, which
 //! clients of LSP 3.18 ask for with `workspace/textDocumentContent` (`{"uri"}` → `{"text"}`).
@@ -19,6 +20,7 @@ use crate::target::{Device, Operand};
 use crate::text::{Encoding, Language, column_of_offset};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
+use std::sync::Arc;
 use tower_lsp::ls_types::*;
 
 /// The scheme of the virtual document with the list of used devices.
@@ -138,58 +140,11 @@ fn device_named(document: &Document, name: &str) -> Option<Device> {
     }
 }
 
-/// The edits of a renamed symbol, the comments file among them; nothing if no symbol stands there.
-pub(super) fn rename_symbol(
-    snapshot: &Snapshot,
-    around: &Around,
-    offset: usize,
-    new: &str,
-) -> Option<Result<WorkspaceEdit, crate::text::Message>> {
-    let renamed = match ide::rename_symbol(&around.view(), offset, new)? {
-        Ok(renamed) => renamed,
-        Err(reason) => return Some(Err(reason)),
-    };
-    let mut edits: Vec<TextDocumentEdit> = Vec::new();
-    for file in &renamed.files {
-        let Some(open) = around.file(file.file) else { continue };
-        let place = Place::new(&open.document, snapshot.manner);
-        edits.push(document_edit(open, place.edits(&file.value)));
-    }
-    edits.extend(renamed.table.as_ref().and_then(|edit| table_edit(snapshot, around, edit)));
-    Some(Ok(workspace_edit(snapshot, edits)))
-}
-
-/// An edit of the comments file of the project.
-pub(super) fn table_edit(
-    snapshot: &Snapshot,
-    around: &Around,
-    edit: &crate::text::TextEdit,
-) -> Option<TextDocumentEdit> {
+/// The comments file of the project around a document, as a document of its own.
+pub(super) fn table(snapshot: &Snapshot, around: &Around) -> Option<Arc<Open>> {
     let loaded = snapshot.projects.get(around.here().project.as_ref()?)?;
     let table = sheets::around(snapshot, loaded.comments_file.as_ref()?)?;
-    let place = Place::new(&table.here().document, snapshot.manner);
-    Some(document_edit(table.here(), vec![place.edit(edit)]))
-}
-
-pub(super) fn document_edit(open: &Open, edits: Vec<TextEdit>) -> TextDocumentEdit {
-    // A file that is not open has no version.
-    let version = open.is_open.then_some(open.version);
-    let text_document = OptionalVersionedTextDocumentIdentifier { uri: open.uri.clone(), version };
-    TextDocumentEdit { text_document, edits: edits.into_iter().map(OneOf::Left).collect() }
-}
-
-pub(super) fn workspace_edit(snapshot: &Snapshot, edits: Vec<TextDocumentEdit>) -> WorkspaceEdit {
-    if snapshot.manner.abilities.document_changes {
-        return WorkspaceEdit { document_changes: Some(DocumentChanges::Edits(edits)), ..WorkspaceEdit::default() };
-    }
-    let changes = edits.into_iter().map(|edit| {
-        let edits = edit.edits.into_iter().filter_map(|edit| match edit {
-            OneOf::Left(edit) => Some(edit),
-            OneOf::Right(_) => None,
-        });
-        (edit.text_document.uri, edits.collect())
-    });
-    WorkspaceEdit { changes: Some(changes.collect()), ..WorkspaceEdit::default() }
+    Some(table.here().clone())
 }
 
 /// The actions that write a symbol for the device at `range`, or the device for a symbol.

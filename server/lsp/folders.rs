@@ -97,6 +97,7 @@ impl Workspace {
                 return;
             }
             state.settings_source = Some(value.clone());
+            state.snapshot.manner.language = settings.language(state.speech);
             state.snapshot.settings = Arc::new(settings);
         }
         self.reread_projects();

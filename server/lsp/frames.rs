@@ -4,8 +4,9 @@
 //! message of a client the end of its session. So frames are read here first: what is no message is dropped with a
 //! line in the log, and the next frame is looked for.
 
-use serde::Deserialize;
-use serde::de::IgnoredAny;
+use serde::de::{IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use std::fmt;
 use tokio::io::{AsyncBufReadExt, AsyncRead, AsyncReadExt, AsyncWriteExt, BufReader, DuplexStream};
 
 /// Bytes under way between here and the library.
@@ -25,9 +26,65 @@ struct Shape {
     #[serde(rename = "id")]
     _id: Option<Id>,
     method: Option<String>,
-    params: Option<serde_json::Value>,
+    params: Option<Params>,
     result: Option<IgnoredAny>,
     error: Option<IgnoredAny>,
+}
+
+/// Whether parameters are of a kind that the protocol allows. They are read as strictly as the library will read them,
+/// and not kept: the text of a document is long.
+struct Params {
+    allowed: bool,
+}
+
+impl<'de> Deserialize<'de> for Params {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Params, D::Error> {
+        deserializer.deserialize_any(ParamsVisitor)
+    }
+}
+
+struct ParamsVisitor;
+
+impl<'de> Visitor<'de> for ParamsVisitor {
+    type Value = Params;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("parameters")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Params, A::Error> {
+        while map.next_entry::<Params, Params>()?.is_some() {}
+        Ok(Params { allowed: true })
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut sequence: A) -> Result<Params, A::Error> {
+        while sequence.next_element::<Params>()?.is_some() {}
+        Ok(Params { allowed: true })
+    }
+
+    fn visit_unit<E>(self) -> Result<Params, E> {
+        Ok(Params { allowed: false })
+    }
+
+    fn visit_bool<E>(self, _: bool) -> Result<Params, E> {
+        Ok(Params { allowed: false })
+    }
+
+    fn visit_i64<E>(self, _: i64) -> Result<Params, E> {
+        Ok(Params { allowed: false })
+    }
+
+    fn visit_u64<E>(self, _: u64) -> Result<Params, E> {
+        Ok(Params { allowed: false })
+    }
+
+    fn visit_f64<E>(self, _: f64) -> Result<Params, E> {
+        Ok(Params { allowed: false })
+    }
+
+    fn visit_str<E>(self, _: &str) -> Result<Params, E> {
+        Ok(Params { allowed: false })
+    }
 }
 
 #[derive(Deserialize)]
@@ -96,7 +153,7 @@ fn content_length(line: &str) -> Option<usize> {
 
 fn is_message(body: &[u8]) -> bool {
     let Ok(shape) = serde_json::from_slice::<Shape>(body) else { return false };
-    let parameters = shape.params.is_none_or(|params| params.is_object() || params.is_array());
+    let parameters = shape.params.is_none_or(|params| params.allowed);
     let answer =
         shape.result.is_some() || shape.error.is_some() || body.windows(8).any(|part| part == b"\"result\"");
     if shape.method.is_some() { parameters } else { answer }
@@ -141,10 +198,15 @@ mod tests {
             r#"{"jsonrpc":"2.0","method":7}"#,
             r#"{"jsonrpc":"2.0","method":"x","params":7}"#,
             r#"{"jsonrpc":"2.0","id":{},"method":"x"}"#,
+            r#"{"jsonrpc":"2.0","method":"x","params":["\ud800"]}"#,
+            r#"{"jsonrpc":"2.0","method":"x","params":[1e999]}"#,
         ] {
             check(format!("{}{}", frame(bad), frame(GOOD)).as_bytes(), &[GOOD]);
         }
         check(&[b"Content-Length: 3\r\n\r\n\xff\xfe\x00", frame(GOOD).as_bytes()].concat(), &[GOOD]);
+        let broken = b"{\"jsonrpc\":\"2.0\",\"method\":\"x\",\"params\":[\"\xff\"]}";
+        let header = format!("Content-Length: {}\r\n\r\n", broken.len());
+        check(&[header.as_bytes(), broken, frame(GOOD).as_bytes()].concat(), &[GOOD]);
         check(format!("noise\r\n\r\nContent-Length: x\r\n\r\n{}", frame(GOOD)).as_bytes(), &[GOOD]);
         check(format!("Content-Length: 99999999999\r\n\r\n{}", frame(GOOD)).as_bytes(), &[GOOD]);
     }

@@ -334,7 +334,8 @@ fn read_project(
             loaded.files.push(OnDisk { name, ..old.commented(&comments) });
             continue;
         }
-        let read = if too_large { None } else { read_file(&path, &loaded.settings, &loaded.manifest) };
+        // What is no file, such as a pipe, might never end.
+        let read = if too_large || stamp.is_none() { None } else { read_file(&path, &loaded.settings, &loaded.manifest) };
         let read = read.map(|(uri, document)| (uri, document.commented(&comments)));
         let exports = read.as_ref().map(|(_, document)| Arc::new(Exports::of(document)));
         let file = read.map(|(uri, document)| {

@@ -5,6 +5,7 @@
 //! diagnostics.
 
 mod abilities;
+mod across;
 mod backend;
 mod capabilities;
 mod features;
@@ -16,6 +17,7 @@ mod manifests;
 mod progress;
 mod projects;
 mod publisher;
+mod pulled;
 mod service;
 mod sheets;
 mod settings;
@@ -23,7 +25,9 @@ mod status;
 mod to_proto;
 mod workspace;
 
+use crate::text::Language;
 use service::Ordered;
+use settings::Speech;
 use tokio::io::{AsyncRead, AsyncWrite};
 use tower_lsp::{LspService, Server};
 use workspace::Workspace;
@@ -33,18 +37,23 @@ const CONCURRENCY: usize = 4096;
 
 /// Serves one client on standard input and output until it says `exit` or goes away.
 /// Returns the process's exit code: 0 after a `shutdown`, else 1, as the protocol wants.
-pub async fn serve() -> u8 {
-    serve_between(tokio::io::stdin(), tokio::io::stdout()).await
+///
+/// `asked` is the language that the user asked the program for, which goes before the client's; `otherwise` is taken if
+/// the client says none.
+pub async fn serve(asked: Option<Language>, otherwise: Language) -> u8 {
+    serve_between(tokio::io::stdin(), tokio::io::stdout(), asked, otherwise).await
 }
 
 /// Serves one client that sends `input` and reads `output`; ends and returns as [`serve`] does.
 pub async fn serve_between(
     input: impl AsyncRead + Send + Unpin + 'static,
     output: impl AsyncWrite + Send + Unpin,
+    asked: Option<Language>,
+    otherwise: Language,
 ) -> u8 {
     let mut workspace = None;
     let (service, socket) = LspService::build(|client| {
-        let shared = Workspace::new(client);
+        let shared = Workspace::new(client, Speech { asked, otherwise, ..Speech::default() });
         workspace = Some(shared.clone());
         backend::Backend::new(shared)
     })

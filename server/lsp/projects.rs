@@ -6,9 +6,10 @@ use crate::check;
 use crate::document::{Comments, Exports, Member, Outer, ProjectView};
 use crate::project::{CommentsFile, Manifest};
 use crate::text::Diagnostic;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::SystemTime;
 use tower_lsp::ls_types::Uri;
 
@@ -73,6 +74,8 @@ pub(super) struct Around {
     names: Vec<String>,
     here: usize,
     is_listed: bool,
+    /// Set when nobody waits for the answer any more.
+    cancelled: Arc<AtomicBool>,
 }
 
 impl Around {
@@ -82,6 +85,7 @@ impl Around {
         let members = members.map(|(file, name)| Member { name, document: &file.document }).collect();
         ProjectView::new(members, self.here, self.is_listed)
             .unwrap_or_else(|| ProjectView::alone(&self.files[self.here].document))
+            .cancellable(&self.cancelled)
     }
 
     /// The file that is looked at.
@@ -112,9 +116,19 @@ impl Around {
         around
     }
 
+    fn empty() -> Around {
+        let cancelled = Arc::default();
+        Around { files: Vec::new(), names: Vec::new(), here: 0, is_listed: false, cancelled }
+    }
+
+    /// The same files for work that ends early once `flag` is set.
+    pub fn cancellable(self, flag: &Arc<AtomicBool>) -> Around {
+        Around { cancelled: flag.clone(), ..self }
+    }
+
     /// A file without others.
     pub fn alone(open: &Arc<Open>) -> Around {
-        Around { files: vec![open.clone()], names: vec![String::new()], here: 0, is_listed: false }
+        Around { files: vec![open.clone()], names: vec![String::new()], ..Around::empty() }
     }
 
     /// File number `number`.
@@ -131,7 +145,7 @@ impl Around {
 impl Snapshot {
     /// The project around `open` at this moment.
     pub(super) fn around(&self, open: &Arc<Open>) -> Around {
-        let mut around = Around { files: Vec::new(), names: Vec::new(), here: usize::MAX, is_listed: false };
+        let mut around = Around { here: usize::MAX, ..Around::empty() };
         if let Some(loaded) = open.project.as_ref().and_then(|key| self.projects.get(key)) {
             around.is_listed = loaded.manifest.files.is_some();
             for (file, name) in self.files_of(loaded) {
@@ -151,6 +165,15 @@ impl Snapshot {
         around
     }
 
+    /// The project around a file of it that is not open.
+    pub(super) fn around_closed(&self, uri: &Uri) -> Option<Around> {
+        let path = canonical(&file_path(uri)?);
+        let (key, _) = self.projects.iter().find(|(key, _)| path.starts_with(key))?;
+        let around = self.project(key)?;
+        let here = around.files.iter().position(|file| file.path.as_ref() == Some(&path))?;
+        around.from(here)
+    }
+
     /// The file of an open document as the disk has it.
     pub(super) fn on_disk(&self, open: &Open) -> Option<&Arc<Open>> {
         let loaded = self.projects.get(open.project.as_ref()?)?;
@@ -163,7 +186,22 @@ impl Snapshot {
         let (files, names): (Vec<_>, Vec<_>) =
             self.files_of(loaded).map(|(file, name)| (file, name.to_string())).unzip();
         let is_listed = loaded.manifest.files.is_some();
-        (!files.is_empty()).then_some(Around { files, names, here: 0, is_listed })
+        (!files.is_empty()).then(|| Around { files, names, is_listed, ..Around::empty() })
+    }
+
+    /// The files of all projects and the open documents that belong to none; nothing if there are neither.
+    pub(super) fn everything(&self) -> Option<Around> {
+        let mut around = Around::empty();
+        let mut seen: FxHashSet<&Arc<Path>> = FxHashSet::default();
+        for loaded in self.projects.values() {
+            seen.extend(loaded.files.iter().map(|file| &file.path));
+            around.files.extend(self.files_of(loaded).map(|(file, _)| file));
+        }
+        let is_alone = |open: &&Arc<Open>| open.path.as_ref().is_none_or(|path| !seen.contains(path));
+        around.files.extend(self.opens().filter(is_alone).cloned());
+        around.files.sort_by(|left, right| left.uri.as_str().cmp(right.uri.as_str()));
+        around.names = around.files.iter().map(|_| String::new()).collect();
+        (!around.files.is_empty()).then_some(around)
     }
 
     /// The files of a project in order with their names, those that cannot be read left out.

@@ -27,6 +27,8 @@ const PAUSE: Duration = Duration::from_millis(120);
 /// What was published about a closed document stays so long for an editor that opens it again at once, as it does to
 /// give it another language.
 const REOPENED: Duration = Duration::from_millis(40);
+/// A document that is opened with more bytes than this shows what the real-time tier finds before the batch tier runs.
+const LARGE_BYTES: usize = 256 << 10;
 
 /// Sends what it is given to a task, which sees the newest only.
 pub(super) struct Publisher {
@@ -48,7 +50,7 @@ type Heir = Option<(Keeper, Arc<Path>)>;
 enum Order {
     #[default]
     Nothing,
-    Publish(Arc<Open>),
+    Publish(Arc<Open>, Manner),
     Close(Uri, Heir),
 }
 
@@ -77,6 +79,30 @@ struct Batch {
     surface: Option<u64>,
     /// The same of the file on the disk, where it was asked for.
     surface_of_disk: Option<u64>,
+}
+
+/// What both tiers found in one version.
+struct Judged {
+    realtime: Vec<Diagnostic>,
+    batch: Batch,
+    batch_took: Duration,
+    status: Option<StatusNotification>,
+}
+
+impl Batch {
+    /// Runs the rules about whole programs over all files of the project as they are now. `is_first` says that
+    /// nothing is known of this file yet.
+    fn of(snapshot: &Snapshot, own: &Arc<Open>, is_first: bool) -> Batch {
+        let around = snapshot.around(own);
+        if around.files().len() == 1 {
+            let found = check::program(&own.document, &own.severities);
+            return Batch { found, around, surface: None, surface_of_disk: None };
+        }
+        let found = check::within_project(&around.view(), &own.severities);
+        let on_disk = is_first.then(|| snapshot.on_disk(own)).flatten();
+        let surface_of_disk = on_disk.map(|file| check::surface(&file.document));
+        Batch { found, around, surface: Some(check::surface(&own.document)), surface_of_disk }
+    }
 }
 
 impl Publisher {
@@ -111,8 +137,8 @@ impl Publisher {
         Publisher { sender, task, reopened }
     }
 
-    pub(super) fn publish(&self, open: Arc<Open>) {
-        self.sender.send_replace(Order::Publish(open));
+    pub(super) fn publish(&self, open: Arc<Open>, manner: Manner) {
+        self.sender.send_replace(Order::Publish(open, manner));
     }
 
     /// Clears what was published, unless an heir goes on.
@@ -141,7 +167,10 @@ impl Task {
             let order = receiver.borrow_and_update().clone();
             match order {
                 Order::Nothing => {}
-                Order::Publish(open) => self.publish(open, &mut receiver).await,
+                Order::Publish(open, manner) => {
+                    self.manner = manner;
+                    self.publish(open, &mut receiver).await;
+                }
                 Order::Close(uri, heir) => return self.close(uri, heir).await,
             }
         }
@@ -158,51 +187,56 @@ impl Task {
     }
 
     async fn publish(&mut self, open: Arc<Open>, receiver: &mut watch::Receiver<Order>) {
-        let at_once = self.batch_took < AT_ONCE;
-        if !at_once {
+        // How long the batch run of a large document takes is not known when it is opened.
+        let is_first = self.batch.is_none() && open.document.len() > LARGE_BYTES;
+        if is_first || self.batch_took >= AT_ONCE {
             let realtime = self.find(&open, check::realtime).await;
             let (mut diagnostics, around) = self.carried(&open);
             diagnostics.extend(realtime);
             self.push(&around, diagnostics).await;
-            match tokio::time::timeout(PAUSE, receiver.changed()).await {
+            match tokio::time::timeout(if is_first { Duration::ZERO } else { PAUSE }, receiver.changed()).await {
                 Ok(Ok(())) => return receiver.mark_changed(),
                 // Nobody is there any more to give orders.
                 Ok(Err(_)) => return,
                 Err(_) => {}
             }
         }
-        let started = Instant::now();
-        let batch = self.find_batch(&open).await;
-        self.batch_took = started.elapsed();
-        let mut diagnostics = self.find(&open, check::realtime).await;
-        diagnostics.extend(batch.found.iter().cloned());
-        self.push(&batch.around, diagnostics).await;
-        self.tell_status(&open).await;
-        self.tell_project(&open, &batch);
-        self.batch = Some((open, batch));
+        let judged = self.judge(&open).await;
+        self.batch_took = judged.batch_took;
+        let mut diagnostics = judged.realtime;
+        diagnostics.extend(judged.batch.found.iter().cloned());
+        // What was shown first is all there is if the batch run found nothing.
+        if !is_first || !judged.batch.found.is_empty() {
+            self.push(&judged.batch.around, diagnostics).await;
+        }
+        self.tell_project(&open, &judged.batch);
+        self.batch = Some((open, judged.batch));
+        self.tell_status(judged.status).await;
     }
 
-    /// Runs the rules about whole programs beside the other tasks, over all files of the project as they are now.
-    async fn find_batch(&self, open: &Arc<Open>) -> Batch {
-        let (workspace, own) = (self.workspace.clone(), open.clone());
-        let is_first = self.surface.is_none();
-        let work = tokio::task::spawn_blocking(move || {
+    /// Both tiers and the status, beside the other tasks; if one of them fails the log has it, and that one finds
+    /// nothing.
+    async fn judge(&self, open: &Arc<Open>) -> Judged {
+        let (workspace, own, is_first) = (self.workspace.clone(), open.clone(), self.surface.is_none());
+        let judged = tokio::task::spawn_blocking(move || {
+            let realtime = check::realtime(&own.document, &own.severities);
+            let started = Instant::now();
             let snapshot = workspace.upgrade().map(|workspace| workspace.snapshot()).unwrap_or_default();
-            let around = snapshot.around(&own);
-            let is_alone = around.files().len() == 1;
-            let found = match is_alone {
-                true => check::program(&own.document, &own.severities),
-                false => check::within_project(&around.view(), &own.severities),
-            };
-            let surface = (!is_alone).then(|| check::surface(&own.document));
-            let on_disk = is_first.then(|| snapshot.on_disk(&own)).flatten();
-            let surface_of_disk = on_disk.map(|file| check::surface(&file.document));
-            Batch { found, around, surface, surface_of_disk }
+            let batch = Batch::of(&snapshot, &own, is_first);
+            let batch_took = started.elapsed();
+            Judged { realtime, batch, batch_took, status: Some(StatusNotification::of(&own)) }
         });
-        work.await.unwrap_or_else(|failure| {
-            tracing::error!("a check failed: {failure}");
-            Batch { found: Vec::new(), around: Around::alone(open), surface: None, surface_of_disk: None }
-        })
+        match judged.await {
+            Ok(judged) => judged,
+            Err(failure) => {
+                tracing::error!("a check failed: {failure}");
+                let realtime = self.find(open, check::realtime).await;
+                let found = self.find(open, check::program).await;
+                let around = Around::alone(open);
+                let batch = Batch { found, around, surface: None, surface_of_disk: None };
+                Judged { realtime, batch, batch_took: AT_ONCE, status: None }
+            }
+        }
     }
 
     /// Has the other files of the project judged again if they see something new.
@@ -256,13 +290,10 @@ impl Task {
         }
     }
 
-    async fn tell_status(&mut self, open: &Arc<Open>) {
-        let open = open.clone();
-        // As a check it counts on a thread of its own, where a failure does not end the publisher.
-        let Ok(status) = tokio::task::spawn_blocking(move || StatusNotification::of(&open)).await else {
-            return;
-        };
-        if self.status.as_ref() != Some(&status) {
+    async fn tell_status(&mut self, status: Option<StatusNotification>) {
+        if let Some(status) = status
+            && self.status.as_ref() != Some(&status)
+        {
             self.client.send_notification::<super::status::StatusMethod>(status.clone()).await;
             self.status = Some(status);
         }

@@ -71,6 +71,7 @@ where
 mod tests {
     use super::{Ordered, SNAPSHOT, Workspace};
     use crate::lsp::backend::Backend;
+    use crate::lsp::settings::Speech;
     use serde_json::json;
     use std::pin::Pin;
     use std::task::{Context, Poll};
@@ -104,7 +105,7 @@ mod tests {
     fn service() -> Ordered<Fragile> {
         let mut workspace = None;
         let _library = LspService::new(|client| {
-            let shared = Workspace::new(client);
+            let shared = Workspace::new(client, Speech::default());
             workspace = Some(shared.clone());
             Backend::new(shared)
         });

@@ -4,6 +4,7 @@ use crate::document::Notation;
 use crate::ide::{LensSettings, Style};
 use crate::project::{FormatStyle, MOST_WIDTH, Manifest};
 use crate::target::Target;
+use crate::text::Language;
 use serde_json::Value;
 
 /// What the user set in the editor. Everything may be left out.
@@ -17,6 +18,8 @@ pub(super) struct Settings {
     style: Option<FormatStyle>,
     /// `format.width`, in cells; else the project's.
     width: Option<u32>,
+    /// `language`: `en`, `zh-CN`; anything else leaves it to the client.
+    language: Option<Language>,
     /// `inlayHints.enabled`
     pub inlay_hints: bool,
     /// `inlayHints.comments`: what the project says about devices, behind them.
@@ -29,6 +32,17 @@ pub(super) struct Settings {
     pulls: bool,
 }
 
+/// What is known of the user's language apart from the settings.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(super) struct Speech {
+    /// What the command line of the server says.
+    pub asked: Option<Language>,
+    /// The locale of the client.
+    pub client: Option<Language>,
+    /// What holds if nobody says anything.
+    pub otherwise: Language,
+}
+
 impl Default for Settings {
     fn default() -> Settings {
         Settings {
@@ -36,6 +50,7 @@ impl Default for Settings {
             notation: None,
             style: None,
             width: None,
+            language: None,
             inlay_hints: true,
             comment_hints: true,
             lenses: LensSettings { steps: true, references: true, next_free: true },
@@ -66,12 +81,18 @@ impl Settings {
             _ => None,
         };
         let is_on = |section, name| part(section, name).and_then(Value::as_bool).unwrap_or(true);
+        let language = match word(own.get("language")).as_deref() {
+            Some("en") => Some(Language::English),
+            Some("zh-cn" | "zh") => Some(Language::SimplifiedChinese),
+            _ => None,
+        };
         let width = part("format", "width").and_then(Value::as_u64);
         Some(Settings {
             target: word(own.get("target")).and_then(|name| Target::named(&name)),
             notation,
             style,
             width: width.map(|width| width.min(u64::from(MOST_WIDTH)) as u32),
+            language,
             inlay_hints: is_on("inlayHints", "enabled"),
             comment_hints: is_on("inlayHints", "comments"),
             lenses: LensSettings {
@@ -95,6 +116,11 @@ impl Settings {
     pub(super) fn style(&self, manifest: &Manifest) -> Style {
         let width = self.width.unwrap_or(manifest.format.width);
         Style { kind: self.style.unwrap_or(manifest.format.style), width }
+    }
+
+    /// The language of all messages.
+    pub(super) fn language(&self, speech: Speech) -> Language {
+        self.language.or(speech.asked).or(speech.client).unwrap_or(speech.otherwise)
     }
 
     pub(super) fn pulls(&self) -> bool {

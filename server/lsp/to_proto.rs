@@ -199,6 +199,35 @@ fn completion_kind(kind: ide::CompletionKind) -> lsp::CompletionItemKind {
     }
 }
 
+/// The outline as a tree, or as a list for a client that knows no tree.
+pub(super) fn outline(
+    place: Place<'_>,
+    nodes: Vec<ide::SymbolNode>,
+    uri: &lsp::Uri,
+) -> lsp::DocumentSymbolResponse {
+    if place.abilities.nested_symbols {
+        let nodes = nodes.into_iter().map(|node| symbol(place, node));
+        return lsp::DocumentSymbolResponse::Nested(nodes.collect());
+    }
+    let mut list = Vec::new();
+    let mut open: Vec<(ide::SymbolNode, Option<String>)> =
+        nodes.into_iter().rev().map(|node| (node, None)).collect();
+    while let Some((node, container_name)) = open.pop() {
+        let children = node.children.into_iter().rev();
+        open.extend(children.map(|child| (child, Some(node.name.clone()))));
+        #[allow(deprecated, reason = "the protocol's struct still has the field")]
+        list.push(lsp::SymbolInformation {
+            name: node.name,
+            kind: symbol_kind(node.kind),
+            tags: None,
+            deprecated: None,
+            location: lsp::Location { uri: uri.clone(), range: place.range(node.span) },
+            container_name,
+        });
+    }
+    lsp::DocumentSymbolResponse::Flat(list)
+}
+
 pub(super) fn symbol(place: Place<'_>, node: ide::SymbolNode) -> lsp::DocumentSymbol {
     let children: Vec<_> = node.children.into_iter().map(|child| symbol(place, child)).collect();
     #[allow(deprecated, reason = "the protocol's struct still has the field")]
@@ -214,7 +243,7 @@ pub(super) fn symbol(place: Place<'_>, node: ide::SymbolNode) -> lsp::DocumentSy
     }
 }
 
-fn symbol_kind(kind: ide::SymbolKind) -> lsp::SymbolKind {
+pub(super) fn symbol_kind(kind: ide::SymbolKind) -> lsp::SymbolKind {
     match kind {
         ide::SymbolKind::Program => lsp::SymbolKind::MODULE,
         ide::SymbolKind::FunctionBlock => lsp::SymbolKind::CLASS,

@@ -6,12 +6,12 @@ use super::keeper::Keeper;
 use super::manifests::Manifests;
 use super::projects::{Projects, canonical, file_path};
 use super::publisher::{Closing, Publisher};
-use super::settings::Settings;
+use super::settings::{Settings, Speech};
 use super::sheets::Sheets;
 use super::to_proto::Manner;
 use crate::check::Severities;
 use crate::document::{Document, Edit, Notation};
-use crate::project::{Manifest, Project, decide};
+use crate::project::{MANIFEST_NAME, Manifest, Project, decide};
 use crate::target::{Model, Target};
 use crate::text::{Encoding, Language, LineColumn};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -88,6 +88,7 @@ pub(super) struct State {
     closing: FxHashMap<Uri, Closing>,
     manifests: Manifests,
     pub keeper: Option<Keeper>,
+    pub speech: Speech,
     /// Projects that are read for the first time: their documents wait for what the other files declare.
     pub awaited: FxHashSet<Arc<Path>>,
     /// Folders that the client has open, as it spells them.
@@ -128,10 +129,10 @@ impl Snapshot {
 }
 
 impl Workspace {
-    pub(super) fn new(client: Client) -> Arc<Workspace> {
+    pub(super) fn new(client: Client, speech: Speech) -> Arc<Workspace> {
         Arc::new(Workspace {
             client,
-            state: Mutex::default(),
+            state: Mutex::new(State { speech, ..State::default() }),
             initialised: AtomicBool::new(false),
             shut_down: AtomicBool::new(false),
         })
@@ -169,14 +170,15 @@ impl Workspace {
     fn initialise(self: &Arc<Workspace>, params: &InitializeParams, newer: Newer) {
         let mut state = self.state();
         state.keeper = Some(Keeper::start(self));
+        state.speech.client = params.locale.as_deref().map(Language::of_locale);
+        let settings = Settings::read(params.initialization_options.as_ref()).unwrap_or_default();
         state.snapshot.manner = Manner {
             encoding: capabilities::encoding_for(&params.capabilities),
-            language: params.locale.as_deref().map(Language::of_locale).unwrap_or_default(),
+            language: settings.language(state.speech),
             abilities: Abilities::of(&params.capabilities),
         };
-        let settings = Settings::read(params.initialization_options.as_ref());
         state.settings_source = params.initialization_options.clone();
-        state.snapshot.settings = Arc::new(settings.unwrap_or_default());
+        state.snapshot.settings = Arc::new(settings);
         state.requests = Requests { newer, ..Requests::of(&params.capabilities) };
         state.this = Arc::downgrade(self);
         self.take_folders(&mut state, params);
@@ -219,7 +221,10 @@ impl Workspace {
         let manifest = Arc::new(manifest);
         let is_ladder = language_id == "ladder";
         let (notation, target) = decided(&uri, &text, &manifest, &state.snapshot.settings, is_ladder);
-        let document = read(&text, notation, target);
+        let document = match is_manifest(&uri) {
+            true => Document::unread(&text, notation, target),
+            false => read(&text, notation, target),
+        };
         let loaded = project.as_ref().and_then(|key| state.snapshot.projects.get(key));
         let document = match loaded {
             Some(loaded) => loaded.placed(document, path.as_ref()),
@@ -232,8 +237,10 @@ impl Workspace {
         }
         let before = state.closing.remove(&uri).map(Closing::superseded);
         let snapshot = &state.snapshot;
-        let publisher = Publisher::start(state.this.clone(), &self.client, snapshot, before);
-        state.publishers.insert(uri.clone(), publisher);
+        if !is_manifest(&uri) {
+            let publisher = Publisher::start(state.this.clone(), &self.client, snapshot, before);
+            state.publishers.insert(uri.clone(), publisher);
+        }
         let severities = Arc::new(manifest.severities());
         if let Some(path) = &path {
             Arc::make_mut(&mut state.snapshot.paths).entry(path.clone()).or_insert_with(|| uri.clone());
@@ -256,6 +263,10 @@ impl Workspace {
         for change in params.content_changes {
             let edit = edit_of(&open.document, change, state.snapshot.manner.encoding);
             let (notation, target) = (open.document.notation(), open.document.target());
+            if is_manifest(&open.uri) {
+                open.document = Document::unread(&spliced(&open.document, &edit), notation, target);
+                continue;
+            }
             let edited = guarded(|| {
                 let mut document = open.document.clone();
                 document.apply(std::slice::from_ref(&edit));
@@ -421,7 +432,7 @@ impl State {
         let open = Arc::new(open);
         Arc::make_mut(&mut self.snapshot.documents).insert(open.uri.clone(), open.clone());
         if let Some(publisher) = self.publishers.get(&open.uri).filter(|_| !is_awaited) {
-            publisher.publish(open);
+            publisher.publish(open, self.snapshot.manner);
         }
     }
 }
@@ -430,6 +441,9 @@ impl Open {
     /// Decides anew in which language and for which target the document is written, and reads it anew if that
     /// changed: what is typed into an empty file says what it is only after some lines.
     fn decide_again(&mut self, settings: &Settings) {
+        if is_manifest(&self.uri) {
+            return;
+        }
         let text = self.document.text();
         let is_ladder = self.document.notation() == Notation::Ladder;
         let (notation, target) = decided(&self.uri, &text, &self.manifest, settings, is_ladder);
@@ -460,6 +474,11 @@ pub(super) fn decided(
 pub(super) fn read(text: &str, notation: Notation, target: &'static Target) -> Document {
     guarded(|| Document::new(text, notation, target))
         .unwrap_or_else(|| Document::unread(text, notation, target))
+}
+
+/// Whether a document is a manifest: its text is kept for the links in it, and it is no program.
+fn is_manifest(uri: &Uri) -> bool {
+    uri.path().as_str().rsplit('/').next() == Some(MANIFEST_NAME)
 }
 
 /// The value, or nothing and a line in the log if making it panics.

@@ -1,6 +1,8 @@
 //! The shape of a row of the FX instruction table, and the forms in which an instruction is written.
 
 use super::{Accepts, Constant, DeviceKind, Model, Operand, instructions};
+use crate::text::{self, Book, Language};
+use std::borrow::Cow;
 use std::fmt;
 
 /// One instruction of the FX family: everything that any room needs to know about it.
@@ -26,6 +28,18 @@ pub struct Instruction {
     pub models: &'static [Model],
     /// The page: Markdown, one paragraph and a fenced `il` example that checks clean on each of `models`.
     pub page: &'static str,
+}
+
+impl Instruction {
+    /// The page in `language`; the example is the same in all of them.
+    pub fn page_in(&self, language: Language) -> Cow<'static, str> {
+        text::page(Book::Instructions, self.mnemonic, self.page, language)
+    }
+
+    /// The title in `language`.
+    pub fn title_in(&self, language: Language) -> &'static str {
+        text::phrase(self.title, language)
+    }
 }
 
 /// What an instruction does to the current result, the block stack and the branch stack.

@@ -1,5 +1,6 @@
 //! Messages to people: a catalogue key with arguments, put into words of a language at the very end.
 
+use super::translation::phrase;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
@@ -40,7 +41,20 @@ impl Language {
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub struct Message {
     key: &'static str,
-    arguments: Vec<(&'static str, String)>,
+    arguments: Vec<(&'static str, Argument)>,
+}
+
+/// What fills a place of a template. Words that differ from language to language are kept as what they say.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+enum Argument {
+    /// A name, a number, a piece of program.
+    Word(String),
+    /// English words of a table, such as the meaning of an operand.
+    Phrase(&'static str),
+    /// English words of a table and pieces of program, with what stands between them.
+    Words(Vec<String>, &'static str),
+    /// Messages, joined as a list.
+    Messages(Vec<Message>),
 }
 
 impl Message {
@@ -51,7 +65,30 @@ impl Message {
 
     /// With `{name}` standing for `value`.
     pub fn with(mut self, name: &'static str, value: impl ToString) -> Message {
-        self.arguments.push((name, value.to_string()));
+        self.arguments.push((name, Argument::Word(value.to_string())));
+        self
+    }
+
+    /// With `{name}` standing for English words of the tables of instructions, functions and devices.
+    pub fn with_phrase(mut self, name: &'static str, words: &'static str) -> Message {
+        self.arguments.push((name, Argument::Phrase(words)));
+        self
+    }
+
+    /// With `{name}` standing for words of the tables and pieces of program in one row, `separator` between them.
+    pub fn with_words<W: Into<String>>(
+        mut self,
+        name: &'static str,
+        words: impl IntoIterator<Item = W>,
+        separator: &'static str,
+    ) -> Message {
+        self.arguments.push((name, Argument::Words(words.into_iter().map(W::into).collect(), separator)));
+        self
+    }
+
+    /// With `{name}` standing for `messages`, as a list in the way of the language.
+    pub fn with_messages(mut self, name: &'static str, messages: Vec<Message>) -> Message {
+        self.arguments.push((name, Argument::Messages(messages)));
         self
     }
 
@@ -65,7 +102,8 @@ impl Message {
     pub fn render(&self, language: Language) -> String {
         let entry = catalogue(language).get(self.key).or_else(|| catalogue(Language::English).get(self.key));
         let Some(template) = entry else {
-            let arguments: Vec<&str> = self.arguments.iter().map(|(_, value)| value.as_str()).collect();
+            let arguments: Vec<String> =
+                self.arguments.iter().map(|(_, value)| value.render(language)).collect();
             return format!("{} {}", self.key, arguments.join(", ")).trim_end().to_string();
         };
         let mut words = String::with_capacity(template.len() + 32);
@@ -76,13 +114,40 @@ impl Message {
             let end = rest.find('}').map_or(rest.len(), |close| close + 1);
             let name = rest[..end].trim_matches(['{', '}']);
             match self.arguments.iter().find(|(argument, _)| *argument == name) {
-                Some((_, value)) => words.push_str(value),
+                Some((_, Argument::Word(word))) => words.push_str(word),
+                Some((_, value)) => words.push_str(&value.render(language)),
                 None => words.push_str(&rest[..end]),
             }
             rest = &rest[end..];
         }
         words.push_str(rest);
         words
+    }
+}
+
+impl Argument {
+    fn render(&self, language: Language) -> String {
+        match self {
+            Argument::Word(word) => word.clone(),
+            Argument::Phrase(words) => phrase(words, language).to_string(),
+            Argument::Words(words, separator) => {
+                let separator = if *separator == ", " { list_separator(language) } else { separator };
+                let words: Vec<&str> = words.iter().map(|word| phrase(word, language)).collect();
+                words.join(separator)
+            }
+            Argument::Messages(messages) => {
+                let words: Vec<String> = messages.iter().map(|message| message.render(language)).collect();
+                words.join(list_separator(language))
+            }
+        }
+    }
+}
+
+/// What stands between the items of a list of words.
+pub fn list_separator(language: Language) -> &'static str {
+    match language {
+        Language::English => ", ",
+        Language::SimplifiedChinese => "、",
     }
 }
 
@@ -111,6 +176,9 @@ macro_rules! catalogue_in {
                 include_str!(concat!("messages/", $tag, "/devices.toml")),
                 include_str!(concat!("messages/", $tag, "/cli.toml")),
                 include_str!(concat!("messages/", $tag, "/project.toml")),
+                include_str!(concat!("messages/", $tag, "/pages.toml")),
+                include_str!(concat!("messages/", $tag, "/conversions.toml")),
+                include_str!(concat!("messages/", $tag, "/ldmicro.toml")),
             ])
         })
     };

@@ -12,7 +12,10 @@ mod position;
 pub use position::{Encoding, LineColumn, cell_width, column_of_offset, offset_of_column};
 
 mod message;
-pub use message::{Language, Message, catalogue_keys};
+pub use message::{Language, Message, catalogue_keys, list_separator};
+
+mod translation;
+pub use translation::{Book, EXAMPLE, has_phrase, page, phrase, phrases, prose, sections};
 
 mod diagnostic;
 pub use diagnostic::{Diagnostic, Fix, Related, Severity};

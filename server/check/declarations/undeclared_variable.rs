@@ -40,7 +40,7 @@
 use super::guess::types_of;
 use crate::check::iec::{View, folded};
 use crate::check::{ProgramContext, Rule, Run};
-use crate::document::{ChunkRef, DeclaredType, Document, Mention, Pou, Scopes, Symbol, Tree, Use};
+use crate::document::{Chunk, ChunkRef, DeclaredType, Document, Mention, Pou, Scopes, Symbol, Use};
 use crate::il::iec::{IecTree, ItemKind, PouKind, SectionKind, TypeSpec};
 use crate::target::iec::{Function, FunctionBlock, nearest};
 use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
@@ -88,7 +88,7 @@ fn check_file(document: &Document, found: &mut Vec<Diagnostic>) {
             pou = Some(pou.map_or(started - 1, |number| number + started));
         }
         let Some(number) = pou else { continue };
-        if !is_body_or_section(at.chunk.tree()) {
+        if !is_body_or_section(at.chunk) {
             continue;
         }
         for mention in at.chunk.mentions().iter().filter(|mention| mention.usage != Use::Declare) {
@@ -105,13 +105,13 @@ fn check_file(document: &Document, found: &mut Vec<Diagnostic>) {
 }
 
 /// Types and configurations name other things than variables of a POU.
-fn is_body_or_section(tree: &Tree) -> bool {
+fn is_body_or_section(chunk: &Chunk) -> bool {
     let is_other = |tree: &IecTree| {
         tree.items.iter().any(|item| {
             matches!(item.kind, ItemKind::Types { .. } | ItemKind::Configuration { .. } | ItemKind::End(_))
         })
     };
-    !matches!(tree, Tree::Iec(tree) if is_other(tree))
+    !chunk.iec().is_some_and(is_other)
 }
 
 /// Also what CAL calls although it is no instance; `unknown-function-block` says so.
@@ -138,8 +138,8 @@ fn enumerators(document: &Document) -> FxHashSet<SmolStr> {
             names.extend(values.iter().cloned());
         }
     }
-    for at in document.chunks() {
-        let Tree::Iec(tree) = at.chunk.tree() else { continue };
+    for (at, _) in document.iec_chunks() {
+        let Some(tree) = at.chunk.iec() else { continue };
         for written in &tree.types {
             if let TypeSpec::Enumeration { values } = written.value {
                 names.extend(values.of(&tree.names).iter().map(|span| folded(span.of(at.chunk.text()))));
@@ -166,10 +166,7 @@ impl Unit<'_> {
         let views: Vec<View<'_>> = self
             .chunks
             .iter()
-            .filter_map(|at| match at.chunk.tree() {
-                Tree::Iec(tree) => Some(View { text: at.chunk.text(), tree, scopes, pou }),
-                _ => None,
-            })
+            .filter_map(|at| Some(View { text: at.chunk.text(), tree: at.chunk.iec()?, scopes, pou }))
             .collect();
         let types = types_of(&views, &self.uses.keys().cloned().collect());
         let gap = self.gap();
@@ -218,7 +215,7 @@ impl Unit<'_> {
         let mut header = None;
         let mut section = None;
         for at in &self.chunks {
-            let Tree::Iec(tree) = at.chunk.tree() else { continue };
+            let Some(tree) = at.chunk.iec() else { continue };
             for item in &tree.items {
                 match item.kind {
                     ItemKind::Pou { .. } => header = Some(at.start + item.span.end as usize),

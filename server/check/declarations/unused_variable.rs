@@ -35,7 +35,7 @@
 
 use crate::check::iec::folded;
 use crate::check::{ProgramContext, Rule, Run};
-use crate::document::{ChunkRef, Symbol, Tree, Use};
+use crate::document::{ChunkRef, Document, Symbol, Use};
 use crate::il::iec::{Declaration, IecTree, ItemKind, SectionKind};
 use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
 use rustc_hash::FxHashSet;
@@ -62,6 +62,13 @@ struct Unit<'a> {
 }
 
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
+    let declares_nothing = |document: &Document| {
+        let scopes = document.scopes();
+        scopes.pous.is_empty() && scopes.globals.is_empty()
+    };
+    if context.files().iter().all(|file| declares_nothing(file.document)) {
+        return;
+    }
     let mut unit = Unit::default();
     let mut globals = Unit::default();
     for file in context.files() {
@@ -69,12 +76,12 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
             if at.chunk.pou_starts() > 0 {
                 std::mem::take(&mut unit).report(found);
             }
-            match at.chunk.tree() {
-                Tree::Iec(tree) => {
+            match at.chunk.iec() {
+                Some(tree) => {
                     unit.has_body |= tree.items.iter().any(|item| is_instruction(&item.kind));
                     sections(at, tree, &mut unit, &mut globals);
                 }
-                _ => unit.has_body = true,
+                None => unit.has_body = true,
             }
             for mention in at.chunk.mentions() {
                 if let Symbol::Variable(name) = &mention.symbol

@@ -29,7 +29,7 @@
 
 use super::{Drawn, first_cell};
 use crate::check::{Rule, Run};
-use crate::ladder::reduce::{Bridge, NotSeriesParallel, reduce};
+use crate::ladder::reduce::{Bridge, NotSeriesParallel, may_be_mixed, reduce};
 use crate::ladder::{ElementId, Graph};
 use crate::text::{Diagnostic, Message, Severity, Span};
 
@@ -41,7 +41,7 @@ pub(super) const RULE: Rule = Rule {
 };
 
 pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
-    for rung in drawn.sound_rungs() {
+    for rung in drawn.sound_rungs().filter(|rung| may_be_mixed(&rung.graph)) {
         let graph = &rung.graph;
         let Err(NotSeriesParallel::Bridge(bridge)) = reduce(graph) else { continue };
         let names: Vec<String> = bridge.elements.iter().map(|id| drawn.name(graph.element(*id))).collect();

@@ -38,8 +38,9 @@ fn check_file(document: &Document, found: &mut Vec<Diagnostic>) {
 fn first_tab(document: &Document) -> Option<Span> {
     let mut start = 0;
     for chunk in document.pages().iter().flat_map(|page| page.chunks()) {
-        if let Tree::Ladder(tree) = chunk.tree()
-            && chunk.text().contains('\t')
+        // Few drawings have tabs, and only these have to be read for it.
+        if chunk.text().contains('\t')
+            && let Tree::Ladder(tree) = chunk.reading().tree()
         {
             let commented = |at: usize| {
                 tree.comments.iter().any(|span| (span.start as usize..span.end as usize).contains(&at))

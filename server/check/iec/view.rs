@@ -1,7 +1,7 @@
 //! An IEC chunk with the scopes around it, and the types of its operands.
 
 use crate::check::{ChunkContext, ProgramContext, ProgramFile};
-use crate::document::{DeclaredType, Pou, Scopes, Tree, Variable};
+use crate::document::{DeclaredType, Pou, Scopes, Variable};
 use crate::il::iec::{Direction, IecTree, ItemKind, OperandId, Parameter, ParameterValue, PouKind};
 use crate::target::iec::{ElementaryType, FunctionBlock, Literal, LiteralValue, OperatorRole};
 use crate::target::{Operand, Width};
@@ -66,12 +66,8 @@ pub enum Root<'a> {
 impl<'a> View<'a> {
     /// The view of a chunk; `None` if it is not IEC text.
     pub fn of(context: &ChunkContext<'a>) -> Option<View<'a>> {
-        match context.chunk.tree() {
-            Tree::Iec(tree) => {
-                Some(View { text: context.chunk.text(), tree, scopes: context.scopes, pou: context.pou })
-            }
-            _ => None,
-        }
+        let tree = context.chunk.iec()?;
+        Some(View { text: context.chunk.text(), tree, scopes: context.scopes, pou: context.pou })
     }
 
     /// The POU in which it stands.
@@ -261,16 +257,9 @@ pub fn views<'a>(context: &ProgramContext<'a>) -> impl Iterator<Item = (usize, V
 /// Every IEC chunk of a file of a program.
 pub fn views_of(file: ProgramFile<'_>) -> impl Iterator<Item = (usize, View<'_>)> {
     let scopes: &Scopes = file.document.scopes();
-    let mut started = 0usize;
-    file.chunks().filter_map(move |at| {
-        started += at.chunk.pou_starts();
-        match at.chunk.tree() {
-            Tree::Iec(tree) => {
-                let view = View { text: at.chunk.text(), tree, scopes, pou: started.checked_sub(1) };
-                Some((at.start, view))
-            }
-            _ => None,
-        }
+    file.document.iec_chunks().filter_map(move |(at, started)| {
+        let view = View { text: at.chunk.text(), tree: at.chunk.iec()?, scopes, pou: started.checked_sub(1) };
+        Some((at.start + file.start, view))
     })
 }
 

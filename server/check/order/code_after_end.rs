@@ -57,7 +57,7 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
             (None, _) => {}
             (Some(_), _) => {
                 behind.get_or_insert(statement);
-                count += 1;
+                count += statement.count;
             }
         }
     }

@@ -127,16 +127,15 @@ fn has_problem_behind(text: &str, problems: &[u32], operation: &Operation<'_>) -
 fn too_few(form: Form, operation: &Operation<'_>) -> Diagnostic {
     let specs = form.instruction.operands;
     let missing = specs.iter().skip(operation.operands.len()).filter(|spec| !spec.optional);
-    let missing: Vec<String> = missing.map(described).collect();
     let message = Message::new("operand-count.too-few")
         .with("instruction", form.mnemonic())
-        .with("missing", missing.join(", "));
+        .with_messages("missing", missing.map(described).collect());
     Diagnostic::new(RULE.code, operation.symbol, message)
 }
 
 /// A place with its meaning: `S (value to copy)`.
-fn described(spec: &OperandSpec) -> String {
-    format!("{} ({})", spec.name, spec.meaning)
+fn described(spec: &OperandSpec) -> Message {
+    Message::new("operand-count.place").with("name", spec.name).with_phrase("meaning", spec.meaning)
 }
 
 fn too_many(context: &ChunkContext<'_>, form: Form, operation: &Operation<'_>, most: usize) -> Diagnostic {

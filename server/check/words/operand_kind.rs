@@ -149,19 +149,18 @@ impl Judged<'_> {
         let value = &self.operand.value;
         let accepts = self.form.instruction.operands[self.place].accepts.on(target.model);
         if !accepts.takes(value) {
-            let names = accepts.names().join(" ");
-            let diagnostic = self.diagnostic(key_of(value), &names);
+            let diagnostic = self.diagnostic(key_of(value), &accepts.names());
             return Some(self.with_group(diagnostic, accepts));
         }
         if !self.form.takes(self.place, value, target.model) {
-            return Some(self.diagnostic("operand-kind.indexed", ""));
+            return Some(self.diagnostic("operand-kind.indexed", &[]));
         }
         // PLS, PLF and MC take the relays of the program, not those of the CPU.
         let is_special =
             value.device().is_some_and(|device| device.kind == DeviceKind::M && device.number >= 8000);
         let writes = self.form.instruction.operands[self.place].access == Access::Write;
         let takes_no_special = writes && matches!(self.form.instruction.opcode, Opcode::Device(_));
-        (is_special && takes_no_special).then(|| self.diagnostic("operand-kind.special", ""))
+        (is_special && takes_no_special).then(|| self.diagnostic("operand-kind.special", &[]))
     }
 
     /// More bits than the form works with.
@@ -180,7 +179,7 @@ impl Judged<'_> {
             }
             _ => return None,
         };
-        let diagnostic = self.diagnostic(key, "");
+        let diagnostic = self.diagnostic(key, &[]);
         if self.form.instruction.wide != Wide::Yes || !self.operation.is_word {
             return Some(diagnostic);
         }
@@ -189,12 +188,12 @@ impl Judged<'_> {
         Some(diagnostic.fix(title, vec![TextEdit::new(self.operation.symbol, wide)]))
     }
 
-    fn diagnostic(&self, key: &'static str, names: &str) -> Diagnostic {
+    fn diagnostic(&self, key: &'static str, names: &[&str]) -> Diagnostic {
         let spec = &self.form.instruction.operands[self.place];
         let message = Message::new(key)
             .with("place", spec.name)
             .with("instruction", self.form.mnemonic())
-            .with("takes", names)
+            .with_words("takes", names.iter().copied(), " ")
             .with("word", self.operand.span.of(self.context.chunk.text()))
             .with("target", self.context.target.title);
         Diagnostic::new(RULE.code, self.operand.span, message)

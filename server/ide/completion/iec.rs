@@ -8,7 +8,7 @@ use crate::ide::{CompletionKind, declared};
 use crate::il::iec::{ItemKind, PouKind, SectionKind};
 use crate::target::iec::{ElementaryType, Function, FunctionBlock, Operator, OperatorRole};
 use crate::target::{DirectAddress, Location, Width};
-use crate::text::{Encoding, Message};
+use crate::text::{Encoding, Message, phrase};
 use rustc_hash::FxHashSet;
 
 /// How far back an open parenthesis is looked for, in bytes.
@@ -105,8 +105,12 @@ fn statement_words(place: &mut Place<'_>, typed: &str) {
             let takes_operand =
                 written.operator.operand.is_some() && written.operator.role != OperatorRole::Complement;
             let calls = matches!(written.operator.role, OperatorRole::Jump | OperatorRole::Call);
-            let mut proposal =
-                Proposal::new(&word, CompletionKind::Instruction, written.operator.title, rank as u16);
+            let mut proposal = Proposal::new(
+                &word,
+                CompletionKind::Instruction,
+                written.operator.title_in(language),
+                rank as u16,
+            );
             if takes_operand || calls {
                 proposal.snippet = Some(format!("{word} $1"));
             }
@@ -183,14 +187,19 @@ pub(super) fn propose_variables(place: &mut Place<'_>, typed: &str, written: boo
     let scopes = place.document.scopes().clone();
     let comments = place.document.comments().clone();
     let variables = variables(place);
+    let exported = declared::table_rows_of(place.document);
     for (rank, variable) in variables.iter().enumerate() {
         if written && (variable.constant || variable.section == SectionKind::Input) {
             continue;
         }
         let message =
             Message::new("complete.variable").with("section", declared::section_keyword(variable.section));
-        let detail =
-            message.with("kind", declared::type_name(&variable.declared, &scopes)).render(place.language);
+        let detail = match exported.get(variable.name.as_str()) {
+            Some(row) => row.clone(),
+            None => {
+                message.with("kind", declared::type_name(&variable.declared, &scopes)).render(place.language)
+            }
+        };
         let comment = variable.address.and_then(|address| comments.of(&Symbol::Direct(address)));
         let words = comment.map(|row| row.words()).unwrap_or_default();
         let detail = if words.is_empty() { detail } else { format!("{detail}, {words}") };
@@ -330,7 +339,7 @@ fn pins(place: &Place<'_>, block: &str) -> Vec<(String, String, bool)> {
     let inputs = block.inputs.iter().map(|pin| (pin, false));
     let pins = inputs.chain(block.outputs.iter().map(|pin| (pin, true)));
     pins.map(|(pin, output)| {
-        let kind = format!("{}: {}", pin.kind.name(), pin.meaning);
+        let kind = format!("{}: {}", pin.kind.name(), phrase(pin.meaning, place.language));
         (pin.name.to_string(), words(output, kind), output)
     })
     .collect()
@@ -350,7 +359,7 @@ fn parameters(place: &mut Place<'_>, typed: &str, callee: &str) {
     }
     if let Some(function) = Function::named(callee) {
         for (rank, input) in function.inputs.iter().enumerate() {
-            let detail = format!("{}: {}", input.kind.name(), input.meaning);
+            let detail = format!("{}: {}", input.kind.name(), phrase(input.meaning, place.language));
             let proposal = Proposal::new(input.name, CompletionKind::Variable, detail, rank as u16);
             place.propose(typed, proposal.snippet(format!("{} := $1", input.name)));
         }
@@ -383,8 +392,15 @@ fn functions(place: &mut Place<'_>, typed: &str, rank: u16) {
         // ADD, GT and their like are operators as well, and proposed as such.
         if Operator::written(function.name).is_none() {
             let rank = rank + number as u16;
-            place
-                .propose(typed, Proposal::new(function.name, CompletionKind::Function, function.title, rank));
+            place.propose(
+                typed,
+                Proposal::new(
+                    function.name,
+                    CompletionKind::Function,
+                    function.title_in(place.language),
+                    rank,
+                ),
+            );
         }
     }
     let scopes = place.document.scopes().clone();
@@ -402,8 +418,12 @@ fn types(place: &mut Place<'_>, typed: &str) {
             .propose(typed, Proposal::new(elementary.name(), CompletionKind::Type, &kind, 100 + rank as u16));
     }
     for (rank, block) in FunctionBlock::all().enumerate() {
-        let proposal =
-            Proposal::new(block.name, CompletionKind::FunctionBlock, block.title, 200 + rank as u16);
+        let proposal = Proposal::new(
+            block.name,
+            CompletionKind::FunctionBlock,
+            block.title_in(place.language),
+            200 + rank as u16,
+        );
         place.propose(typed, proposal);
     }
     let scopes = place.document.scopes().clone();

@@ -82,8 +82,10 @@ pub(super) fn propose_forms(place: &mut Place<'_>, typed: &str, wanted: impl Fn(
     let with_pages = known.len() <= PAGES;
     for known in known {
         let kind = CompletionKind::Instruction;
-        let mut proposal = Proposal::new(&known.mnemonic, kind, known.form.instruction.title, known.rank);
-        proposal.documentation = if with_pages { instruction_page(known.form) } else { known.usage.clone() };
+        let mut proposal =
+            Proposal::new(&known.mnemonic, kind, known.form.instruction.title_in(place.language), known.rank);
+        proposal.documentation =
+            if with_pages { instruction_page(known.form, place.language) } else { known.usage.clone() };
         if known.snippet != known.mnemonic {
             proposal.snippet = Some(known.snippet.clone());
         }

@@ -6,7 +6,7 @@ use crate::ide::bookkeeping::Book;
 use crate::ide::names::Thing;
 use crate::ide::{CompletionKind, devices, uses};
 use crate::target::{Accepts, Access, Device, DeviceKind, DeviceRange, Form, Operand};
-use crate::text::Message;
+use crate::text::{Message, phrase};
 
 /// More devices in use are not proposed; typing narrows the choice.
 const USED_LIMIT: usize = 200;
@@ -112,7 +112,7 @@ fn propose_used(place: &mut Place<'_>, typed: &str, wanted: &Wanted, book: &Book
     listed.sort_by_key(|(device, uses)| (std::cmp::Reverse(*uses), *device));
     for (rank, (device, _)) in listed.into_iter().take(USED_LIMIT).enumerate() {
         let kind = match device.special_on(target) {
-            Some(special) => special.meaning.to_string(),
+            Some(special) => phrase(special.meaning, place.language).to_string(),
             None => devices::kind_name(device.kind, place.language),
         };
         let uses = book.words(device, place.view, place.language);
@@ -205,7 +205,12 @@ fn propose_special(place: &mut Place<'_>, typed: &str, wanted: &Wanted, book: &B
             let rank = 900 + (device.number.saturating_sub(SPECIAL) as u16).min(999);
             place.propose(
                 typed,
-                Proposal::new(device.to_string(), CompletionKind::Device, special.meaning, rank),
+                Proposal::new(
+                    device.to_string(),
+                    CompletionKind::Device,
+                    phrase(special.meaning, place.language),
+                    rank,
+                ),
             );
         }
     }

@@ -2,14 +2,16 @@
 //! of its line stays in its column.
 
 use crate::document::{Chunk, Document, Mention, Tree};
-use crate::target::Target;
-use crate::text::{Encoding, LineColumn, Message, Span, TextEdit, cell_width};
+use crate::text::{Encoding, LineColumn, Span, TextEdit, cell_width};
 
 /// What may be shortened and lengthened.
 const WIRES: &[char] = &['-', '─', '━', '═', '_'];
 
 /// The edits that put `new` at all of `places`, which are sorted, one edit for each line.
-pub(in crate::ide) fn edits(document: &Document, places: &[Span], new: &str) -> Result<Vec<TextEdit>, Message> {
+///
+/// # Errors
+/// With the place for which there is no room.
+pub(in crate::ide) fn edits(document: &Document, places: &[Span], new: &str) -> Result<Vec<TextEdit>, Span> {
     let line_of = |span: &Span| document.position(span.start as usize, Encoding::Utf8).line;
     let mut edits = Vec::new();
     for run in places.chunk_by(|left, right| line_of(left) == line_of(right)) {
@@ -22,18 +24,18 @@ pub(in crate::ide) fn edits(document: &Document, places: &[Span], new: &str) -> 
             .map(|span| Span::new(span.start as usize - start, span.end as usize - start))
             .collect();
         let Some(redrawn) = redrawn(&old, &inside, new) else {
-            return Err(Message::new("rename.drawing").with("name", new).with("line", line + 1));
+            return Err(run[0]);
         };
         edits.push(smallest(&old, &redrawn, start));
     }
     Ok(edits)
 }
 
-/// Whether the drawings touched by `edits`, read with `reader`, say the same but for the renamed places. Names belong to elements
-/// by their columns, so only reading them again can tell.
+/// Whether the drawings touched by `edits`, read as those of `reader` are, say the same but for the renamed places.
+/// Names belong to elements by their columns, so only reading them again can tell.
 pub(in crate::ide) fn still_say_the_same(
     document: &Document,
-    reader: &Target,
+    reader: &Document,
     edits: &[TextEdit],
     places: &[Span],
 ) -> Result<(), Span> {
@@ -54,7 +56,7 @@ pub(in crate::ide) fn still_say_the_same(
             continue;
         }
         let redrawn = TextEdit::apply_all(&inside, at.chunk.text());
-        let redrawn = Chunk::read(&redrawn, document.notation(), reader);
+        let redrawn = reader.chunk_of(&redrawn);
         let is_renamed = |mention: &Mention| places.binary_search(&mention.span.shifted(at.start)).is_ok();
         let pairs = at.chunk.mentions().iter().zip(redrawn.mentions());
         let same = |(old, new): (&Mention, &Mention)| {

@@ -124,7 +124,7 @@ impl<'a> Reader<'a> {
             return self.expected_at_end(before, expected);
         };
         let message = Message::new("syntax-error.expected")
-            .with("expected", expected)
+            .with_words("expected", expected.split(", "), ", ")
             .with("found", shortened(self.word(found.span)));
         self.problem("syntax-error", found.span, message);
     }
@@ -161,7 +161,7 @@ impl<'a> Reader<'a> {
 
     /// Something is expected behind `before`, where a line or a text ends.
     pub fn expected_at_end(&mut self, before: Span, expected: &str) {
-        let message = Message::new("syntax-error.expected-at-end").with("expected", expected);
+        let message = Message::new("syntax-error.expected-at-end").with_words("expected", expected.split(", "), ", ");
         self.problem("syntax-error", Span::at(before.end as usize), message);
     }
 

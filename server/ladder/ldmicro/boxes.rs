@@ -137,6 +137,7 @@ impl Finder<'_> {
             return;
         }
         match words.as_str() {
+            "END" => return self.end(run),
             "RES" if braces => {
                 let kind = ElementKind::Coil(CoilKind::Reset);
                 return self.add(run, kind, Vec::new(), Wants::Device, None);
@@ -222,7 +223,9 @@ impl Finder<'_> {
         let name = |column: &usize| self.grid.at(run.row, *column).is_ascii_alphabetic();
         let Some(first) = (inside.start..inside.end).find(name) else { return };
         let word = inside.from(first).to(first + kind.word.len());
-        let upper = run.row.checked_sub(1).map(|row| self.trimmed(Run { row, ..run }));
+        // By hand the crests are drawn a column or two aside.
+        let (start, end) = (run.start.saturating_sub(2), run.end + 2);
+        let upper = run.row.checked_sub(1).map(|row| self.trimmed(Run { row, start, end }));
         let crest = |upper: &Run| {
             let mut cells = (upper.start..upper.end).map(|column| self.grid.at(upper.row, column));
             upper.start < upper.end && cells.all(|cell| matches!(cell, '_' | ' '))
@@ -380,6 +383,16 @@ impl Finder<'_> {
         Run { start: run.start - usize::from(self.prefix(run).is_some()), ..run }
     }
 
+    /// The last line is no part of the rung above it, whatever its right rail stands under: the end needs no rail.
+    fn end(&mut self, run: Run) {
+        let above = |column: usize| run.row > 0 && self.grid.arms(run.row - 1, column).is_junction();
+        let width = self.grid.width(run.row);
+        let rail = (run.end..width).find(|column| self.grid.arms(run.row, *column).is_vertical());
+        if self.has_double_rail(run.row) && rail.is_some_and(above) {
+            self.grid.clear(run.row, run.end..width);
+        }
+    }
+
     /// `^] [`: a contact with a pull-up resistor. The sign says nothing about the logic.
     fn pull_up(&mut self, row: usize, column: usize) {
         if column > 0 && self.grid.arms(row, column - 1).is_horizontal() {
@@ -425,7 +438,7 @@ impl Finder<'_> {
         let row = run.row.checked_sub(1)?;
         let part = |column: usize| {
             let character = self.grid.at(row, column);
-            continues_word(character) || matches!(character, ':' | '-') && !self.is_wire(row, column)
+            continues_word(character) || character == ':' || (character == '-' && !self.is_wire(row, column))
         };
         let over = (run.start..run.end).find(|column| part(*column))?;
         let (mut start, mut end) = (over, over);

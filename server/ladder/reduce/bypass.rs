@@ -2,7 +2,7 @@
 
 use super::super::contract::{EdgeKind, Nodes};
 use super::{Label, LabelId, Reduction, find_open_circuit};
-use crate::ladder::{ArcId, ElementId, Graph, VertexId};
+use crate::ladder::{ArcId, ElementId, Graph, Vertex, VertexId, VertexKind};
 
 /// A bare wire beside other branches: whatever they do, power goes past them.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -20,6 +20,9 @@ pub struct Bypass {
 /// The bypasses of `graph`, and a wire that joins the rails even if nothing lies beside it; near-linear time.
 /// Nothing for a graph with an open circuit.
 pub fn bypasses(graph: &Graph) -> Vec<Bypass> {
+    if !may_leave_wires(graph) {
+        return Vec::new();
+    }
     let nodes = Nodes::of(graph);
     // Every bypass is a wire that contraction has left over, and most rungs have none.
     let wires = nodes.edges.iter().any(|edge| matches!(edge.kind, EdgeKind::Wire { .. }));
@@ -48,6 +51,26 @@ pub fn bypasses(graph: &Graph) -> Vec<Bypass> {
     }
     found.sort_by_key(|bypass| bypass.arcs.first().copied());
     found
+}
+
+/// Whether contraction can leave a wire over, told from the degrees of the vertices: it takes in every wire whose head
+/// has no other feed, or whose tail has no other way out. A bend may lead to such ends, so it counts as one.
+fn may_leave_wires(graph: &Graph) -> bool {
+    let is_bend = |vertex: &Vertex| vertex.in_degree == 1 && vertex.out_degree == 1;
+    graph.arcs.iter().any(|arc| {
+        let (tail, head) = (graph.vertex(arc.tail), graph.vertex(arc.head));
+        let tail_stays = match tail.kind {
+            VertexKind::Element(_) => tail.out_degree != 1,
+            VertexKind::Junction => tail.out_degree != 1 || is_bend(tail),
+            VertexKind::LeftRail | VertexKind::RightRail | VertexKind::LooseEnd => true,
+        };
+        let head_stays = match head.kind {
+            VertexKind::Element(_) => head.in_degree != 1,
+            VertexKind::Junction => head.in_degree != 1 || is_bend(head),
+            VertexKind::LeftRail | VertexKind::RightRail | VertexKind::LooseEnd => true,
+        };
+        tail_stays && head_stays
+    })
 }
 
 /// The bypasses among the branches of one parallel connection.

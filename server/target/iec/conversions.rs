@@ -5,6 +5,7 @@
 
 use super::functions::FunctionPage;
 use super::{ElementaryType, Function, GenericType, Parameter, ParameterType, page};
+use crate::text::Language;
 use rustc_hash::FxHashMap;
 use std::sync::LazyLock;
 
@@ -98,19 +99,9 @@ impl Conversion {
         }
     }
 
-    fn title(self) -> String {
-        match self {
-            Value(from, to) => format!("{from} to {to}"),
-            ToValue(to) => format!("any type to {to}"),
-            Truncate(from, to) => format!("{from} to {to}, cut off"),
-            ToTruncated(to) => format!("real number to {to}, cut off"),
-            AnyTruncate => "real number to integer, cut off".to_string(),
-            FromBcd(from, to) => format!("decimal digits in {from} to {to}"),
-            FromAnyBcd(to) => format!("decimal digits to {to}"),
-            ToBcd(from, to) => format!("{from} to decimal digits in {to}"),
-            AnyToBcd(to) => format!("integer to decimal digits in {to}"),
-            ToAnyBcd(from) => format!("{from} to decimal digits"),
-        }
+    /// A few words in `language`.
+    pub fn title(self, language: Language) -> String {
+        words::title(self).render(language)
     }
 
     fn input(self) -> ParameterType {
@@ -135,7 +126,7 @@ impl Conversion {
     }
 
     /// The page of the conversion called `name`, from the pattern that all of them share.
-    pub fn page(self, name: &str) -> String {
+    pub fn page(self, name: &str, language: Language) -> String {
         let input = words::example_input(self);
         let result = words::example_result(self);
         let variables = [
@@ -143,7 +134,7 @@ impl Conversion {
             format!("Result : {result}"),
         ];
         let body = ["LD Source".to_string(), name.to_string(), "ST Result".to_string()];
-        page::markdown(&words::about(self), &variables, &body)
+        page::markdown(&words::about(self, language), &variables, &body)
     }
 
     fn row(self) -> Function {
@@ -151,7 +142,7 @@ impl Conversion {
         let input = Parameter { name: "IN", kind: self.input(), meaning: "value to be converted" };
         Function {
             name: self.name().leak(),
-            title: self.title().leak(),
+            title: self.title(Language::English).leak(),
             inputs: Box::leak(Box::new([input])),
             extensible: false,
             result: self.result(),

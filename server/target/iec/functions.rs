@@ -4,7 +4,9 @@
 use super::conversions::{self, Conversion};
 use super::page::Page;
 use super::{ElementaryType, GenericType};
+use crate::text::{Book, Language, page as translated, phrase};
 use rustc_hash::FxHashMap;
+use std::borrow::Cow;
 use std::sync::LazyLock;
 
 mod bits;
@@ -117,9 +119,24 @@ impl Function {
 
     /// The page: Markdown, one paragraph and a complete `il` program.
     pub fn page(&self) -> String {
+        self.page_in(Language::English)
+    }
+
+    /// The page in `language`; the program is the same in all of them.
+    pub fn page_in(&self, language: Language) -> String {
         match &self.page {
-            FunctionPage::Own(page) => page.markdown(),
-            FunctionPage::Conversion(conversion) => conversion.page(self.name),
+            FunctionPage::Own(page) => {
+                translated(Book::Functions, self.name, &page.markdown(), language).into_owned()
+            }
+            FunctionPage::Conversion(conversion) => conversion.page(self.name, language),
+        }
+    }
+
+    /// The title in `language`.
+    pub fn title_in(&self, language: Language) -> Cow<'static, str> {
+        match &self.page {
+            FunctionPage::Own(_) => Cow::Borrowed(phrase(self.title, language)),
+            FunctionPage::Conversion(conversion) => Cow::Owned(conversion.title(language)),
         }
     }
 }

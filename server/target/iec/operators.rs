@@ -2,6 +2,7 @@
 
 use super::page::Page;
 use super::{ElementaryType, GenericType};
+use crate::text::{self, Book, Language};
 use rustc_hash::FxHashMap;
 use std::sync::LazyLock;
 
@@ -149,7 +150,17 @@ impl Operator {
 
     /// The page: Markdown, one paragraph and a complete `il` program.
     pub fn page(&self) -> String {
-        self.page.markdown()
+        self.page_in(Language::English)
+    }
+
+    /// The page in `language`; the program is the same in all of them.
+    pub fn page_in(&self, language: Language) -> String {
+        text::page(Book::Operators, self.name, &self.page.markdown(), language).into_owned()
+    }
+
+    /// The title in `language`.
+    pub fn title_in(&self, language: Language) -> &'static str {
+        text::phrase(self.title, language)
     }
 }
 

@@ -2,67 +2,97 @@
 
 use super::Conversion::{self, *};
 use crate::target::iec::{ElementaryType, GenericType};
+use crate::text::{Language, Message};
 
-/// The paragraph of the page.
-pub fn about(conversion: Conversion) -> String {
-    let what = "The current result is the input, and the result takes its place.";
+/// A few words: `INT to REAL`.
+pub fn title(conversion: Conversion) -> Message {
+    let message = match conversion {
+        Value(..) => Message::new("conversion-title.value"),
+        ToValue(_) => Message::new("conversion-title.to-value"),
+        Truncate(..) => Message::new("conversion-title.truncate"),
+        ToTruncated(_) => Message::new("conversion-title.to-truncated"),
+        AnyTruncate => Message::new("conversion-title.any-truncate"),
+        FromBcd(..) => Message::new("conversion-title.from-bcd"),
+        FromAnyBcd(_) => Message::new("conversion-title.from-any-bcd"),
+        ToBcd(..) => Message::new("conversion-title.to-bcd"),
+        AnyToBcd(_) => Message::new("conversion-title.any-to-bcd"),
+        ToAnyBcd(_) => Message::new("conversion-title.to-any-bcd"),
+    };
     match conversion {
-        Value(from, to) => format!("Converts {} to {}. {what} {}", noun(from), noun(to), trap(from, to)),
-        ToValue(to) => format!(
-            "Converts a value of any elementary type to {}, as the function that names both types would, such as \
-             `{}_TO_{to}`. {what} A form of the third edition; a reader sees the type of the input only at its \
-             declaration.",
-            noun(to),
-            if to == ElementaryType::Int { ElementaryType::Real } else { ElementaryType::Int },
-        ),
-        Truncate(_, to) | ToTruncated(to) => format!("{} {what} {}", truncates(&noun(to)), range(to)),
-        AnyTruncate => format!(
-            "{} {what} The result takes the integer type of the variable that it is stored to. The third edition \
-             prefers the forms that name the type, such as `TRUNC_INT`.",
-            truncates("an integer"),
-        ),
-        FromBcd(from, to) if digits_fit(from, to) => format!("{} {what}", from_bcd(&noun(from), to)),
-        FromBcd(from, to) => format!("{} {what} {}", from_bcd(&noun(from), to), range(to)),
-        FromAnyBcd(to) => format!("{} {what} {}", from_bcd("a bit string", to), range(to)),
-        ToBcd(from, to) => format!("{} {what}", to_bcd(&noun(from), to)),
-        AnyToBcd(to) => format!("{} {what}", to_bcd("an integer", to)),
-        ToAnyBcd(from) => format!(
-            "Writes {} as decimal digits, four bits each, into the bit string that the result is stored to: 12 \
-             gives 16#12. {what} A negative number, or one with more digits than there is room for, is an error.",
-            noun(from),
-        ),
+        Value(from, to) | Truncate(from, to) | FromBcd(from, to) | ToBcd(from, to) => {
+            message.with("from", from).with("to", to)
+        }
+        ToValue(to) | ToTruncated(to) | FromAnyBcd(to) | AnyToBcd(to) => message.with("to", to),
+        ToAnyBcd(from) => message.with("from", from),
+        AnyTruncate => message,
     }
 }
 
-/// A type with its article, as code: `an INT`.
-fn noun(kind: ElementaryType) -> String {
+/// The paragraph of the page.
+pub fn about(conversion: Conversion, language: Language) -> String {
+    let sentences: Vec<String> =
+        sentences(conversion).iter().map(|sentence| sentence.render(language)).collect();
+    sentences.join(match language {
+        Language::English => " ",
+        Language::SimplifiedChinese => "",
+    })
+}
+
+fn sentences(conversion: Conversion) -> Vec<Message> {
+    let what = Message::new("conversion.what");
+    match conversion {
+        Value(from, to) => {
+            let converts = with_noun(with_noun(Message::new("conversion.value"), "from", from), "to", to);
+            [vec![converts, what], trap(from, to)].concat()
+        }
+        ToValue(to) => {
+            let example = if to == ElementaryType::Int { ElementaryType::Real } else { ElementaryType::Int };
+            let converts = with_noun(Message::new("conversion.to-value"), "to", to);
+            let converts = converts.with("example", format!("{example}_TO_{to}"));
+            vec![converts, what, Message::new("conversion.third-edition")]
+        }
+        Truncate(_, to) | ToTruncated(to) => {
+            let truncates = with_noun(Message::new("conversion.truncates"), "to", to);
+            [vec![truncates, what], range(to)].concat()
+        }
+        AnyTruncate => vec![
+            Message::new("conversion.truncates-any"),
+            what,
+            Message::new("conversion.takes-type-of-variable"),
+        ],
+        FromBcd(from, to) => {
+            let reads = with_noun(with_noun(Message::new("conversion.from-bcd"), "from", from), "to", to);
+            let limits = if digits_fit(from, to) { Vec::new() } else { range(to) };
+            [vec![reads, what], limits].concat()
+        }
+        FromAnyBcd(to) => {
+            let reads = with_noun(Message::new("conversion.from-any-bcd"), "to", to);
+            [vec![reads, what], range(to)].concat()
+        }
+        ToBcd(from, to) => vec![to_bcd(with_noun(Message::new("conversion.to-bcd"), "from", from), to), what],
+        AnyToBcd(to) => vec![to_bcd(Message::new("conversion.any-to-bcd"), to), what],
+        ToAnyBcd(from) => vec![
+            with_noun(Message::new("conversion.to-any-bcd"), "from", from),
+            what,
+            Message::new("conversion.no-room-for-digits"),
+        ],
+    }
+}
+
+/// With `{name}` standing for a type, with its article where the language has one: `an INT`.
+fn with_noun(message: Message, name: &'static str, kind: ElementaryType) -> Message {
     // A leading L is spelled as a letter, `an LREAL`; of the others only INT starts with a vowel's sound.
     let vowel = matches!(kind, ElementaryType::Int) || matches!(kind.name().as_bytes().first(), Some(b'L'));
-    format!("{} {kind}", if vowel { "an" } else { "a" })
+    let noun = match vowel {
+        true => Message::new("conversion.noun-vowel"),
+        false => Message::new("conversion.noun"),
+    };
+    message.with_messages(name, vec![noun.with("type", kind)])
 }
 
-fn truncates(to: &str) -> String {
-    format!(
-        "Converts a real number to {to} by cutting off what follows the point, towards zero: 1.9 gives 1 and -1.9 \
-         gives -1. A conversion with `_TO_` would round instead."
-    )
-}
-
-fn from_bcd(from: &str, to: ElementaryType) -> String {
-    format!(
-        "Reads {from} as decimal digits, four bits each, and gives the number as {}: 16#12 gives 12. Thumbwheel \
-         switches deliver such digits. A group of four bits above 9 is an error.",
-        noun(to)
-    )
-}
-
-fn to_bcd(from: &str, to: ElementaryType) -> String {
+fn to_bcd(message: Message, to: ElementaryType) -> Message {
     let digits = to.bits().unwrap_or(0) / 4;
-    format!(
-        "Writes {from} as decimal digits, four bits each, into {}: 12 gives 16#12. Seven-segment displays take such \
-         digits. A negative number, or one of more than {digits} digits, is an error.",
-        noun(to)
-    )
+    with_noun(message, "to", to).with("digits", digits)
 }
 
 /// Whether `number` holds as many nines as there is room for in `digits`.
@@ -72,164 +102,111 @@ fn digits_fit(digits: ElementaryType, number: ElementaryType) -> bool {
 }
 
 /// What to mind when `from` becomes `to`.
-fn trap(from: ElementaryType, to: ElementaryType) -> String {
+fn trap(from: ElementaryType, to: ElementaryType) -> Vec<Message> {
     let is = |kind: ElementaryType, group| kind.belongs_to(group);
     let text = |kind| is(kind, GenericType::AnyString);
-    match () {
-        () if text(from) && text(to) => {
-            "A character that the other kind of text does not have becomes what the maker chose, or an error."
-                .to_string()
-        }
-        () if text(to) && is(from, GenericType::AnyChar) => "The text has this one character.".to_string(),
-        () if text(from) && is(to, GenericType::AnyChar) => {
-            "The first character of the text is taken; an empty text is an error.".to_string()
-        }
-        () if text(to) => format!(
-            "The text is written in the way of a literal; the standard leaves the number of digits and the prefix \
-             to the maker, so test what your controller writes for `{}`.",
-            sample(from)
-        ),
-        () if text(from) => format!(
-            "The text must read as a literal of the type, such as `{}`; any other text is an error, on some \
-             controllers 0.",
-            sample(to)
-        ),
+    let sentence = match () {
+        () if text(from) && text(to) => Message::new("conversion.other-texts"),
+        () if text(to) && is(from, GenericType::AnyChar) => Message::new("conversion.one-character"),
+        () if text(from) && is(to, GenericType::AnyChar) => Message::new("conversion.first-character"),
+        () if text(to) => Message::new("conversion.as-literal").with("sample", sample(from)),
+        () if text(from) => Message::new("conversion.reads-literal").with("sample", sample(to)),
         () if is(from, GenericType::AnyChar) || is(to, GenericType::AnyChar) => match from.bits() > to.bits()
         {
-            true => {
-                "The code of the character is kept; one too large for the result is an error.".to_string()
-            }
-            false => "The code of the character is kept.".to_string(),
+            true => Message::new("conversion.code-may-not-fit"),
+            false => Message::new("conversion.code-kept"),
         },
         () if is_time(from) && is_time(to) => between_times(from, to),
         () if is_time(from) || is_time(to) => time_and_number(from, to),
-        () if is(from, GenericType::AnyReal) && is(to, GenericType::AnyInt) => format!(
-            "The number is rounded to the nearest integer; halves go to the even one by the standard (2.5 gives 2, \
-             3.5 gives 4), away from zero on some controllers (2.5 gives 3). `{from}_TRUNC_{to}` cuts off instead. {}",
-            range(to)
-        ),
+        () if is(from, GenericType::AnyReal) && is(to, GenericType::AnyInt) => {
+            let rounds = Message::new("conversion.rounds").with("truncates", format!("{from}_TRUNC_{to}"));
+            return [vec![rounds], range(to)].concat();
+        }
         () if is(to, GenericType::AnyReal) && is(from, GenericType::AnyNum) => to_real(from, to),
-        () if is(from, GenericType::AnyInt) && is(to, GenericType::AnyInt) => integers(from, to),
+        () if is(from, GenericType::AnyInt) && is(to, GenericType::AnyInt) => match from.widens_to(to) {
+            true => Message::new("conversion.every-value-fits"),
+            false => return range(to),
+        },
         () => bits(from, to),
-    }
+    };
+    vec![sentence]
 }
 
 fn is_time(kind: ElementaryType) -> bool {
     kind.belongs_to(GenericType::AnyDuration) || kind.belongs_to(GenericType::AnyDate)
 }
 
-fn between_times(from: ElementaryType, to: ElementaryType) -> String {
+fn between_times(from: ElementaryType, to: ElementaryType) -> Message {
     use ElementaryType::*;
     match (from, to) {
-        (DateAndTime | LdateAndTime, Date | Ldate) => {
-            "The day is kept and the time of day dropped.".to_string()
-        }
-        (DateAndTime | LdateAndTime, TimeOfDay | LtimeOfDay) => {
-            "The time of day is kept and the day dropped.".to_string()
-        }
-        (Date, _) => "The day stays the same; the third edition does this by itself.".to_string(),
-        (Time | TimeOfDay | DateAndTime, _) => {
-            "The value stays the same, counted in nanoseconds; the third edition does this by itself."
-                .to_string()
-        }
-        _ => format!(
-            "Digits finer than the {to} of the controller are lost, and a value past its range is an error."
-        ),
+        (DateAndTime | LdateAndTime, Date | Ldate) => Message::new("conversion.day-kept"),
+        (DateAndTime | LdateAndTime, TimeOfDay | LtimeOfDay) => Message::new("conversion.time-of-day-kept"),
+        (Date, _) => Message::new("conversion.same-day"),
+        (Time | TimeOfDay | DateAndTime, _) => Message::new("conversion.nanoseconds"),
+        _ => Message::new("conversion.finer-digits-lost").with("to", to),
     }
 }
 
-fn time_and_number(from: ElementaryType, to: ElementaryType) -> String {
+fn time_and_number(from: ElementaryType, to: ElementaryType) -> Message {
     let (time, number) = if is_time(from) { (from, to) } else { (to, from) };
-    if number == ElementaryType::Bool {
-        let zero =
-            if time.belongs_to(GenericType::AnyDuration) { "a duration of zero" } else { "the first moment" };
-        return format!("FALSE stands for {zero}; what TRUE stands for is up to the maker.");
+    let is_duration = time.belongs_to(GenericType::AnyDuration);
+    match () {
+        () if number == ElementaryType::Bool && is_duration => Message::new("conversion.false-duration"),
+        () if number == ElementaryType::Bool => Message::new("conversion.false-moment"),
+        () if is_duration => Message::new("conversion.unit-of-duration"),
+        () if matches!(time, ElementaryType::TimeOfDay | ElementaryType::LtimeOfDay) => {
+            Message::new("conversion.from-midnight")
+        }
+        () => Message::new("conversion.unit-of-date").with("time", time),
     }
-    if time.belongs_to(GenericType::AnyDuration) {
-        return "The standard does not give the unit of the number: most controllers count milliseconds, some whole \
-                seconds. Multiplying or dividing a time by a number is the same everywhere."
-            .to_string();
-    }
-    if matches!(time, ElementaryType::TimeOfDay | ElementaryType::LtimeOfDay) {
-        return "The number counts from midnight; the standard does not give its unit, which most makers take as \
-                milliseconds."
-            .to_string();
-    }
-    format!(
-        "The standard gives neither the unit of the number nor the day from which a {time} counts; both are the \
-             maker's."
-    )
 }
 
-fn to_real(from: ElementaryType, to: ElementaryType) -> String {
+fn to_real(from: ElementaryType, to: ElementaryType) -> Message {
     let digits = if to == ElementaryType::Real { 7 } else { 15 };
     match (from, from.widens_to(to)) {
-        (ElementaryType::Lreal, _) => {
-            format!("About {digits} digits remain, and a number past 3.4E+38 is an error.")
-        }
-        (_, true) => "Every value is kept exactly; the third edition does this by itself.".to_string(),
-        (_, false) => format!(
-            "Numbers of more than {digits} digits lose the last ones: check a counter that grows large."
-        ),
-    }
-}
-
-fn integers(from: ElementaryType, to: ElementaryType) -> String {
-    match from.widens_to(to) {
-        true => "Every value fits; the third edition does this by itself.".to_string(),
-        false => range(to),
+        (ElementaryType::Lreal, _) => Message::new("conversion.digits-remain").with("digits", digits),
+        (_, true) => Message::new("conversion.kept-exactly"),
+        (_, false) => Message::new("conversion.last-digits-lost").with("digits", digits),
     }
 }
 
 /// What becomes of numbers that `to` does not hold.
-fn range(to: ElementaryType) -> String {
-    match to.integers() {
-        Some(range) => format!(
-            "A number outside {} to {} is an error; controllers without a check keep the low {} bits.",
-            range.start(),
-            range.end(),
-            to.bits().unwrap_or(0)
-        ),
-        None => String::new(),
-    }
+fn range(to: ElementaryType) -> Vec<Message> {
+    let message = to.integers().map(|range| {
+        Message::new("conversion.range")
+            .with("least", range.start())
+            .with("greatest", range.end())
+            .with("bits", to.bits().unwrap_or(0))
+    });
+    message.into_iter().collect()
 }
 
 /// Bit strings on either side, numbers perhaps on the other.
-fn bits(from: ElementaryType, to: ElementaryType) -> String {
+fn bits(from: ElementaryType, to: ElementaryType) -> Message {
     use ElementaryType::*;
     match (from, to) {
-        (Bool, _) => "FALSE gives 0 and TRUE gives 1.".to_string(),
-        (Real | Lreal, Bool) => "0.0 gives FALSE; what other numbers give is up to the maker, so a comparison with \
-                                 `NE` says it better."
-            .to_string(),
-        (_, Bool) => "0 gives FALSE. By the standard the lowest bit counts, on many controllers every value but 0 \
-                      gives TRUE: a comparison with `NE` says what is meant."
-            .to_string(),
+        (Bool, _) => Message::new("conversion.from-bool"),
+        (Real | Lreal, Bool) => Message::new("conversion.real-to-bool"),
+        (_, Bool) => Message::new("conversion.bits-to-bool"),
         (Dword, Real) | (Real, Dword) | (Lword, Lreal) | (Lreal, Lword) => {
-            "By the third edition the pattern of bits is kept, as a number is stored in memory; older controllers \
-             convert the number instead, so that 1.0 and 16#1 correspond."
-                .to_string()
+            Message::new("conversion.pattern-kept")
         }
         (_, Real | Lreal) => {
             let digits = if to == Real { 7 } else { 15 };
             match from.bits() > Some(if to == Real { 16 } else { 32 }) {
-                true => format!("The bits count as an unsigned number, of which about {digits} digits remain."),
-                false => "The bits count as an unsigned number.".to_string(),
+                true => Message::new("conversion.unsigned-digits").with("digits", digits),
+                false => Message::new("conversion.unsigned"),
             }
         }
-        (Real | Lreal, _) => "The number is rounded to the nearest integer, which must fit as an unsigned one; \
-                              anything else is an error."
-            .to_string(),
+        (Real | Lreal, _) => Message::new("conversion.real-to-bits"),
         _ if from.bits() < to.bits() && from.belongs_to(GenericType::AnySigned) => {
-            "The bits are kept; controllers differ in whether a negative number fills the upper ones with 0 or 1."
-                .to_string()
+            Message::new("conversion.sign-filled")
         }
-        _ if from.bits() < to.bits() => "The bits are kept, and zeros fill the upper ones.".to_string(),
+        _ if from.bits() < to.bits() => Message::new("conversion.zero-filled"),
         _ if from.bits() > to.bits() => {
-            format!("The low {} bits are kept and the others dropped.", to.bits().unwrap_or(0))
+            Message::new("conversion.low-bits").with("bits", to.bits().unwrap_or(0))
         }
-        _ => "All bits are kept as they are, so an integer with its highest bit set is negative if it has a sign."
-            .to_string(),
+        _ => Message::new("conversion.all-bits"),
     }
 }
 

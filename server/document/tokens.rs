@@ -1,7 +1,6 @@
 //! Every word and symbol with what it means, for highlighting.
 
-use super::{Token, TokenKind};
-use crate::document::{Chunk, Document, Tree, Use};
+use super::{Chunk, Tree, Use};
 use crate::il::fx::{FxTree, LineKind, WordKind};
 use crate::il::iec::{IecTree, ItemKind, MentionRole};
 use crate::ladder::{Element, ElementKind, LadderTree};
@@ -10,18 +9,46 @@ use crate::target::{Access, DeviceKind, Operand};
 use crate::text::{Span, Spanned};
 use rustc_hash::FxHashSet;
 
-pub(super) fn of(document: &Document) -> Vec<Token> {
-    let mut tokens = Vec::new();
+/// A token for highlighting.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub struct Token {
+    /// Where.
+    pub span: Span,
+    /// What.
+    pub kind: TokenKind,
+    /// Where a value is written or a name declared.
+    pub modification: bool,
+}
+
+/// What a token is. The order is that of the legend that the protocol announces.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum TokenKind {
+    Comment,
+    Keyword,
+    Instruction,
+    Device,
+    Variable,
+    Label,
+    Number,
+    Text,
+    Function,
+    FunctionBlock,
+    Type,
+    Wire,
+    Element,
+}
+
+/// The tokens of a chunk in order, none overlapping, none over more than one line. Offsets are those of the chunk.
+pub(super) fn of_chunk(chunk: &Chunk) -> Vec<Token> {
     let mut found = Vec::new();
-    for at in document.chunks() {
-        found.clear();
-        match at.chunk.tree() {
-            Tree::Fx(tree) => of_fx(tree, &mut found),
-            Tree::Ladder(tree) => of_ladder(at.chunk, tree, &mut found),
-            Tree::Iec(tree) => of_iec(at.chunk, tree, &mut found),
-        }
-        flatten(&mut found, at.chunk.text(), at.start, &mut tokens);
+    match chunk.tree() {
+        Tree::Fx(tree) => of_fx(tree, &mut found),
+        Tree::Ladder(tree) => of_ladder(chunk, tree, &mut found),
+        Tree::Iec(tree) => of_iec(chunk, tree, &mut found),
     }
+    let mut tokens = Vec::with_capacity(found.len());
+    flatten(&mut found, chunk.text(), &mut tokens);
     tokens
 }
 
@@ -199,15 +226,15 @@ fn keywords(text: &str, tokens: &mut Vec<Token>) {
     }
 }
 
-/// Cuts outer tokens around inner ones, and all at the ends of lines; `start` is where `text` starts.
-fn flatten(found: &mut [Token], text: &str, start: usize, tokens: &mut Vec<Token>) {
+/// Cuts outer tokens around inner ones, and all at the ends of lines.
+fn flatten(found: &mut [Token], text: &str, tokens: &mut Vec<Token>) {
     found.sort_by_key(|token| (token.span.start, std::cmp::Reverse(token.span.end)));
     let mut open: Vec<Token> = Vec::new();
     let mut at = 0;
     let mut emit = |token: Token, from: u32, to: u32, at: &mut u32| {
         let from = from.max(*at).max(token.span.start);
         if from < to {
-            lines(Token { span: Span { start: from, end: to }, ..token }, text, start, tokens);
+            lines(Token { span: Span { start: from, end: to }, ..token }, text, tokens);
             *at = to;
         }
     };
@@ -227,14 +254,14 @@ fn flatten(found: &mut [Token], text: &str, start: usize, tokens: &mut Vec<Token
 }
 
 /// The pieces of `token` on each of its lines, blanks at their ends left out.
-fn lines(token: Token, text: &str, start: usize, tokens: &mut Vec<Token>) {
+fn lines(token: Token, text: &str, tokens: &mut Vec<Token>) {
     let mut offset = token.span.start as usize;
     for line in token.span.of(text).split_inclusive(['\n', '\r']) {
         let content = line.trim();
         let indent = line.len() - line.trim_start().len();
         if !content.is_empty() {
             let span = Span::new(offset + indent, offset + indent + content.len());
-            tokens.push(Token { span: span.shifted(start), ..token });
+            tokens.push(Token { span, ..token });
         }
         offset += line.len();
     }

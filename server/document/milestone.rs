@@ -1,0 +1,159 @@
+//! What the rules about the structure of an FX program see of it: jumps, loops, sections, steps, labels and ends one
+//! by one, and of the instructions between them the first and the last.
+//!
+//! Lines of instruction list and elements of ladders come alike. Structure is rare, so a page of a thousand lines is a
+//! few milestones, and a rule passes over a program without looking at its lines.
+
+use super::{Chunk, Operation, Tree};
+use crate::il::fx::LineKind;
+use crate::ladder::ElementKind;
+use crate::target::{Device, DeviceKind, Flow, Model, Operand};
+use crate::text::{Span, Spanned};
+use std::sync::Arc;
+
+/// An instruction or a label, or a run of equal ones between milestones.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Milestone {
+    /// What it is.
+    pub kind: MilestoneKind,
+    /// How many statements it stands for: of a run of equal ones that have no part in the structure the first stands
+    /// for itself and the last for all behind the first.
+    pub count: u32,
+    /// The mnemonic, the label, or the cells of a drawn element.
+    pub word: Span,
+    /// From the mnemonic to the last operand.
+    pub span: Span,
+    /// The number of its chunk in the page.
+    chunk: u32,
+    /// The first operand of what has a part in the structure.
+    first: Option<Box<Spanned<Operand>>>,
+}
+
+/// What a statement is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum MilestoneKind {
+    /// A label.
+    Label(Device),
+    /// An instruction, by its part in the structure of the program.
+    Instruction(Flow),
+    /// A word that the table does not have.
+    Unknown,
+}
+
+impl Milestone {
+    /// The first operand of a statement that has a part in the structure.
+    pub fn first(&self) -> Option<Spanned<Operand>> {
+        self.first.as_deref().copied()
+    }
+
+    /// The number of its chunk in the page.
+    pub fn chunk(&self) -> usize {
+        self.chunk as usize
+    }
+
+    /// Whether it has no part in the structure, so that of a run of such only the ends are of interest.
+    fn is_plain(&self) -> bool {
+        matches!(
+            self.kind,
+            MilestoneKind::Unknown | MilestoneKind::Instruction(Flow::Straight | Flow::Nothing)
+        )
+    }
+}
+
+/// Offsets are those of the chunk.
+pub(super) fn of_chunk(chunk: &Chunk) -> Vec<Milestone> {
+    let mut milestones = Vec::new();
+    match chunk.tree() {
+        Tree::Fx(tree) => {
+            for line in &tree.lines {
+                let kind = match line.kind {
+                    LineKind::Label(device) => MilestoneKind::Label(device),
+                    LineKind::Instruction(form) => MilestoneKind::Instruction(form.instruction.flow()),
+                    LineKind::Unknown => MilestoneKind::Unknown,
+                };
+                add(&mut milestones, kind, line.mnemonic, line.span, tree.operands(line).first());
+            }
+        }
+        Tree::Ladder(tree) => {
+            let label = tree.header.as_ref().and_then(|header| header.label);
+            if let Some((label, device)) =
+                label.and_then(|label| Some((label, pointer(label.of(chunk.text()))?)))
+            {
+                add(&mut milestones, MilestoneKind::Label(device), label, label, None);
+            }
+            for element in tree.rungs.iter().flat_map(|rung| &rung.graph.elements) {
+                if let ElementKind::Jump(label) = element.kind {
+                    let Some(device) = pointer(label.of(chunk.text())) else { continue };
+                    let first = Spanned::new(Operand::Device(device), label);
+                    let kind = MilestoneKind::Instruction(Flow::Jump);
+                    add(&mut milestones, kind, element.span, element.span.to(label), Some(&first));
+                } else if let Some(operation) = Operation::of_element(element) {
+                    add_element(&mut milestones, &operation);
+                }
+            }
+        }
+        Tree::Iec(_) => {}
+    }
+    milestones
+}
+
+fn add_element(milestones: &mut Vec<Milestone>, operation: &Operation<'_>) {
+    let kind = match operation.form {
+        Some(form) => MilestoneKind::Instruction(form.instruction.flow()),
+        None => MilestoneKind::Unknown,
+    };
+    let last = operation.operands.last().filter(|_| operation.is_word);
+    let span = last.map_or(operation.symbol, |operand| operation.symbol.to(operand.span));
+    add(milestones, kind, operation.symbol, span, operation.operands.first());
+}
+
+fn add(
+    milestones: &mut Vec<Milestone>,
+    kind: MilestoneKind,
+    word: Span,
+    span: Span,
+    first: Option<&Spanned<Operand>>,
+) {
+    let mut milestone = Milestone { kind, count: 1, word, span, chunk: 0, first: None };
+    if !milestone.is_plain() {
+        milestone.first = first.map(|first| Box::new(*first));
+    }
+    join(milestones, milestone);
+}
+
+/// Offsets are those of the page.
+pub(super) fn of_page(chunks: &[Arc<Chunk>]) -> Box<[Milestone]> {
+    let mut milestones = Vec::new();
+    let mut start = 0;
+    for (number, chunk) in chunks.iter().enumerate() {
+        for milestone in chunk.milestones() {
+            let first = milestone.first.as_deref();
+            let shifted = first.map(|first| Box::new(Spanned::new(first.value, first.span.shifted(start))));
+            let (word, span) = (milestone.word.shifted(start), milestone.span.shifted(start));
+            let moved = Milestone { word, span, chunk: number as u32, first: shifted, ..*milestone };
+            join(&mut milestones, moved);
+        }
+        start += chunk.len();
+    }
+    milestones.into_boxed_slice()
+}
+
+/// Adds `milestone`; in a run of equal ones without a part in the structure it takes the place of the one before.
+fn join(milestones: &mut Vec<Milestone>, milestone: Milestone) {
+    if milestone.is_plain()
+        && let [.., first, last] = milestones.as_mut_slice()
+        && first.kind == milestone.kind
+        && last.kind == milestone.kind
+    {
+        let count = last.count + milestone.count;
+        *last = Milestone { count, ..milestone };
+        return;
+    }
+    milestones.push(milestone);
+}
+
+/// The pointer of the PLC that a label names.
+fn pointer(name: &str) -> Option<Device> {
+    let device = Operand::read(name, Model::Fx3u).device()?;
+    matches!(device.kind, DeviceKind::P | DeviceKind::I).then_some(device)
+}

@@ -1,0 +1,454 @@
+//! Simplified Chinese beside English: nothing lacks a translation, nothing bypasses the catalogue, and the language is
+//! chosen as the user says, through the doors of the user.
+
+use crate::lsp_client::{Client, at};
+use rungwise::check::RULES;
+use rungwise::target::iec::{EN, ENO, Function, FunctionBlock, Operator};
+use rungwise::target::{Form, Target, instructions};
+use rungwise::text::{Book, Language, Message, catalogue_keys, has_phrase, page, phrases, prose, sections};
+use rungwise::{ide, text};
+use serde_json::{Value, json};
+use std::collections::{BTreeSet, HashMap, HashSet};
+use std::process::{Command, Stdio};
+
+const CHINESE: Language = Language::SimplifiedChinese;
+
+/// Entries without words.
+const WORDLESS: &[&str] = &[
+    "hover.constant",
+    "hover.constant-time",
+    "hover.literal-time",
+    "hover.member",
+    "complete.variable",
+    "conversion.noun",
+    "conversion.noun-vowel",
+];
+
+fn is_chinese(text: &str) -> bool {
+    text.chars().any(|c| ('\u{4e00}'..='\u{9fff}').contains(&c) || "，。：（）［］".contains(c))
+}
+
+/// The names in braces.
+fn placeholders(template: &str) -> BTreeSet<&str> {
+    template.split('{').skip(1).filter_map(|rest| rest.split('}').next()).collect()
+}
+
+// The catalogue
+
+#[test]
+fn every_language_has_every_message_with_the_same_places() {
+    let english: HashMap<&str, &str> = catalogue_keys(Language::English).collect();
+    assert!(english.len() > 400, "{}", english.len());
+    let mut wrong = Vec::new();
+    for &language in Language::ALL.iter().filter(|language| **language != Language::English) {
+        let own: HashMap<&str, &str> = catalogue_keys(language).collect();
+        for (key, template) in &english {
+            match own.get(key) {
+                None => wrong.push(format!("{key}: not in {}", language.tag())),
+                Some(other) if placeholders(other) != placeholders(template) => {
+                    wrong.push(format!("{key}: other places in {}: {other}", language.tag()));
+                }
+                Some(other) if other == template && !WORDLESS.contains(key) => {
+                    wrong.push(format!("{key}: English in {}", language.tag()));
+                }
+                Some(_) => {}
+            }
+        }
+        wrong.extend(
+            own.keys().filter(|key| !english.contains_key(*key)).map(|key| format!("{key}: not in en")),
+        );
+    }
+    wrong.sort();
+    assert!(wrong.is_empty(), "{} messages:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+#[test]
+fn every_chinese_message_is_chinese() {
+    let plain: Vec<&str> = catalogue_keys(CHINESE)
+        .filter(|(key, words)| !is_chinese(words) && !WORDLESS.contains(key))
+        .map(|(key, _)| key)
+        .collect();
+    assert!(plain.is_empty(), "{plain:?}");
+}
+
+#[test]
+fn arguments_that_are_words_follow_the_language() {
+    let place = |name: &'static str, meaning: &'static str| {
+        Message::new("operand-count.place").with("name", name).with_phrase("meaning", meaning)
+    };
+    let missing = vec![place("S", "source"), place("D", "destination")];
+    let message =
+        Message::new("operand-count.too-few").with("instruction", "MOV").with_messages("missing", missing);
+    assert_eq!(message.render(Language::English), "MOV lacks S (source), D (destination)");
+    assert_eq!(message.render(CHINESE), "MOV 缺少操作数：S（源）、D（目标）");
+    let message =
+        Message::new("syntax-error.expected-at-end").with_words("expected", ["operand", "`(`"], ", ");
+    assert_eq!(message.render(CHINESE), "此处应为 操作数、`(`");
+}
+
+// The tables
+
+/// The English words of all tables.
+fn table_phrases() -> BTreeSet<&'static str> {
+    let mut words: BTreeSet<&str> = BTreeSet::new();
+    for row in instructions::all() {
+        words.insert(row.title);
+        words.extend(row.operands.iter().map(|operand| operand.meaning));
+    }
+    words.extend(Operator::all().map(|operator| operator.title));
+    for function in Function::families() {
+        words.insert(function.title);
+        words.extend(function.inputs.iter().map(|input| input.meaning));
+    }
+    for block in FunctionBlock::all() {
+        words.insert(block.title);
+        words.extend(block.inputs.iter().chain(block.outputs).map(|pin| pin.meaning));
+    }
+    words.extend([EN.meaning, ENO.meaning]);
+    words.extend(Function::all().flat_map(|function| function.inputs).map(|input| input.meaning));
+    for target in Target::ALL {
+        words.extend(target.special.iter().map(|special| special.meaning));
+        words.extend(target.devices.iter().map(|range| range.purpose));
+    }
+    words
+}
+
+#[test]
+fn every_title_and_meaning_is_translated() {
+    let lacking: Vec<&str> =
+        table_phrases().into_iter().filter(|words| !has_phrase(words, CHINESE)).collect();
+    assert!(lacking.is_empty(), "not in phrases.toml: {lacking:#?}");
+    let plain: Vec<_> = phrases(CHINESE).filter(|(_, chinese)| !is_chinese(chinese)).collect();
+    assert!(plain.is_empty(), "{plain:?}");
+}
+
+#[test]
+fn the_words_of_the_grammar_are_translated() {
+    let sources: Vec<String> = crate::tidy::source_files()
+        .iter()
+        .filter(|path| path.to_string_lossy().contains("/il/iec/"))
+        .map(|path| std::fs::read_to_string(path).unwrap())
+        .collect();
+    let mut words = Vec::new();
+    for source in &sources {
+        for call in source.split(".expected").skip(1) {
+            let Some(list) = call.lines().next().and_then(|line| line.split('"').nth(1)) else { continue };
+            words.extend(list.split(", ").filter(|word| !word.starts_with('`')));
+        }
+    }
+    assert!(words.len() > 5, "{words:?}");
+    words.extend(["end of line", "identifier", "constant", "%address", "comment", "pragma", "character"]);
+    let lacking: Vec<&&str> = words.iter().filter(|word| !has_phrase(word, CHINESE)).collect();
+    assert!(lacking.is_empty(), "not in phrases.toml: {lacking:?}");
+}
+
+#[test]
+fn no_phrase_is_left_over() {
+    let sources: String =
+        crate::tidy::source_files().iter().map(|path| std::fs::read_to_string(path).unwrap()).collect();
+    let package = concat!(env!("CARGO_PKG_DESCRIPTION"), "\n");
+    let tables = table_phrases();
+    let stale: Vec<&str> = phrases(CHINESE)
+        .map(|(english, _)| english)
+        .filter(|english| {
+            !tables.contains(english) && !sources.contains(english) && !package.contains(english)
+        })
+        .collect();
+    assert!(stale.is_empty(), "in phrases.toml, but nowhere else: {stale:#?}");
+}
+
+// The pages
+
+fn english_pages() -> Vec<(Book, &'static str, String)> {
+    let rules = RULES.iter().map(|rule| (Book::Rules, rule.code, rule.page()));
+    let rows = instructions::all().map(|row| (Book::Instructions, row.mnemonic, row.page.to_string()));
+    let operators = Operator::all().map(|row| (Book::Operators, row.name, row.page()));
+    let functions = Function::families().map(|row| (Book::Functions, row.name, row.page()));
+    let blocks = FunctionBlock::all().map(|row| (Book::Blocks, row.name, row.page()));
+    rules.chain(rows).chain(operators).chain(functions).chain(blocks).collect()
+}
+
+/// What stands in backticks outside of code blocks.
+fn quoted(page: &str) -> BTreeSet<String> {
+    let prose = page.split("```").step_by(2).collect::<String>();
+    let joined = prose.replace('\n', " ");
+    joined.split('`').skip(1).step_by(2).map(str::to_string).collect()
+}
+
+fn blocks(page: &str) -> Vec<&str> {
+    page.split("```").skip(1).step_by(2).collect()
+}
+
+#[test]
+fn every_page_has_its_translation_and_no_translation_lacks_its_page() {
+    let pages = english_pages();
+    assert!(pages.len() > 300, "{}", pages.len());
+    let lacking: Vec<_> = pages
+        .iter()
+        .filter(|(book, name, _)| prose(*book, name, CHINESE).is_none())
+        .map(|(book, name, _)| (*book, *name))
+        .collect();
+    assert!(lacking.is_empty(), "no page in Chinese: {lacking:?}");
+    let known: HashSet<(Book, &str)> = pages.iter().map(|(book, name, _)| (*book, *name)).collect();
+    for book in Book::ALL {
+        let stale: Vec<_> =
+            sections(book, CHINESE).into_iter().filter(|name| !known.contains(&(book, *name))).collect();
+        assert!(stale.is_empty(), "{book:?}: no such thing: {stale:?}");
+    }
+}
+
+#[test]
+fn translated_pages_keep_the_examples_and_name_the_same_code() {
+    let mut wrong = Vec::new();
+    for (book, name, english) in english_pages() {
+        let chinese = page(book, name, &english, CHINESE);
+        if blocks(&chinese) != blocks(&english) {
+            wrong.push(format!("{book:?} {name}: the examples differ"));
+        }
+        if chinese.contains(text::EXAMPLE) || !is_chinese(&chinese) {
+            wrong.push(format!("{book:?} {name}: not filled in"));
+        }
+        let (own, other) = (quoted(&english), quoted(&chinese));
+        if own != other {
+            let differing: Vec<_> = own.symmetric_difference(&other).collect();
+            wrong.push(format!("{book:?} {name}: other code in the text: {differing:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn pages_of_conversions_are_chinese_too() {
+    let conversions = Function::all().skip(Function::families().count());
+    let mut seen = 0;
+    for function in conversions {
+        let (title, page) = (function.title_in(CHINESE), function.page_in(CHINESE));
+        assert!(is_chinese(&title) && title != function.title, "{}: {title}", function.name);
+        assert_eq!(blocks(&page), blocks(&function.page()), "{}", function.name);
+        let prose = page.split("```").next().unwrap();
+        let english = prose.split(['`', '。', '，', '：', '（']).any(|part| part.split(' ').count() > 5);
+        assert!(is_chinese(prose) && !english, "{}: {prose}", function.name);
+        seen += 1;
+    }
+    assert!(seen > 400, "{seen}");
+}
+
+#[test]
+fn no_english_frame_is_left_on_a_chinese_page() {
+    let words =
+        ["operand", "meaning", "takes", "written", "input", "output", "step", "Forms", "Operand", "bit,"];
+    let mut pages: Vec<(String, String)> = Vec::new();
+    for row in instructions::all() {
+        pages.extend(
+            instructions::forms_of(row).map(|form| (form.mnemonic(), ide::instruction_page(form, CHINESE))),
+        );
+    }
+    pages.extend(Operator::all().map(|row| (row.name.to_string(), ide::operator_page(row, CHINESE))));
+    pages.extend(Function::all().map(|row| (row.name.to_string(), ide::function_page(row, CHINESE))));
+    pages.extend(FunctionBlock::all().map(|row| (row.name.to_string(), ide::block_page(row, CHINESE))));
+    for (name, page) in pages {
+        let prose: String = page.split("```").step_by(2).collect();
+        let found: Vec<_> = prose
+            .split(|c: char| !(c.is_ascii_alphanumeric() || c == '_' || c == ','))
+            .filter(|word| words.contains(word))
+            .collect();
+        assert!(found.is_empty(), "{name}: {found:?} in\n{prose}");
+    }
+    let page = ide::instruction_page(Form::named("DMOVP").unwrap(), CHINESE);
+    assert!(page.starts_with("### DMOVP：传送，32 位，能流到达时执行一次\n"), "{page}");
+}
+
+#[test]
+fn a_rule_has_a_summary_in_both_languages() {
+    for rule in RULES.iter() {
+        let (english, chinese) = (rule.summary(Language::English), rule.summary(CHINESE));
+        assert!(is_chinese(&chinese) && !chinese.contains('\n'), "{}: {chinese}", rule.code);
+        assert!(chinese.ends_with(['。', '：', '；']) && chinese != english, "{}: {chinese}", rule.code);
+        assert!(rule.page_in(CHINESE).starts_with(&format!("# {}\n\n", rule.code)), "{}", rule.code);
+    }
+}
+
+// The sources
+
+/// Literals with words that no user reads, by a part of their line.
+const NOT_FOR_USERS: &[&str] = &["tracing::", "reason = ", "static str", "assert", "env!(", "WORDS_OF_CODE"];
+
+#[test]
+fn no_sentence_bypasses_the_catalogue() {
+    let mut found = Vec::new();
+    for path in crate::tidy::source_files() {
+        let name = path.to_string_lossy().into_owned();
+        let speaks = ["/ide/", "/cli/", "/lsp/", "/check/", "/project/", "/document/", "/il/", "/ladder/"];
+        if !speaks.iter().any(|room| name.contains(room)) {
+            continue;
+        }
+        let source = std::fs::read_to_string(&path).unwrap();
+        let code = source.split("#[cfg(test)]").next().unwrap_or("");
+        for (number, line) in code.lines().enumerate() {
+            let line = line.trim_start();
+            if line.starts_with("//") || NOT_FOR_USERS.iter().any(|part| line.contains(part)) {
+                continue;
+            }
+            let literals = line.split(" // ").next().unwrap_or("").split('"').skip(1).step_by(2);
+            for literal in literals.filter(|literal| is_sentence(literal) && !has_phrase_of_list(literal)) {
+                found.push(format!("{name}:{}: {literal}", number + 1));
+            }
+        }
+    }
+    assert!(found.is_empty(), "words that are in no catalogue:\n{}", found.join("\n"));
+}
+
+/// Two words of lower-case letters side by side.
+fn is_sentence(literal: &str) -> bool {
+    let is_word = |word: &str| word.len() > 1 && word.chars().all(|c| c.is_ascii_lowercase() || c == '\'');
+    let words: Vec<&str> =
+        literal.split(' ').map(|word| word.trim_end_matches([',', '.', ':', ';'])).collect();
+    words.windows(2).any(|pair| is_word(pair[0]) && is_word(pair[1]))
+}
+
+fn has_phrase_of_list(literal: &str) -> bool {
+    literal.split(", ").all(|part| part.starts_with('`') || has_phrase(part, CHINESE))
+}
+
+#[test]
+fn a_sentence_is_told_from_code() {
+    assert!(is_sentence("there is nothing") && is_sentence("{name}: check the path"));
+    assert!(!is_sentence("open-circuit.found") && !is_sentence("MOV K10 D0") && !is_sentence("{} s"));
+}
+
+// The server
+
+const URI: &str = "file:///somewhere/a.il";
+const WRONG: &str = "LD X8\nOUT T0 K50\nMOV K1 D0\nEND\n";
+
+/// A server whose client says this locale.
+fn server_with(locale: Value, options: Value) -> Client {
+    let mut client = Client::spawn();
+    let params = json!({"processId": null, "rootUri": null, "capabilities": {}, "locale": locale,
+        "initializationOptions": options});
+    client.request("initialize", params);
+    client.notify("initialized", json!({}));
+    client.open(URI, "plc-il", WRONG);
+    client
+}
+
+fn first_message(client: &mut Client, version: i64) -> String {
+    client.diagnostics(URI, version)[0]["message"].as_str().unwrap().to_string()
+}
+
+#[test]
+fn the_locale_of_the_client_decides() {
+    for (locale, chinese) in
+        [("zh-CN", true), ("zh", true), ("zh-Hans", true), ("zh-tw", true), ("de", false)]
+    {
+        let mut client = server_with(json!(locale), Value::Null);
+        let message = first_message(&mut client, 1);
+        assert_eq!(message.contains("八进制"), chinese, "{locale}: {message}");
+    }
+    let mut client = server_with(Value::Null, Value::Null);
+    assert!(first_message(&mut client, 1).contains("octal"));
+}
+
+#[test]
+fn the_setting_goes_before_the_locale_and_takes_effect_at_once() {
+    let mut client = server_with(json!("zh-CN"), json!({"language": "en"}));
+    assert!(first_message(&mut client, 1).contains("octal"));
+    for (language, word) in [("zh-CN", "八进制"), ("en", "octal"), ("auto", "八进制")] {
+        client.notify(
+            "workspace/didChangeConfiguration",
+            json!({"settings": {"rungwise": {"language": language}}}),
+        );
+        let message = first_message(&mut client, 1);
+        assert!(message.contains(word), "{language}: {message}");
+    }
+}
+
+#[test]
+fn every_answer_is_in_the_language() {
+    let mut client = server_with(json!("zh-CN"), Value::Null);
+    let diagnostics = client.diagnostics(URI, 1);
+    let hover = |client: &mut Client, line, column| {
+        let answer = client.request("textDocument/hover", at(URI, line, column));
+        answer["result"]["contents"]["value"].as_str().unwrap().to_string()
+    };
+    assert!(hover(&mut client, 2, 1).starts_with("### MOV：传送\n"));
+    let timer = hover(&mut client, 1, 5);
+    assert!(
+        timer.contains("**T0** 100 ms 定时器（T0–T199）") && timer.contains("设定值 `K50` = 5 s"),
+        "{timer}"
+    );
+    let span = diagnostics[0]["range"].clone();
+    let params = json!({"textDocument": {"uri": URI}, "range": span, "context": {"diagnostics": []}});
+    let actions = client.request("textDocument/codeAction", params);
+    assert!(actions["result"][0]["title"].as_str().is_some_and(is_chinese), "{actions}");
+    let symbols = client.request("textDocument/documentSymbol", json!({"textDocument": {"uri": URI}}));
+    assert!(symbols["result"][0]["name"].as_str().is_some_and(is_chinese), "{symbols}");
+    let summary =
+        client.request("workspace/executeCommand", json!({"command": "rungwise.check", "arguments": [URI]}));
+    assert!(summary["result"]["message"].as_str().is_some_and(is_chinese), "{summary}");
+    let rename =
+        json!({"textDocument": {"uri": URI}, "position": {"line": 1, "character": 5}, "newName": "C0"});
+    let refusal = client.request("textDocument/rename", rename);
+    assert!(refusal["error"]["message"].as_str().is_some_and(|words| words.contains("定时器")), "{refusal}");
+    let completions = client.request("textDocument/completion", at(URI, 2, 0));
+    let items = completions["result"].as_array().unwrap();
+    let detail =
+        |label: &str| items.iter().find(|item| item["label"] == json!(label)).unwrap()["detail"].clone();
+    assert_eq!(detail("OUT"), json!("线圈驱动"), "{completions}");
+}
+
+// The command line
+
+fn run(arguments: &[&str], locale: &str, program: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("a.lad"), program).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rungwise"));
+    command.current_dir(folder.path()).args(arguments).stdin(Stdio::null());
+    command.env_remove("LC_ALL").env_remove("LC_MESSAGES").env("LANG", locale);
+    let output = command.output().unwrap();
+    String::from_utf8([output.stdout, output.stderr].concat()).unwrap()
+}
+
+const DRAWN: &str = "(* 启动 *)\n|  启动    X1           Y0   |\n+--| |----|/|--  ------( )--+\n";
+
+#[test]
+fn the_command_line_speaks_the_language_of_the_environment_or_the_one_asked_for() {
+    assert!(run(&["explain", "MOV"], "zh_CN.UTF-8", "").starts_with("### MOV：传送\n"));
+    assert!(run(&["explain", "MOV", "--lang", "en"], "zh_CN.UTF-8", "").starts_with("### MOV: move\n"));
+    assert!(run(&["--lang=zh-CN", "explain", "open-circuit"], "C", "").contains("有一端悬空"));
+    assert!(run(&["explain", "MOV"], "de_DE.UTF-8", "").starts_with("### MOV: move\n"));
+    assert!(run(&["--lang", "zh", "explain", "nonsense"], "C", "").contains("既不是规则也不是指令"));
+    assert!(run(&["--lang", "xx", "explain"], "C", "").contains("messages are in en, zh-CN"));
+    assert!(
+        run(&["--lang", "zh-CN", "check", "--target", "fx9"], "C", "").contains("没有此目标；可用 fx1s、")
+    );
+}
+
+#[test]
+fn help_is_in_the_language() {
+    let help = run(&["check", "--help"], "zh_CN.UTF-8", "");
+    assert!(help.starts_with("用全部规则检查文件、文件夹或项目\n"), "{help}");
+    for words in ["用法：", "参数:", "选项:", "［默认值：warning］", "text（供人阅读）", "显示帮助"]
+    {
+        assert!(help.contains(words), "{words} in {help}");
+    }
+    assert!(run(&["check", "--help"], "C", "").contains("Usage: rungwise check [OPTIONS] [PATHS]..."));
+    assert!(run(&["--version"], "zh_CN.UTF-8", "").starts_with("rungwise 0."));
+}
+
+#[test]
+fn carets_stand_under_their_cells_below_chinese_text() {
+    let found = run(&["check", "--lang", "zh-CN", "a.lad"], "C", DRAWN);
+    let mut lines = found.lines();
+    let headline = lines.next().unwrap();
+    assert!(headline.starts_with("a.lad:3:") && headline.contains("error[open-circuit]: 断路："), "{found}");
+    let wire = found.lines().find(|line| line.contains("|/|--  ---")).unwrap();
+    let carets = found.lines().find(|line| line.contains('^')).unwrap();
+    // The line of the wire has no wide character before the gap, so bytes are cells there.
+    assert_eq!(carets.find('^').unwrap(), wire.find("--  --").unwrap() + 1, "{found}");
+    assert!(found.contains("  说明：a.lad:3:") || found.contains("  修复："), "{found}");
+    assert!(
+        found.trim_end().ends_with("；1 个梯级，8000 步中用了 3 步") || found.contains("检查未通过："),
+        "{found}"
+    );
+}
