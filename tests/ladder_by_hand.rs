@@ -1,11 +1,12 @@
 //! Drawings by hand: lines and names that miss each other by a column or two are read as everybody reads them, or
 //! both readings are shown; and the dialects in which people draw.
 
+use crate::ladder_read::dump;
 use rungwise::check::{self, Severities};
 use rungwise::document::{Document, Notation};
-use rungwise::ladder::{TWO_READINGS, parse};
+use rungwise::ladder::{TWO_READINGS, parse, split};
 use rungwise::target::{Model, Target};
-use rungwise::text::Diagnostic;
+use rungwise::text::{Diagnostic, Language, Severity, TextEdit};
 
 fn fx() -> &'static Target {
     Target::of(Model::Fx3u)
@@ -194,4 +195,326 @@ fn what_is_off_by_two_columns_is_read_as_the_straight_drawing_or_in_two_ways() {
         }
     }
     assert!(failures.is_empty(), "{} of {}\n{}", failures.len(), same + asked, failures.join("\n"));
+}
+
+/// The drawing of each fix of a finding.
+fn fixed(drawing: &str, finding: &Diagnostic) -> Vec<String> {
+    finding.fixes.iter().map(|fix| TextEdit::apply_all(&fix.edits, drawing)).collect()
+}
+
+#[test]
+fn what_was_read_is_redrawn() {
+    for straight in STRAIGHT.iter().map(|drawing| drawing.trim_start_matches('\n')) {
+        let wanted = logic(straight);
+        let mut redrawn = 0;
+        for moved in moved(straight) {
+            let found = found(&moved.drawing);
+            for finding in found.iter().filter(|finding| finding.code == "ragged-drawing") {
+                if finding.message.key() == TWO_READINGS {
+                    continue;
+                }
+                let fixed = fixed(&moved.drawing, finding);
+                let drawing = fixed.last().unwrap_or_else(|| panic!("{}\n{}", moved.what, moved.drawing));
+                assert_eq!(logic(drawing), wanted, "{}\n{}{drawing}", moved.what, moved.drawing);
+                assert!(parse(drawing, fx()).problems.is_empty(), "{drawing}");
+                redrawn += 1;
+            }
+        }
+        assert!(redrawn > 20, "{straight}");
+    }
+}
+
+#[test]
+fn two_readings_are_shown_and_neither_is_taken() {
+    let drawing = "\
+|   X0       X2                Y0  |
++---| |---+[ ]+----------------( )-+
+|   X1      |                      |
++---| |-----+                      |
+";
+    let found = found(drawing);
+    assert_eq!(
+        found.iter().map(|f| (f.code, f.severity)).collect::<Vec<_>>(),
+        [("ragged-drawing", Severity::Warning)]
+    );
+    let words = found[0].message.render(Language::English);
+    assert!(words.contains("column 11") && words.contains("column 15"), "{words}");
+    let related: Vec<&str> = found[0].related.iter().map(|related| related.span.of(drawing)).collect();
+    assert_eq!(related, ["+", "+"]);
+    let readings = fixed(drawing, &found[0]);
+    let expected = [
+        "\
+|   X0        X2                           Y0  |
++---| |---+---| |--------------------------( )-+
+|   X1    |                                    |
++---| |---+                                    |
+",
+        "\
+|   X0      X2                             Y0  |
++---| |-----| |---+------------------------( )-+
+|   X1            |                            |
++---| |-----------+                            |
+",
+    ];
+    assert_eq!(readings, expected);
+}
+
+/// Reads a drawing for a target and compares what it stands for, as `ladder_read` writes it.
+#[track_caller]
+fn check_dialect(model: Model, drawing: &str, expected: &[&str]) {
+    let drawing = drawing.trim_start_matches('\n');
+    let mut start = 0;
+    let mut found = Vec::new();
+    for end in split(drawing) {
+        let chunk = &drawing[start..end];
+        start = end;
+        let tree = parse(chunk, Target::of(model));
+        found.extend(dump(&tree, chunk).lines().map(str::to_string));
+    }
+    assert_eq!(found, expected, "\n{drawing}");
+}
+
+/// Start, stop and seal-in, as most examples in this file.
+const SEALED: &[&str] = &["L start J1", "L motor J1", "J1 /stop (motor) R"];
+
+#[test]
+fn dialect_of_bars() {
+    let drawing = "
+|  start      stop              motor  |
+|--| |---+----|/|----------------( )---|
+|        |                             |
+|  motor |                             |
+|--| |---+                             |
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+}
+
+#[test]
+fn dialect_of_brackets_that_open_outwards() {
+    let drawing = "
+||    start           stop           motor      ||
+||-----] [-----+------]/[------------( )-------||
+||             |                                ||
+||    motor    |                                ||
+||-----] [-----+                                ||
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+}
+
+#[test]
+fn dialect_of_brackets_that_open_inwards() {
+    let drawing = "
+   start    stop     motor
+---[ ]--+---[/]-------( )---
+  motor |
+---[ ]--+
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+}
+
+#[test]
+fn dialect_of_names_in_brackets() {
+    let drawing = "
+|--[start]--+--[/stop]--------( motor )--|
+|           |                            |
+|--[motor]--+                            |
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+}
+
+#[test]
+fn dialect_of_allen_bradley() {
+    let drawing = "
+|  start    stop          motor |
+|---||---+---|/|---------(OTE)--|
+|  motor |                      |
+|---||---+                      |
+|  jam                    alarm |
+|---||-------------------(OTL)--|
+|  ack                    alarm |
+|---||--------------------(U)---|
+";
+    let latch: &[&str] = &["--", "L jam (S alarm) R", "--", "L ack (R alarm) R"];
+    check_dialect(Model::Iec, drawing, &[SEALED, latch].concat());
+    // A timer that is enabled and done, with its parameters inside.
+    let drawing = "
+|  part                +-----------+
+|---||-----------------| TON       |--(EN)
+|                      | Timer T4  |
+|                      | Preset 30 |--(DN)
+|                      +-----------+
+";
+    let expected = [
+        "L part T4:TON.#0",
+        "T4:TON.#0 (EN) R",
+        "T4:TON.#1 (DN) R",
+        "block T4:TON _=wire Preset=30 =>_=wire =>_=wire",
+    ];
+    check_dialect(Model::Iec, drawing, &expected);
+}
+
+#[test]
+fn dialect_of_box_drawing_and_frames() {
+    let drawing = "
+┌──────────────────────────────────────────┐
+│   start       stop              motor    │
+│ ──┤ ├────┬────┤/├────────────────( )──── │
+│   motor  │                               │
+│ ──┤ ├────┘                               │
+└──────────────────────────────────────────┘
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+    // A caption, a divider, rails of their own inside, cut by a blank line in the frame.
+    let drawing = "
+┌─────────────────────────────────────────────┐
+│ Network 1: start and stop                   │
+├─────────────────────────────────────────────┤
+│                                             │
+│ |   start     stop               motor |    │
+│ |---| |---+---|/|-----------------( )--|    │
+│ |   motor |                            |    │
+│ |---| |---+                            |    │
+└─────────────────────────────────────────────┘
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+    // Of ASCII characters.
+    let drawing = "
++------------------------------------------+
+|   start       stop              motor    |
+| --| |----+----|/|----------------( )---- |
+|   motor  |                               |
+| --| |----+                               |
++------------------------------------------+
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+    // Sides to which wires lead are rails, and the line above them is a cap.
+    let drawing = "
+┌──────────────────────────────────────────┐
+│   start       stop              motor    │
+├───┤ ├────┬────┤/├────────────────( )─────┤
+│   motor  │                               │
+├───┤ ├────┘                               │
+└──────────────────────────────────────────┘
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+    // Mixed with ASCII.
+    let drawing = "
+│ start   stop       motor
+├──┤ ├─+──┤/├────────( S )──┤
+│ jog  |
+├──┤ ├─+
+│ end
+├──┤ ├────────────(RET)
+";
+    let expected = ["L start J1", "L jog J1", "J1 /stop (S motor) R", "--", "L end (RET) R"];
+    check_dialect(Model::Iec, drawing, &expected);
+    // A single line from rail to rail is a rung without an element, not a frame.
+    check_dialect(Model::Iec, "+------------------+\n", &["L R"]);
+}
+
+#[test]
+fn dialect_of_names_below_over_two_lines_and_in_the_wire() {
+    let drawing = "
+|--| |---+---|/|----------------( )--|
+|  start |   stop              motor |
+|        |                           |
+|--| |---+                           |
+|  motor                             |
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+    let drawing = "
+|  START     EMERG             CONV_      |
+|  BUTTON    STOP              MOTOR      |
+|---| |---+---|/|---------------( )-------|
+|  CONV_  |                               |
+|  MOTOR  |                               |
+|---| |---+                               |
+";
+    let expected = ["L START_BUTTON J1", "L CONV_MOTOR J1", "J1 /EMERG_STOP (CONV_MOTOR) R"];
+    check_dialect(Model::Iec, drawing, &expected);
+    let drawing = "
+|-- start --| |---+--- stop --|/|-------( ) motor --|
+|                 |                                 |
+|-- motor --| |---+                                 |
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+    let drawing = "
+|---| | start ---+---|/| stop -----------( ) motor ---|
+|---| | motor ---+
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+    let drawing = "
+|  启动        停止               电机  |
+|--| |---+----|/|----------------( )----|
+|  电机  |                              |
+|--| |---+                              |
+";
+    check_dialect(Model::Iec, drawing, &["L 启动 J1", "L 电机 J1", "J1 /停止 (电机) R"]);
+}
+
+#[test]
+fn dialect_of_exclamation_marks() {
+    let drawing = "
+!  start    stop            motor !
+!--] [--!---]/[--------------( )--!
+!  motor!                         !
+!--] [--!                         !
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+}
+
+#[test]
+fn dialects_of_rails() {
+    let plain: &[&str] = &["L a /b (y) R"];
+    check_dialect(Model::Iec, "    a      b        y\n ---] [----]/[-----( )\n", plain);
+    check_dialect(Model::Iec, "    a      b        y    |\n ---] [----]/[-----( )---|\n", plain);
+    check_dialect(Model::Iec, "|   a      b        y\n|---] [----]/[-----( )\n", plain);
+    check_dialect(Model::Iec, "||   a      b        y   ||\n||--] [----]/[-----( )---||\n", plain);
+    // A rail between conditions and outputs.
+    let drawing = "
+|   start      stop    |    motor   |
+|----| |---+----|/|----|----( )-----|
+|   motor  |           |            |
+|----| |---+           |            |
+";
+    check_dialect(Model::Iec, drawing, SEALED);
+}
+
+#[test]
+fn dialect_of_branches_that_join_behind_the_coil() {
+    let drawing = "
+|  start       stop       motor    |
+|---| |--+-----|/|-----+---( )---+-|
+|        |             |         | |
+|  motor |             |   lamp  | |
+|---| |--+             +---( )---+ |
+";
+    let expected = ["L start J1", "L motor J1", "J1 /stop J2", "J2 (motor) J3", "J2 (lamp) J3", "J3 R"];
+    check_dialect(Model::Iec, drawing, &expected);
+}
+
+#[test]
+fn dialect_of_boxes_as_outputs() {
+    let drawing = "
+|   X0                             |
+|---| |-------------------[ T1 K10 ]
+|   T1                             |
+|---| |---------------------( Y0 )-|
+";
+    check_dialect(Model::Fx3u, drawing, &["L X0 (T1 K10) R", "--", "L T1 (Y0) R"]);
+    let drawing = "
+|   part                                 |
+|---| |-------------------[CTU C1, PV:5]-|
+";
+    let expected = ["L part C1:CTU.CU", "C1:CTU.Q R", "block C1:CTU CU=wire PV=5 =>Q=wire"];
+    check_dialect(Model::Iec, drawing, &expected);
+    let drawing = "
+|                    T1                    |
+|   start     +-------------+        run   |
+|---| |-------|IN   TON    Q|--------( )---|
+|             | PT = 500 ms |              |
+|             +-------------+              |
+";
+    let expected = ["L start T1:TON.IN", "T1:TON.Q (run) R", "block T1:TON IN=wire PT=500 ms =>Q=wire"];
+    check_dialect(Model::Iec, drawing, &expected);
 }

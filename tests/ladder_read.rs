@@ -11,7 +11,6 @@ use rungwise::target::{Model, Target};
 use rungwise::text::{Diagnostic, Span, TextEdit, column_of_offset};
 use std::collections::HashMap;
 use std::fmt::Write;
-use std::path::Path;
 
 fn fx() -> &'static Target {
     Target::of(Model::Fx3u)
@@ -977,53 +976,6 @@ fn lines_of_vertical_wires_do_not_cut() {
     }
 }
 
-#[test]
-fn programs_by_other_people() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let places = ["../shared/corpus/ladder", "../../shared/corpus/ladder"];
-    let Some(folder) = places.iter().map(|place| root.join(place)).find(|folder| folder.exists()) else {
-        crate::corpus::say_skipped(&format!("no folder {}", root.join(places[0]).display()));
-        return;
-    };
-    // Drawings that are clean as they stand, with the number of their rungs.
-    const CLEAN: &[(&str, usize)] = &[
-        ("ldmicrowebsim-readme-0.txt", 4),
-        ("ldmicrowebsim-test-0.txt", 4),
-        ("vdorr-negative-test01.txt", 1),
-        ("vdorr-test00.txt", 0),
-        ("vdorr-test01.txt", 1),
-        ("vdorr-test04.txt", 4),
-        ("vdorr-test05.txt", 3),
-        ("vdorr-test06.txt", 1),
-        ("vdorr-test07.txt", 1),
-        ("vdorr-test09.txt", 1),
-        ("vdorr-test10.txt", 1),
-        ("vdorr-test12.txt", 1),
-        ("vdorr-test14.txt", 3),
-        ("vdorr-test16.txt", 4),
-    ];
-    let mut seen = 0;
-    for file in std::fs::read_dir(folder).unwrap() {
-        let path = file.unwrap().path();
-        let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        let text = std::fs::read_to_string(&path).unwrap();
-        // The first line says where the file comes from.
-        let text = &text[text.find('\n').unwrap() + 1..];
-        let trees: Vec<_> = chunks(text).into_iter().map(|chunk| parse(chunk, iec())).collect();
-        let problems: Vec<_> = trees.iter().flat_map(|tree| &tree.problems).collect();
-        let rungs: usize = trees.iter().map(|tree| tree.rungs.len()).sum();
-        match CLEAN.iter().find(|(clean, _)| *clean == name) {
-            Some((_, expected)) => {
-                assert!(problems.is_empty(), "{name}: {problems:?}");
-                assert_eq!(rungs, *expected, "{name}");
-                seen += 1;
-            }
-            None => assert!(!problems.is_empty(), "{name} should have findings"),
-        }
-    }
-    assert_eq!(seen, CLEAN.len());
-}
-
 /// Pieces of documents that open, close, join and break things.
 const PIECES: &[&str] = &[
     "(* first *)\n",
@@ -1306,5 +1258,9 @@ fn one_slip_is_one_problem() {
 fn contacts_by_their_mnemonics() {
     check("--[LD X0]--[ANI X1]--[ANDP X2]--[ LDF X3 ]--(Y0)--", "L X0 /X1 ^X2 vX3 (Y0) R");
     // An unknown mnemonic is no device.
-    check("--[X0]--(OTE Y0)--", "L X0 [?OTE Y0] R");
+    check("--[X0]--(OTX Y0)--", "L X0 [?OTX Y0] R");
+    // Those of Allen-Bradley are known.
+    check("--[XIC X0]--[XIO X1]--(OTE Y0)--", "L X0 /X1 (Y0) R");
+    check("--[X0]--(OTL M0)--", "L X0 (S M0) R");
+    check("--[X0]--(OTU M0)--", "L X0 (R M0) R");
 }

@@ -1,6 +1,7 @@
 //! Texts of LDmicro: its export as a drawing, in both generations, and its own file.
 
 use crate::ladder_read::{chunks, dump};
+use proptest::prelude::*;
 use rungwise::document::{DeclaredType, Document, Notation, Tree, detect_ladder_target};
 use rungwise::ide::{self, Style};
 use rungwise::ladder::{TableRow, parse, table_rows, time_literal};
@@ -446,5 +447,233 @@ fn programs_by_other_people() {
         assert!(found.is_empty(), "{name}: {found:?}");
         let tables = document.chunks().filter(|at| matches!(at.chunk.tree(), Tree::Iec(_))).count();
         assert_eq!(tables, 1, "{name}");
+    }
+}
+
+const NATIVE: &str = "\
+LDmicro0.2
+MICRO=Atmel AVR ATmega8 28-PDIP
+CYCLE=10000 us at Timer1, YPlcCycleDuty:0
+CRYSTAL=16000000 Hz
+BAUD=2400 Hz
+COMPILED=C:\\plc\\pump.hex
+
+PULL-UP LIST
+    B: 0xff
+END
+
+VAR LIST
+  2 bytes Tdelay     ; Now not used !!!
+END
+
+IO LIST
+    Xstart at 14
+    Xstop at 15
+    Ymotor at 16 0 0
+    Ylamp at 0
+END
+
+PROGRAM
+RUNG 1
+    COMMENT Seal-in,\\r\\nas ever (* really *)
+END
+RUNG 2
+    PARALLEL
+        CONTACTS Xstart 0 0
+        CONTACTS Ymotor 0 0
+    END
+    CONTACTS Xstop 1
+    TON Tdelay 1500000 0
+    PARALLEL
+        COIL Ymotor 0 0 0
+        SERIES
+            CTU Ccount 5 0
+            PARALLEL
+                COIL Ylamp 0 0 0
+                RES Ccount
+            END
+        END
+        MOVE speed 0x1F
+    END
+END
+RUNG 3
+    EQU Ccount 3
+    OSR
+    ADD speed speed -2
+END
+";
+
+fn imported(source: &str) -> rungwise::ladder::Import {
+    rungwise::ladder::import(source, "pump", Language::English).unwrap()
+}
+
+fn notes(import: &rungwise::ladder::Import) -> Vec<String> {
+    let note = |note: &rungwise::ladder::Note| format!("{}: {}", note.line, note.message.render(Language::English));
+    import.notes.iter().map(note).collect()
+}
+
+/// The imported text has no mistakes but those of these codes.
+fn check_import(import: &rungwise::ladder::Import, codes: &[&str]) {
+    let document = open(&import.text);
+    let found = check::all(&document, &check::Severities::default());
+    let found: Vec<_> = found.iter().map(|found| found.code).collect();
+    assert_eq!(found, codes, "{}", import.text);
+    let style = Style { kind: FormatStyle::Iec, width: 48 };
+    let formatted = TextEdit::apply_all(&ide::format(&document, style), &import.text);
+    assert_eq!(logic(&formatted), logic(&import.text));
+}
+
+#[test]
+fn a_native_file_becomes_a_program() {
+    let import = imported(NATIVE);
+    let expected = "
+        J1 /Xstop Tdelay:TON.IN
+        L Xstart J1
+        L Ymotor J1
+        Tdelay:TON.Q J2
+        J2 (Ymotor) R
+        J2 Ccount:CTU.CU
+        J2 _:MOVE.EN
+        Ccount:CTU.Q J3
+        J3 (Ylamp) R
+        J3 (R Ccount) R
+        _:MOVE.ENO R
+        block Tdelay:TON IN=wire PT=T#1500ms =>Q=wire
+        block Ccount:CTU CU=wire PV=5 =>Q=wire
+        block _:MOVE EN=wire IN=16#1F =>ENO=wire =>OUT=speed
+        --
+        L [= Ccount.CV 3] OSR_1:R_TRIG.CLK
+        OSR_1:R_TRIG.Q _:ADD.EN
+        _:ADD.ENO R
+        block OSR_1:R_TRIG CLK=wire =>Q=wire
+        block _:ADD EN=wire IN1=speed IN2=-2 =>ENO=wire =>OUT=speed";
+    let sorted = |text: &str| {
+        let mut lines: Vec<String> = text.lines().map(|line| line.trim().to_string()).collect();
+        lines.retain(|line| !line.is_empty());
+        lines.sort();
+        lines
+    };
+    assert_eq!(sorted(&logic(&import.text)), sorted(expected), "{}", import.text);
+    assert_eq!(import.rungs, 2);
+    assert_eq!(notes(&import), ["8: 1 pull-up settings of inputs belong to the chip and are left out"]);
+    for line in [
+        "PROGRAM pump",
+        "    Xstart : BOOL; (* pin 14 *)",
+        "    Ylamp  : BOOL;\n",
+        "    Tdelay : TON;\n",
+        "    Ccount : CTU;\n",
+        "    speed  : INT;\n",
+        "    OSR_1  : R_TRIG;\n",
+        "(* Seal-in,\n   as ever ( * really * ) *)\n",
+        "MICRO = Atmel AVR ATmega8 28-PDIP",
+        "Line 8: 1 pull-up",
+        "END_PROGRAM",
+    ] {
+        assert!(import.text.contains(line), "{line}\n{}", import.text);
+    }
+    check_import(&import, &[]);
+}
+
+#[test]
+fn an_export_becomes_the_same_program_with_pins_and_types() {
+    for text in [FIRST, SECOND] {
+        let import = imported(text);
+        assert_eq!(logic(&import.text), unindent(LAMP).replace("number 2\n", "").replace("number 3\n", ""));
+        assert_eq!(notes(&import), [""; 0]);
+        let kind = if text == FIRST { "digital in" } else { "Entr\u{e9}e digitale" };
+        assert!(import.text.contains(&format!("Xbutton : BOOL; (* {kind}, pin 17 *)")), "{}", import.text);
+        assert!(import.text.contains("(* The lamp comes a second after the button.\n   ( * and goes at once * ) *)"));
+        assert!(import.text.contains("    Tdelay  : TON; (* "), "{}", import.text);
+    }
+}
+
+#[test]
+fn what_has_no_counterpart_is_said_and_drawn() {
+    let rung = |leaf: &str| format!("LDmicro0.1\n\nPROGRAM\nRUNG\n    CONTACTS Xa 0\n    {leaf}\n    COIL Yb 0 0 0\nEND\n");
+    for (leaf, note, drawn) in [
+        ("RTO Tr 10000", "RTO has no counterpart in IEC 61131-3; it is drawn as LDMICRO_RTO", "LDMICRO_RTO"),
+        ("CTD Cd 2 10", "CTD has no counterpart in IEC 61131-3; it is drawn as LDMICRO_CTD", "LDMICRO_CTD"),
+        ("CTU Cu 5 3", "Cu starts at 3 in LDmicro, at 0 here", "CTU"),
+        ("CTU Cu 5 0 -", "Cu counts as long as it has power", "CTU"),
+        ("TON Td var", "the delay var is a variable", "var--|PT"),
+        ("TON Td 1000 7", "the adjustment of the delay of Td", "T#1ms"),
+        ("STEPPER a b c 1 2 d", "STEPPER has no counterpart", "LDMICRO_STEPPER"),
+        ("CONTACTS R__x_ 0", "R__x_ is no identifier of IEC 61131-3 or is taken; it is called R_x", "R_x"),
+        ("CONTACTS TON 0", "TON is no identifier of IEC 61131-3 or is taken; it is called v_TON", "v_TON"),
+        ("OPEN", "", "FALSE"),
+        ("SHORT", "", "Yb"),
+    ] {
+        let import = imported(&rung(leaf));
+        let found = notes(&import);
+        match note {
+            "" => assert!(found.is_empty(), "{leaf}: {found:?}"),
+            note => assert!(found.iter().any(|found| found.starts_with(&format!("6: {note}"))), "{leaf}: {found:?}"),
+        }
+        assert!(import.text.contains(drawn), "{leaf}\n{}", import.text);
+        assert!(found.iter().all(|note| import.text.contains(note.split_once(": ").unwrap().1)), "{}", import.text);
+    }
+}
+
+#[test]
+fn names_that_differ_in_case_alone_stay_apart() {
+    let source = "LDmicro0.1\nPROGRAM\nRUNG\nCONTACTS Ra 0\nCONTACTS RA 0\nCOIL Yb 0 0 0\nEND\n";
+    let import = imported(source);
+    assert!(import.text.contains("    Ra   : BOOL;\n    RA_2 : BOOL; (* RA *)\n"), "{}", import.text);
+}
+
+#[test]
+fn jumps_and_labels() {
+    let source = "LDmicro0.2\nPROGRAM\nRUNG 1\nCONTACTS Xa 0\nGOTO done\nEND\nRUNG 2\nCONTACTS Xb 0\nCOIL Yb 0 0 0\n\
+                  END\nRUNG 3\nLABEL done\nEND\nRUNG 4\nCONTACTS Xc 0\nCOIL Yc 0 0 0\nEND\n";
+    let import = imported(source);
+    assert!(import.text.contains(">>done"), "{}", import.text);
+    assert!(import.text.contains("done:\n|"), "{}", import.text);
+    check_import(&import, &[]);
+}
+
+#[test]
+fn broken_files_are_imported_as_far_as_they_go() {
+    for (source, expected) in [
+        ("LDmicro0.1\nPROGRAM\nRUNG\nCONTACTS Xa 0\nCOIL Yb 0 0 0\n", "5: a circuit has no END"),
+        ("LDmicro0.1\nnonsense\nPROGRAM\nRUNG\nCOIL Yb 0 0 0\nEND\n", "2: not read: `nonsense`"),
+        ("LDmicro0.1\nPROGRAM\nRUNG\nEND\n", "3: the rung is empty"),
+        ("LDmicro0.1\nPROGRAM\nRUNG\nPARALLEL\nCONTACTS Xa\nRUNG\nCOIL Yb\nEND\n", "6: a circuit has no END"),
+    ] {
+        let import = imported(source);
+        assert!(notes(&import).iter().any(|note| note == expected), "{source}\n{:?}", notes(&import));
+    }
+    let deep = format!("LDmicro0.1\nPROGRAM\nRUNG\n{}CONTACTS Xa\n", "PARALLEL\nSERIES\n".repeat(50_000));
+    assert!(notes(&imported(&deep)).iter().any(|note| note.contains("nested more than")));
+    for source in ["", "LDmicro", "LDmicro export", "PROGRAM\nRUNG\n", "\u{0}\u{1}"] {
+        let error = rungwise::ladder::import(source, "x", Language::English).unwrap_err();
+        assert_eq!(error, rungwise::ladder::ImportError::Unknown, "{source}");
+    }
+}
+
+/// Lines of native files, whole and broken.
+const LINES: &[&str] = &[
+    "RUNG", "END", "PARALLEL", "SERIES", "CONTACTS Xa 0", "CONTACTS Ra 1 0", "COIL Yb 0 0 0", "COIL Yb 0 0 0 1",
+    "TON Ta 1000000", "TOF Tb 5 0", "RTO Tc x", "CTU Ca 5 0", "CTD Cb", "CTC Cc 7", "RES Ca", "MOVE a b",
+    "ADD a b 3", "EQU a 0x10", "GEQ Ca", "OSR", "OSC", "OPEN", "SHORT", "PLACEHOLDER", "LABEL L", "GOTO L", "GOTO 3",
+    "COMMENT x *) y", "COMMENT", "READ_ADC Ain", "PERSIST a", "MASTER_RELAY", "FORMATTED_STRING a 3 65 66 67",
+    "IO LIST", "Xa at 3", "\u{7}|+-(", "PROGRAM", "CONTACTS", "CONTACTS - 0", "CONTACTS 3 0", "CONTACTS ++--| 1",
+    "COIL * 0 0 0", "MOVE (* 5", "TON \u{4e2d} 5", "RETURN",
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Nothing that is an LDmicro file by its first line makes the import fail or panic; what it prints is proven.
+    #[test]
+    fn any_lines_are_imported(lines in prop::collection::vec(0..LINES.len(), 0..30)) {
+        let body: Vec<&str> = lines.into_iter().map(|line| LINES[line]).collect();
+        let source = format!("LDmicro0.2\nPROGRAM\nRUNG\n{}\n", body.join("\n"));
+        let import = rungwise::ladder::import(&source, "x", Language::English);
+        prop_assert!(import.is_ok(), "{:?}\n{source}", import);
+    }
+
+    #[test]
+    fn any_text_is_no_panic(text in "(LDmicro0|LDmicro export text\n)?(.|\n){0,300}") {
+        let _ = rungwise::ladder::import(&text, &text, Language::English);
     }
 }

@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
@@ -13,9 +14,11 @@ pub const PATIENCE: Duration = Duration::from_secs(20);
 pub struct Client {
     server: Child,
     input: Option<ChildStdin>,
-    messages: Receiver<Value>,
+    messages: Receiver<(Instant, Value)>,
     kept: Vec<Value>,
     last_id: i64,
+    /// When the message that was waited for last had come in, before it was understood.
+    pub arrived: Instant,
     /// The answer to `initialize`.
     pub initialised: Value,
 }
@@ -23,7 +26,12 @@ pub struct Client {
 impl Client {
     /// A server that was just started.
     pub fn spawn() -> Client {
-        let mut server = Command::new(env!("CARGO_BIN_EXE_rungwise"))
+        Client::spawn_program(env!("CARGO_BIN_EXE_rungwise").as_ref())
+    }
+
+    /// A server of the program `rungwise`, or another build of it.
+    pub fn spawn_program(rungwise: &Path) -> Client {
+        let mut server = Command::new(rungwise)
             .arg("lsp")
             .env("LC_ALL", "C")
             .stdin(Stdio::piped())
@@ -35,24 +43,32 @@ impl Client {
         let (sender, messages) = channel();
         std::thread::spawn(move || {
             let mut output = BufReader::new(output);
-            while let Some(message) = read_message(&mut output) {
-                if sender.send(message).is_err() {
+            while let Some(body) = read_body(&mut output) {
+                let arrived = Instant::now();
+                let Ok(message) = serde_json::from_slice(&body) else { return };
+                if sender.send((arrived, message)).is_err() {
                     return;
                 }
             }
         });
         let input = server.stdin.take();
-        Client { server, input, messages, kept: Vec::new(), last_id: 0, initialised: Value::Null }
+        let (kept, arrived) = (Vec::new(), Instant::now());
+        Client { server, input, messages, kept, last_id: 0, arrived, initialised: Value::Null }
     }
 
     /// A server after the handshake, with these capabilities and initialization options.
     pub fn start_with(capabilities: Value, options: Value) -> Client {
         let mut client = Client::spawn();
+        client.initialise(capabilities, options);
+        client
+    }
+
+    /// The handshake.
+    pub fn initialise(&mut self, capabilities: Value, options: Value) {
         let params = json!({"processId": null, "rootUri": null, "capabilities": capabilities,
             "initializationOptions": options});
-        client.initialised = client.request("initialize", params)["result"].clone();
-        client.notify("initialized", json!({}));
-        client
+        self.initialised = self.request("initialize", params)["result"].clone();
+        self.notify("initialized", json!({}));
     }
 
     /// A server after the handshake with a client that knows nothing special.
@@ -99,7 +115,7 @@ impl Client {
 
     /// Whether request number `id` is answered already.
     pub fn has_answer(&mut self, id: i64) -> bool {
-        self.kept.extend(self.messages.try_iter());
+        self.kept.extend(self.messages.try_iter().map(|(_, message)| message));
         self.kept.iter().any(|message| message["id"] == json!(id) && message.get("method").is_none())
     }
 
@@ -127,8 +143,11 @@ impl Client {
         loop {
             let left = end.saturating_duration_since(Instant::now());
             match self.messages.recv_timeout(left) {
-                Ok(message) if wanted(&message) => return message,
-                Ok(message) => self.kept.push(message),
+                Ok((arrived, message)) if wanted(&message) => {
+                    self.arrived = arrived;
+                    return message;
+                }
+                Ok((_, message)) => self.kept.push(message),
                 Err(_) => {
                     let short = |message: &Value| message.to_string().chars().take(300).collect::<String>();
                     let kept: Vec<String> = self.kept.iter().map(short).collect();
@@ -145,10 +164,16 @@ impl Client {
         Some(self.kept.remove(place))
     }
 
+    /// The notifications with this method that came while something else was waited for.
+    pub fn notified(&self, method: &str) -> Vec<&Value> {
+        self.kept.iter().filter(|message| message["method"] == json!(method)).collect()
+    }
+
     /// Whether nothing that `unwanted` takes comes within `time`.
     pub fn stays_silent(&mut self, time: Duration, unwanted: impl Fn(&Value) -> bool) -> bool {
         let end = Instant::now() + time;
-        while let Ok(message) = self.messages.recv_timeout(end.saturating_duration_since(Instant::now())) {
+        while let Ok((_, message)) = self.messages.recv_timeout(end.saturating_duration_since(Instant::now()))
+        {
             self.kept.push(message);
         }
         !self.kept.iter().any(unwanted)
@@ -174,6 +199,15 @@ impl Client {
     /// Closes the server's input, as a client that dies does.
     pub fn hang_up(&mut self) {
         self.input = None;
+    }
+
+    /// The processor time that the server has used, where the system tells, in steps of 10 ms.
+    pub fn processor_time(&self) -> Option<Duration> {
+        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.server.id())).ok()?;
+        // Behind the name, which may contain blanks: user time is the 12th field, system time the 13th.
+        let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
+        let ticks = fields.get(11)?.parse::<u64>().ok()? + fields.get(12)?.parse::<u64>().ok()?;
+        Some(Duration::from_millis(ticks * 10))
     }
 
     /// The server's memory in KiB, where the system tells.
@@ -213,7 +247,7 @@ pub fn codes(diagnostics: &[Value]) -> Vec<String> {
     diagnostics.iter().map(|diagnostic| diagnostic["code"].as_str().unwrap_or("?").to_string()).collect()
 }
 
-fn read_message(output: &mut impl BufRead) -> Option<Value> {
+fn read_body(output: &mut impl BufRead) -> Option<Vec<u8>> {
     let mut length = 0;
     loop {
         let mut line = String::new();
@@ -229,5 +263,5 @@ fn read_message(output: &mut impl BufRead) -> Option<Value> {
     }
     let mut body = vec![0; length];
     output.read_exact(&mut body).ok()?;
-    serde_json::from_slice(&body).ok()
+    Some(body)
 }

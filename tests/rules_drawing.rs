@@ -422,7 +422,7 @@ fn a_torn_bracket_is_one_mistake() {
 
 #[test]
 fn mnemonics_of_other_makers_are_one_mistake_each() {
-    let text = "|--[XIC X0]---[XIO X1]---(OTE Y0)---|\n";
+    let text = "|--[XOC X0]---[XIA X1]---(OTX Y0)---|\n";
     let expected = ["unknown-instruction 1:5", "unknown-instruction 1:16", "unknown-instruction 1:27"];
     assert_eq!(places(text, &found(text)), expected);
 }

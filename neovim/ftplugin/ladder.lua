@@ -18,3 +18,7 @@ set.autoindent = false
 
 vim.b.undo_ftplugin = 'setlocal commentstring< comments< iskeyword< virtualedit< wrap< expandtab< tabstop< textwidth<'
   .. ' formatoptions< autoindent<'
+local unmap = require('rungwise.mappings').attach(0)
+if unmap ~= '' then
+  vim.b.undo_ftplugin = vim.b.undo_ftplugin .. ' | ' .. unmap
+end

@@ -4,6 +4,17 @@ end
 vim.g.loaded_rungwise = true
 
 require('rungwise.commands').create()
+require('rungwise.mappings').define()
+
+vim.api.nvim_create_autocmd('LspAttach', {
+  group = vim.api.nvim_create_augroup('rungwise_attach', { clear = true }),
+  callback = function(event)
+    local client = vim.lsp.get_client_by_id(event.data.client_id)
+    if client and client.name == 'rungwise' and vim.bo[event.buf].filetype == 'ladder' then
+      require('rungwise.typing').attach(event.buf)
+    end
+  end,
+})
 
 if type(vim.g.rungwise) ~= 'table' or vim.g.rungwise.enable ~= false then
   -- A missing server is only worth a message when a program is opened, so the message waits for one.

@@ -159,9 +159,17 @@ fn judge_page(document: &Document, page: &Page, mut pou_number: usize) -> Vec<Di
     diagnostics
 }
 
+/// Messages that are graver than the rest of their rule's.
+const GRAVER: &[(&str, Severity)] = &[(crate::ladder::TWO_READINGS, Severity::Warning)];
+
 fn with_severities(diagnostics: Vec<Diagnostic>, severities: &Severities) -> Vec<Diagnostic> {
     let graded = diagnostics.into_iter().filter_map(|mut diagnostic| {
-        diagnostic.severity = severities.of(diagnostic.code)?;
+        let severity = severities.of(diagnostic.code)?;
+        // A hint of a mild rule may say that nothing was read; a project that grades the rule itself has the last word.
+        let graver =
+            GRAVER.iter().find(|(key, _)| *key == diagnostic.message.key()).map(|(_, severity)| *severity);
+        let own = severities.0.contains_key(diagnostic.code);
+        diagnostic.severity = graver.filter(|_| !own).unwrap_or(severity);
         Some(diagnostic)
     });
     graded.collect()

@@ -65,7 +65,7 @@ impl Rule {
         page
     }
 
-    /// The first sentence of its page.
+    /// The first sentence of its page in `language`.
     pub fn summary(&self, language: Language) -> String {
         let page = self.page_in(language);
         let text = page.split_once("\n\n").map_or("", |(_, text)| text);

@@ -1,9 +1,10 @@
 //! `rungwise check`
 
+use super::colour::Colour;
 use super::input::{Program, caution, programs, say};
-use super::{Format, Outcome, paths_or_here, render};
+use super::{Format, Outcome, paths_or_here, render, sarif};
 use crate::document::Document;
-use crate::ide;
+use crate::ide::{self, Summary};
 use crate::target::Target;
 use crate::text::{Diagnostic, Encoding, Fix, Language, Message, Severity, Span};
 use clap::ValueEnum;
@@ -36,18 +37,7 @@ enum Deny {
 /// make drawings of a thousand times its size.
 const MOST_DRAWN: usize = 200;
 
-/// The numbers under a result.
-#[derive(Default)]
-struct Summary {
-    errors: usize,
-    warnings: usize,
-    hints: usize,
-    rungs: usize,
-    steps: u32,
-    capacity: u32,
-}
-
-pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
+pub(super) fn run(arguments: &Arguments, colour: Colour, language: Language) -> Outcome {
     let Some(programs) = programs(&paths_or_here(&arguments.paths), arguments.target, language) else {
         return Outcome::Unusable;
     };
@@ -58,69 +48,31 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     let tables = super::comments::findings(&programs);
     let mut checked = super::across::checked(programs, arguments.target);
     checked.extend(tables);
-    let summary = Summary::of(&checked);
+    let mut summary = Summary::default();
+    checked.iter().for_each(|(program, found)| summary.add(&program.document, found));
     match arguments.format {
-        Format::Text => say_text(&checked, &summary, language),
+        Format::Text => say_text(&checked, &summary, colour, language),
         Format::Json => say(&format!("{:#}\n", as_json(&checked, &summary, language))),
+        Format::Sarif => say(&format!("{:#}\n", sarif::log(&checked, language))),
     }
-    if summary.denied(arguments.deny) > 0 { Outcome::Findings } else { Outcome::Clean }
+    if denied(&summary, arguments.deny) > 0 { Outcome::Findings } else { Outcome::Clean }
 }
 
-impl Summary {
-    fn of(checked: &[(Program, Vec<Diagnostic>)]) -> Summary {
-        let mut summary = Summary::default();
-        for (program, diagnostics) in checked {
-            let count =
-                |severity| diagnostics.iter().filter(|diagnostic| diagnostic.severity == severity).count();
-            summary.errors += count(Severity::Error);
-            summary.warnings += count(Severity::Warning);
-            summary.hints += count(Severity::Hint);
-            let status = ide::status(&program.document);
-            summary.rungs += status.rungs;
-            summary.steps += status.steps.unwrap_or(0);
-            summary.capacity = summary.capacity.max(status.capacity);
-        }
-        summary
-    }
-
-    fn denied(&self, least: Deny) -> usize {
-        match least {
-            Deny::Error => self.errors,
-            Deny::Warning => self.errors + self.warnings,
-            Deny::Hint => self.errors + self.warnings + self.hints,
-        }
-    }
-
-    /// `check passed: 4 rungs, 31 of 8000 steps`, or the numbers of what was found.
-    fn sentence(&self) -> Message {
-        let rungs = counted(self.rungs, "counted.rung", "counted.rungs");
-        let hints = counted(self.hints, "counted.hint", "counted.hints");
-        let size = match self.capacity {
-            0 => rungs,
-            capacity => Message::new("counted.size")
-                .with_messages("rungs", vec![rungs])
-                .with("steps", self.steps)
-                .with("capacity", capacity),
-        };
-        let message = match (self.errors, self.warnings, self.hints) {
-            (0, 0, 0) => Message::new("counted.passed"),
-            (0, 0, _) => Message::new("counted.passed-with-hints").with_messages("hints", vec![hints]),
-            (errors, warnings, _) => {
-                let errors = counted(errors, "counted.error", "counted.errors");
-                let warnings = counted(warnings, "counted.warning", "counted.warnings");
-                Message::new("counted.failed").with_messages("counts", vec![errors, warnings, hints])
-            }
-        };
-        message.with_messages("size", vec![size])
+fn denied(summary: &Summary, least: Deny) -> usize {
+    match least {
+        Deny::Error => summary.errors,
+        Deny::Warning => summary.errors + summary.warnings,
+        Deny::Hint => summary.errors + summary.warnings + summary.hints,
     }
 }
 
-fn counted(count: usize, one: &'static str, many: &'static str) -> Message {
-    Message::new(if count == 1 { one } else { many }).with("count", count)
-}
-
-fn say_text(checked: &[(Program, Vec<Diagnostic>)], summary: &Summary, language: Language) {
-    let colours = render::Colours::new(super::input::coloured());
+fn say_text(
+    checked: &[(Program, Vec<Diagnostic>)],
+    summary: &Summary,
+    colour: Colour,
+    language: Language,
+) {
+    let colours = render::Colours::new(colour.on());
     for (program, diagnostics) in checked {
         let name = program.path.display().to_string();
         let (drawn, listed) = diagnostics.split_at(diagnostics.len().min(MOST_DRAWN));
@@ -158,7 +110,7 @@ fn as_json(checked: &[(Program, Vec<Diagnostic>)], summary: &Summary, language: 
             "warnings": summary.warnings,
             "hints": summary.hints,
             "rungs": summary.rungs,
-            "steps": summary.steps,
+            "steps": summary.steps.unwrap_or(0),
             "capacity": summary.capacity,
         },
     })

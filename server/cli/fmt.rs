@@ -1,5 +1,7 @@
 //! `rungwise fmt`
 
+use super::colour::Colour;
+use super::diff;
 use super::input::{Program, complain, programs, say};
 use super::{Outcome, paths_or_here};
 use crate::ide::{self, Style};
@@ -12,7 +14,7 @@ use std::path::PathBuf;
 pub(super) struct Arguments {
     /// Files, folders or projects; the current folder if left out.
     paths: Vec<PathBuf>,
-    /// Change nothing; list the files that are not in canonical form, and exit with 1 if there are any.
+    /// Change nothing; show what would change as a diff, and exit with 1 if anything would.
     #[arg(long, conflicts_with = "stdout")]
     check: bool,
     /// Write the result to standard output and leave the files alone.
@@ -30,13 +32,13 @@ enum StyleName {
     Unicode,
 }
 
-pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
+pub(super) fn run(arguments: &Arguments, colour: Colour, language: Language) -> Outcome {
     let Some(programs) = programs(&paths_or_here(&arguments.paths), None, language) else {
         return Outcome::Unusable;
     };
     let mut outcome = Outcome::Clean;
     for program in programs {
-        let result = format_one(&program, arguments, language);
+        let result = format_one(&program, arguments, colour, language);
         if outcome != Outcome::Unusable && result != Outcome::Clean {
             outcome = result;
         }
@@ -44,7 +46,7 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     outcome
 }
 
-fn format_one(program: &Program, arguments: &Arguments, language: Language) -> Outcome {
+fn format_one(program: &Program, arguments: &Arguments, colour: Colour, language: Language) -> Outcome {
     let path = program.path.display();
     if program.damaged {
         let reason = Message::new("cli.not-utf-8-left").with("path", path).render(language);
@@ -62,7 +64,7 @@ fn format_one(program: &Program, arguments: &Arguments, language: Language) -> O
         return Outcome::Clean;
     }
     if arguments.check {
-        say(&format!("{path}\n"));
+        say(&diff::unified(&path.to_string(), &text, &formatted, colour));
         return Outcome::Findings;
     }
     // Renaming would replace a file that its owner locked.

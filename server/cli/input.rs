@@ -6,7 +6,8 @@ use crate::project::{
 };
 use crate::target::Target;
 use crate::text::{Encoding, Language, LineColumn, Message, Related};
-use std::io::{ErrorKind, IsTerminal, Write};
+use std::collections::HashSet;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -43,14 +44,22 @@ pub(super) fn programs(
     target: Option<&'static Target>,
     language: Language,
 ) -> Option<Vec<Program>> {
-    let mut programs = Vec::new();
+    let mut programs: Vec<Program> = Vec::new();
     let mut failed = false;
+    // A file that two paths name is one program.
+    let mut seen = HashSet::new();
     for path in paths {
         match files_at(path, language) {
             Ok(files) => {
                 for (file, manifest) in files {
+                    if !seen.insert(file.canonicalize().unwrap_or_else(|_| file.clone())) {
+                        continue;
+                    }
                     match read_program(&file, manifest, target) {
-                        Ok(program) => programs.push(program),
+                        Ok(program) => {
+                            failed |= refused(&program, target, language);
+                            programs.push(program);
+                        }
                         Err(reason) => {
                             failed = true;
                             let help = Message::new("cli.check-path").render(language);
@@ -73,6 +82,17 @@ pub(super) fn programs(
         return None;
     }
     (!failed).then_some(programs)
+}
+
+/// Whether the target that the user asks for is none for the language of the program; says so.
+fn refused(program: &Program, target: Option<&'static Target>, language: Language) -> bool {
+    let is = program.document.target();
+    let Some(asked) = target.filter(|asked| asked.name != is.name) else { return false };
+    let dialect = if is.is_fx() { "fx" } else { "iec" };
+    let reason = Message::new("cli.target-refused").with("path", program.path.display());
+    let reason = reason.with("target", asked.name).with("dialect", dialect).render(language);
+    complain("target-refused", &reason, &Message::new("cli.choose-target").render(language), language);
+    true
 }
 
 /// Writes `text` to standard output. A reader that went away, as `head` does, is no failure; where nothing can be
@@ -98,11 +118,6 @@ pub(super) fn complain(code: &str, reason: &str, help: &str, language: Language)
 pub(super) fn caution(code: &str, reason: &str, help: &str, language: Language) {
     let help = Message::new("cli.help").with("help", help).render(language);
     let _ = writeln!(std::io::stderr(), "warning[{code}]: {reason}\n  {help}");
-}
-
-/// Whether standard output takes colours: a terminal, and no `NO_COLOR`.
-pub(super) fn coloured() -> bool {
-    std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }
 
 /// The files at `path` with the manifest of their project.

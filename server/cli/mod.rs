@@ -2,16 +2,23 @@
 
 mod across;
 mod check;
+mod colour;
 mod comments;
+mod completions;
+mod diff;
 mod explain;
 mod fmt;
 mod help;
+mod import;
 mod input;
 mod language;
 mod render;
+mod sarif;
+mod server;
 mod usage;
 
-use crate::text::{Language, Message};
+use crate::text::Language;
+use colour::Colour;
 use clap::{Parser, Subcommand, ValueEnum};
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -26,6 +33,9 @@ struct Arguments {
     /// The language of messages: en, zh-CN; that of the system if left out.
     #[arg(long = "lang", value_name = "LANGUAGE", global = true, value_parser = language::named)]
     language: Option<Language>,
+    /// When results have colours.
+    #[arg(long, global = true, value_enum, default_value = "auto")]
+    color: Colour,
 }
 
 #[derive(Subcommand)]
@@ -35,6 +45,12 @@ enum Verb {
         /// Accepted because many editors pass it; standard input and output are the only transport.
         #[arg(long, hide = true)]
         stdio: bool,
+        /// Write what the client sends to this file, for a bug report.
+        #[arg(long, value_name = "FILE", conflicts_with = "replay")]
+        mirror: Option<PathBuf>,
+        /// Play such a file to the server, write its answers to standard output, and end.
+        #[arg(long, value_name = "FILE")]
+        replay: Option<PathBuf>,
     },
     /// Check files, folders or projects with every rule.
     Check(check::Arguments),
@@ -44,6 +60,10 @@ enum Verb {
     Usage(usage::Arguments),
     /// Show the page of a rule, an instruction, a function or a function block.
     Explain(explain::Arguments),
+    /// Carry a program of LDmicro over: its own file (.ld) or its text export.
+    Import(import::Arguments),
+    /// Write a completion script for a shell to standard output.
+    Completions(completions::Arguments),
 }
 
 /// The shape of results on standard output.
@@ -53,6 +73,8 @@ enum Format {
     Text,
     /// One JSON document.
     Json,
+    /// A log of SARIF 2.1.0.
+    Sarif,
 }
 
 /// What a verb found; the process's exit code.
@@ -81,29 +103,13 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     match arguments.verb {
-        Verb::Lsp { stdio: _ } => serve(arguments.language),
-        Verb::Check(arguments) => check::run(&arguments, language).into(),
-        Verb::Fmt(arguments) => fmt::run(&arguments, language).into(),
-        Verb::Usage(arguments) => usage::run(&arguments, language).into(),
+        Verb::Lsp { stdio: _, mirror, replay } => server::run(mirror.as_deref(), replay.as_deref(), arguments.language),
+        Verb::Check(verb) => check::run(&verb, arguments.color, language).into(),
+        Verb::Fmt(verb) => fmt::run(&verb, arguments.color, language).into(),
+        Verb::Usage(verb) => usage::run(&verb, language).into(),
         Verb::Explain(arguments) => explain::run(&arguments, language).into(),
-    }
-}
-
-/// Does not return to the caller: a thread that still reads standard input would hold the runtime, and the process,
-/// for as long as the client keeps it open. `asked` is the language that `--lang` says; it goes before the client's.
-fn serve(asked: Option<Language>) -> ExitCode {
-    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().worker_threads(4).build();
-    match runtime {
-        Ok(runtime) => {
-            let code = runtime.block_on(crate::lsp::serve(asked, language::spoken()));
-            std::process::exit(i32::from(code))
-        }
-        Err(reason) => {
-            let language = language::spoken();
-            let help = Message::new("cli.no-threads").render(language);
-            input::complain("no-runtime", &reason.to_string(), &help, language);
-            Outcome::Unusable.into()
-        }
+        Verb::Import(arguments) => import::run(&arguments, language).into(),
+        Verb::Completions(arguments) => completions::run(&arguments).into(),
     }
 }
 

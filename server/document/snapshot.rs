@@ -25,6 +25,8 @@ pub struct Document {
     scopes: OnceLock<Arc<Scopes>>,
     /// What the files of its project declare, and which of them it is.
     outer: Option<(Arc<Outer>, usize)>,
+    /// Whether drawings are read anew each time that they are looked at, as in large documents.
+    is_frugal: bool,
 }
 
 /// A replacement of bytes; `None` replaces everything.
@@ -75,7 +77,15 @@ impl Document {
             pages: Pages::default(),
             scopes: OnceLock::new(),
             outer: None,
+            is_frugal: false,
         }
+    }
+
+    /// Reads `text` for a document that is rarely looked at and of which there are many: no tree of a drawing is kept.
+    pub fn frugal(text: &str, notation: Notation, target: &'static Target) -> Document {
+        let mut document = Document { is_frugal: true, ..Document::unread(text, notation, target) };
+        document.read_all(text, &[]);
+        document
     }
 
     /// The same document for a walk through all its chunks: trees that are read on the way and not kept go away with
@@ -384,7 +394,7 @@ impl Document {
         let known: rustc_hash::FxHashMap<&str, &Arc<Chunk>> =
             old.iter().map(|chunk| (chunk.text(), chunk)).collect();
         let ends = chunk::split(text, self.notation());
-        let keeps_trees = self.len() <= KEPT_TREES_BYTES;
+        let keeps_trees = !self.is_frugal && self.len() <= KEPT_TREES_BYTES;
         let mut start = 0;
         ends.into_iter()
             .map(|end| {

@@ -71,6 +71,18 @@ pub use fixes::FixOf;
 
 mod status;
 
+mod summary;
+pub use summary::Summary;
+
+mod drawing;
+pub use drawing::{EditKind, Edited, Object, ObjectKind};
+
+mod selection_range;
+
+mod typing;
+
+mod linked_editing;
+
 /// What stands at `offset`: the page of an instruction, the meaning and range of a device, where it is used.
 pub fn hover(document: &Document, offset: usize, language: Language) -> Option<Hover> {
     hover::at(&ProjectView::alone(document), offset, language, &|_, _| None)
@@ -258,6 +270,45 @@ pub fn format(document: &Document, style: Style) -> Vec<TextEdit> {
 /// The edits that make the rungs and lines canonical that `spans` touch.
 pub fn format_ranges(document: &Document, style: Style, spans: &[Span]) -> Vec<TextEdit> {
     format::edits_within(document, style, spans)
+}
+
+/// The structural edit `kind` of the rung at the cursor or selection `span`; `operand` names what is inserted.
+///
+/// # Errors
+/// Why it is not possible there, or that it would change more than was meant.
+pub fn edit(
+    document: &Document,
+    span: Span,
+    kind: EditKind,
+    operand: Option<&str>,
+    style: Style,
+) -> Result<Edited, Message> {
+    drawing::edit(document, span, kind, operand, style)
+}
+
+/// The structural edits that make sense at the cursor or selection `span`; cheap, and so without drawing the results.
+pub fn applicable_edits(document: &Document, span: Span) -> Vec<EditKind> {
+    drawing::applicable(document, span)
+}
+
+/// The edits that keep the text whole after `typed`, one character or a line end, with the cursor now at `offset`.
+pub fn typed(document: &Document, offset: usize, typed: &str, style: Style) -> Vec<TextEdit> {
+    typing::after(document, offset, typed, style)
+}
+
+/// The element, branch, rung or network at `offset` of a ladder document, `around` it with what belongs to it.
+pub fn object(document: &Document, offset: usize, kind: ObjectKind, around: bool) -> Option<Object> {
+    drawing::object(document, offset, kind, around)
+}
+
+/// What grows around `offset`, smallest first, each range inside the next.
+pub fn selection_ranges(document: &Document, offset: usize) -> Vec<Span> {
+    selection_range::around(document, offset)
+}
+
+/// The places of the name at `offset` in its rung that can be typed at once; none if it is alone.
+pub fn linked_places(document: &Document, offset: usize) -> Vec<Span> {
+    linked_editing::of(document, offset)
 }
 
 /// The fixes of `diagnostics` that touch `span`.

@@ -5,7 +5,7 @@ use super::glyph::{continues_word, is_operator, starts_word};
 use super::grid::{Grid, WIDE};
 use super::scan::Symbol;
 use super::{Block, Element, ElementKind, OperandPlace, Pin, PinWire};
-use crate::target::Target;
+use crate::target::{Operand, Target};
 use crate::text::{Span, Spanned};
 
 /// Higher boxes are not looked for, which bounds the search.
@@ -125,19 +125,6 @@ fn read_block(grid: &mut Grid, frame: Frame, text: &str, target: &Target) -> Sym
     let mut power_row = None;
     for row in frame.top + 1..frame.bottom {
         let mut words = words_inside(grid, row, frame);
-        let mut read = |side: Side, name: Option<Span>, grid: &mut Grid| {
-            let (wire, negated) = outside(grid, frame, row, side, name.is_some(), text);
-            let wire = match wire {
-                Outside::Wire => PinWire::Power,
-                Outside::Nothing => PinWire::Open,
-                Outside::Word(span) => {
-                    operands.push(Spanned::new(target.read(span.of(text)), span));
-                    PinWire::Operand(operands.len() - 1)
-                }
-            };
-            let present = name.is_some() || wire != PinWire::Open;
-            present.then(|| Pin { name, implied: "", negated, row: grid.line(row), wire })
-        };
         if block.type_name.is_none() && !words.is_empty() {
             // The type stands in the middle of the first line with words.
             let middle = frame.left + frame.right;
@@ -145,6 +132,23 @@ fn read_block(grid: &mut Grid, frame: Frame, text: &str, target: &Target) -> Sym
             let nearest = (0..words.len()).min_by_key(|word| distance(&words[*word])).unwrap_or(0);
             let word = words.remove(nearest);
             block.type_name = Some(grid.span(row, word.start, word.end));
+        }
+        if let Some(parameter) = parameter(grid, row, &words, (text, target)) {
+            match parameter {
+                Parameter::Instance(name) => block.instance = block.instance.or(Some(name)),
+                Parameter::Input(name, operand) => {
+                    operands.push(operand);
+                    let wire = PinWire::Operand(operands.len() - 1);
+                    block.inputs.push(Pin {
+                        name: Some(name),
+                        implied: "",
+                        negated: false,
+                        row: grid.line(row),
+                        wire,
+                    });
+                }
+            }
+            words.clear();
         }
         let (input, output) = match words[..] {
             [] => (None, None),
@@ -154,8 +158,8 @@ fn read_block(grid: &mut Grid, frame: Frame, text: &str, target: &Target) -> Sym
         };
         let name = |word: Option<Inside>, grid: &Grid| word.map(|word| grid.span(row, word.start, word.end));
         let (input, output) = (name(input, grid), name(output, grid));
-        let input = read(Side::Left, input, grid);
-        let output = read(Side::Right, output, grid);
+        let input = read_pin(grid, frame, row, (Side::Left, input), &mut operands, (text, target));
+        let output = read_pin(grid, frame, row, (Side::Right, output), &mut operands, (text, target));
         if input.as_ref().is_some_and(|pin| pin.wire == PinWire::Power) {
             power_row = power_row.or(Some(row));
         }
@@ -176,6 +180,64 @@ fn read_block(grid: &mut Grid, frame: Frame, text: &str, target: &Target) -> Sym
         wants: Wants::Instance,
         depth: row - frame.top,
     }
+}
+
+/// The pin on one side of a row, if there is a name or anything is connected.
+fn read_pin(
+    grid: &mut Grid,
+    frame: Frame,
+    row: usize,
+    (side, name): (Side, Option<Span>),
+    operands: &mut Vec<Spanned<Operand>>,
+    (text, target): (&str, &Target),
+) -> Option<Pin> {
+    let (wire, negated) = outside(grid, frame, row, side, name.is_some(), text);
+    let wire = match wire {
+        Outside::Wire => PinWire::Power,
+        Outside::Nothing => PinWire::Open,
+        Outside::Word(span) => {
+            operands.push(Spanned::new(target.read(span.of(text)), span));
+            PinWire::Operand(operands.len() - 1)
+        }
+    };
+    let present = name.is_some() || wire != PinWire::Open;
+    present.then(|| Pin { name, implied: "", negated, row: grid.line(row), wire })
+}
+
+/// What a line inside a box says that stands for itself.
+enum Parameter {
+    /// `Timer T4`
+    Instance(Span),
+    /// `PT = 500 ms`, `Preset 30`
+    Input(Span, Spanned<Operand>),
+}
+
+/// The parameter written on a line inside a box.
+fn parameter(
+    grid: &Grid,
+    row: usize,
+    words: &[Inside],
+    (text, target): (&str, &Target),
+) -> Option<Parameter> {
+    let (name, rest) = words.split_first()?;
+    let assigned = rest.first().is_some_and(|sign| grid.span(row, sign.start, sign.end).of(text) == "=");
+    let value = if assigned { &rest[1..] } else { rest };
+    let (first, last) = (value.first()?, value.last()?);
+    let span = grid.span(row, first.start, last.end);
+    let name = grid.span(row, name.start, name.end);
+    let is = |word: &str| name.of(text).eq_ignore_ascii_case(word);
+    if !assigned && (is("Timer") || is("Counter")) && value.len() == 1 {
+        return Some(Parameter::Instance(span));
+    }
+    if !assigned && !span.of(text).starts_with(|c: char| c.is_ascii_digit()) {
+        return None;
+    }
+    // `500 ms` is a time, though IEC 61131-3 would have it written `T#500ms`.
+    let written: String = span.of(text).split_whitespace().collect();
+    let plain = target.read(&written);
+    let time = || target.read(&format!("T#{written}"));
+    let value = if matches!(plain, Operand::Invalid(_)) { time() } else { plain };
+    Some(Parameter::Input(name, Spanned::new(value, span)))
 }
 
 fn words_inside(grid: &Grid, row: usize, frame: Frame) -> Vec<Inside> {

@@ -125,6 +125,14 @@ pub(super) fn read_brackets(pieces: &[Piece], target: &Target) -> Reading {
                 return instruction;
             }
             let operand = read_operand(word, target);
+            // `[ T1 K10 ]`: a timer with its preset is driven, not asked.
+            if let [preset] = rest
+                && target.is_fx()
+                && is_preset(&operand.value, &target.read(preset.text))
+            {
+                let operands = vec![operand, read_operand(preset, target)];
+                return Reading::new(ElementKind::Coil(CoilKind::Plain), operands, Wants::Nothing);
+            }
             let is_operand = !target.is_fx() || !matches!(operand.value, Operand::Invalid(_));
             if rest.is_empty() || (target.is_fx() && is_operand) {
                 let mut reading = contact(ContactKind::NormallyOpen, vec![operand]);
@@ -241,7 +249,10 @@ fn contact_kind(mark: &Piece) -> Option<ContactKind> {
 
 /// The contact that an instruction in series draws.
 fn contact_mnemonic(word: &Piece) -> Option<ContactKind> {
-    const MNEMONICS: [(&str, ContactKind); 10] = [
+    const MNEMONICS: [(&str, ContactKind); 12] = [
+        // Examine if closed, examine if open: the words of Allen-Bradley.
+        ("XIC", ContactKind::NormallyOpen),
+        ("XIO", ContactKind::NormallyClosed),
         ("LD", ContactKind::NormallyOpen),
         ("AND", ContactKind::NormallyOpen),
         ("LDI", ContactKind::NormallyClosed),
@@ -259,7 +270,7 @@ fn contact_mnemonic(word: &Piece) -> Option<ContactKind> {
 
 /// The kind that the first word in parentheses gives a coil; `alone` if nothing follows it.
 fn coil_kind(word: &Piece, alone: bool) -> Option<CoilKind> {
-    const MARKS: [(&str, CoilKind); 10] = [
+    const MARKS: [(&str, CoilKind); 13] = [
         ("/", CoilKind::Negated),
         ("S", CoilKind::Set),
         ("L", CoilKind::Set),
@@ -270,6 +281,10 @@ fn coil_kind(word: &Piece, alone: bool) -> Option<CoilKind> {
         ("T", CoilKind::Toggle),
         ("↑", CoilKind::Rising),
         ("↓", CoilKind::Falling),
+        // Output energise, latch, unlatch: the words of Allen-Bradley.
+        ("OTE", CoilKind::Plain),
+        ("OTL", CoilKind::Set),
+        ("OTU", CoilKind::Reset),
     ];
     // Mnemonics of the same meaning; alone they could be names.
     const MNEMONICS: [(&str, CoilKind); 5] = [

@@ -9,10 +9,11 @@ use super::ragged::TWO_READINGS;
 use super::reduce::reduce;
 use super::symbol::width;
 use super::{
-    Drawing, Element, ElementKind, LadderTree, NameHabit, Rung, Style, StyleKind, parse, parse_with, split,
+    Drawing, Element, ElementKind, LadderTree, NameHabit, OperandPlace, Rung, Style, StyleKind, parse,
+    parse_with, split,
 };
 use crate::target::Target;
-use crate::text::{Diagnostic, Span};
+use crate::text::{Diagnostic, Span, TextEdit};
 
 /// Whether redrawing mends a problem. Every other one means that the rung may not say what its author meant.
 fn is_mended(problem: &Diagnostic) -> bool {
@@ -123,6 +124,40 @@ pub fn format_chunk(chunk: &str, tree: &LadderTree, target: &Target, page: &Page
     }
     let formatted = lines.with_rungs(tree, &taken, page);
     (formatted != chunk).then_some(formatted)
+}
+
+/// The edit that draws the rung with `offset` in it as it was read, and leaves the rest of the chunk as it is.
+/// `tree` may be one of several readings of the chunk. Nothing if the rung cannot be drawn, or is drawn so already.
+pub fn redraw(chunk: &str, tree: &LadderTree, offset: u32, target: &Target) -> Option<TextEdit> {
+    let number = tree.rungs.iter().position(|rung| rung.span.start <= offset && offset < rung.span.end)?;
+    let rung = &tree.rungs[number];
+    let lines = Lines::of(chunk);
+    let is_box_drawing = |c: char| ('\u{2500}'..='\u{257F}').contains(&c);
+    let inside = rung.graph.elements.iter().filter(|element| element.place == OperandPlace::Inside);
+    let kind = match inside.count() * 2 > rung.graph.elements.len() {
+        true => StyleKind::Brackets,
+        false if rung.span.of(chunk).contains(is_box_drawing) => StyleKind::Unicode,
+        false => StyleKind::Iec,
+    };
+    // Other rungs of the chunk that have their rail further right keep it there, and so does this one.
+    let usual = tree.rungs.iter().flat_map(|rung| &rung.right_rail).map(|rail| rail.value + 1).max();
+    let style = Style { kind, width: usual.unwrap_or(0).max(Style::default().width) };
+    let page = Page::of([(chunk, tree)], &style);
+    let text = drawing(chunk, tree, rung, &lines, kind)?.paint(page.rail)?;
+    let mut drawn = vec![None; tree.rungs.len()];
+    drawn[number] = Some(text);
+    let formatted = lines.with_rungs(tree, &drawn, &page);
+    if formatted == chunk || !same(chunk, tree, &formatted, target) {
+        return None;
+    }
+    // The lines that stay are no part of the edit.
+    let (old, new) = (Lines::of(chunk), Lines::of(&formatted));
+    let common = old.lines.iter().zip(&new.lines).take_while(|(a, b)| a == b).count();
+    let (old_rest, new_rest) = (&old.lines[common..], &new.lines[common..]);
+    let tail = old_rest.iter().rev().zip(new_rest.iter().rev()).take_while(|(a, b)| a == b).count();
+    let (start, end) = (old.starts[common], old.starts[old.lines.len() - tail]);
+    let new_end = new.starts[new.lines.len() - tail];
+    Some(TextEdit::new(Span::new(start, end), formatted.get(new.starts[common]..new_end)?))
 }
 
 /// Whether `formatted` reads as the same rungs, with no further problem and all comments.

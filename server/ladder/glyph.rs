@@ -86,6 +86,28 @@ pub(super) fn contact_mark(character: char) -> Option<super::ContactKind> {
     })
 }
 
+/// The directions in which a character's lines run.
+#[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
+pub struct Strokes {
+    /// To the cell on the left.
+    pub left: bool,
+    /// To the cell on the right.
+    pub right: bool,
+    /// To the cell above.
+    pub up: bool,
+    /// To the cell below.
+    pub down: bool,
+}
+
+impl Strokes {
+    /// The strokes of `character`; none if it draws no line. `+` and `*` run in all four directions.
+    pub fn of(character: char) -> Strokes {
+        let Arms(arms) = Arms::of(character);
+        let has = |arm: u8| arms & arm != 0;
+        Strokes { left: has(LEFT), right: has(RIGHT), up: has(UP), down: has(DOWN) }
+    }
+}
+
 /// Whether a word may start with `character`: names, devices, numbers, `%` addresses, quoted text.
 pub(super) fn starts_word(character: char) -> bool {
     character.is_alphanumeric() || matches!(character, '%' | '\'' | '"' | '#' | '$' | '@')

@@ -123,6 +123,11 @@ impl Grid {
         self.fill(row, columns, ' ');
     }
 
+    /// Draws wire over names that stand in it.
+    pub(super) fn draw_wire(&mut self, row: usize, columns: Range<usize>) {
+        self.fill(row, columns, '-');
+    }
+
     /// Draws wire over the negation circle in cell `circle`.
     pub(super) fn bridge(&mut self, row: usize, circle: Option<usize>) {
         if let Some(circle) = circle {

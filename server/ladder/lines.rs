@@ -293,6 +293,13 @@ pub fn column_after(column: u32, character: char) -> u32 {
     }
 }
 
+/// The displayed column, from 0, of byte `offset` in its line of `text`.
+pub fn column_of(text: &str, offset: u32) -> u32 {
+    let before = text.get(..offset as usize).unwrap_or("");
+    let line = before.rsplit('\n').next().unwrap_or("");
+    line.chars().fold(0, column_after)
+}
+
 /// Displayed cells of a character other than a tab; a byte-order mark has none.
 pub(super) fn display_width(character: char) -> u32 {
     if character == '\u{FEFF}' { 0 } else { cell_width(character) as u32 }
@@ -373,7 +380,21 @@ fn declaration(words: &str) -> Option<Option<&'static str>> {
     let end = words.find(|c: char| !super::glyph::continues_word(c)).unwrap_or(words.len());
     let keyword = &words[..end];
     let (_, section) = DECLARATIONS.iter().find(|(name, _)| name.eq_ignore_ascii_case(keyword))?;
+    let is_pou =
+        ["PROGRAM", "FUNCTION", "FUNCTION_BLOCK"].iter().any(|name| name.eq_ignore_ascii_case(keyword));
+    if is_pou && is_heading(&words[end..]) {
+        return None;
+    }
     Some(section.filter(|last| !has_word(&words[end..], last)))
+}
+
+/// Whether what stands behind the keyword of a POU makes it a heading in prose: more words than the name, and none of
+/// them begins a section.
+fn is_heading(rest: &str) -> bool {
+    let plain = rest.chars().all(|c| super::glyph::continues_word(c) || is_blank(c));
+    let mut words = rest.split_whitespace().skip(1).peekable();
+    let declares = |word: &str| DECLARATIONS.iter().any(|(name, _)| name.eq_ignore_ascii_case(word));
+    plain && words.peek().is_some() && !words.any(declares)
 }
 
 /// Whether `word` stands in `line`, letter case aside.

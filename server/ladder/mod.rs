@@ -11,16 +11,25 @@ mod reader;
 pub use reader::{Choice, parse, parse_choosing, parse_with};
 
 mod lines;
-pub use lines::column_after;
+pub use lines::{column_after, column_of};
 
 mod glyph;
+pub use glyph::Strokes;
 
 mod grid;
+
+mod beside;
+
+mod frame;
+
+mod inline;
 
 mod blocks;
 
 mod ldmicro;
-pub use ldmicro::{BoxKind, NameKind, TableRow, table_rows, time_literal};
+pub use ldmicro::{
+    BoxKind, Import, ImportError, NameKind, Note, TableRow, import, table_rows, time_literal,
+};
 
 mod scan;
 
@@ -65,4 +74,4 @@ mod printer;
 pub use printer::{Drawing, Style, StyleKind, print};
 
 mod format;
-pub use format::{Page, format, format_chunk};
+pub use format::{Page, format, format_chunk, redraw};

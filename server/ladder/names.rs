@@ -92,6 +92,7 @@ impl Naming<'_> {
         for (symbol, words) in owned.iter().enumerate() {
             self.give(symbol, words);
         }
+        self.mend_in_order(&mut words, &mut named, names_below);
         self.mend(&mut words, &mut named);
         self.report_stray(&words, names_below);
         self.report_missing(&words);
@@ -418,9 +419,50 @@ impl Naming<'_> {
         last.owner.is_none().then(|| self.grid.span(word.row, word.start, last.end))
     }
 
+    /// In a line that has as many names as the line of elements beside it, the names are those of the elements in
+    /// their order, although one may stand beside its element or over two.
+    fn mend_in_order(&mut self, words: &mut [Word], named: &mut Named, names_below: bool) {
+        const ASIDE: usize = 8;
+        let mut start = 0;
+        while start < words.len() {
+            let row = words[start].row;
+            let end = start + words[start..].partition_point(|word| word.row == row);
+            let (line, first) = (&words[start..end], start);
+            start = end;
+            if line.iter().all(|word| word.owner.is_some()) {
+                continue;
+            }
+            let near = if names_below { row.checked_sub(1) } else { Some(row + 1) };
+            let Some(tokens) = near.and_then(|near| self.tokens.rows.get(near)) else { continue };
+            let symbols: Vec<usize> = tokens
+                .iter()
+                .filter_map(|token| match token.what {
+                    What::Symbol(symbol) => Some(symbol),
+                    _ => None,
+                })
+                .collect();
+            let fits = |(word, symbol): (&Word, &usize)| {
+                let found = &self.tokens.symbols[*symbol];
+                let gap = found.start.saturating_sub(word.end).max(word.start.saturating_sub(found.end));
+                match word.owner {
+                    Some(owner) => owner == *symbol,
+                    None => is_nameless(found) && gap <= ASIDE,
+                }
+            };
+            if line.len() != symbols.len() || !line.iter().zip(&symbols).all(fits) {
+                continue;
+            }
+            for (number, symbol) in (first..end).zip(symbols) {
+                if words[number].owner.is_none() {
+                    self.give_aside(number, symbol, words, named);
+                }
+            }
+        }
+    }
+
     /// Gives words that miss their element by a column or two to it, if there is only one reading.
     fn mend(&mut self, words: &mut [Word], named: &mut Named) {
-        const ASIDE: usize = 1;
+        const ASIDE: usize = 2;
         let mut wanted: rustc_hash::FxHashMap<usize, Vec<usize>> = rustc_hash::FxHashMap::default();
         for (number, word) in words.iter().enumerate() {
             let unclear =
@@ -437,22 +479,27 @@ impl Naming<'_> {
         let mut wanted: Vec<_> = wanted.into_iter().filter(|(_, words)| words.len() == 1).collect();
         wanted.sort_unstable();
         for (symbol, numbers) in wanted {
-            let word = words[numbers[0]];
-            words[numbers[0]].owner = Some(symbol);
-            let rows = &mut named.rows[symbol];
-            *rows = Some(rows.map_or((word.row, word.row), |(a, b)| (a.min(word.row), b.max(word.row))));
-            self.give(symbol, &[word]);
-            let span = self.grid.span(word.row, word.start, word.end);
-            let found = &self.tokens.symbols[symbol];
-            let message = Message::new("ragged-drawing.operand").with("text", span.of(self.text));
-            let mut problem = Diagnostic::new("ragged-drawing", span, message)
-                .related(found.element.span, Message::new("stray-operand.element"));
-            if let Some(edit) = self.moved(&word, found) {
-                let title = Message::new("stray-operand.move").with("text", span.of(self.text));
-                problem = problem.fix(title, vec![edit]);
-            }
-            self.problems.push(problem);
+            self.give_aside(numbers[0], symbol, words, named);
         }
+    }
+
+    /// Gives a word to a symbol beside which it stands, and says so.
+    fn give_aside(&mut self, number: usize, symbol: usize, words: &mut [Word], named: &mut Named) {
+        let word = words[number];
+        words[number].owner = Some(symbol);
+        let rows = &mut named.rows[symbol];
+        *rows = Some(rows.map_or((word.row, word.row), |(a, b)| (a.min(word.row), b.max(word.row))));
+        self.give(symbol, &[word]);
+        let span = self.grid.span(word.row, word.start, word.end);
+        let found = &self.tokens.symbols[symbol];
+        let message = Message::new("ragged-drawing.operand").with("text", span.of(self.text));
+        let mut problem = Diagnostic::new("ragged-drawing", span, message)
+            .related(found.element.span, Message::new("stray-operand.element"));
+        if let Some(edit) = self.moved(&word, found) {
+            let title = Message::new("stray-operand.move").with("text", span.of(self.text));
+            problem = problem.fix(title, vec![edit]);
+        }
+        self.problems.push(problem);
     }
 
     fn report_stray(&mut self, words: &[Word], names_below: bool) {
@@ -491,8 +538,14 @@ impl Naming<'_> {
                     Message::new("stray-operand.two").with("text", text),
                 );
                 for symbol in [first, second] {
-                    let element = self.tokens.symbols[symbol].element.span;
-                    problem = problem.related(element, Message::new("stray-operand.element"));
+                    let symbol = &self.tokens.symbols[symbol];
+                    problem = problem.related(symbol.element.span, Message::new("stray-operand.element"));
+                    if let Some(edit) = self.moved(word, symbol) {
+                        let column = symbol.start + 1;
+                        let title =
+                            Message::new("stray-operand.move-to").with("text", text).with("column", column);
+                        problem = problem.fix(title, vec![edit]);
+                    }
                 }
                 self.problems.push(problem);
                 continue;

@@ -1,15 +1,15 @@
 //! Tolerance for lines that miss each other by a column or two, the norm in drawings by hand.
 //!
 //! Between two rows, the ends of vertical wires that run down and those that run up *seek* each other. A bar that
-//! ends in the air and a corner that only one wire reaches must go on, a junction in the middle of a wire should. Of all ways
-//! to join seekers that do not cross, the one that leaves the fewest in the air is the reading; where two ways are as
-//! good, both are reported and neither is taken.
+//! ends in the air and a corner that only one wire reaches must go on, a junction in the middle of a wire should.
+//! Of all ways to join seekers that do not cross, the one that leaves the fewest in the air is the reading; where two
+//! ways are as good, both are reported and neither is taken.
 
 use super::Choice;
 use super::grid::Grid;
 use super::scan::{Token, Tokens, What};
 use super::uprights::{Role, Upright, Uprights, reached_from_output};
-use crate::text::{Diagnostic, Message, Span};
+use crate::text::{Diagnostic, Message, Related, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::cmp::Reverse;
 
@@ -21,7 +21,7 @@ const FAR_ASIDE: usize = 8;
 const MOST_SEEKERS: usize = 10;
 
 /// The message about a wire that can be read in two ways.
-pub const TWO_READINGS: &str = "ragged-drawing.two";
+pub const TWO_READINGS: &str = "ragged-drawing.either";
 
 const JUNCTION: &str = "ragged-drawing.junction";
 
@@ -53,17 +53,31 @@ enum Wants {
 
 /// Mends the vertical wires of a drawing, see the module; what it read so is reported as `ragged-drawing`.
 pub(super) struct Mender<'a> {
-    pub(super) uprights: &'a mut Uprights,
-    pub(super) grid: &'a Grid,
-    pub(super) tokens: &'a Tokens,
-    /// The leftmost column in which a line is drawn.
-    pub(super) left: usize,
-    /// A reading that was chosen where there are two.
-    pub(super) choice: Option<Choice>,
-    pub(super) problems: &'a mut Vec<Diagnostic>,
+    uprights: &'a mut Uprights,
+    grid: &'a Grid,
+    tokens: &'a Tokens,
+    left: usize,
+    problems: &'a mut Vec<Diagnostic>,
+    choice: Option<Choice>,
+    found: Vec<Diagnostic>,
+    /// The finding about each joint that was made, by what is off and how.
+    numbers: FxHashMap<(Span, &'static str), usize>,
 }
 
-impl Mender<'_> {
+impl<'a> Mender<'a> {
+    /// `left` is the leftmost column in which a line is drawn, `choice` a reading that is to be taken where there are
+    /// two.
+    pub(super) fn new(
+        uprights: &'a mut Uprights,
+        (grid, tokens): (&'a Grid, &'a Tokens),
+        left: usize,
+        choice: Option<Choice>,
+        problems: &'a mut Vec<Diagnostic>,
+    ) -> Mender<'a> {
+        let (found, numbers) = (Vec::new(), FxHashMap::default());
+        Mender { uprights, grid, tokens, left, problems, choice, found, numbers }
+    }
+
     pub(super) fn mend(mut self) {
         let mut seekers = self.seekers();
         if seekers.iter().all(|seeker| seeker.wants == Wants::Nothing) {
@@ -83,6 +97,7 @@ impl Mender<'_> {
         let mut rest: Vec<Seeker> = seekers.iter().copied().filter(alone).collect();
         self.join_over_gaps(&mut rest);
         self.join_displaced(&rest);
+        self.report();
     }
 
     /// The open ends of all vertical wires but those of the rails.
@@ -194,8 +209,8 @@ impl Mender<'_> {
         rest.retain(|_| !taken.next().unwrap_or(false));
     }
 
-    /// Joins a vertical wire, both of whose ends are in the air, with the junctions above and below that lack one: they
-    /// stand in one column, and there is no other in their rows.
+    /// Joins a vertical wire, both of whose ends are in the air, with the junctions above and below that lack one:
+    /// they stand in one column, and there is no other in their rows.
     fn join_displaced(&mut self, rest: &[Seeker]) {
         let in_row = |row: usize| {
             let from = rest.partition_point(|seeker| seeker.row < row);
@@ -213,9 +228,9 @@ impl Mender<'_> {
             let (Some(upper), Some(lower)) = (only(top.row - 1, false), only(last.row + 1, true)) else {
                 continue;
             };
-            let alone = [top.row, last.row]
-                .iter()
-                .all(|row| in_row(*row).filter(|other| other.bare).all(|other| other.number == top.number));
+            let alone = [(top.row, top.number), (last.row, last.token)].iter().all(|(row, number)| {
+                in_row(*row).filter(|other| other.bare).all(|other| other.number == *number)
+            });
             let straight = upper.token.start == lower.token.start;
             if straight && alone && upper.token.start.abs_diff(top.token.start) <= FAR_ASIDE {
                 self.join(&upper, top, "ragged-drawing.beside");
@@ -238,21 +253,15 @@ impl Mender<'_> {
         self.uprights.append(above, below);
         // A bar is what is off, if only one of the two is one.
         let (own, other) = if upper.bare && !lower.bare { (upper, lower) } else { (lower, upper) };
-        let (own, other) = (self.span(own), self.span(other));
-        let message = Message::new(message);
-        // An end that seemed to stand on an element belongs beside it.
-        self.problems.retain(|problem| {
-            problem.code != "contact-on-vertical" || problem.related.iter().all(|related| related.span != own)
-        });
         // A wire in one row that misses its junctions at both ends is one finding.
-        let same = |problem: &&mut Diagnostic| problem.span == own && problem.message == message;
-        match self.problems.iter_mut().find(same) {
-            Some(problem) => *problem = problem.clone().related(other, Message::new(JUNCTION)),
-            None => {
-                let problem = Diagnostic::new("ragged-drawing", own, message);
-                self.problems.push(problem.related(other, Message::new(JUNCTION)));
-            }
-        }
+        let (own, other) = (self.span(own), self.span(other));
+        let found = &mut self.found;
+        let number = *self.numbers.entry((own, message)).or_insert_with(|| {
+            found.push(Diagnostic::new("ragged-drawing", own, Message::new(message)));
+            found.len() - 1
+        });
+        let junction = Related { file: None, span: other, message: Message::new(JUNCTION) };
+        found[number].related.push(junction);
     }
 
     fn report_two<'s>(&mut self, own: &Seeker, others: impl Iterator<Item = &'s Seeker>) {
@@ -264,7 +273,17 @@ impl Mender<'_> {
             let message = Message::new("ragged-drawing.reading").with("column", other.token.start + 1);
             problem = problem.related(self.span(other), message);
         }
-        self.problems.push(problem);
+        self.found.push(problem);
+    }
+
+    /// Hands the findings over. An end that seemed to stand on an element belongs beside it.
+    fn report(self) {
+        let ends: FxHashSet<Span> = self.found.iter().map(|found| found.span).collect();
+        self.problems.retain(|problem| {
+            let on_end = || problem.related.iter().any(|related| ends.contains(&related.span));
+            problem.code != "contact-on-vertical" || !on_end()
+        });
+        self.problems.extend(self.found);
     }
 
     fn span(&self, seeker: &Seeker) -> Span {
@@ -293,7 +312,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Tries all partners for the first of `lowers` among the uppers from `from` on. `score` is what the pairs so far wanted.
+    /// Tries all partners for the first of `lowers` among the uppers from `from` on. `score` is what the pairs so far
+    /// wanted.
     fn run(&mut self, lowers: &[usize], from: usize, score: usize) {
         let Some((lower, rest)) = lowers.split_first() else {
             if score > self.score {

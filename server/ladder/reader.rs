@@ -1,9 +1,12 @@
 //! Reads a chunk: lines, grid, tokens, wires, names, and from these the graph of each rung.
 
+use super::beside::take_beside;
 use super::blocks::find_blocks;
 use super::chunks::{ChunkKind, kind_of};
+use super::frame::take_frame;
 use super::glyph::Arms;
 use super::grid::{Grid, MOST_COLUMNS, MOST_ROWS};
+use super::inline::{give_inline, take_inline};
 use super::ldmicro::find_boxes;
 use super::lines::{HeaderLine, LineKind, Lines, OpenComment};
 use super::names::{Named, Naming};
@@ -87,12 +90,19 @@ fn read_drawing(
     (habit, choice): (NameHabit, Option<Choice>),
     tree: &mut LadderTree,
 ) {
+    take_beside(&mut grid, &mut tree.problems);
+    let captions = take_frame(&mut grid);
+    for row in captions {
+        grid.clear(row, 0..usize::MAX);
+    }
     let left = left_column(&grid);
     let (mut symbols, mut blocks) = find_blocks(&mut grid, text, target);
     find_boxes(&mut grid, text, target, &mut symbols, &mut blocks);
+    let inline = take_inline(&mut grid);
     let problems = &mut tree.problems;
     let scanner = Scanner { grid: &grid, text, target, left, symbols, problems };
     let mut tokens = scanner.scan(&blocks);
+    give_inline(&inline, &mut tokens, target, text);
     let wired = |what| matches!(what, What::Wire | What::Symbol(_));
     if !tokens.rows.iter().flatten().any(|token| wired(token.what)) {
         report_text(&grid, &tokens, problems);

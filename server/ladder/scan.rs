@@ -204,6 +204,10 @@ impl Scanner<'_> {
         let at = |column: usize| self.grid.at(row, column);
         let first = at(column);
         let after_wire = column > 0 && Arms::of(at(column - 1)).is_horizontal();
+        // `???` stands where a name is still to be given.
+        if first == '?' && at(column + 1) == '?' {
+            return (column..=self.grid.width(row)).find(|c| at(*c) != '?');
+        }
         let named = first == '_' && !after_wire && at(column + 1).is_alphanumeric();
         let address = first != '%' || at(column + 1).is_alphabetic();
         if !(named || starts_word(first) && address) {
@@ -285,7 +289,7 @@ impl Scanner<'_> {
         let end = self.contact_end(row, column)?;
         let linked = [column, end - 1].map(|bar| self.linked(row, bar));
         let outer = [column > 0 && self.leads(row, column - 1), self.leads(row, end)];
-        let blank = self.grid.at(row, column + 1) == ' ';
+        let blank = self.grid.at(row, column + 1) == ' ' || end == column + 2;
         let (some_linked, all_linked) = (linked[0] || linked[1], linked[0] && linked[1]);
         if column == self.left || (blank && all_linked) || (some_linked && outer != [true, true]) {
             return None;
@@ -318,6 +322,12 @@ impl Scanner<'_> {
             return None;
         }
         let mark = self.grid.at(row, column + 1);
+        let wire = |column: usize| self.grid.arms(row, column).is_horizontal();
+        // `--||--`: two bars in the middle of a wire that belong to nothing above and below.
+        let touching = column > 0 && closes(column + 1) && wire(column - 1) && wire(column + 2);
+        if touching && !self.linked_raw(row, column) && !self.linked_raw(row, column + 1) {
+            return Some(column + 2);
+        }
         let end = if contact_mark(mark).is_some() && closes(column + 2) {
             column + 3
         } else if is_operator(mark) {

@@ -42,6 +42,8 @@ pub(super) enum Role {
     Loose,
     /// It joins nothing.
     Stray,
+    /// A line between the parts of a figure, such as conditions and outputs: every wire passes through.
+    Separator,
 }
 
 /// The vertical wires of a drawing.
@@ -69,11 +71,18 @@ impl Uprights {
         problems: &mut Vec<Diagnostic>,
     ) -> Uprights {
         let mut found = Uprights::linked(tokens);
-        Mender { uprights: &mut found, grid, tokens, left, choice, problems }.mend();
+        Mender::new(&mut found, (grid, tokens), left, choice, problems).mend();
         let right =
             tokens.rows.iter().flatten().filter(|token| token.is_drawn()).map(|t| t.end).max().unwrap_or(0);
         for upright in found.all.iter_mut().filter(|upright| !upright.cells.is_empty()) {
             join(upright, tokens);
+            if is_separator(upright, tokens) {
+                for cell in &mut upright.cells {
+                    (cell.crossed, cell.left, cell.right) = (cell.crossed || cell.left, false, false);
+                }
+                upright.role = Role::Separator;
+                continue;
+            }
             upright.role = role_of(upright, tokens, left, right);
         }
         report_left_rail(&found, grid, tokens, problems);
@@ -166,6 +175,18 @@ fn join(upright: &mut Upright, tokens: &Tokens) {
         let cell = &mut upright.cells[number];
         (cell.left, cell.right, cell.crossed) = (left && !crossed, right && !crossed, crossed);
     }
+}
+
+/// Whether a line of bars only crosses wires, and at most one that it could join with nothing but its own loose end.
+fn is_separator(upright: &Upright, tokens: &Tokens) -> bool {
+    let cells = &upright.cells;
+    let bars = cells.len() > 1 && cells.iter().all(|cell| arms(tokens, cell).is_vertical());
+    let passed = |cell: &&Cell| cell.crossed || (cell.left && cell.right);
+    let bare = |cell: &&Cell| !cell.crossed && !cell.left && !cell.right;
+    bars && cells.iter().any(|cell| passed(&cell))
+        && cells.iter().any(|cell| bare(&cell))
+        && cells.iter().all(|cell| passed(&cell) || bare(&cell))
+        && cells.iter().filter(|cell| cell.left).count() <= 1
 }
 
 fn role_of(upright: &Upright, tokens: &Tokens, left: usize, right: usize) -> Role {

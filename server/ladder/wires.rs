@@ -1,7 +1,7 @@
 //! Tokens to links: which wire leads from where to where.
 
 use super::grid::Grid;
-use super::ragged::ASIDE;
+use super::ragged::{ASIDE, TWO_READINGS};
 use super::scan::{Token, Tokens, What};
 use super::uprights::{Cell, Role, Upright, Uprights};
 use super::{ElementKind, PinWire};
@@ -66,6 +66,8 @@ pub(super) struct Tracer<'a> {
     problems: &'a mut Vec<Diagnostic>,
     /// Elements that have been reported to stand on a vertical wire.
     reported: FxHashSet<Span>,
+    /// Ends of vertical wires that can be read in two ways.
+    in_doubt: FxHashSet<Span>,
     /// The column of the left rail, if there is one.
     left_rail: Option<usize>,
 }
@@ -80,6 +82,8 @@ impl<'a> Tracer<'a> {
         let wiring = Wiring::default();
         let on_vertical = problems.iter().filter(|problem| problem.code == "contact-on-vertical");
         let reported = on_vertical.map(|problem| problem.span).collect();
+        let two = problems.iter().filter(|problem| problem.message.key() == TWO_READINGS);
+        let in_doubt = two.map(|problem| problem.span).collect();
         let rails = || uprights.all.iter().filter(|upright| upright.role == Role::LeftRail);
         let column = |cell: &Cell| tokens.rows[cell.row][cell.token].start;
         let wired = rails().flat_map(|rail| &rail.cells).filter(|cell| cell.right).map(column).min();
@@ -95,6 +99,7 @@ impl<'a> Tracer<'a> {
             start: 0,
             problems,
             reported,
+            in_doubt,
             left_rail,
         }
     }
@@ -187,7 +192,7 @@ impl<'a> Tracer<'a> {
                 }
                 self.finish();
             }
-            Role::Stray => self.finish(),
+            Role::Stray | Role::Separator => self.finish(),
             Role::Loose => {
                 let end = self.loose(token.start);
                 if cell.left {
@@ -230,7 +235,7 @@ impl<'a> Tracer<'a> {
 
     fn report_on_vertical(&mut self, symbol: usize, wire: Span) {
         let element = &self.tokens.symbols[symbol].element;
-        if element.block().is_some() || !self.reported.insert(element.span) {
+        if element.block().is_some() || self.in_doubt.contains(&wire) || !self.reported.insert(element.span) {
             return;
         }
         let message = Message::new("contact-on-vertical.element");

@@ -42,11 +42,8 @@ pub(super) struct Requests {
     pub progress: bool,
     /// `workspace/diagnostic/refresh`.
     pub refresh_diagnostics: bool,
-    /// `workspace/inlayHint/refresh`, `workspace/semanticTokens/refresh`.
+    /// `workspace/inlayHint/refresh`.
     pub refresh_hints: bool,
-    pub refresh_tokens: bool,
-    /// `workspace/applyEdit`.
-    pub apply_edit: bool,
     /// Parts of LSP 3.18 that the protocol's types do not know yet.
     pub newer: Newer,
 }
@@ -142,11 +139,6 @@ impl Requests {
             progress,
             refresh_diagnostics: diagnostics.is_some_and(|one| one.refresh_support == Some(true)),
             refresh_hints: workspace.inlay_hint.as_ref().is_some_and(|one| one.refresh_support == Some(true)),
-            refresh_tokens: workspace
-                .semantic_tokens
-                .as_ref()
-                .is_some_and(|one| one.refresh_support == Some(true)),
-            apply_edit: workspace.apply_edit == Some(true),
             newer: Newer::default(),
         }
     }

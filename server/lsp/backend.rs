@@ -1,11 +1,13 @@
 //! The handlers: a few lines each, from the snapshot of the request to the answer of `ide`.
 
 use super::across;
+use super::editing;
 use super::{capabilities, features};
 use super::progress::Progress;
 use super::projects::Around;
 use super::pulled::{self, PartialReport, PartialReportParams};
 use super::to_proto::{self, Place};
+use super::tokens;
 use super::workspace::{Open, SNAPSHOT, Snapshot, Workspace};
 use crate::ide;
 use crate::text::{Language, Message};
@@ -20,16 +22,19 @@ use tower_lsp::ls_types::*;
 /// The server's side of the protocol. Its state is in the workspace; handlers see snapshots only.
 pub(super) struct Backend {
     workspace: Arc<Workspace>,
+    /// Whether the client asks for the edits of code actions later.
+    resolves_actions: AtomicBool,
 }
 
 impl Backend {
     pub(super) fn new(workspace: Arc<Workspace>) -> Backend {
-        Backend { workspace }
+        Backend { workspace, resolves_actions: AtomicBool::new(false) }
     }
 }
 
 impl LanguageServer for Backend {
     async fn initialize(&self, params: InitializeParams) -> Result<InitializeResult> {
+        self.resolves_actions.store(editing::resolves_actions(&params.capabilities), Ordering::Relaxed);
         // The workspace took what these say when the message was read.
         let Snapshot { manner, settings, .. } = self.workspace.snapshot();
         Ok(capabilities::offered(&params.capabilities, manner.encoding, settings.pulls(), self.workspace.requests()))
@@ -103,6 +108,10 @@ impl LanguageServer for Backend {
     async fn rename(&self, params: RenameParams) -> Result<Option<WorkspaceEdit>> {
         let at = params.text_document_position;
         let uri = at.text_document.uri;
+        let unknown = SNAPSHOT.with(|snapshot| snapshot.is_incomplete(snapshot.open(&uri)?));
+        if let Some(reason) = unknown {
+            return Err(refused(reason));
+        }
         let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
         let renamed = whole(uri.clone(), move |around, place| {
             across::rename(&snapshot, around, place, at.position, &params.new_name)
@@ -175,8 +184,30 @@ impl LanguageServer for Backend {
         &self,
         params: SemanticTokensParams,
     ) -> Result<Option<SemanticTokensResult>> {
-        whole(params.text_document.uri, |_, place| {
-            to_proto::semantic_tokens(place, &ide::semantic_tokens(place.document)).into()
+        let workspace = self.workspace.clone();
+        aside(params.text_document.uri, move |around, place| {
+            workspace.tokens.full(&around.here().uri, place).into()
+        })
+        .await
+    }
+
+    async fn semantic_tokens_full_delta(
+        &self,
+        params: SemanticTokensDeltaParams,
+    ) -> Result<Option<SemanticTokensFullDeltaResult>> {
+        let workspace = self.workspace.clone();
+        aside(params.text_document.uri, move |around, place| {
+            workspace.tokens.delta(&around.here().uri, &params.previous_result_id, place)
+        })
+        .await
+    }
+
+    async fn semantic_tokens_range(
+        &self,
+        params: SemanticTokensRangeParams,
+    ) -> Result<Option<SemanticTokensRangeResult>> {
+        aside(params.text_document.uri, move |_, place| {
+            tokens::within(place, place.span(params.range).range()).into()
         })
         .await
     }
@@ -238,14 +269,59 @@ impl LanguageServer for Backend {
     }
 
     async fn code_action(&self, params: CodeActionParams) -> Result<Option<CodeActionResponse>> {
-        whole(params.text_document.uri, move |around, place| {
-            let found = around.findings();
+        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let resolves = self.resolves_actions.load(Ordering::Relaxed);
+        whole(params.text_document.uri.clone(), move |around, place| {
+            let (open, found) = (around.here(), around.findings());
             let fixes = ide::fixes(&found, place.span(params.range)).into_iter();
             let fixes = fixes.map(|fix| quick_fix(around, place, &fix));
-            let rewrites = features::rewrites(around.here(), place, params.range);
-            fixes.chain(rewrites).map(|action| across::code_action(action, place.abilities)).collect()
+            let edits = editing::actions(open, place, &params, settings.style(&open.manifest), resolves);
+            let rewrites = features::rewrites(around.here(), place, &params);
+            fixes.chain(edits).chain(rewrites).map(|action| across::code_action(action, place.abilities)).collect()
         })
         .await
+    }
+
+    async fn on_type_formatting(
+        &self,
+        params: DocumentOnTypeFormattingParams,
+    ) -> Result<Option<Vec<TextEdit>>> {
+        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let at = params.text_document_position;
+        Ok(with_open(&at.text_document.uri, |open, place| {
+            let style = settings.style(&open.manifest);
+            let edits = ide::typed(place.document, place.offset(at.position), &params.ch, style);
+            Some(place.edits(&edits))
+        }))
+    }
+
+    async fn selection_range(&self, params: SelectionRangeParams) -> Result<Option<Vec<SelectionRange>>> {
+        Ok(with_open(&params.text_document.uri, |_, place| {
+            let positions = params.positions.iter();
+            Some(positions.map(|position| editing::selection_range(place, *position)).collect())
+        }))
+    }
+
+    async fn linked_editing_range(
+        &self,
+        params: LinkedEditingRangeParams,
+    ) -> Result<Option<LinkedEditingRanges>> {
+        let at = params.text_document_position_params;
+        Ok(with_open(&at.text_document.uri, |_, place| {
+            let places = ide::linked_places(place.document, place.offset(at.position));
+            let ranges = places.into_iter().map(|span| place.range(span)).collect::<Vec<_>>();
+            (!ranges.is_empty()).then_some(LinkedEditingRanges { ranges, word_pattern: None })
+        }))
+    }
+
+    async fn code_action_resolve(&self, action: CodeAction) -> Result<CodeAction> {
+        let Some(asked) = editing::asked_by(&action) else { return Ok(action) };
+        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let edit = with_open(&asked.text_document.uri, |open, place| {
+            let result = editing::edit(open, place, &asked, settings.style(&open.manifest));
+            Some(result.map(|result| editing::changes(open, result.edits)))
+        });
+        Ok(CodeAction { edit: edit.transpose()?, ..action })
     }
 
     async fn diagnostic(&self, params: DocumentDiagnosticParams) -> Result<DocumentDiagnosticReportResult> {
@@ -348,6 +424,23 @@ impl Backend {
         Ok(None)
     }
 
+    /// `rungwise/edit`
+    pub(super) async fn edit(&self, params: editing::EditParams) -> Result<Option<editing::EditResult>> {
+        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let edited = with_open(&params.text_document.uri, |open, place| {
+            Some(editing::edit(open, place, &params, settings.style(&open.manifest)))
+        });
+        edited.transpose()
+    }
+
+    /// `rungwise/object`
+    pub(super) async fn object(
+        &self,
+        params: editing::ObjectParams,
+    ) -> Result<Option<editing::ObjectResult>> {
+        Ok(with_open(&params.text_document.uri, |_, place| editing::object(place, &params)))
+    }
+
     /// Computes the edits and asks the client to apply them; the answer says how many there are.
     async fn format(&self, uri: Uri) -> Result<Option<LSPAny>> {
         let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
@@ -382,8 +475,17 @@ fn with_around<T>(uri: &Uri, answer: impl FnOnce(&Around, Place<'_>) -> Option<T
     answer(&around, Place::new(&around.here().document, snapshot.manner))
 }
 
-/// The same for answers that walk the whole document or other files: they run on a thread of their own.
+/// The same for answers that walk the whole document or other files: they run on a thread of their own, and the trees
+/// that they read go away with them.
 async fn whole<T: Send + 'static>(
+    uri: Uri,
+    answer: impl FnOnce(&Around, Place<'_>) -> T + Send + 'static,
+) -> Result<Option<T>> {
+    aside(uri, move |around, place| answer(around, Place { document: &place.document.lean(), ..place })).await
+}
+
+/// The same on a thread of its own, for answers that look at much of a document but read no trees.
+async fn aside<T: Send + 'static>(
     uri: Uri,
     answer: impl FnOnce(&Around, Place<'_>) -> T + Send + 'static,
 ) -> Result<Option<T>> {
@@ -395,9 +497,7 @@ async fn whole<T: Send + 'static>(
             None => snapshot.around_closed(&uri)?,
         };
         let around = around.cancellable(cancelled);
-        // The trees of a walk through the whole document go away with it.
-        let document = around.here().document.lean();
-        Some(answer(&around, Place::new(&document, snapshot.manner)))
+        Some(answer(&around, Place::new(&around.here().document, snapshot.manner)))
     })
     .await
 }
@@ -442,32 +542,16 @@ fn quick_fix(around: &Around, place: Place<'_>, fix: &ide::FixOf<'_>) -> CodeAct
 
 /// `{"errors", "warnings", "hints", "rungs", "steps", "capacity", "message"}`
 fn check_summary(around: &Around, language: Language) -> Value {
-    let found = around.findings();
-    let count = |severity| found.iter().filter(|diagnostic| diagnostic.severity == severity).count();
-    let [errors, warnings, hints] =
-        [crate::text::Severity::Error, crate::text::Severity::Warning, crate::text::Severity::Hint]
-            .map(count);
-    let status = ide::status(&around.here().document);
-    let key = match (errors + warnings, status.steps) {
-        (0, Some(_)) => "summary.passed-steps",
-        (0, None) => "summary.passed",
-        _ => "summary.failed",
-    };
-    let message = Message::new(key)
-        .with("errors", errors)
-        .with("warnings", warnings)
-        .with("hints", hints)
-        .with("rungs", status.rungs)
-        .with("steps", status.steps.unwrap_or(0))
-        .with("capacity", status.capacity);
+    let mut summary = ide::Summary::default();
+    summary.add(&around.here().document, &around.findings());
     json!({
-        "errors": errors,
-        "warnings": warnings,
-        "hints": hints,
-        "rungs": status.rungs,
-        "steps": status.steps,
-        "capacity": status.capacity,
-        "message": message.render(language),
+        "errors": summary.errors,
+        "warnings": summary.warnings,
+        "hints": summary.hints,
+        "rungs": summary.rungs,
+        "steps": summary.steps,
+        "capacity": summary.capacity,
+        "message": summary.sentence().render(language),
     })
 }
 

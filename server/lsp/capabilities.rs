@@ -2,7 +2,7 @@
 
 use super::abilities::{Abilities, Requests};
 use super::features::USAGE_SCHEME;
-use super::to_proto;
+use super::{editing, to_proto};
 use crate::text::Encoding;
 use serde_json::json;
 use tower_lsp::ls_types::*;
@@ -124,13 +124,18 @@ pub(super) fn offered(
         }),
         code_action_provider: Some(CodeActionProviderCapability::Options(CodeActionOptions {
             code_action_kinds: Some(vec![CodeActionKind::QUICKFIX, CodeActionKind::REFACTOR_REWRITE]),
+            resolve_provider: Some(true),
             ..CodeActionOptions::default()
         })),
+        document_on_type_formatting_provider: Some(editing::on_type()),
+        selection_range_provider: Some(SelectionRangeProviderCapability::Simple(true)),
+        linked_editing_range_provider: Some(LinkedEditingRangeServerCapabilities::Simple(true)),
         inlay_hint_provider: Some(OneOf::Left(true)),
         semantic_tokens_provider: Some(SemanticTokensServerCapabilities::SemanticTokensOptions(
             SemanticTokensOptions {
                 legend: to_proto::legend(),
-                full: Some(SemanticTokensFullOptions::Bool(true)),
+                range: Some(true),
+                full: Some(SemanticTokensFullOptions::Delta { delta: Some(true) }),
                 ..SemanticTokensOptions::default()
             },
         )),

@@ -147,9 +147,14 @@ pub(super) fn table(snapshot: &Snapshot, around: &Around) -> Option<Arc<Open>> {
     Some(table.here().clone())
 }
 
-/// The actions that write a symbol for the device at `range`, or the device for a symbol.
-pub(super) fn rewrites(open: &Open, place: Place<'_>, range: Range) -> Vec<CodeAction> {
-    let rewrites = ide::rewrites(place.document, place.offset(range.start)).into_iter();
+/// The actions that write a symbol for the device at the cursor, or the device for a symbol.
+pub(super) fn rewrites(open: &Open, place: Place<'_>, params: &CodeActionParams) -> Vec<CodeAction> {
+    // A kind stands for all kinds below it.
+    let takes = |kind: &CodeActionKind| CodeActionKind::REFACTOR_REWRITE.as_str().starts_with(kind.as_str());
+    if params.context.only.as_ref().is_some_and(|only| !only.iter().any(takes)) {
+        return Vec::new();
+    }
+    let rewrites = ide::rewrites(place.document, place.offset(params.range.start)).into_iter();
     let action = |rewrite: ide::Rewrite| CodeAction {
         title: rewrite.title.render(place.language),
         kind: Some(CodeActionKind::REFACTOR_REWRITE),

@@ -38,20 +38,20 @@ impl Workspace {
     /// Files changed on the disk: manifests are read at once, program files in the background.
     pub(super) fn change_files(&self, params: DidChangeWatchedFilesParams) {
         let paths: Vec<PathBuf> = params.changes.iter().filter_map(|change| file_path(&change.uri)).collect();
-        let is_manifest = |path: &PathBuf| path.file_name().is_some_and(|name| name == MANIFEST_NAME);
-        if paths.iter().any(is_manifest) {
+        let is_manifest = |path: &&PathBuf| path.file_name().is_some_and(|name| name == MANIFEST_NAME);
+        // A client that does not say which files changed may mean any.
+        if params.changes.is_empty() || paths.iter().any(|path| is_manifest(&path)) {
             self.reread_projects();
         }
+        // The disk is asked before the state is locked.
+        let roots = paths.iter().filter(|path| is_manifest(path)).filter_map(|path| path.parent());
+        let roots: Vec<_> = roots.map(|root| (canonical(root), root.to_path_buf())).collect();
+        let paths: Vec<_> = paths.iter().map(|path| canonical(path)).collect();
         let state = self.state();
         let Some(keeper) = &state.keeper else { return };
-        for path in paths {
-            if is_manifest(&path)
-                && let Some(root) = path.parent()
-            {
-                keeper.read(canonical(root), root.to_path_buf());
-            }
-            let path = canonical(&path);
-            for (key, loaded) in state.snapshot.projects.iter().filter(|(key, _)| path.starts_with(key)) {
+        roots.into_iter().for_each(|(key, root)| keeper.read(key, root));
+        for (key, loaded) in state.snapshot.projects.iter() {
+            if paths.iter().any(|path| path.starts_with(key)) {
                 keeper.read(key.clone(), loaded.root.clone());
             }
         }

@@ -1,15 +1,16 @@
 //! The task that looks after projects: it reads their files, links them, and publishes what is found in those that are
 //! not open. One task, so that the disk is asked once at a time and no two pictures of a project compete.
 
-use super::projects::{Loaded, OnDisk, Stamp, canonical};
+use super::projects::{Loaded, OnDisk, canonical};
 use super::settings::Settings;
 use super::sheets;
 use super::to_proto;
-use super::workspace::{Open, Snapshot, Workspace, decided, read};
+use super::workspace::{Open, Snapshot, Workspace, decided, frugal};
 use crate::check;
 use crate::document::{Document, Exports};
 use crate::project::{
-    MANIFEST_NAME, MOST_FILE_BYTES, MOST_FILES, MOST_PROJECT_BYTES, Manifest, Project, projects_in,
+    MANIFEST_NAME, MOST_FILE_BYTES, MOST_FILES, MOST_PROJECT_BYTES, Manifest, Project, Stamp, projects_in,
+    read_text,
 };
 use crate::text::Message;
 use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
@@ -92,7 +93,8 @@ impl Keeper {
 struct Task {
     workspace: Weak<Workspace>,
     /// For each file that is not open what was published about it, as a hash; none stands for an empty list.
-    published: FxHashMap<Uri, Option<u64>>,
+    /// With the project to which it belongs.
+    published: FxHashMap<Uri, (Arc<Path>, Option<u64>)>,
     /// Projects of which the user was told that they are too large.
     told: FxHashSet<Arc<Path>>,
 }
@@ -126,14 +128,19 @@ impl Task {
                 let found = found.unwrap_or_default().into_iter();
                 batch.reads.extend(found.map(|root| (canonical(&root), root)));
             }
+            let mut changed: FxHashSet<Arc<Path>> = FxHashSet::default();
             for (key, root) in &batch.reads {
-                self.read(&workspace, key, root).await;
+                if self.read(&workspace, key, root).await {
+                    changed.insert(key.clone());
+                }
             }
             let keys: FxHashSet<&Arc<Path>> = batch.reads.keys().chain(batch.changed.keys()).collect();
             for key in keys {
-                let is_read = batch.reads.contains_key(key);
-                let by = batch.changed.get(key).filter(|by| !is_read && by.len() == 1);
-                self.link(&workspace, key, by.map_or(&[][..], Vec::as_slice)).await;
+                // A single document that changed is published already; others have to be judged anew.
+                let by = batch.changed.get(key).map_or(&[][..], Vec::as_slice);
+                let is_known = by.len() == 1 && !changed.contains(key);
+                let is_changed = !by.is_empty() || changed.contains(key);
+                self.link(&workspace, key, if is_known { by } else { &[] }, is_changed).await;
             }
         }
     }
@@ -151,7 +158,7 @@ impl Task {
             Order::Forget { key } => batch.forgotten.push(key),
             Order::Closed { key, uri } => {
                 // What the editor's text made be published is not known here, so it is replaced in any case.
-                self.published.insert(uri, Some(0));
+                self.published.insert(uri, (key.clone(), Some(0)));
                 if let Some(loaded) = workspace.snapshot().projects.get(&key) {
                     batch.reads.insert(key, loaded.root.clone());
                 }
@@ -164,12 +171,13 @@ impl Task {
         let Some(loaded) = snapshot.projects.get(key) else { return };
         workspace.adopt(key, None);
         for file in loaded.files.iter().filter_map(|file| file.file.as_ref()) {
-            self.publish(workspace, file.uri.clone(), Vec::new()).await;
+            self.publish(workspace, key, file.uri.clone(), Vec::new()).await;
             self.published.remove(&file.uri);
         }
     }
 
-    async fn read(&mut self, workspace: &Arc<Workspace>, key: &Arc<Path>, root: &Path) {
+    /// Reads a project; returns whether there is something new for its open documents.
+    async fn read(&mut self, workspace: &Arc<Workspace>, key: &Arc<Path>, root: &Path) -> bool {
         let snapshot = workspace.snapshot();
         let progress = workspace.progress(Message::new("project.reading")).await;
         let work = {
@@ -182,9 +190,12 @@ impl Task {
         match tokio::task::spawn_blocking(work).await {
             Ok(loaded) => {
                 self.tell_size(workspace, key, loaded.as_ref()).await;
-                workspace.adopt(key, loaded);
+                workspace.adopt(key, loaded)
             }
-            Err(failure) => tracing::error!("reading a project failed: {failure}"),
+            Err(failure) => {
+                tracing::error!("reading a project failed: {failure}");
+                false
+            }
         }
     }
 
@@ -207,23 +218,25 @@ impl Task {
 
     /// Links the files of a project and publishes what changed thereby; `by` is the only document that changed, if
     /// it was one: it is published already.
-    async fn link(&mut self, workspace: &Arc<Workspace>, key: &Arc<Path>, by: &[Uri]) {
+    async fn link(&mut self, workspace: &Arc<Workspace>, key: &Arc<Path>, by: &[Uri], is_changed: bool) {
         let linking = {
             let (workspace, key) = (workspace.clone(), key.clone());
             tokio::task::spawn_blocking(move || workspace.link(&key)).await
         };
         let mut done = linking.unwrap_or_default();
+        let is_changed = is_changed || !done.is_empty();
         done.extend_from_slice(by);
-        workspace.publish_project(key, &done);
+        if is_changed {
+            workspace.publish_project(key, &done);
+            workspace.refresh();
+        }
         self.publish_closed(workspace, key).await;
-        workspace.refresh_pulled();
     }
 
     /// Publishes what is found in the files of a project that are not open.
     async fn publish_closed(&mut self, workspace: &Arc<Workspace>, key: &Arc<Path>) {
         let snapshot = workspace.snapshot();
         let wanted = !snapshot.settings.pulls() && snapshot.settings.whole_project;
-        let folder = snapshot.projects.get(key).map(|loaded| loaded.root.clone());
         let found = match wanted {
             true => {
                 let (snapshot, key) = (snapshot.clone(), key.clone());
@@ -236,39 +249,40 @@ impl Task {
         let sheet = snapshot.projects.get(key).and_then(|loaded| sheets::findings(&snapshot, loaded));
         let sheet = sheet.filter(|_| !snapshot.settings.pulls());
         let found = found.into_iter().chain(sheet);
-        let mut gone: FxHashSet<Uri> = match &folder {
-            Some(folder) => self.published.keys().filter(|uri| is_below(uri, folder)).cloned().collect(),
-            None => FxHashSet::default(),
-        };
+        let of_project = |entry: &(&Uri, &(Arc<Path>, Option<u64>))| entry.1.0 == *key;
+        let mut gone: FxHashSet<Uri> =
+            self.published.iter().filter(of_project).map(|(uri, _)| uri.clone()).collect();
         for (uri, diagnostics) in found {
             gone.remove(&uri);
-            self.publish(workspace, uri, diagnostics).await;
+            self.publish(workspace, key, uri, diagnostics).await;
         }
         for uri in gone {
-            self.publish(workspace, uri.clone(), Vec::new()).await;
+            self.publish(workspace, key, uri.clone(), Vec::new()).await;
             self.published.remove(&uri);
         }
     }
 
-    async fn publish(&mut self, workspace: &Workspace, uri: Uri, diagnostics: Vec<Diagnostic>) {
+    async fn publish(
+        &mut self,
+        workspace: &Workspace,
+        key: &Arc<Path>,
+        uri: Uri,
+        diagnostics: Vec<Diagnostic>,
+    ) {
         if workspace.snapshot().open(&uri).is_some() {
             self.published.remove(&uri);
             return;
         }
         let text = serde_json::to_string(&diagnostics).unwrap_or_default();
         let hash = (!diagnostics.is_empty()).then(|| FxBuildHasher.hash_one(text) | 1);
-        if self.published.get(&uri).copied().flatten() == hash {
+        if self.published.get(&uri).and_then(|(_, hash)| *hash) == hash {
             return;
         }
-        self.published.insert(uri.clone(), hash);
+        self.published.insert(uri.clone(), (key.clone(), hash));
         workspace.client.publish_diagnostics(uri.clone(), diagnostics, None).await;
         // Opened in this moment, it would show what the disk had.
         workspace.publish_again(&uri);
     }
-}
-
-fn is_below(uri: &Uri, folder: &Path) -> bool {
-    super::projects::file_path(uri).is_some_and(|path| path.starts_with(folder))
 }
 
 /// What is found in each file of a project that is not open.
@@ -302,8 +316,7 @@ fn read_project(
     let comments_file = sheets::comments_file(root, &project.manifest, &snapshot.sheets);
     let comments = comments_file.as_ref().map(|file| file.comments.clone()).unwrap_or_default();
     // Another target or dialect reads the same text as another program.
-    let same =
-        old.is_some_and(|old| *old.manifest == project.manifest && Arc::ptr_eq(&old.settings, &settings));
+    let same = old.is_some_and(|old| *old.manifest == project.manifest && old.settings.reads_like(&settings));
     let known: FxHashMap<&Arc<Path>, &OnDisk> =
         old.into_iter().flat_map(|old| &old.files).map(|file| (&file.path, file)).collect();
     let paths = project.files_in_reach();
@@ -317,11 +330,17 @@ fn read_project(
         ..Loaded::default()
     };
     let severities = Arc::new(loaded.manifest.severities());
+    // A manifest may list a file twice.
+    let mut seen = FxHashSet::default();
     let (mut bytes, total) = (0, paths.len().min(MOST_FILES));
     for (number, path) in paths.into_iter().take(MOST_FILES).enumerate() {
         progress.report(number, total);
         let canonical_path = canonical(&path);
+        if !seen.insert(canonical_path.clone()) {
+            continue;
+        }
         let name = path.strip_prefix(root).unwrap_or(&path).to_string_lossy().replace('\\', "/");
+        let name = Arc::from(name);
         let stamp = Stamp::of(&path);
         let length = stamp.map_or(0, |stamp| stamp.bytes);
         let too_large = length > MOST_FILE_BYTES || bytes + length > MOST_PROJECT_BYTES;
@@ -335,7 +354,11 @@ fn read_project(
             continue;
         }
         // What is no file, such as a pipe, might never end.
-        let read = if too_large || stamp.is_none() { None } else { read_file(&path, &loaded.settings, &loaded.manifest) };
+        let read = if too_large || stamp.is_none() {
+            None
+        } else {
+            read_file(&path, &loaded.settings, &loaded.manifest)
+        };
         let read = read.map(|(uri, document)| (uri, document.commented(&comments)));
         let exports = read.as_ref().map(|(_, document)| Arc::new(Exports::of(document)));
         let file = read.map(|(uri, document)| {
@@ -358,8 +381,7 @@ fn read_project(
 
 fn read_file(path: &Path, settings: &Settings, manifest: &Manifest) -> Option<(Uri, Document)> {
     let uri = Uri::from_file_path(path)?;
-    let bytes = std::fs::read(path).ok()?;
-    let text = String::from_utf8_lossy(&bytes);
+    let text = read_text(path)?;
     let (notation, target) = decided(&uri, &text, manifest, settings, false);
-    Some((uri, read(&text, notation, target)))
+    Some((uri, frugal(&text, notation, target)))
 }

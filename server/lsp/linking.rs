@@ -1,21 +1,28 @@
 //! Keeps the files of a project informed about each other: what one declares, all others know.
 
 use super::projects::{Loaded, OnDisk};
-use super::workspace::{Open, Workspace};
+use super::workspace::{Open, Snapshot, Workspace};
 use crate::document::{Comments, Document, Exports, Outer};
 use std::path::Path;
 use std::sync::Arc;
 use tower_lsp::ls_types::Uri;
 
 impl Workspace {
-    /// Takes a project as it was read, or forgets one whose manifest is gone.
-    pub(super) fn adopt(&self, key: &Arc<Path>, loaded: Option<Loaded>) {
+    /// Takes a project as it was read, or forgets one whose manifest is gone; returns whether there is something new
+    /// for its open documents.
+    pub(super) fn adopt(&self, key: &Arc<Path>, loaded: Option<Loaded>) -> bool {
         let mut state = self.state();
+        let old = state.snapshot.projects.get(key).cloned();
+        let is_new = match (&old, &loaded) {
+            (Some(old), Some(new)) => !state.snapshot.shows_the_same(old, new),
+            (old, new) => old.is_some() || new.is_some(),
+        };
         let projects = Arc::make_mut(&mut state.snapshot.projects);
         match loaded {
             Some(loaded) => _ = projects.insert(key.clone(), Arc::new(loaded)),
             None => _ = projects.remove(key),
         }
+        is_new
     }
 
     /// Tells every file of a project what the others declare, and publishes the open documents for which that is
@@ -85,6 +92,22 @@ impl Workspace {
         if is_awaited {
             self.publish_project(key, &[]);
         }
+    }
+}
+
+impl Snapshot {
+    /// Whether two readings of a project have the same files with the same text, those that are open aside.
+    fn shows_the_same(&self, old: &Loaded, new: &Loaded) -> bool {
+        let same = |(old, new): (&OnDisk, &OnDisk)| {
+            let same_text = match (&old.file, &new.file) {
+                (Some(old), Some(new)) => Arc::ptr_eq(old, new),
+                (old, new) => old.is_none() && new.is_none(),
+            };
+            old.path == new.path && (same_text || self.open_at(&new.path).is_some())
+        };
+        old.files.len() == new.files.len()
+            && old.manifest == new.manifest
+            && old.files.iter().zip(&new.files).all(same)
     }
 }
 

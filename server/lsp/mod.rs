@@ -8,6 +8,7 @@ mod abilities;
 mod across;
 mod backend;
 mod capabilities;
+mod editing;
 mod features;
 mod folders;
 mod frames;
@@ -18,12 +19,16 @@ mod progress;
 mod projects;
 mod publisher;
 mod pulled;
+mod recording;
 mod service;
 mod sheets;
 mod settings;
 mod status;
 mod to_proto;
+mod tokens;
 mod workspace;
+
+pub use recording::{NoEntry, replay, serve_mirrored};
 
 use crate::text::Language;
 use service::Ordered;
@@ -57,14 +62,13 @@ pub async fn serve_between(
         workspace = Some(shared.clone());
         backend::Backend::new(shared)
     })
+    .custom_method("rungwise/edit", backend::Backend::edit)
+    .custom_method("rungwise/object", backend::Backend::object)
     .custom_method("textDocument/rangesFormatting", backend::Backend::ranges_formatting)
     .custom_method("workspace/textDocumentContent", backend::Backend::content)
     .finish();
     let Some(workspace) = workspace else { return 1 };
     let ordered = Ordered::new(service, workspace.clone());
-    Server::new(frames::sound(input), output, socket)
-        .concurrency_level(CONCURRENCY)
-        .serve(ordered)
-        .await;
+    Server::new(frames::sound(input), output, socket).concurrency_level(CONCURRENCY).serve(ordered).await;
     u8::from(!workspace.was_shut_down())
 }

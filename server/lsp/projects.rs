@@ -4,13 +4,12 @@ use super::settings::Settings;
 use super::workspace::{Open, Snapshot};
 use crate::check;
 use crate::document::{Comments, Exports, Member, Outer, ProjectView};
-use crate::project::{CommentsFile, Manifest};
-use crate::text::Diagnostic;
+use crate::project::{CommentsFile, Manifest, Stamp};
+use crate::text::{Diagnostic, Message};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use std::time::SystemTime;
 use tower_lsp::ls_types::Uri;
 
 /// The projects that were read, by the canonical path of their folder.
@@ -43,7 +42,7 @@ pub(super) struct OnDisk {
     /// The canonical path, by which an open document is known to be this file.
     pub path: Arc<Path>,
     /// The path from the project's folder with `/`, for people.
-    pub name: String,
+    pub name: Arc<str>,
     /// When and how long the file was, to know whether it must be read again.
     pub stamp: Option<Stamp>,
     /// What was read; nothing if the file is not there, too large or unreadable.
@@ -52,26 +51,11 @@ pub(super) struct OnDisk {
     pub exports: Arc<Exports>,
 }
 
-/// What tells a changed file from an unchanged one without reading it.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) struct Stamp {
-    pub modified: Option<SystemTime>,
-    pub bytes: u64,
-}
-
-impl Stamp {
-    /// That of the file at `path`; nothing if there is none.
-    pub(super) fn of(path: &Path) -> Option<Stamp> {
-        let data = std::fs::metadata(path).ok().filter(|data| data.is_file())?;
-        Some(Stamp { modified: data.modified().ok(), bytes: data.len() })
-    }
-}
-
 /// The files of the project of a document; a document that belongs to none stands alone.
 #[derive(Clone)]
 pub(super) struct Around {
     files: Vec<Arc<Open>>,
-    names: Vec<String>,
+    names: Vec<Arc<str>>,
     here: usize,
     is_listed: bool,
     /// Set when nobody waits for the answer any more.
@@ -128,7 +112,7 @@ impl Around {
 
     /// A file without others.
     pub fn alone(open: &Arc<Open>) -> Around {
-        Around { files: vec![open.clone()], names: vec![String::new()], ..Around::empty() }
+        Around { files: vec![open.clone()], names: vec![Arc::from("")], ..Around::empty() }
     }
 
     /// File number `number`.
@@ -156,7 +140,7 @@ impl Snapshot {
                 } else {
                     around.files.push(file);
                 }
-                around.names.push(name.to_string());
+                around.names.push(name.clone());
             }
         }
         if around.here == usize::MAX {
@@ -180,11 +164,23 @@ impl Snapshot {
         loaded.files.get(loaded.number_of(open)?)?.file.as_ref()
     }
 
+    /// Why nothing can be renamed in all files of the project of `open`, if so: they are not all known.
+    pub(super) fn is_incomplete(&self, open: &Open) -> Option<Message> {
+        let key = open.project.as_ref()?;
+        match self.projects.get(key) {
+            None => Some(Message::new("rename.reading")),
+            Some(loaded) if loaded.passed_over > 0 && loaded.number_of(open).is_some() => {
+                Some(Message::new("rename.passed-over").with("count", loaded.passed_over))
+            }
+            Some(_) => None,
+        }
+    }
+
     /// All of a project, seen from its first file; nothing if it has none.
     pub(super) fn project(&self, key: &Arc<Path>) -> Option<Around> {
         let loaded = self.projects.get(key)?;
         let (files, names): (Vec<_>, Vec<_>) =
-            self.files_of(loaded).map(|(file, name)| (file, name.to_string())).unzip();
+            self.files_of(loaded).map(|(file, name)| (file, name.clone())).unzip();
         let is_listed = loaded.manifest.files.is_some();
         (!files.is_empty()).then(|| Around { files, names, is_listed, ..Around::empty() })
     }
@@ -200,7 +196,7 @@ impl Snapshot {
         let is_alone = |open: &&Arc<Open>| open.path.as_ref().is_none_or(|path| !seen.contains(path));
         around.files.extend(self.opens().filter(is_alone).cloned());
         around.files.sort_by(|left, right| left.uri.as_str().cmp(right.uri.as_str()));
-        around.names = around.files.iter().map(|_| String::new()).collect();
+        around.names = vec![Arc::from(""); around.files.len()];
         (!around.files.is_empty()).then_some(around)
     }
 
@@ -208,10 +204,10 @@ impl Snapshot {
     pub(super) fn files_of<'a>(
         &'a self,
         loaded: &'a Loaded,
-    ) -> impl Iterator<Item = (Arc<Open>, &'a str)> + 'a {
+    ) -> impl Iterator<Item = (Arc<Open>, &'a Arc<str>)> + 'a {
         loaded.files.iter().filter_map(|file| {
             let open = self.open_at(&file.path).or(file.file.as_ref())?;
-            Some((open.clone(), file.name.as_str()))
+            Some((open.clone(), &file.name))
         })
     }
 }

@@ -194,7 +194,9 @@ impl Task {
             let (mut diagnostics, around) = self.carried(&open);
             diagnostics.extend(realtime);
             self.push(&around, diagnostics).await;
-            match tokio::time::timeout(if is_first { Duration::ZERO } else { PAUSE }, receiver.changed()).await {
+            match tokio::time::timeout(if is_first { Duration::ZERO } else { PAUSE }, receiver.changed())
+                .await
+            {
                 Ok(Ok(())) => return receiver.mark_changed(),
                 // Nobody is there any more to give orders.
                 Ok(Err(_)) => return,

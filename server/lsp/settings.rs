@@ -123,6 +123,12 @@ impl Settings {
         self.language.or(speech.asked).or(speech.client).unwrap_or(speech.otherwise)
     }
 
+    /// Whether the same text is the same program with both.
+    pub(super) fn reads_like(&self, other: &Settings) -> bool {
+        let name = |settings: &Settings| settings.target.map(|target| target.name);
+        (name(self), self.notation) == (name(other), other.notation)
+    }
+
     pub(super) fn pulls(&self) -> bool {
         self.pulls
     }

@@ -5,7 +5,7 @@ use super::projects::Around;
 use super::workspace::Open;
 use crate::document::Document;
 use crate::ide;
-use crate::text::{Diagnostic, Encoding, Language, LineColumn, Severity, Span, TextEdit, column_of_offset};
+use crate::text::{Diagnostic, Encoding, Language, LineColumn, Severity, Span, TextEdit};
 use tower_lsp::ls_types as lsp;
 
 /// A client draws no more of them; one at the end says how many there are.
@@ -294,35 +294,4 @@ pub(super) fn legend() -> lsp::SemanticTokensLegend {
         token_types: types.into_iter().map(lsp::SemanticTokenType::new).collect(),
         token_modifiers: vec![lsp::SemanticTokenModifier::MODIFICATION],
     }
-}
-
-/// The tokens in the protocol's relative form. They come in order, so each line is looked up once.
-pub(super) fn semantic_tokens(place: Place<'_>, tokens: &[ide::Token]) -> lsp::SemanticTokens {
-    let mut data = Vec::with_capacity(tokens.len());
-    let (mut number, mut line_start, mut line) = place.document.line_at(0);
-    let mut last = lsp::Position::default();
-    for token in tokens {
-        let (start, end) = (token.span.start as usize, token.span.end as usize);
-        if start >= line_start + line.len() {
-            (number, line_start, line) = place.document.line_at(start);
-        }
-        if end > line_start + line.len() {
-            continue;
-        }
-        let column = column_of_offset(&line, start - line_start, place.encoding);
-        let length = column_of_offset(&line, end - line_start, place.encoding) - column;
-        let at = lsp::Position::new(number as u32, column);
-        if length == 0 {
-            continue;
-        }
-        data.push(lsp::SemanticToken {
-            delta_line: at.line - last.line,
-            delta_start: if at.line == last.line { at.character - last.character } else { at.character },
-            length,
-            token_type: token.kind as u32,
-            token_modifiers_bitset: u32::from(token.modification),
-        });
-        last = at;
-    }
-    lsp::SemanticTokens { result_id: None, data }
 }

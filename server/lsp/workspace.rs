@@ -9,6 +9,7 @@ use super::publisher::{Closing, Publisher};
 use super::settings::{Settings, Speech};
 use super::sheets::Sheets;
 use super::to_proto::Manner;
+use super::tokens::SentTokens;
 use crate::check::Severities;
 use crate::document::{Document, Edit, Notation};
 use crate::project::{MANIFEST_NAME, Manifest, Project, decide};
@@ -74,6 +75,7 @@ pub(super) struct Open {
 /// The state, and what goes on beside it.
 pub(super) struct Workspace {
     pub client: Client,
+    pub tokens: SentTokens,
     state: Mutex<State>,
     initialised: AtomicBool,
     shut_down: AtomicBool,
@@ -132,6 +134,7 @@ impl Workspace {
     pub(super) fn new(client: Client, speech: Speech) -> Arc<Workspace> {
         Arc::new(Workspace {
             client,
+            tokens: SentTokens::default(),
             state: Mutex::new(State { speech, ..State::default() }),
             initialised: AtomicBool::new(false),
             shut_down: AtomicBool::new(false),
@@ -216,6 +219,13 @@ impl Workspace {
         let Some(item) = self.open_sheet(params.text_document) else { return };
         let TextDocumentItem { uri, language_id, version, text } = item;
         let mut state = self.state();
+        // A document that is opened a second time was closed in the client's eyes.
+        if let Some(publisher) = state.publishers.remove(&uri) {
+            let closing = publisher.close(uri.clone(), None);
+            state.closing.insert(uri.clone(), closing);
+        }
+        // Before the text is read, which may take a while: what was published is not to be cleared.
+        let before = state.closing.remove(&uri).map(Closing::superseded);
         let Belonging { manifest, project, .. } = self.belonging(&mut state, &uri);
         let path = file_path(&uri).map(|path| canonical(&path));
         let manifest = Arc::new(manifest);
@@ -230,12 +240,6 @@ impl Workspace {
             Some(loaded) => loaded.placed(document, path.as_ref()),
             None => document,
         };
-        // A document that is opened a second time was closed in the client's eyes.
-        if let Some(publisher) = state.publishers.remove(&uri) {
-            let closing = publisher.close(uri.clone(), None);
-            state.closing.insert(uri.clone(), closing);
-        }
-        let before = state.closing.remove(&uri).map(Closing::superseded);
         let snapshot = &state.snapshot;
         if !is_manifest(&uri) {
             let publisher = Publisher::start(state.this.clone(), &self.client, snapshot, before);
@@ -293,6 +297,7 @@ impl Workspace {
         }
         let mut state = self.state();
         let uri = params.text_document.uri;
+        self.tokens.forget(&uri);
         let closed = Arc::make_mut(&mut state.snapshot.documents).remove(&uri);
         let Some(closed) = closed else { return };
         state.forget_path(&closed);
@@ -357,14 +362,19 @@ impl Workspace {
         Belonging { manifest: project.manifest, place, project: Some(key) }
     }
 
-    /// Has a client that pulls diagnostics ask again.
-    pub(super) fn refresh_pulled(&self) {
+    /// Has the client ask again for what other files have a part in. Nobody waits for it.
+    pub(super) fn refresh(&self) {
         let state = self.state();
-        if state.requests.refresh_diagnostics && state.snapshot.settings.pulls() {
-            let client = self.client.clone();
-            // Nobody waits for the client.
-            tokio::spawn(async move { client.workspace_diagnostic_refresh().await });
-        }
+        let (requests, pulls) = (state.requests, state.snapshot.settings.pulls());
+        let client = self.client.clone();
+        tokio::spawn(async move {
+            if requests.refresh_diagnostics && pulls {
+                let _ = client.workspace_diagnostic_refresh().await;
+            }
+            if requests.refresh_hints {
+                let _ = client.inlay_hint_refresh().await;
+            }
+        });
     }
 
     /// A document changed in a way that the other files of its project see.
@@ -471,7 +481,13 @@ pub(super) fn decided(
         .unwrap_or((Notation::FxIl, Target::of(Model::Fx2n)))
 }
 
-pub(super) fn read(text: &str, notation: Notation, target: &'static Target) -> Document {
+/// A file of the disk, of which nothing is kept that can be read again.
+pub(super) fn frugal(text: &str, notation: Notation, target: &'static Target) -> Document {
+    guarded(|| Document::frugal(text, notation, target))
+        .unwrap_or_else(|| Document::unread(text, notation, target))
+}
+
+fn read(text: &str, notation: Notation, target: &'static Target) -> Document {
     guarded(|| Document::new(text, notation, target))
         .unwrap_or_else(|| Document::unread(text, notation, target))
 }

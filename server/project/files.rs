@@ -18,7 +18,7 @@ pub const MOST_FILES: usize = 2000;
 pub const MOST_FILE_BYTES: u64 = 16 << 20;
 
 /// All files of a project that an editor keeps have no more bytes together.
-pub const MOST_PROJECT_BYTES: u64 = 256 << 20;
+pub const MOST_PROJECT_BYTES: u64 = 64 << 20;
 
 /// So many entries of folders are looked at in the search for program files.
 const MOST_ENTRIES: usize = 100_000;

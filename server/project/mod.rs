@@ -11,3 +11,6 @@ pub use files::{
     MANIFEST_NAME, MOST_FILE_BYTES, MOST_FILES, MOST_PROJECT_BYTES, Project, decide, is_program_file,
     open_document, program_files, projects_in,
 };
+
+mod disk;
+pub use disk::{Stamp, read_text};

@@ -169,6 +169,7 @@ macro_rules! catalogue_in {
         LazyLock::new(|| {
             read_catalogue(&[
                 include_str!(concat!("messages/", $tag, "/drawing.toml")),
+                include_str!(concat!("messages/", $tag, "/hand.toml")),
                 include_str!(concat!("messages/", $tag, "/words.toml")),
                 include_str!(concat!("messages/", $tag, "/order.toml")),
                 include_str!(concat!("messages/", $tag, "/declarations.toml")),
@@ -179,6 +180,7 @@ macro_rules! catalogue_in {
                 include_str!(concat!("messages/", $tag, "/pages.toml")),
                 include_str!(concat!("messages/", $tag, "/conversions.toml")),
                 include_str!(concat!("messages/", $tag, "/ldmicro.toml")),
+                include_str!(concat!("messages/", $tag, "/editing.toml")),
             ])
         })
     };

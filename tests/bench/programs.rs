@@ -33,6 +33,17 @@ pub fn program(notation: &str, lines: usize) -> Program {
     Program { text, digit: (line as u32, column as u32) }
 }
 
+/// Instruction list of about `bytes` bytes.
+pub fn program_of_bytes(bytes: usize) -> String {
+    let mut text = String::with_capacity(bytes + 100);
+    let mut number = 0;
+    while text.len() < bytes {
+        text += &il_rung(number, false);
+        number += 1;
+    }
+    text + "END\n"
+}
+
 fn il_rung(number: usize, marked: bool) -> String {
     let relay = number % 1500;
     let input = if marked { "X10".to_string() } else { format!("X{:o}", number % 128) };

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Runs the tests of the editors and prints, as its last line, how many passed and failed.
 #
-# Usage: tests/editors/run.sh [vscode|neovim|extension-unit|grammar|all]
+# Usage: tests/editors/run.sh [vscode|neovim|emacs|extension-unit|grammar|all]
 # The server is $RUNGWISE_SERVER, else the newer of target/release/rungwise and target/debug/rungwise.
 # What is needed is installed once into .cache/editors (or $RUNGWISE_EDITOR_CACHE). Screenshots and logs: artefacts/.
 set -u
@@ -96,19 +96,25 @@ neovim() {
     exec "$TESTS/neovim/run.sh" "$CACHE" "$server"
 }
 
+emacs_eglot() {
+    "$TESTS/install-emacs.sh" && find_server || return 1
+    exec "$TESTS/emacs/run.sh" "$server"
+}
+
 mkdir -p "$ARTEFACTS" "$CACHE"
 case ${1:-all} in
     # A suite runs as a process of its own, so that a time limit can end all of it.
     --inside) "$2"; exit $? ;;
     extension-unit) chosen=extension-unit ;;
-    grammar | vscode | neovim) chosen=$1 ;;
-    all) chosen='extension-unit grammar neovim vscode' ;;
-    *) echo "usage: run.sh [vscode|neovim|extension-unit|grammar|all]" >&2; exit 2 ;;
+    grammar | vscode | neovim | emacs) chosen=$1 ;;
+    all) chosen='extension-unit grammar emacs neovim vscode' ;;
+    *) echo "usage: run.sh [vscode|neovim|emacs|extension-unit|grammar|all]" >&2; exit 2 ;;
 esac
 for name in $chosen; do
     case $name in
         extension-unit) suite extension-unit 300 "$0" --inside counted_by_node ;;
         grammar) suite grammar 180 "$0" --inside grammar ;;
+        emacs) suite emacs 300 "$0" --inside emacs_eglot ;;
         neovim) suite neovim 900 "$0" --inside neovim ;;
         vscode) suite vscode 1800 "$0" --inside vscode ;;
     esac

@@ -1,5 +1,7 @@
 /** Reads the answer of the server command `rungwise.check`. */
 
+import { t } from './words';
+
 export interface CheckSummary {
   readonly message: string;
   readonly severity: 'information' | 'warning' | 'error';
@@ -11,7 +13,7 @@ export function checkSummary(answer: unknown): CheckSummary {
     return { message: answer, severity: 'information' };
   }
   if (typeof answer !== 'object' || answer === null) {
-    return { message: 'Rungwise: the server gave no result of the check.', severity: 'error' };
+    return { message: t('Rungwise: the server gave no result of the check.'), severity: 'error' };
   }
   const fields = answer as Record<string, unknown>;
   const summary = typeof fields['summary'] === 'object' && fields['summary'] !== null ? fields['summary'] : fields;
@@ -20,7 +22,7 @@ export function checkSummary(answer: unknown): CheckSummary {
   const warnings = number(counts['warnings']);
   const message = [fields['message'], counts['message']].find((m) => typeof m === 'string' && m.length > 0);
   return {
-    message: typeof message === 'string' ? message : `Check: ${errors} errors, ${warnings} warnings.`,
+    message: typeof message === 'string' ? message : t('Check: {0} errors, {1} warnings.', errors, warnings),
     severity: errors > 0 ? 'error' : warnings > 0 ? 'warning' : 'information',
   };
 }

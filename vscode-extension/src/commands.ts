@@ -5,6 +5,7 @@ import { checkSummary } from './checkResult';
 import type { ServerController } from './server';
 import type { StatusBar } from './statusBar';
 import { targetChoices } from './targets';
+import { t } from './words';
 
 export function registerCommands(
   server: ServerController,
@@ -26,7 +27,7 @@ export function registerCommands(
 async function checkProgram(server: ServerController, given?: vscode.Uri): Promise<string | undefined> {
   const uri = given ?? vscode.window.activeTextEditor?.document.uri;
   if (uri === undefined) {
-    void vscode.window.showInformationMessage('Rungwise: open a .lad or .il file to check it.');
+    void vscode.window.showInformationMessage(t('Rungwise: open a .lad or .il file to check it.'));
     return undefined;
   }
   try {
@@ -36,13 +37,13 @@ async function checkProgram(server: ServerController, given?: vscode.Uri): Promi
     return message;
   } catch (error) {
     const reason = error instanceof Error ? error.message : String(error);
-    void vscode.window.showErrorMessage(`Rungwise: the program was not checked: ${reason}`);
+    void vscode.window.showErrorMessage(t('Rungwise: the program was not checked: {0}', reason));
     return undefined;
   }
 }
 
 function showSummary(message: string, severity: 'information' | 'warning' | 'error'): void {
-  const problems = 'Show Problems';
+  const problems = t('Show Problems');
   const shown =
     severity === 'error'
       ? vscode.window.showErrorMessage(message, problems)
@@ -61,8 +62,8 @@ async function selectTarget(statusBar: StatusBar): Promise<void> {
   const section = vscode.workspace.getConfiguration('rungwise');
   const used = uri && statusBar.programStatus(uri.toString())?.target;
   const choice = await vscode.window.showQuickPick(targetChoices(section.get<string>('target') ?? null, used), {
-    title: 'Target PLC',
-    placeHolder: 'PLC model that programs are checked for',
+    title: t('Target PLC'),
+    placeHolder: t('PLC model that programs are checked for'),
   });
   if (choice !== undefined) {
     const inWorkspace = vscode.workspace.workspaceFolders !== undefined;
@@ -73,9 +74,9 @@ async function selectTarget(statusBar: StatusBar): Promise<void> {
 }
 
 async function showVersion(server: ServerController, output: vscode.LogOutputChannel): Promise<string | undefined> {
-  const log = 'Show Log';
+  const log = t('Show Log');
   const version = server.version;
-  const message = version === undefined ? 'Rungwise: the server is not running.' : `Rungwise server ${version}`;
+  const message = version === undefined ? t('Rungwise: the server is not running.') : t('Rungwise server {0}', version);
   void vscode.window.showInformationMessage(message, log).then((choice) => {
     if (choice === log) {
       output.show();

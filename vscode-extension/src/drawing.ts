@@ -51,8 +51,15 @@ export class DrawingEditor implements vscode.Disposable {
     try {
       for (let attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
         const version = editor.document.version;
-        const answer = await this.ask(editor, edit, editor.selection, operand);
-        if (editor.document.version === version) {
+        const isCurrent = () => editor.document.version === version;
+        const answer = await this.ask(editor, edit, editor.selection, operand).catch((error: unknown) => {
+          // The server refuses an edit of a text that has changed meanwhile; it is asked again.
+          if (isCurrent()) {
+            throw error;
+          }
+          return undefined;
+        });
+        if (answer !== undefined && isCurrent()) {
           return await this.apply(editor, answer, { undoStopBefore: true, undoStopAfter: true });
         }
       }
@@ -141,8 +148,14 @@ export class DrawingEditor implements vscode.Disposable {
         }
         const version = document.version;
         const range = document.validateRange(new vscode.Range(lines.first, 0, lines.last, Number.MAX_SAFE_INTEGER));
-        const { edits } = await this.ask(editor, 'mend', range);
-        if (document.version === version) {
+        const answer = await this.ask(editor, 'mend', range).catch((error: unknown) => {
+          if (document.version === version) {
+            throw error;
+          }
+          return undefined;
+        });
+        if (answer !== undefined && document.version === version) {
+          const { edits } = answer;
           this.dirty.delete(document);
           // The cursor stays where the person left it, so no selection.
           await this.apply(editor, { edits, selection: undefined }, { undoStopBefore: false, undoStopAfter: false });

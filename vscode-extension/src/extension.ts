@@ -12,6 +12,7 @@ import { StatusBar } from './statusBar';
 import { RungwiseTasks } from './tasks';
 import { UsageView } from './usageView';
 import { registerWalkthrough } from './walkthrough';
+import { useTranslations } from './words';
 
 /** What other extensions and the tests may use. */
 export interface RungwiseApi {
@@ -27,6 +28,7 @@ export interface RungwiseApi {
 let server: ServerController | undefined;
 
 export async function activate(context: vscode.ExtensionContext): Promise<RungwiseApi> {
+  useTranslations(vscode.l10n.t);
   const output = vscode.window.createOutputChannel('Rungwise', { log: true });
   const statusBar = new StatusBar();
   const controller = new ServerController(context, output, statusBar);

@@ -1,6 +1,7 @@
 /** Runs `rungwise --version` before the server proper, so that a broken program gets a sentence, not a dead client. */
 
 import { execFile } from 'node:child_process';
+import { t } from './words';
 
 const PROBE_TIMEOUT_MS = 10_000;
 
@@ -19,7 +20,7 @@ export function probeServer(file: string, timeoutMs: number = PROBE_TIMEOUT_MS):
       const version = parseVersion(stdout);
       resolve(
         version === undefined
-          ? { kind: 'failed', reason: `it is not Rungwise: --version printed "${firstLine(stdout)}"` }
+          ? { kind: 'failed', reason: t('it is not Rungwise: --version printed "{0}"', firstLine(stdout)) }
           : { kind: 'ok', version },
       );
     });
@@ -38,20 +39,20 @@ export function failureReason(
   timeoutMs: number,
 ): string {
   if (error.killed) {
-    return `it gave no answer within ${timeoutMs / 1000} s`;
+    return t('it gave no answer within {0} s', timeoutMs / 1000);
   }
   switch (error.code) {
     case 'ENOENT':
-      return 'there is no such file, or a library that it needs is missing';
+      return t('there is no such file, or a library that it needs is missing');
     case 'EACCES':
     case 'EPERM':
-      return 'it may not be run (no permission to execute)';
+      return t('it may not be run (no permission to execute)');
     case 'ENOEXEC':
     case 'UNKNOWN':
-      return 'it is not a program for this kind of computer';
+      return t('it is not a program for this kind of computer');
     default: {
       const said = firstLine(stderr);
-      const how = typeof error.code === 'number' ? `it ended with exit code ${error.code}` : error.message;
+      const how = typeof error.code === 'number' ? t('it ended with exit code {0}', error.code) : error.message;
       return said ? `${how}: ${said}` : how;
     }
   }

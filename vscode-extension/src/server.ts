@@ -241,9 +241,9 @@ export class ServerController implements vscode.Disposable {
   }
 
   private async showFailure(message: string): Promise<void> {
-    const settings = 'Open Settings';
-    const log = 'Show Log';
-    const retry = 'Try Again';
+    const settings = vscode.l10n.t('Open Settings');
+    const log = vscode.l10n.t('Show Log');
+    const retry = vscode.l10n.t('Try Again');
     const choice = await vscode.window.showErrorMessage(message, settings, log, retry);
     if (choice === settings) {
       await vscode.commands.executeCommand('workbench.action.openSettings', 'rungwise.server');

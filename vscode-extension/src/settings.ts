@@ -18,6 +18,8 @@ export interface ServerSettings {
     /** Least width of a rung in cells, rails included. */
     readonly width: number | null;
   };
+  /** Language of messages (`en` or `zh-CN`); `null` leaves it to the locale of the client. */
+  readonly language: string | null;
   readonly inlayHints: { readonly enabled: boolean };
 }
 
@@ -26,6 +28,7 @@ export type ReadSetting = (name: string) => unknown;
 
 export const TARGETS = ['fx1s', 'fx1n', 'fx2n', 'fx3u', 'iec'] as const;
 const DIALECTS: readonly string[] = ['fx', 'iec'];
+const LANGUAGES: readonly string[] = ['en', 'zh-CN'];
 const STYLES: readonly FormatStyle[] = ['iec', 'brackets', 'unicode'];
 const MIN_WIDTH_CELLS = 24;
 const MAX_WIDTH_CELLS = 400;
@@ -36,6 +39,7 @@ export function readServerSettings(read: ReadSetting): ServerSettings {
     target: oneOf(read('target'), TARGETS),
     dialect: oneOf(read('dialect'), DIALECTS),
     format: { style: oneOf(read('format.style'), STYLES), width: width(read('format.width')) },
+    language: oneOf(read('language'), LANGUAGES),
     inlayHints: { enabled: read('inlayHints.enabled') !== false },
   };
 }
@@ -56,7 +60,7 @@ function oneOf<Word extends string>(value: unknown, allowed: readonly Word[]): W
     return null;
   }
   const word = value.trim().toLowerCase();
-  return allowed.find((candidate) => candidate === word) ?? null;
+  return allowed.find((candidate) => candidate.toLowerCase() === word) ?? null;
 }
 
 function width(value: unknown): number | null {

@@ -1,5 +1,7 @@
 /** The status bar item as data: what the server says about a program, and how it is shown. */
 
+import { t } from './words';
+
 /** Parameters of the notification `rungwise/status`. */
 export interface ProgramStatus {
   readonly uri: string;
@@ -50,7 +52,7 @@ export function statusItem(state: ServerState, status: ProgramStatus | undefined
     return serverStateItem(state);
   }
   if (status === undefined) {
-    return item('$(circuit-board) Rungwise', 'Rungwise is running. Click to select the target PLC.');
+    return item('$(circuit-board) Rungwise', t('Rungwise is running. Click to select the target PLC.'));
   }
   const parts = [status.target.toUpperCase() || 'Rungwise'];
   if (status.dialect && status.dialect !== status.target && status.dialect !== 'ladder') {
@@ -70,18 +72,18 @@ export function statusItem(state: ServerState, status: ProgramStatus | undefined
 function serverStateItem(state: Exclude<ServerState, 'running'>): StatusItem {
   switch (state) {
     case 'starting':
-      return { ...item('$(loading~spin) Rungwise', 'The Rungwise server is starting.'), command: 'rungwise.showOutput' };
+      return { ...item('$(loading~spin) Rungwise', t('The Rungwise server is starting.')), command: 'rungwise.showOutput' };
     case 'stopped':
       return {
         text: '$(circle-slash) Rungwise',
-        tooltip: 'The Rungwise server is stopped. Click to start it.',
+        tooltip: t('The Rungwise server is stopped. Click to start it.'),
         command: 'rungwise.restartServer',
         severity: 'warning',
       };
     case 'failed':
       return {
         text: '$(error) Rungwise',
-        tooltip: 'The Rungwise server does not run. Click for the output.',
+        tooltip: t('The Rungwise server does not run. Click for the output.'),
         command: 'rungwise.showOutput',
         severity: 'error',
       };
@@ -97,24 +99,24 @@ function stepsText(status: ProgramStatus): string | undefined {
     return undefined;
   }
   if (status.capacity === undefined) {
-    return `${grouped(status.steps)} steps`;
+    return t('{0} steps', grouped(status.steps));
   }
-  return `${grouped(status.steps)}/${grouped(status.capacity)} steps`;
+  return t('{0}/{1} steps', grouped(status.steps), grouped(status.capacity));
 }
 
 function tooltip(status: ProgramStatus): string {
-  const lines = [`Target PLC: ${status.target.toUpperCase() || 'unknown'}`];
+  const lines = [t('Target PLC: {0}', status.target.toUpperCase() || t('unknown'))];
   if (status.dialect) {
-    lines.push(`Dialect: ${status.dialect}`);
+    lines.push(t('Dialect: {0}', status.dialect));
   }
   if (status.steps !== undefined && status.capacity) {
     const percent = ((100 * status.steps) / status.capacity).toFixed(1);
-    lines.push(`Program: ${grouped(status.steps)} of ${grouped(status.capacity)} steps (${percent} %)`);
+    lines.push(t('Program: {0} of {1} steps ({2} %)', grouped(status.steps), grouped(status.capacity), percent));
   }
   if (status.rungs !== undefined) {
-    lines.push(`Rungs: ${grouped(status.rungs)}`);
+    lines.push(t('Rungs: {0}', grouped(status.rungs)));
   }
-  lines.push('Click to select the target PLC.');
+  lines.push(t('Click to select the target PLC.'));
   return lines.join('\n');
 }
 

@@ -20,6 +20,7 @@ test('what the user did not set is left to rungwise.toml', () => {
     target: null,
     dialect: null,
     format: { style: null, width: null },
+    language: null,
     inlayHints: { enabled: true },
   });
 });
@@ -30,6 +31,7 @@ test('a default of package.json, set by hand, means what it says', () => {
     target: null,
     dialect: null,
     format: { style: 'iec', width: 48 },
+    language: null,
     inlayHints: { enabled: true },
   });
 });
@@ -40,12 +42,14 @@ test('values are passed on', () => {
     dialect: 'iec',
     'format.style': 'unicode',
     'format.width': 60,
+    language: 'zh-cn',
     'inlayHints.enabled': false,
   };
   assert.deepEqual(readServerSettings((name) => values[name]), {
     target: 'fx3u',
     dialect: 'iec',
     format: { style: 'unicode', width: 60 },
+    language: 'zh-CN',
     inlayHints: { enabled: false },
   });
 });

@@ -1,8 +1,14 @@
 --- The language client: where the server is, what it is told, starting and restarting it.
+local words = require('rungwise.words')
 local M = {}
 
 M.filetypes = { 'ladder', 'plc-il' }
 M.root_markers = { 'rungwise.toml', '.git' }
+
+--- The options that |g:rungwise| may have.
+M.option_names = {
+  'enable', 'server', 'extra_args', 'target', 'dialect', 'format', 'inlayHints', 'language', 'mappings', 'on_type',
+}
 
 --- Last `rungwise/status` of each program, by URI: { uri, target, dialect, steps, capacity }.
 M.status = {}
@@ -49,6 +55,7 @@ function M.settings()
     target = options.target or vim.NIL,
     dialect = options.dialect or vim.NIL,
     format = { style = format.style or vim.NIL, width = format.width or vim.NIL },
+    language = words.language() or vim.NIL,
     inlayHints = { enabled = hints.enabled ~= false },
   }
 end
@@ -96,7 +103,7 @@ end
 function M.enable()
   local server = M.server()
   if vim.fn.executable(server) == 0 then
-    return nil, ('no language server at "%s"; see :checkhealth rungwise'):format(server)
+    return nil, words.t('no language server at "%s"; see :checkhealth rungwise', server)
   end
   if vim.lsp.enable then
     vim.lsp.enable('rungwise')
@@ -150,6 +157,47 @@ function M.request(client, method, params, callback, buffer)
   else
     client.request(method, params, callback, buffer)
   end
+end
+
+--- Sends a request and waits for its result; nil if there is none in time or it is an error.
+function M.request_sync(client, method, params, timeout_ms, buffer)
+  local answer
+  if vim.fn.has('nvim-0.11') == 1 then
+    answer = client:request_sync(method, params, timeout_ms, buffer)
+  else
+    answer = client.request_sync(method, params, timeout_ms, buffer)
+  end
+  return answer and not answer.err and answer.result or nil
+end
+
+--- Column in bytes of a column in units of the protocol, both from 0; the end of the line for one beyond it.
+function M.byte(text, character, encoding)
+  if encoding == 'utf-8' then
+    return math.min(character, #text)
+  end
+  local ok, byte
+  if vim.fn.has('nvim-0.11') == 1 then
+    ok, byte = pcall(vim.str_byteindex, text, encoding, character, false)
+  else
+    ok, byte = pcall(vim.str_byteindex, text, character, encoding == 'utf-16')
+  end
+  return ok and byte or #text
+end
+
+--- Column in units of the protocol of a column in bytes, both from 0.
+function M.character(text, byte, encoding)
+  if encoding == 'utf-8' then
+    return byte
+  elseif vim.fn.has('nvim-0.11') == 1 then
+    return vim.str_utfindex(text, encoding, byte, false)
+  end
+  local utf32, utf16 = vim.str_utfindex(text, byte)
+  return encoding == 'utf-16' and utf16 or utf32
+end
+
+--- Says something to the user.
+function M.notify(message, level)
+  vim.notify('Rungwise: ' .. message, level or vim.log.levels.INFO)
 end
 
 --- Tells every server about changed settings.

@@ -1,28 +1,27 @@
---- The commands :RungwiseCheck, :RungwiseRestart, :RungwiseLog and :RungwiseTarget.
+--- The command :Rungwise with its subcommands, and :RungwiseCheck, :RungwiseRestart, :RungwiseLog, :RungwiseTarget.
 local client = require('rungwise.client')
+local t = require('rungwise.words').t
 local M = {}
 
 local TARGETS = { 'auto', 'fx1s', 'fx1n', 'fx2n', 'fx3u', 'iec' }
 
-local function notify(message, level)
-  vim.notify('Rungwise: ' .. message, level or vim.log.levels.INFO)
-end
+local notify = client.notify
 
 --- Runs the batch check on the program in the buffer and shows its summary.
 function M.check()
   local buffer = vim.api.nvim_get_current_buf()
   local running = client.clients(buffer)[1]
   if not running then
-    notify('no language server for this buffer; see :checkhealth rungwise', vim.log.levels.ERROR)
+    notify(t('no language server for this buffer; see :checkhealth rungwise'), vim.log.levels.ERROR)
     return
   end
   local params = { command = 'rungwise.check', arguments = { vim.uri_from_bufnr(buffer) } }
   client.request(running, 'workspace/executeCommand', params, function(err, result)
     if err then
-      notify('the program was not checked: ' .. (err.message or vim.inspect(err)), vim.log.levels.ERROR)
+      notify(t('the program was not checked: %s', err.message or vim.inspect(err)), vim.log.levels.ERROR)
     else
       local message = type(result) == 'table' and result.message or result
-      notify(type(message) == 'string' and message or 'the server gave no result of the check')
+      notify(type(message) == 'string' and message or t('the server gave no result of the check'))
     end
   end, buffer)
 end
@@ -38,11 +37,11 @@ end
 function M.target(name)
   if name == '' then
     local status = client.status[vim.uri_from_bufnr(0)]
-    notify('target PLC ' .. (status and tostring(status.target) or 'unknown'))
+    notify(t('target PLC %s', status and tostring(status.target) or t('unknown')))
     return
   end
   if not vim.list_contains(TARGETS, name) then
-    notify(('there is no target "%s"; known are %s'):format(name, table.concat(TARGETS, ', ')), vim.log.levels.ERROR)
+    notify(t('there is no target "%s"; known are %s', name, table.concat(TARGETS, ', ')), vim.log.levels.ERROR)
     return
   end
   local options = client.options()
@@ -51,20 +50,101 @@ function M.target(name)
   client.send_settings()
 end
 
+local function matching(start, words)
+  return vim.tbl_filter(function(word)
+    return vim.startswith(word, start)
+  end, words)
+end
+
+--- The subcommands of :Rungwise: what they do with the words behind them, and what completes the first of these.
+M.subcommands = {
+  check = { run = M.check },
+  edit = {
+    run = function(words)
+      require('rungwise.edit').run(words[1] or '', words[2])
+    end,
+    complete = function()
+      return require('rungwise.edit').names()
+    end,
+  },
+  explain = {
+    run = function(words)
+      require('rungwise.pages').explain(words[1])
+    end,
+    complete = function()
+      local codes = vim.tbl_map(function(d)
+        return d.code
+      end, vim.diagnostic.get(0))
+      table.sort(codes)
+      return vim.fn.uniq(codes)
+    end,
+  },
+  health = {
+    run = function()
+      vim.cmd.checkhealth('rungwise')
+    end,
+  },
+  log = { run = M.log },
+  restart = { run = client.restart },
+  target = {
+    run = function(words)
+      M.target(words[1] or '')
+    end,
+    complete = function()
+      return TARGETS
+    end,
+  },
+  usage = {
+    run = function()
+      require('rungwise.pages').usage()
+    end,
+  },
+}
+
+local function subcommand_names()
+  local names = vim.tbl_keys(M.subcommands)
+  table.sort(names)
+  return names
+end
+
+--- Runs `:Rungwise NAME WORD…`.
+function M.run(arguments)
+  local words = vim.list_slice(arguments.fargs, 2)
+  local name = arguments.fargs[1]
+  local subcommand = M.subcommands[name]
+  if subcommand then
+    subcommand.run(words)
+  else
+    notify(t('there is no ":Rungwise %s"; there are %s', name, table.concat(subcommand_names(), ', ')),
+      vim.log.levels.ERROR)
+  end
+end
+
+--- Completes the name of the subcommand, then its first word.
+function M.complete(start, line)
+  local words = vim.split(line:gsub('^.-Rungwise%s+', ''), '%s+')
+  if #words <= 1 then
+    return matching(start, subcommand_names())
+  end
+  local subcommand = M.subcommands[words[1]]
+  return #words == 2 and subcommand and subcommand.complete and matching(start, subcommand.complete()) or {}
+end
+
 function M.create()
   local command = vim.api.nvim_create_user_command
-  command('RungwiseCheck', M.check, { desc = 'Check the program in this buffer' })
-  command('RungwiseRestart', client.restart, { desc = 'Restart the Rungwise language server' })
-  command('RungwiseLog', M.log, { desc = 'Open the log of the language server' })
+  command('Rungwise', M.run, {
+    desc = t('Check, edit, explain: what Rungwise can do'), nargs = '+', range = true, complete = M.complete,
+  })
+  command('RungwiseCheck', M.check, { desc = t('Check the program in this buffer') })
+  command('RungwiseRestart', client.restart, { desc = t('Restart the Rungwise language server') })
+  command('RungwiseLog', M.log, { desc = t('Open the log of the language server') })
   command('RungwiseTarget', function(arguments)
     M.target(arguments.args)
   end, {
-    desc = 'Set the target PLC',
+    desc = t('Set the target PLC'),
     nargs = '?',
     complete = function(start)
-      return vim.tbl_filter(function(name)
-        return vim.startswith(name, start)
-      end, TARGETS)
+      return matching(start, TARGETS)
     end,
   })
 end

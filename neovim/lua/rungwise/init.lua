@@ -13,7 +13,7 @@ function M.statusline()
   end
   if type(status.steps) == 'number' then
     local capacity = type(status.capacity) == 'number' and '/' .. status.capacity or ''
-    table.insert(parts, ('%d%s steps'):format(status.steps, capacity))
+    table.insert(parts, require('rungwise.words').t('%d%s steps', status.steps, capacity))
   end
   return table.concat(parts, ' · ')
 end

@@ -3,7 +3,7 @@
 use super::FINDERS;
 use crate::check::ChunkContext;
 use crate::document::Tree;
-use crate::ladder::{Element, ElementKind, Graph, LadderTree, Rung, VertexKind, parse_with};
+use crate::ladder::{Element, ElementKind, Graph, LadderTree, Rung, TWO_READINGS, VertexKind, parse_with};
 use crate::target::Target;
 use crate::text::{Diagnostic, Message, Span, TextEdit};
 use std::cell::Cell;
@@ -52,10 +52,18 @@ impl<'a> Drawn<'a> {
     pub(super) fn breaking(&self) -> Vec<Span> {
         // Without the element that a word in the wire is meant to be, the rung is another one.
         let breaks = |problem: &&Diagnostic| {
-            BREAKING.contains(&problem.code) || problem.message.key() == "stray-operand.in-wire"
+            BREAKING.contains(&problem.code)
+                || matches!(problem.message.key(), "stray-operand.in-wire" | TWO_READINGS)
         };
         let problems = self.tree.problems.iter().filter(breaks);
         problems.map(|problem| problem.span).collect()
+    }
+
+    /// The cells of which one is meant to be joined with a wire that has two readings: they are no loose ends of their
+    /// own.
+    pub(super) fn in_doubt(&self) -> Vec<Span> {
+        let doubts = self.tree.problems.iter().filter(|problem| problem.message.key() == TWO_READINGS);
+        doubts.flat_map(|problem| problem.related.iter().map(|related| related.span)).collect()
     }
 
     /// What people call an element: its device or, without one, its symbol.

@@ -61,7 +61,8 @@ pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
         return;
     }
     let picture = Picture::new(drawn.text);
-    let broken: FxHashSet<Place> = drawn.breaking().iter().flat_map(|span| around(&picture, *span)).collect();
+    let broken = drawn.breaking().into_iter().chain(drawn.in_doubt());
+    let broken: FxHashSet<Place> = broken.flat_map(|span| around(&picture, span)).collect();
     for mistake in mistakes(rungs, &picture) {
         // What ends at a cell that could not be read is no mistake of its own.
         if mistake.iter().any(|end| broken.contains(&end.place)) {

@@ -174,7 +174,35 @@ impl Finder<'_> {
         }
     }
 
+    /// `[CTU C1, PV:5]`, `[TON T1, PT = 500 ms]`: the instance and the preset by its name, both inside.
+    fn named(&mut self, run: Run, word: Run, rest: Run, kind: &'static BoxKind) -> bool {
+        let words = self.string(rest);
+        let split = || {
+            let (instance, preset) = words.split_once(',')?;
+            let pin = kind.reads.first()?;
+            let preset = preset.trim_start();
+            let value = preset.get(..pin.len()).filter(|name| name.eq_ignore_ascii_case(pin))?;
+            let value = preset.get(value.len()..)?.trim_start().trim_start_matches([':', '=']).trim_start();
+            let named = !instance.is_empty() && instance.chars().all(continues_word);
+            let length = |text: &str| text.chars().count();
+            (named && !value.is_empty()).then(|| (length(instance), length(&words) - length(value)))
+        };
+        let Some((instance, value)) = split() else { return false };
+        let instance = self.span(rest.to(rest.start + instance));
+        self.block(run, word, kind, vec![self.trimmed(rest.from(rest.start + value))], None, None);
+        if let Some(symbol) = self.symbols.last_mut()
+            && let ElementKind::Block(block) = &mut symbol.element.kind
+        {
+            block.instance = Some(instance);
+            symbol.wants = Wants::Nothing;
+        }
+        true
+    }
+
     fn timer(&mut self, run: Run, word: Run, delay: Run, kind: &'static BoxKind) {
+        if self.named(run, word, delay, kind) {
+            return;
+        }
         if delay.start < delay.end {
             let run = self.with_prefix(run);
             self.block(run, word, kind, vec![delay], None, None);
@@ -183,6 +211,9 @@ impl Finder<'_> {
 
     /// `>=5`, `>0`, `0:7`
     fn counter(&mut self, run: Run, word: Run, rest: Run, kind: &'static BoxKind) {
+        if self.named(run, word, rest, kind) {
+            return;
+        }
         let words = self.string(rest);
         let colon = (rest.start..rest.end).find(|column| self.grid.at(rest.row, *column) == ':');
         let limit = words.len() - words.trim_start_matches(['>', '<', '=']).len();

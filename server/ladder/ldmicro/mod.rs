@@ -12,3 +12,13 @@ pub use meaning::{BoxKind, time_literal};
 mod table;
 pub use table::{NameKind, TableRow, table_rows};
 pub(super) use table::{is_row, is_title};
+
+mod native;
+pub use native::Note;
+
+mod names;
+
+mod carry;
+
+mod import;
+pub use import::{Import, ImportError, import};

@@ -44,6 +44,18 @@ export class Workbench {
     await this.page.waitForSelector('.quick-input-widget', { state: 'hidden', timeout: SHORT_MS });
   }
 
+  /** Puts the keyboard into the editor, at the start of the text. */
+  async focusEditor() {
+    await this.page.locator('.editor-instance .view-line').first().click();
+    await this.page.keyboard.press('Control+Home');
+  }
+
+  /** Presses the keys of a command of a drawing: Alt+L, then a letter. */
+  async chord(key) {
+    await this.page.keyboard.press('Alt+l');
+    await this.page.keyboard.press(key);
+  }
+
   /** Waits for a text in the status bar. */
   async status(text) {
     await this.page.locator('.statusbar-item', { hasText: text }).first().waitFor({ timeout: SHORT_MS });
@@ -66,6 +78,18 @@ export class Workbench {
     return lines.map((line) => line.replaceAll('\u00a0', ' '));
   }
 
+  /** The lines of the text, without the hints that the editor draws between them, as far as they are on the screen. */
+  async documentLines() {
+    const lines = await this.page.locator('.editor-instance .view-lines .view-line').evaluateAll((nodes) =>
+      nodes.map((node) => {
+        const copy = node.cloneNode(true);
+        // Hints are drawn into the line with a class of their own.
+        copy.querySelectorAll('[class*="dyn-rule"], [class*="inline-hint"]').forEach((hint) => hint.remove());
+        return [Number.parseFloat(node.style.top), copy.textContent];
+      }).sort((a, b) => a[0] - b[0]).map((x) => x[1]));
+    return lines.map((line) => line.replaceAll('\u00a0', ' '));
+  }
+
   /** Polls until `probe` gives something true. */
   async until(what, probe, timeoutMs = SHORT_MS) {
     const end = Date.now() + timeoutMs;
@@ -79,6 +103,13 @@ export class Workbench {
     }
     await this.screenshot('failure');
     throw new Error(`waited ${timeoutMs} ms for ${what}`);
+  }
+
+  /** Closes what a failed check has left open, so that the next one starts in the editor. */
+  async calm() {
+    for (let i = 0; i < 3; i++) {
+      await this.page.keyboard.press('Escape');
+    }
   }
 
   async screenshot(name) {

@@ -5,7 +5,7 @@
 
 const fs = require('node:fs');
 
-const SUITES = ['./extension_tests', './diagnostics_tests', './language_tests', './server_tests'];
+const SUITES = ['./extension_tests', './diagnostics_tests', './language_tests', './drawing_tests', './pages_tests', './server_tests'];
 const TEST_TIMEOUT_MS = 60_000;
 
 exports.run = async function run() {

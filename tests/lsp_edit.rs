@@ -1,0 +1,101 @@
+//! Structural edits and typing through the wire.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use crate::lsp_client::Client;
+use serde_json::{Value, json};
+
+const URI: &str = "file:///tmp/edit/motor.lad";
+
+const MOTOR: &str = "\
+|   X0        X1                             Y0  |
++---| |---+---|/|----------------------------( )-+
+|   Y0    |                                      |
++---| |---+                                      |
+";
+
+fn started(capabilities: Value, locale: &str) -> Client {
+    let mut client = Client::spawn();
+    let params = json!({"processId": null, "rootUri": null, "capabilities": capabilities, "locale": locale});
+    client.initialised = client.request("initialize", params)["result"].clone();
+    client.notify("initialized", json!({}));
+    client.open(URI, "ladder", MOTOR);
+    client
+}
+
+fn range(from: (u32, u32), to: (u32, u32)) -> Value {
+    json!({"start": {"line": from.0, "character": from.1}, "end": {"line": to.0, "character": to.1}})
+}
+
+fn edit(client: &mut Client, edit: &str, at: (u32, u32), more: Value) -> Value {
+    let mut params = json!({"textDocument": {"uri": URI}, "range": range(at, at), "edit": edit});
+    for (key, value) in more.as_object().unwrap() {
+        params[key] = value.clone();
+    }
+    client.request("rungwise/edit", params)
+}
+
+#[test]
+fn an_edit_answers_with_small_changes_and_a_selection() {
+    let mut client = started(json!({}), "en");
+    let answer = edit(&mut client, "insertContact", (1, 24), json!({}));
+    let edits = answer["result"]["edits"].as_array().unwrap_or_else(|| panic!("{answer}"));
+    assert_eq!(edits.len(), 2, "two lines change: {edits:?}");
+    assert_eq!(answer["result"]["selection"], range((0, 22), (0, 25)));
+    let named = edit(&mut client, "insertContact", (1, 24), json!({"operand": "M5"}));
+    assert_eq!(named["result"]["selection"], range((1, 25), (1, 25)), "behind the contact");
+}
+
+#[test]
+fn a_refusal_says_why_in_the_language_of_the_user() {
+    let mut client = started(json!({}), "en");
+    let answer = edit(&mut client, "insertCoil", (1, 12), json!({}));
+    assert!(answer["error"]["message"].as_str().unwrap().contains("end of its line"), "{answer}");
+    assert!(
+        edit(&mut client, "fly", (1, 12), json!({}))["error"]["message"].as_str().unwrap().contains("`fly`")
+    );
+    let mut chinese = started(json!({}), "zh-CN");
+    let answer = edit(&mut chinese, "insertCoil", (1, 12), json!({}));
+    assert!(answer["error"]["message"].as_str().unwrap().contains("线圈"), "{answer}");
+}
+
+#[test]
+fn an_edit_of_an_old_version_is_refused() {
+    let mut client = started(json!({}), "en");
+    client.change(URI, 2, (3, 11), (3, 11), "");
+    let document = |version: i64| json!({"textDocument": {"uri": URI, "version": version}});
+    let answer = edit(&mut client, "negate", (1, 5), document(1));
+    assert_eq!(answer["error"]["code"], json!(-32801), "{answer}");
+    assert!(edit(&mut client, "negate", (1, 5), document(2))["result"]["edits"].is_array());
+}
+
+fn actions(client: &mut Client, only: &str) -> Vec<Value> {
+    let params = json!({"textDocument": {"uri": URI}, "range": range((3, 5), (3, 5)),
+        "context": {"diagnostics": [], "only": [only]}});
+    client.request("textDocument/codeAction", params)["result"].as_array().unwrap().clone()
+}
+
+#[test]
+fn edits_are_code_actions_where_they_make_sense() {
+    let mut client = started(json!({}), "en");
+    let offered = actions(&mut client, "refactor");
+    let kinds: Vec<&str> = offered.iter().map(|action| action["kind"].as_str().unwrap()).collect();
+    let has = |edit: &str| kinds.contains(&format!("refactor.rewrite.ladder.{edit}").as_str());
+    assert!(has("moveBranchUp") && has("deleteBranch") && has("insertContact"), "{kinds:?}");
+    assert!(!has("moveBranchDown") && !has("insertCoil"), "{kinds:?}");
+    assert!(offered.iter().all(|action| action["edit"]["changes"][URI].is_array()), "{offered:?}");
+    assert!(actions(&mut client, "quickfix").iter().all(|action| action["kind"] == "quickfix"));
+    assert_eq!(actions(&mut client, "refactor.rewrite.ladder.negate").len(), 1);
+}
+
+#[test]
+fn a_client_that_resolves_edits_gets_them_when_it_asks() {
+    let support = json!({"textDocument": {"codeAction": {"dataSupport": true,
+        "resolveSupport": {"properties": ["edit"]}}}});
+    let mut client = started(support, "en");
+    let offered = actions(&mut client, "refactor.rewrite.ladder.moveBranchUp");
+    let [action] = offered.as_slice() else { panic!("{offered:?}") };
+    assert!(action["edit"].is_null() && action["title"] == "Move branch up", "{action}");
+    let resolved = client.request("codeAction/resolve", action.clone());
+    assert_eq!(resolved["result"]["edit"]["changes"][URI].as_array().unwrap().len(), 2, "{resolved}");
+}
