@@ -198,72 +198,93 @@ fn hover_on_devices() {
         "LD X0\nOUT M50$00\nLD M500\nOR M500\nANI M500\nMOV K4M496 D0\nEND\n",
         fx,
         &expect![[r#"
-        2:5 `M500`
-        **M500** auxiliary relay, latched (M500–M1023)
+            2:5 `M500`
+            **M500** auxiliary relay, latched (M500–M1023)
 
-        Keeps its value without power.
+            Keeps its value without power.
 
-        - Written: line 2
-        - Read: lines 3, 4, 5, 6
-    "#]],
+            Written:
+            - rung 1, line 2: `OUT M500`
+
+            Read:
+            - rung 2, line 3: `LD M500`
+            - rung 2, line 4: `OR M500`
+            - rung 2, line 5: `ANI M500`
+            - rung 2, line 6: `MOV K4M496 D0`
+        "#]],
     );
     check_hover(
         "LD $0T0\nOUT Y0\nLD X0\nOUT T0 K50\nEND\n",
         fx,
         &expect![[r#"
-        1:4 `T0`
-        **T0** timer, 100 ms (T0–T191)
+            1:4 `T0`
+            **T0** timer, 100 ms (T0–T191)
 
-        Preset `K50` = 5 s
+            Preset `K50` = 5 s
 
-        - Written: line 4
-        - Read: line 1
-    "#]],
+            Written:
+            - rung 2, line 4: `OUT T0 K50`
+
+            Read:
+            - rung 1, line 1: `LD T0`
+        "#]],
     );
     check_hover(
         "LD $0M8013\nOUT Y0\n",
         fx,
         &expect![[r#"
-        1:4 `M8013`
-        **M8013** auxiliary relay, special (M8000–M8255)
+            1:4 `M8013`
+            **M8013** auxiliary relay, special (M8000–M8255)
 
-        Clock of 1 s: 0.5 s on, 0.5 s off. A program only reads it.
+            Clock of 1 s: 0.5 s on, 0.5 s off. A program only reads it.
 
-        - Read: line 1
-    "#]],
+            Read:
+            - rung 1, line 1: `LD M8013`
+        "#]],
     );
     check_hover(
         "LD M9$0000\nOUT Y0\n",
         fx,
         &expect![[r#"
-        1:4 `M9000`
-        **M9000** auxiliary relay: FX2N has none of this number; it has M0–M499, M500–M1023, M1024–M3071, M8000–M8255
+            1:4 `M9000`
+            **M9000** auxiliary relay: FX2N has none of this number; it has M0–M499, M500–M1023, M1024–M3071, M8000–M8255
 
-        - Read: line 1
-    "#]],
+            Read:
+            - rung 1, line 1: `LD M9000`
+        "#]],
     );
     check_hover(
         "LD X0\nMOV $0K4M0Z1 D0\n",
         fx,
         &expect![[r#"
-        2:7 `M0`
-        **M0** auxiliary relay, general (M0–M499)
+            2:7 `M0`
+            **M0** auxiliary relay, general (M0–M499)
 
-        `M0 × 16` covers M0 to M15.
+            `M0 × 16` covers M0 to M15.
 
-        - Read: line 2
-    "#]],
+            Read:
+            - rung 1, line 2: `MOV K4M0Z1 D0`
+        "#]],
     );
     let many = format!("{}LD $0X0\nOUT Y0\n", "LD X0\nOUT Y0\n".repeat(12));
     check_hover(
         &many,
         fx,
         &expect![[r#"
-        25:4 `X0`
-        **X0** input relay (X0–X377)
+            25:4 `X0`
+            **X0** input relay (X0–X377)
 
-        - Read: lines 1, 3, 5, 7, 9, 11, 13, 15 and 5 more
-    "#]],
+            Read:
+            - rung 1, line 1: `LD X0`
+            - rung 2, line 3: `LD X0`
+            - rung 3, line 5: `LD X0`
+            - rung 4, line 7: `LD X0`
+            - rung 5, line 9: `LD X0`
+            - rung 6, line 11: `LD X0`
+            - rung 7, line 13: `LD X0`
+            - rung 8, line 15: `LD X0`
+            - and 5 more
+        "#]],
     );
 }
 
@@ -305,12 +326,15 @@ fn hover_on_constants_and_labels() {
         "LD X0\nCJ $0P0\nLD X1\nOUT Y0\nP0\nEND\n",
         fx,
         &expect![[r#"
-        2:4 `P0`
-        **P0** pointer (P0–P62)
+            2:4 `P0`
+            **P0** pointer (P0–P62)
 
-        - Defined: line 5
-        - Jumps and calls: line 2
-    "#]],
+            Defined:
+            - line 5: `P0`
+
+            Jumps and calls:
+            - rung 1, line 2: `CJ P0`
+        "#]],
     );
     check_hover(
         "LD X0 ; $0X0 is it\n",
@@ -327,25 +351,27 @@ fn hover_in_ladder() {
         &marked(MOTOR, "|$0/|"),
         ladder,
         &expect![[r#"
-        3:15 `|/|`
-        Normally closed contact: passes power while `X1` is off.
+            3:15 `|/|`
+            Normally closed contact: passes power while `X1` is off.
 
-        **X1** input relay (X0–X377)
+            **X1** input relay (X0–X377)
 
-        - Read: line 2
-    "#]],
+            Read:
+            - rung 1, line 2: `X0 /X1 Y0 → Y0`
+        "#]],
     );
     check_hover(
         &marked(MOTOR, "(T0$0 K50"),
         ladder,
         &expect![[r#"
-        8:43 `T0`
-        **T0** timer, 100 ms (T0–T191)
+            8:43 `T0`
+            **T0** timer, 100 ms (T0–T191)
 
-        Preset `K50` = 5 s
+            Preset `K50` = 5 s
 
-        - Written: line 8
-    "#]],
+            Written:
+            - rung 2, line 8: `Y0 → T0 K50, MOV K10 D0`
+        "#]],
     );
     check_hover(
         &marked(MOTOR, "K50"),
@@ -366,14 +392,18 @@ fn hover_in_iec() {
         &marked(DELAY, "LD St$0art"),
         iec,
         &expect![[r#"
-        8:8 `Start`
-        ```iec
-        VAR Start AT %IX0.0 : BOOL
-        ```
+            8:8 `Start`
+            ```iec
+            VAR Start AT %IX0.0 : BOOL
+            ```
 
-        - Declared: line 3
-        - Read: lines 8, 10
-    "#]],
+            Declared:
+            - line 3: `Start AT %IX0.0 : BOOL;`
+
+            Read:
+            - rung 1, line 8: `LD Start`
+            - rung 1, line 10: `CAL Delay(IN := Start, PT := T#1m30s)`
+        "#]],
     );
     check_hover(
         &marked(DELAY, "Delay.$0Q"),
@@ -405,40 +435,52 @@ fn hover_in_iec() {
         &marked(DELAY, "JMPC Fin$0ish"),
         iec,
         &expect![[r#"
-        12:10 `Finish`
-        **Finish** label
+            12:10 `Finish`
+            **Finish** label
 
-        - Defined: line 14
-        - Jumps and calls: line 12
-    "#]],
+            Defined:
+            - rung 3, line 14: `Finish:`
+
+            Jumps and calls:
+            - rung 2, line 12: `JMPC Finish`
+        "#]],
     );
     check_hover(
         &marked(DELAY, ": Ga$0te"),
         iec,
         &expect![[r#"
-        6:13 `Gate`
-        ```iec
-        FUNCTION_BLOCK Gate
-        VAR_INPUT Open : BOOL
-        ```
+            6:13 `Gate`
+            ```iec
+            FUNCTION_BLOCK Gate
+            VAR_INPUT Open : BOOL
+            ```
 
-        - Declared: line 19
-        - Read: line 6
-    "#]],
+            Declared:
+            - line 19: `FUNCTION_BLOCK Gate`
+
+            Read:
+            - line 6: `Valve : Gate;`
+        "#]],
     );
     check_hover(
         &marked(DELAY, "Valve.Op$0en"),
         iec,
         &expect![[r#"
-        9:14 `Open`
-        ```iec
-        VAR_INPUT Open : BOOL
-        ```
+            9:14 `Open`
+            ```iec
+            VAR_INPUT Open : BOOL
+            ```
 
-        - Declared: line 21
-        - Written: lines 9, 17
-        - Read: line 26
-    "#]],
+            Declared:
+            - line 21: `Open : BOOL;`
+
+            Written:
+            - rung 1, line 9: `ST Valve.Open`
+            - rung 3, line 17: `CAL Valve(Open := Motor)`
+
+            Read:
+            - rung 4, line 26: `LD Open`
+        "#]],
     );
     for (word, heading) in
         [("JM$0PC", "### JMP"), ("T$0ON", "### TON"), ("CA$0L", "### CAL"), ("S$0T", "### ST")]
@@ -494,54 +536,53 @@ fn completion_of_fx_operands() {
         fx,
         6,
         &expect![[r#"
-        M0 | auxiliary relay, used 2 times | LD M0
-        X0 | input relay, used once | LD X0
-        X1 | input relay, used once | LD X1
-        Y0 | output relay, used once | LD Y0
-        M1 | auxiliary relay, used once | LD M1
-        T0 | timer, used once | LD T0
-        …
-    "#]],
+            M0 | auxiliary relay, read in 2 places | LD M0
+            X0 | input relay, read in 1 place | LD X0
+            X1 | input relay, read in 1 place | LD X1
+            Y0 | output relay, written in rung 1 | LD Y0
+            M1 | auxiliary relay, read in 1 place | LD M1
+            T0 | timer, written in rung 3 | LD T0
+            …
+        "#]],
     );
     check_completions(
         &format!("{program}OUT $0"),
         fx,
         6,
         &expect![[r#"
-        M0 | auxiliary relay, used 2 times | OUT M0
-        Y0 | output relay, used once | OUT Y0
-        M1 | auxiliary relay, used once | OUT M1
-        T0 | timer, used once | OUT T0
-        Y1 | output relay, free | OUT Y1
-        M2 | auxiliary relay, general, free | OUT M2
-        …
-    "#]],
+            Y1 | output relay, free | OUT Y1
+            M2 | auxiliary relay, general, free | OUT M2
+            M500 | auxiliary relay, latched, free | OUT M500
+            S0 | state, initial, free | OUT S0
+            S10 | state, state for returning home, free | OUT S10
+            S20 | state, general, free | OUT S20
+            …
+        "#]],
     );
     check_completions(
         &format!("{program}OUT T$0"),
         fx,
         6,
         &expect![[r#"
-        T0 | timer, used once | OUT T0
-        T1 | timer, 100 ms, free | OUT T1
-        T192 | timer, 100 ms timer for subroutines and interrupts, free | OUT T192
-        T200 | timer, 10 ms, free | OUT T200
-        T246 | timer, 1 ms retentive, free | OUT T246
-        T250 | timer, 100 ms retentive, free | OUT T250
-    "#]],
+            T1 | timer, 100 ms, free | OUT T1
+            T192 | timer, 100 ms timer for subroutines and interrupts, free | OUT T192
+            T200 | timer, 10 ms, free | OUT T200
+            T246 | timer, 1 ms retentive, free | OUT T246
+            T250 | timer, 100 ms retentive, free | OUT T250
+            T0 | timer, written in rung 3 | OUT T0
+        "#]],
     );
     check_completions(
         &format!("{program}OUT T200 $0"),
         fx,
         6,
         &expect![[r#"
-        K | decimal constant, 1–32767, × 10 ms | OUT T200 K${1:1}
-        D0 | data register, general, free | OUT T200 D0
-        D200 | data register, latched, free | OUT T200 D200
-        D512 | data register, latched, free | OUT T200 D512
-        D1000 | data register, latched register, may hold file registers, free | OUT T200 D1000
-        H | hexadecimal constant | OUT T200 H${1:0}
-    "#]],
+            K | decimal constant, 1–32767, × 10 ms | OUT T200 K${1:1}
+            D0 | data register, general, free | OUT T200 D0
+            D200 | data register, latched, free | OUT T200 D200
+            D1000 | data register, latched register, may hold file registers, free | OUT T200 D1000
+            H | hexadecimal constant | OUT T200 H${1:0}
+        "#]],
     );
     check_completions(&format!("{program}OUT Y0 $0"), fx, 6, &expect![[""]]);
     check_completions(
@@ -549,63 +590,60 @@ fn completion_of_fx_operands() {
         fx,
         12,
         &expect![[r#"
-        M801 | auxiliary relay, used once | LD M801
-        M8011 | Clock of 10 ms: 5 ms on, 5 ms off | LD M8011
-        M8012 | Clock of 100 ms: 50 ms on, 50 ms off | LD M8012
-        M8013 | Clock of 1 s: 0.5 s on, 0.5 s off | LD M8013
-        M8014 | Clock of 1 min: 30 s on, 30 s off | LD M8014
-        M8015 | Stops the clock; it starts with what D8013 to D8019 hold when this goes off | LD M8015
-        M8016 | Freezes D8013 to D8019 for reading; the clock itself goes on | LD M8016
-        M8017 | On a rising edge rounds the clock to the nearest minute | LD M8017
-        M8018 | On while a real-time clock is fitted | LD M8018
-        M8019 | The clock was set to an impossible date or time | LD M8019
-    "#]],
+            M8011 | Clock of 10 ms: 5 ms on, 5 ms off | LD M8011
+            M8012 | Clock of 100 ms: 50 ms on, 50 ms off | LD M8012
+            M8013 | Clock of 1 s: 0.5 s on, 0.5 s off | LD M8013
+            M8014 | Clock of 1 min: 30 s on, 30 s off | LD M8014
+            M8015 | Stops the clock; it starts with what D8013 to D8019 hold when this goes off | LD M8015
+            M8016 | Freezes D8013 to D8019 for reading; the clock itself goes on | LD M8016
+            M8017 | On a rising edge rounds the clock to the nearest minute | LD M8017
+            M8018 | On while a real-time clock is fitted | LD M8018
+            M8019 | The clock was set to an impossible date or time | LD M8019
+        "#]],
     );
     check_completions(
         &format!("{program}OUT M801$0"),
         fx,
         12,
         &expect![[r#"
-        M801 | auxiliary relay, used once | OUT M801
-        M8015 | Stops the clock; it starts with what D8013 to D8019 hold when this goes off | OUT M8015
-        M8016 | Freezes D8013 to D8019 for reading; the clock itself goes on | OUT M8016
-        M8017 | On a rising edge rounds the clock to the nearest minute | OUT M8017
-    "#]],
+            M8015 | Stops the clock; it starts with what D8013 to D8019 hold when this goes off | OUT M8015
+            M8016 | Freezes D8013 to D8019 for reading; the clock itself goes on | OUT M8016
+            M8017 | On a rising edge rounds the clock to the nearest minute | OUT M8017
+        "#]],
     );
     check_completions(
         &format!("{program}CJ $0"),
         fx,
         4,
         &expect![[r#"
-        P1 | label, line 8 | CJ P1
-        P0 | free label | CJ P0
-    "#]],
+            P1 | label, rung 3, line 8, jumped to 1 × | CJ P1
+            P0 | free label | CJ P0
+        "#]],
     );
     check_completions(
         &format!("{program}MOV K1 $0"),
         fx,
         40,
         &expect![[r#"
-        T0 | timer, used once | MOV K1 T0
-        D0 | data register, general, free | MOV K1 D0
-        D200 | data register, latched, free | MOV K1 D200
-        D512 | data register, latched, free | MOV K1 D512
-        D1000 | data register, latched register, may hold file registers, free | MOV K1 D1000
-        T1 | timer, 100 ms, free | MOV K1 T1
-        T192 | timer, 100 ms timer for subroutines and interrupts, free | MOV K1 T192
-        T200 | timer, 10 ms, free | MOV K1 T200
-        T246 | timer, 1 ms retentive, free | MOV K1 T246
-        T250 | timer, 100 ms retentive, free | MOV K1 T250
-        C0 | counter, 16-bit up, free | MOV K1 C0
-        C100 | counter, latched 16-bit up, free | MOV K1 C100
-        C200 | counter, 32-bit up/down, free | MOV K1 C200
-        C220 | counter, latched 32-bit up/down, free | MOV K1 C220
-        V0 | index register, free | MOV K1 V0
-        Z0 | index register, free | MOV K1 Z0
-        K4Y0 | 16 × output relay | MOV K1 K${1:4}Y${2:0}
-        K4M0 | 16 × auxiliary relay | MOV K1 K${1:4}M${2:0}
-        K4S0 | 16 × state | MOV K1 K${1:4}S${2:0}
-    "#]],
+            T0 | timer, written in rung 3 | MOV K1 T0
+            D0 | data register, general, free | MOV K1 D0
+            D200 | data register, latched, free | MOV K1 D200
+            D1000 | data register, latched register, may hold file registers, free | MOV K1 D1000
+            T1 | timer, 100 ms, free | MOV K1 T1
+            T192 | timer, 100 ms timer for subroutines and interrupts, free | MOV K1 T192
+            T200 | timer, 10 ms, free | MOV K1 T200
+            T246 | timer, 1 ms retentive, free | MOV K1 T246
+            T250 | timer, 100 ms retentive, free | MOV K1 T250
+            C0 | counter, 16-bit up, free | MOV K1 C0
+            C100 | counter, latched 16-bit up, free | MOV K1 C100
+            C200 | counter, 32-bit up/down, free | MOV K1 C200
+            C220 | counter, latched 32-bit up/down, free | MOV K1 C220
+            V0 | index register, free | MOV K1 V0
+            Z0 | index register, free | MOV K1 Z0
+            K4Y0 | 16 × output relay | MOV K1 K${1:4}Y${2:0}
+            K4M0 | 16 × auxiliary relay | MOV K1 K${1:4}M${2:0}
+            K4S0 | 16 × state | MOV K1 K${1:4}S${2:0}
+        "#]],
     );
 }
 
@@ -627,12 +665,12 @@ fn completion_in_ladder() {
         ladder,
         4,
         &expect![[r#"
-        Y0 | output relay, used 3 times | |   Y0    |Y0                                      |
-        X0 | input relay, used once | |   Y0    |X0                                      |
-        X1 | input relay, used once | |   Y0    |X1                                      |
-        T0 | timer, used once | |   Y0    |T0                                      |
-        …
-    "#]],
+            Y0 | output relay, written in rung 1, read in 2 places | |   Y0    |Y0                                      |
+            X0 | input relay, read in 1 place | |   Y0    |X0                                      |
+            X1 | input relay, read in 1 place | |   Y0    |X1                                      |
+            T0 | timer, written in rung 2 | |   Y0    |T0                                      |
+            …
+        "#]],
     );
     check_completions(
         "|   X0\n+---| |--$0--------( )-+\n",
@@ -664,11 +702,11 @@ fn completion_in_ladder() {
         ladder,
         3,
         &expect![[r#"
-        D0 | data register, general, free | +---| |----[MOV K1 D0
-        D200 | data register, latched, free | +---| |----[MOV K1 D200
-        D512 | data register, latched, free | +---| |----[MOV K1 D512
-        …
-    "#]],
+            D0 | data register, general, free | +---| |----[MOV K1 D0
+            D200 | data register, latched, free | +---| |----[MOV K1 D200
+            D1000 | data register, latched register, may hold file registers, free | +---| |----[MOV K1 D1000
+            …
+        "#]],
     );
     check_completions(
         "|   X0\n+---| |----(T0 $0)\n",
@@ -737,8 +775,8 @@ fn completion_in_iec() {
         iec,
         12,
         &expect![[r#"
-        Finish | label, line 14 |     JMPC FinishFinish
-    "#]],
+            Finish | complete.label 14 |     JMPC FinishFinish
+        "#]],
     );
     check_completions(
         &marked(DELAY, "CAL $0Delay"),
@@ -1426,14 +1464,17 @@ fn ladder_of_iec_variables() {
         &marked(TANK, "$0Level_low  |"),
         tank,
         &expect![[r#"
-        10:4 `Level_low`
-        ```iec
-        VAR Level_low AT %IX0.0 : BOOL
-        ```
+            10:4 `Level_low`
+            ```iec
+            VAR Level_low AT %IX0.0 : BOOL
+            ```
 
-        - Declared: line 3
-        - Read: line 10
-    "#]],
+            Declared:
+            - line 3: `Level_low AT %IX0.0 : BOOL;`
+
+            Read:
+            - rung 1, line 10: `Level_low T#5s → Pump`
+        "#]],
     );
     check_hover(
         &marked(TANK, "T#$05s"),

@@ -45,7 +45,9 @@ pub(super) fn run(arguments: &Arguments, colour: Colour, language: Language) -> 
         let reason = Message::new("cli.not-utf-8").with("path", program.path.display()).render(language);
         caution("not-utf-8", &reason, &Message::new("cli.save-as-utf-8").render(language), language);
     }
-    let checked = super::across::checked(programs, arguments.target);
+    let tables = super::comments::findings(&programs);
+    let mut checked = super::across::checked(programs, arguments.target);
+    checked.extend(tables);
     let mut summary = Summary::default();
     checked.iter().for_each(|(program, found)| summary.add(&program.document, found));
     match arguments.format {

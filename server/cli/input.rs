@@ -197,6 +197,7 @@ pub(super) fn read_programs(
     let (text, encoding) = encoding::read(std::fs::read(path)?);
     let program = |name: &str, text: &str, fence: Option<InFence>| {
         let document = open_document(name, text, manifest, target, None);
+        let document = document.commented(&super::comments::of(path, manifest));
         let (path, manifest) = (path.to_path_buf(), manifest.clone());
         Program { path, document, manifest, beside: Arc::default(), encoding, fence }
     };

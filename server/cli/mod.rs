@@ -3,6 +3,7 @@
 mod across;
 mod check;
 mod colour;
+mod comments;
 mod completions;
 mod diff;
 mod encoding;
@@ -15,6 +16,7 @@ mod language;
 mod render;
 mod sarif;
 mod server;
+mod usage;
 
 use crate::text::Language;
 use colour::Colour;
@@ -55,6 +57,8 @@ enum Verb {
     Check(check::Arguments),
     /// Write files in canonical form.
     Fmt(fmt::Arguments),
+    /// List the devices that programs use: where read, where written, comment.
+    Usage(usage::Arguments),
     /// Show the page of a rule, an instruction, a function or a function block.
     Explain(explain::Arguments),
     /// Carry a program of LDmicro over: its own file (.ld) or its text export.
@@ -103,6 +107,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Verb::Lsp { stdio: _, mirror, replay } => server::run(mirror.as_deref(), replay.as_deref(), arguments.language),
         Verb::Check(verb) => check::run(&verb, arguments.color, language).into(),
         Verb::Fmt(verb) => fmt::run(&verb, arguments.color, language).into(),
+        Verb::Usage(verb) => usage::run(&verb, language).into(),
         Verb::Explain(arguments) => explain::run(&arguments, language).into(),
         Verb::Import(arguments) => import::run(&arguments, language).into(),
         Verb::Completions(arguments) => completions::run(&arguments).into(),

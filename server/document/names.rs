@@ -1,6 +1,6 @@
 //! What a page of chunks names: small and sorted, so that a search for one name passes over the pages without it.
 
-use super::{Chunk, Symbol, Tree};
+use super::{Chunk, Symbol, Tree, Use};
 use crate::il::iec::ItemKind;
 use crate::target::Device;
 use std::sync::Arc;
@@ -10,6 +10,8 @@ use std::sync::Arc;
 pub struct Names {
     /// Every symbol with the number of its mentions, sorted.
     symbols: Box<[(Symbol, u32)]>,
+    /// For each symbol how often it is read and how often written.
+    accesses: Box<[(u32, u32)]>,
     /// The runs of several devices (`K4M0`), each once.
     runs: Box<[(Device, u16)]>,
     pou_starts: usize,
@@ -18,12 +20,12 @@ pub struct Names {
 
 impl Names {
     pub(super) fn of(chunks: &[Arc<Chunk>]) -> Names {
-        let mut all: Vec<&Symbol> = Vec::new();
+        let mut all: Vec<(&Symbol, Use)> = Vec::new();
         let mut runs = Vec::new();
         let (mut pou_starts, mut inside_at_end) = (0, None);
         for chunk in chunks {
             for mention in chunk.mentions() {
-                all.push(&mention.symbol);
+                all.push((&mention.symbol, mention.usage));
                 if let (Symbol::Device(device), true) = (&mention.symbol, mention.count > 1) {
                     runs.push((*device, mention.count));
                 }
@@ -31,11 +33,17 @@ impl Names {
             pou_starts += chunk.pou_starts();
             inside_at_end = chunk.ends_inside_pou().or(inside_at_end);
         }
-        all.sort_unstable();
+        all.sort_unstable_by_key(|(symbol, _)| *symbol);
         runs.sort_unstable();
         runs.dedup();
-        let symbols = all.chunk_by(|left, right| left == right).map(|run| (run[0].clone(), run.len() as u32));
-        Names { symbols: symbols.collect(), runs: runs.into_boxed_slice(), pou_starts, inside_at_end }
+        let (mut symbols, mut accesses) = (Vec::new(), Vec::new());
+        for run in all.chunk_by(|left, right| left.0 == right.0) {
+            symbols.push((run[0].0.clone(), run.len() as u32));
+            let count = |is: fn(Use) -> bool| run.iter().filter(|(_, usage)| is(*usage)).count() as u32;
+            accesses.push((count(Use::reads), count(Use::writes)));
+        }
+        let (symbols, accesses) = (symbols.into_boxed_slice(), accesses.into_boxed_slice());
+        Names { symbols, accesses, runs: runs.into_boxed_slice(), pou_starts, inside_at_end }
     }
 
     /// Whether `symbol` is named.
@@ -60,6 +68,30 @@ impl Names {
     /// Every symbol with the number of its mentions, sorted.
     pub fn symbols(&self) -> &[(Symbol, u32)] {
         &self.symbols
+    }
+
+    /// How often `symbol` is read and how often written; runs of devices that begin with another one do not count.
+    pub fn accesses(&self, symbol: &Symbol) -> (u32, u32) {
+        let found = self.symbols.binary_search_by(|(own, _)| own.cmp(symbol));
+        found.ok().and_then(|number| self.accesses.get(number).copied()).unwrap_or_default()
+    }
+
+    /// Every symbol with the number of its mentions, and of these how many read and how many write it; sorted.
+    pub fn tallies(&self) -> impl Iterator<Item = (&Symbol, (u32, (u32, u32)))> {
+        self.symbols.iter().zip(&self.accesses).map(|((symbol, count), access)| (symbol, (*count, *access)))
+    }
+
+    /// Whether a run of several devices covers `device`.
+    pub fn in_run(&self, device: Device) -> bool {
+        self.runs.iter().any(|(first, count)| {
+            let end = first.number.saturating_add(u32::from(*count));
+            first.kind == device.kind && (first.number..end).contains(&device.number)
+        })
+    }
+
+    /// The runs of several devices, each once.
+    pub fn runs(&self) -> &[(Device, u16)] {
+        &self.runs
     }
 
     /// How many POUs start in the page.

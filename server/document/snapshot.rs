@@ -252,16 +252,16 @@ impl Document {
         Document { scopes: OnceLock::new(), outer: Some((outer, own)), ..self.clone() }
     }
 
-    /// The same document standing alone.
+    /// The same document standing alone, without a project's comments.
     pub fn unlinked(&self) -> Document {
-        Document { scopes: OnceLock::new(), outer: None, ..self.clone() }
+        let bare = self.commented(&Arc::default());
+        Document { scopes: OnceLock::new(), outer: None, ..bare }
     }
 
     /// The same document in the place of `other` in its project.
-    pub fn linked_as(mut self, other: &Document) -> Document {
-        self.outer = other.outer.clone();
-        self.scopes = OnceLock::new();
-        self
+    pub fn linked_as(self, other: &Document) -> Document {
+        let commented = self.commented(&other.comments);
+        Document { scopes: OnceLock::new(), outer: other.outer.clone(), ..commented }
     }
 
     /// What the files of its project declare, and which of them it is.

@@ -28,6 +28,8 @@ pub struct Completion {
     pub is_snippet: bool,
     /// Orders the list; smaller comes first.
     pub rank: u16,
+    /// What typed letters are compared with, if not the label.
+    pub filter: String,
 }
 
 /// What a proposal is.

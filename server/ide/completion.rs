@@ -1,7 +1,7 @@
 //! What could be written at a place.
 
 use super::{Completion, CompletionKind};
-use crate::document::{Chunk, Document, Notation, Tree};
+use crate::document::{Chunk, Document, Notation, ProjectView, Tree};
 use crate::text::{Language, Span, TextEdit};
 
 mod instructions;
@@ -12,7 +12,8 @@ mod ladder;
 
 mod iec;
 
-pub(super) fn at(document: &Document, offset: usize, language: Language) -> Vec<Completion> {
+pub(super) fn at(view: &ProjectView<'_>, offset: usize, language: Language) -> Vec<Completion> {
+    let document = view.here();
     let offset = offset.min(document.len());
     let chunk = document.chunk_at(offset);
     let start = chunk.map_or(0, |at| at.start);
@@ -23,6 +24,7 @@ pub(super) fn at(document: &Document, offset: usize, language: Language) -> Vec<
     }
     let line_start = head.rfind('\n').map_or(0, |end| end + 1);
     let mut place = Place {
+        view,
         document,
         chunk: chunk.map(|at| at.chunk.as_ref()),
         chunk_start: start,
@@ -42,6 +44,7 @@ pub(super) fn at(document: &Document, offset: usize, language: Language) -> Vec<
 
 /// Where the cursor stands, and what was found for it.
 struct Place<'d> {
+    view: &'d ProjectView<'d>,
     document: &'d Document,
     /// `None` in an empty document.
     chunk: Option<&'d Chunk>,
@@ -63,13 +66,15 @@ struct Proposal {
     documentation: String,
     /// What is inserted, where that is not the label: a snippet.
     snippet: Option<String>,
+    /// What people may type for it beside the label: a symbol, the words of a comment.
+    search: String,
     rank: u16,
 }
 
 impl Proposal {
     fn new(label: impl Into<String>, kind: CompletionKind, detail: impl Into<String>, rank: u16) -> Proposal {
         let (label, detail) = (label.into(), detail.into());
-        Proposal { label, kind, detail, documentation: String::new(), snippet: None, rank }
+        Proposal { label, kind, detail, documentation: String::new(), snippet: None, search: String::new(), rank }
     }
 
     fn snippet(self, snippet: impl Into<String>) -> Proposal {
@@ -81,7 +86,7 @@ impl<'d> Place<'d> {
     /// Adds `proposal` if `typed`, the text directly before the cursor that it replaces, is the start of a way to
     /// spell it.
     fn propose(&mut self, typed: &str, proposal: Proposal) {
-        if !is_abbreviation(typed, &proposal.label) {
+        if !is_abbreviation(typed, &proposal.label) && !is_found_by(typed, &proposal.search) {
             return;
         }
         let starts_so =
@@ -90,6 +95,10 @@ impl<'d> Place<'d> {
         let is_snippet = proposal.snippet.is_some();
         self.found.push(Completion {
             edit: TextEdit::new(span, proposal.snippet.unwrap_or_else(|| proposal.label.clone())),
+            filter: match proposal.search.as_str() {
+                "" => String::new(),
+                words => format!("{} {words}", proposal.label),
+            },
             label: proposal.label,
             kind: proposal.kind,
             detail: proposal.detail,
@@ -124,6 +133,19 @@ fn is_abbreviation(typed: &str, word: &str) -> bool {
         }
         _ => false,
     }
+}
+
+/// Whether one of `words` begins with `typed`, or contains it where the script has no blanks between words; case aside.
+fn is_found_by(typed: &str, words: &str) -> bool {
+    if typed.is_empty() || words.is_empty() {
+        return false;
+    }
+    let (typed, words) = (typed.to_lowercase(), words.to_lowercase());
+    if !typed.is_ascii() {
+        return words.contains(&typed);
+    }
+    words.split(|c: char| !c.is_alphanumeric()).any(|word| word.starts_with(&typed))
+        || words.split_whitespace().any(|word| word.starts_with(&typed))
 }
 
 /// `text` where a snippet wants its signs escaped.

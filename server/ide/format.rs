@@ -16,6 +16,27 @@ pub struct Style {
 }
 
 pub(super) fn edits(document: &Document, style: Style) -> Vec<TextEdit> {
+    edits_where(document, style, |_| true)
+}
+
+/// The edits in the rungs, blocks and declarations that one of `spans` touches.
+pub(super) fn edits_within(document: &Document, style: Style, spans: &[Span]) -> Vec<TextEdit> {
+    let is_touched = |chunk: Span| {
+        let meets = |span: &Span| {
+            span.start < chunk.end && (chunk.start < span.end || span.touches(chunk.start as usize))
+        };
+        spans.iter().any(meets)
+    };
+    let mut edits = edits_where(document, style, is_touched);
+    // Step numbers of the whole program are one thing; of its edits only those in touched chunks are wanted.
+    edits.retain(|edit| {
+        let at = document.chunk_at(edit.span.start as usize);
+        at.is_some_and(|at| is_touched(Span::new(at.start, at.start + at.chunk.len())))
+    });
+    edits
+}
+
+fn edits_where(document: &Document, style: Style, wanted: impl Fn(Span) -> bool) -> Vec<TextEdit> {
     let mut edits = Vec::new();
     let mut instructions = Vec::new();
     let page = ladder_page(document, style);
@@ -26,6 +47,7 @@ pub(super) fn edits(document: &Document, style: Style) -> Vec<TextEdit> {
                 instructions.push((text, tree));
                 None
             }
+            _ if !wanted(Span::new(at.start, at.start + text.len())) => None,
             // The tables of an LDmicro export are declarations, but not as the standard writes them.
             Tree::Iec(_) if ladder::kind_of(text) == ladder::ChunkKind::Ldmicro => None,
             Tree::Iec(tree) => Some(iec::format_chunk(text, tree, &iec::FormatOptions::default())),

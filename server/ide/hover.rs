@@ -2,19 +2,30 @@
 
 use super::names::{self, Named, Thing};
 use super::{Hover, declared, devices, pages, uses};
-use crate::document::{Chunk, Document, Operation, Tree};
+use crate::document::{Chunk, Document, Operation, ProjectView, Symbol, Tree};
 use crate::il::fx::{FxTree, LineKind};
 use crate::il::iec::{IecTree, ItemKind};
 use crate::ladder::{Element, ElementKind, LadderTree};
 use crate::target::iec::{Function, FunctionBlock, LiteralValue, Operator};
-use crate::target::{Constant, Device, DeviceKind, DirectAddress, Location, Operand, Width};
+use crate::target::{Constant, Device, DirectAddress, Location, Operand, Width};
 use crate::text::{Language, Message, Span, Spanned, phrase};
 
 mod element;
 
-pub(super) fn at(document: &Document, offset: usize, language: Language) -> Option<Hover> {
+/// So many writers and readers are listed.
+const SHOWN: usize = 8;
+
+/// `link` gives the address of a line (from 0) of a file, for readers that can follow one.
+pub(super) fn at(
+    around: &ProjectView<'_>,
+    offset: usize,
+    language: Language,
+    link: &dyn Fn(usize, u32) -> Option<String>,
+) -> Option<Hover> {
+    let document = around.here();
     let found = document.chunk_at(offset)?;
-    let view = View { document, chunk: found.chunk, start: found.start, offset, language };
+    let chunk = found.chunk;
+    let view = View { around, document, chunk, start: found.start, offset, language, link };
     let inside = offset.checked_sub(found.start)?;
     let (span, markdown) = match found.chunk.tree() {
         Tree::Fx(tree) => view.fx(tree, inside),
@@ -26,11 +37,13 @@ pub(super) fn at(document: &Document, offset: usize, language: Language) -> Opti
 
 /// The place of which one asks; spans that it answers are those of the chunk.
 struct View<'d> {
+    around: &'d ProjectView<'d>,
     document: &'d Document,
     chunk: &'d Chunk,
     start: usize,
     offset: usize,
     language: Language,
+    link: &'d dyn Fn(usize, u32) -> Option<String>,
 }
 
 type Answer = Option<(Span, String)>;
@@ -266,22 +279,39 @@ impl View<'_> {
                 None => Message::new("hover.type-plain").with("name", &word).render(language),
             },
         };
-        let mut preset = None;
-        let uses = uses::of(self.document, &named.thing, language, |place| {
-            if let (Thing::Devices(device, 1), None) = (&named.thing, &preset)
-                && place.usage.writes()
-                && matches!(device.kind, DeviceKind::T | DeviceKind::C)
-                && let Some(found) = devices::preset_of(place.chunk, *device)
-            {
-                preset = Some(self.preset(*device, found.value, found.span.of(place.chunk.text())));
+        let uses = uses::collect(self.around, &named.thing, SHOWN);
+        let preset = match (&named.thing, &uses.preset) {
+            (Thing::Devices(device, _), Some((value, word))) => self.preset(*device, *value, word),
+            _ => String::new(),
+        };
+        let style = uses::Style { view: self.around, language, link: self.link };
+        let parts = [head, self.comment(&named.thing, &word), preset, uses.markdown(&named.thing, &style)];
+        parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n\n")
+    }
+
+    /// The project's comment on a device or address, also on that of a variable, and its symbol; `word` is what the
+    /// program writes.
+    fn comment(&self, thing: &Thing, word: &str) -> String {
+        let comments = self.document.comments();
+        let row = match thing {
+            Thing::Devices(device, _) => comments.of_device(*device),
+            Thing::Direct(address) => comments.of(&Symbol::Direct(*address)),
+            Thing::Variable { pou, name } => {
+                let declared = self.document.scopes().variable(*pou, name);
+                declared.and_then(|variable| variable.address).and_then(|at| comments.of(&Symbol::Direct(at)))
             }
-        });
-        [head, preset.unwrap_or_default(), uses]
-            .iter()
-            .filter(|part| !part.is_empty())
-            .cloned()
-            .collect::<Vec<_>>()
-            .join("\n\n")
+            _ => None,
+        };
+        let Some(row) = row else { return String::new() };
+        let symbol = match (&row.thing, row.symbol.as_str()) {
+            (_, "") => String::new(),
+            (Symbol::Device(device), symbol) if symbol.eq_ignore_ascii_case(word) => {
+                Message::new("uses.symbol-of").with("symbol", symbol).with("device", device).render(self.language)
+            }
+            (_, symbol) => Message::new("uses.symbol").with("symbol", symbol).render(self.language),
+        };
+        let parts = [symbol.as_str(), row.comment.as_str()];
+        parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" — ")
     }
 
     fn device(&self, device: Device, count: u16) -> String {

@@ -2,11 +2,12 @@
 //! would push the rest of the drawing out of its columns.
 
 use super::{InlayHint, devices};
-use crate::document::{Chunk, Document, Notation};
+use crate::document::{Chunk, Comments, Document, Notation, Symbol};
 use crate::target::{Constant, Operand, Target};
 use crate::text::{Language, Message, Span};
 
-pub(super) fn within(document: &Document, span: Span, language: Language) -> Vec<InlayHint> {
+/// `comments` adds what the project says about devices.
+pub(super) fn within(document: &Document, span: Span, language: Language, comments: bool) -> Vec<InlayHint> {
     let mut hints = Vec::new();
     let (first, last) = (span.start as usize, span.end as usize);
     let mut page_start = 0;
@@ -20,6 +21,9 @@ pub(super) fn within(document: &Document, span: Span, language: Language) -> Vec
             if start <= last && start + chunk.len() >= first {
                 let old = hints.len();
                 of_chunk(chunk, start, document.target(), language, &mut hints);
+                if comments {
+                    comments_of_chunk(chunk, start, document.comments(), &mut hints);
+                }
                 if document.notation() == Notation::Ladder {
                     hints[old..]
                         .iter_mut()
@@ -37,6 +41,32 @@ pub(super) fn within(document: &Document, span: Span, language: Language) -> Vec
 fn line_end(chunk: &Chunk, start: usize, offset: usize) -> usize {
     let rest = chunk.text().get(offset - start..).unwrap_or("");
     offset + rest.find(['\r', '\n']).unwrap_or(rest.len())
+}
+
+/// Behind each device what its word does not say: the comment, and for a symbol the device.
+fn comments_of_chunk(chunk: &Chunk, start: usize, comments: &Comments, hints: &mut Vec<InlayHint>) {
+    if comments.rows().is_empty() {
+        return;
+    }
+    let old = hints.len();
+    for mention in chunk.mentions() {
+        let Some(row) = comments.of(&mention.symbol) else { continue };
+        let word = mention.span.of(chunk.text());
+        let is_symbol = row.symbol.to_lowercase() == word.to_lowercase();
+        let label = match (&row.thing, is_symbol) {
+            (Symbol::Device(device), true) => format!("{device} {}", row.comment).trim().to_string(),
+            (_, true) => row.comment.to_string(),
+            (_, false) => row.words(),
+        };
+        if !label.is_empty() {
+            let offset = start + mention.span.end as usize;
+            hints.push(InlayHint { offset, label, tooltip: format!("{word}: {}", row.words()) });
+        }
+    }
+    // Both kinds of hint come in the order of the text.
+    if hints.len() > old {
+        hints.sort_by_key(|hint| hint.offset);
+    }
 }
 
 fn of_chunk(chunk: &Chunk, start: usize, target: &Target, language: Language, hints: &mut Vec<InlayHint>) {

@@ -24,9 +24,26 @@ mod declared;
 
 mod uses;
 
+mod bookkeeping;
+
 mod hover;
 
 mod completion;
+
+mod signature;
+pub use signature::{Signature, SignatureParameter};
+
+mod highlight;
+pub use highlight::{Highlight, HighlightKind};
+
+mod usage;
+pub use usage::{Usage, UsageAt, UsageKey, UsageRow};
+
+mod lens;
+pub use lens::{Lens, LensKind, LensSettings};
+
+mod aliases;
+pub use aliases::{Rewrite, SymbolRename};
 
 mod across;
 
@@ -68,12 +85,52 @@ mod linked_editing;
 
 /// What stands at `offset`: the page of an instruction, the meaning and range of a device, where it is used.
 pub fn hover(document: &Document, offset: usize, language: Language) -> Option<Hover> {
-    hover::at(document, offset, language)
+    hover::at(&ProjectView::alone(document), offset, language, &|_, _| None)
+}
+
+/// The same among the files of a project; `link` gives the address of a line (from 0) of the file with a number.
+pub fn hover_in(
+    view: &ProjectView<'_>,
+    offset: usize,
+    language: Language,
+    link: &dyn Fn(usize, u32) -> Option<String>,
+) -> Option<Hover> {
+    hover::at(view, offset, language, link)
 }
 
 /// What could be written at `offset`.
 pub fn completions(document: &Document, offset: usize, language: Language) -> Vec<Completion> {
-    completion::at(document, offset, language)
+    completion::at(&ProjectView::alone(document), offset, language)
+}
+
+/// The same among the files of a project: devices that another file uses are not free.
+pub fn completions_in(view: &ProjectView<'_>, offset: usize, language: Language) -> Vec<Completion> {
+    completion::at(view, offset, language)
+}
+
+/// The instruction or call in which `offset` stands, and which of its operands is being written.
+pub fn signature(document: &Document, offset: usize, language: Language) -> Option<Signature> {
+    signature::at(document, offset, language)
+}
+
+/// What belongs to the word at `offset`: all uses of a name, the partners of FOR, MC, MPS, a parenthesis.
+pub fn highlights(document: &Document, offset: usize) -> Vec<Highlight> {
+    highlight::at(document, offset)
+}
+
+/// The list of used devices of a project.
+pub fn usage(view: &ProjectView<'_>) -> Usage {
+    usage::of(view)
+}
+
+/// The lenses above rungs, without their words.
+pub fn lenses(document: &Document, wanted: LensSettings) -> Vec<Lens> {
+    lens::of(document, wanted)
+}
+
+/// The words of a lens that stands at `offset`.
+pub fn lens_title(view: &ProjectView<'_>, offset: usize, kind: &LensKind, language: Language) -> Option<String> {
+    lens::title(view, offset, kind, language)
 }
 
 /// Where the name at `offset` is declared or, for a device, driven.
@@ -99,7 +156,7 @@ pub fn references_in(view: &ProjectView<'_>, offset: usize, with_declaration: bo
 
 /// The name at `offset`, if it can be renamed.
 pub fn renamable(document: &Document, offset: usize) -> Option<Span> {
-    rename::renamable(document, offset)
+    aliases::span_at(document, offset).or_else(|| rename::renamable(document, offset))
 }
 
 /// The edits that give the name at `offset` the name `new`.
@@ -154,6 +211,28 @@ pub fn links_in_text(text: &str) -> Vec<(Span, String)> {
     links::in_text(text)
 }
 
+/// Renames the symbol of a device at `offset` in all files and in the comments file; nothing if no symbol stands there.
+pub fn rename_symbol(
+    view: &ProjectView<'_>,
+    offset: usize,
+    new: &str,
+) -> Option<Result<SymbolRename, Message>> {
+    aliases::rename(view, offset, new)
+}
+
+/// The edit of the comments file that goes with the renaming of the device at `offset`.
+///
+/// # Errors
+/// If the file has a line for the new device already.
+pub fn rename_in_comments(document: &Document, offset: usize, new: &str) -> Result<Option<TextEdit>, Message> {
+    aliases::table_edit(document, offset, new)
+}
+
+/// What may be written instead at `offset`: a symbol for a device, a device for a symbol.
+pub fn rewrites(document: &Document, offset: usize) -> Vec<Rewrite> {
+    aliases::rewrites(document, offset)
+}
+
 /// The outline.
 pub fn symbols(document: &Document, language: Language) -> Vec<SymbolNode> {
     symbols::of(document, language)
@@ -175,12 +254,22 @@ pub fn semantic_tokens(document: &Document) -> Vec<Token> {
 
 /// What the editor may show between the words of `span`.
 pub fn inlay_hints(document: &Document, span: Span, language: Language) -> Vec<InlayHint> {
-    inlay_hints::within(document, span, language)
+    inlay_hints::within(document, span, language, true)
+}
+
+/// The same without the comments of devices.
+pub fn value_hints(document: &Document, span: Span, language: Language) -> Vec<InlayHint> {
+    inlay_hints::within(document, span, language, false)
 }
 
 /// The edits that make the document canonical; none if it is.
 pub fn format(document: &Document, style: Style) -> Vec<TextEdit> {
     format::edits(document, style)
+}
+
+/// The edits that make the rungs and lines canonical that `spans` touch.
+pub fn format_ranges(document: &Document, style: Style, spans: &[Span]) -> Vec<TextEdit> {
+    format::edits_within(document, style, spans)
 }
 
 /// The structural edit `kind` of the rung at the cursor or selection `span`; `operand` names what is inserted.

@@ -156,14 +156,24 @@ pub(super) fn at(document: &Document, offset: usize) -> Option<Named<'_>> {
 }
 
 /// Calls `see` for every place of `thing`, in the order of the text. Pages that do not name it cost one look-up.
-pub(super) fn visit<'d>(document: &'d Document, thing: &Thing, mut see: impl FnMut(Named<'d>)) {
+pub(super) fn visit<'d>(document: &'d Document, thing: &Thing, see: impl FnMut(Named<'d>)) {
+    visit_where(document, thing, |_| true, see);
+}
+
+/// The same, passing over pages that `enter` refuses; it is asked about each page that may name `thing`.
+pub(super) fn visit_where<'d>(
+    document: &'d Document,
+    thing: &Thing,
+    mut enter: impl FnMut(&Names) -> bool,
+    mut see: impl FnMut(Named<'d>),
+) {
     let scopes = document.scopes();
     let from_outside = thing.parameter_of(scopes);
     let mut walk = PouWalk::default();
     let mut page_start = 0;
     for page in document.pages() {
         let names = page.names();
-        if thing.may_be_in(names) || from_outside.is_some() {
+        if from_outside.is_some() || thing.may_be_in(names) && enter(names) {
             let (mut walk, mut start) = (walk, page_start);
             for chunk in page.chunks() {
                 let pou = walk.enter(chunk);

@@ -1,6 +1,7 @@
 //! Renaming: the same program with another name, and the drawing kept whole. What would change the program's meaning
 //! is refused with a reason.
 
+use super::aliases;
 use super::across::{self, InFile};
 use super::names::{self, Named, Thing};
 use crate::document::{At, Document, Mention, ProjectView, Symbol, Tree};
@@ -9,7 +10,7 @@ use crate::target::{Device, DeviceKind, DirectAddress, Operand, Target};
 use crate::text::{Encoding, Message, Span, TextEdit};
 use smol_str::SmolStr;
 
-mod drawing;
+pub(super) mod drawing;
 
 pub(super) fn renamable(document: &Document, offset: usize) -> Option<Span> {
     let named = names::at(document, offset)?;
@@ -79,6 +80,10 @@ impl<'a> Change<'_, 'a> {
     fn edits(&self, file: &InFile<'a>, written: &str) -> Result<Vec<TextEdit>, Message> {
         let mut places: Vec<(Span, bool)> = Vec::new();
         names::visit(file.document, &file.thing, |place| {
+            // A symbol stays: the comments file gives it the new device.
+            if aliases::written_at(file.document, place.span).is_some() {
+                return;
+            }
             let is_drawn = matches!(place.chunk.tree(), Tree::Ladder(_));
             places.push((place.span, is_drawn));
         });
@@ -94,7 +99,7 @@ impl<'a> Change<'_, 'a> {
         };
         edits.extend(drawing::edits(file.document, &drawn, written).map_err(no_room)?);
         edits.sort_by_key(|edit| edit.span);
-        drawing::still_say_the_same(file.document, &edits, &drawn).map_err(no_room)?;
+        drawing::still_say_the_same(file.document, file.document, &edits, &drawn).map_err(no_room)?;
         Ok(edits)
     }
 

@@ -160,6 +160,7 @@ pub(super) fn read_parentheses(pieces: &[Piece], target: &Target) -> Reading {
         && !rest.is_empty()
         && first.text.len() > 1
         && first.text.chars().all(char::is_alphabetic)
+        && matches!(target.read(first.text), Operand::Invalid(_))
     {
         let kind = ElementKind::Instruction { form: None, mnemonic: first.span };
         return Reading::new(kind, read_operands(rest, target), Wants::Nothing);

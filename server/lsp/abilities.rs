@@ -1,5 +1,6 @@
 //! What the client can show and do, as it said in `initialize`.
 
+use serde_json::Value;
 use tower_lsp::ls_types::*;
 
 /// What answers depend on. A client that says nothing at all about a side of the protocol is taken for one that knows
@@ -43,6 +44,29 @@ pub(super) struct Requests {
     pub refresh_diagnostics: bool,
     /// `workspace/inlayHint/refresh`.
     pub refresh_hints: bool,
+    /// Parts of LSP 3.18 that the protocol's types do not know yet.
+    pub newer: Newer,
+}
+
+/// What a client of LSP 3.18 takes registrations for.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub(super) struct Newer {
+    /// `workspace/textDocumentContent`.
+    pub content: bool,
+    /// `textDocument/rangesFormatting`.
+    pub ranges: bool,
+}
+
+impl Newer {
+    /// From the parameters of `initialize` as they were sent.
+    pub(super) fn of(params: Option<&Value>) -> Newer {
+        let is = |path: &str| params.and_then(|params| params.pointer(path)).and_then(Value::as_bool) == Some(true);
+        let ranges = "/capabilities/textDocument/rangeFormatting";
+        Newer {
+            content: is("/capabilities/workspace/textDocumentContent/dynamicRegistration"),
+            ranges: is(&format!("{ranges}/dynamicRegistration")) && is(&format!("{ranges}/rangesSupport")),
+        }
+    }
 }
 
 impl Default for Abilities {
@@ -115,6 +139,7 @@ impl Requests {
             progress,
             refresh_diagnostics: diagnostics.is_some_and(|one| one.refresh_support == Some(true)),
             refresh_hints: workspace.inlay_hint.as_ref().is_some_and(|one| one.refresh_support == Some(true)),
+            newer: Newer::default(),
         }
     }
 }

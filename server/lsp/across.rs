@@ -1,7 +1,7 @@
 //! Answers that name several files: places, edits, calls, links.
 
 use super::abilities::Abilities;
-use super::capabilities;
+use super::{capabilities, features};
 use super::projects::{Around, file_path};
 use super::to_proto::{self, Manner, Place};
 use super::workspace::{Open, Snapshot};
@@ -50,19 +50,28 @@ pub(super) fn references(
     locations(around, found, place.manner())
 }
 
-/// The edits that rename the name at `position` in all files.
+/// The edits that rename the name at `position` in all files, the device comments file of the project among them.
 ///
 /// # Errors
 /// With the reason why it cannot be renamed so.
 pub(super) fn rename(
+    snapshot: &Snapshot,
     around: &Around,
     place: Place<'_>,
     position: Position,
     new: &str,
 ) -> Result<WorkspaceEdit, Message> {
-    let changes = ide::rename_in(&around.view(), place.offset(position), new)?;
+    let (view, offset) = (around.view(), place.offset(position));
+    let (changes, table) = match ide::rename_symbol(&view, offset, new) {
+        Some(renamed) => renamed.map(|renamed| (renamed.files, renamed.table))?,
+        None => {
+            let changes = ide::rename_in(&view, offset, new)?;
+            (changes, ide::rename_in_comments(place.document, offset, new)?)
+        }
+    };
+    let table = table.and_then(|edit| Some((features::table(snapshot, around)?, vec![edit])));
     let files = changes.into_iter().filter_map(|at| Some((around.file(at.file)?.clone(), at.value)));
-    Ok(workspace_edit(files, place.manner()))
+    Ok(workspace_edit(files.chain(table), place.manner()))
 }
 
 /// Edits of several files: bound to their versions where the client knows that.

@@ -1,8 +1,8 @@
 //! The handlers: a few lines each, from the snapshot of the request to the answer of `ide`.
 
 use super::across;
-use super::capabilities;
 use super::editing;
+use super::{capabilities, features};
 use super::progress::Progress;
 use super::projects::Around;
 use super::pulled::{self, PartialReport, PartialReportParams};
@@ -37,7 +37,7 @@ impl LanguageServer for Backend {
         self.resolves_actions.store(editing::resolves_actions(&params.capabilities), Ordering::Relaxed);
         // The workspace took what these say when the message was read.
         let Snapshot { manner, settings, .. } = self.workspace.snapshot();
-        Ok(capabilities::offered(&params.capabilities, manner.encoding, settings.pulls()))
+        Ok(capabilities::offered(&params.capabilities, manner.encoding, settings.pulls(), self.workspace.requests()))
     }
 
     async fn initialized(&self, _: InitializedParams) {
@@ -64,16 +64,18 @@ impl LanguageServer for Backend {
 
     async fn hover(&self, params: HoverParams) -> Result<Option<Hover>> {
         let at = params.text_document_position_params;
-        Ok(with_open(&at.text_document.uri, |_, place| {
-            let hover = ide::hover(place.document, place.offset(at.position), place.language)?;
+        Ok(with_around(&at.text_document.uri, |around, place| {
+            let link = |file, line| features::link(around, file, line).filter(|_| place.abilities.markdown_hover);
+            let hover = ide::hover_in(&around.view(), place.offset(at.position), place.language, &link)?;
             Some(to_proto::hover(place, hover))
         }))
     }
 
     async fn completion(&self, params: CompletionParams) -> Result<Option<CompletionResponse>> {
         let at = params.text_document_position;
-        Ok(with_open(&at.text_document.uri, |_, place| {
-            let proposals = ide::completions(place.document, place.offset(at.position), place.language);
+        Ok(with_around(&at.text_document.uri, |around, place| {
+            let offset = place.offset(at.position);
+            let proposals = ide::completions_in(&around.view(), offset, place.language);
             let items = proposals.into_iter().map(|proposal| to_proto::completion(place, proposal));
             Some(CompletionResponse::Array(items.collect()))
         }))
@@ -110,8 +112,9 @@ impl LanguageServer for Backend {
         if let Some(reason) = unknown {
             return Err(refused(reason));
         }
+        let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
         let renamed = whole(uri.clone(), move |around, place| {
-            across::rename(around, place, at.position, &params.new_name)
+            across::rename(&snapshot, around, place, at.position, &params.new_name)
         });
         self.unless_changed(&uri, renamed.await)?.transpose().map_err(refused)
     }
@@ -213,8 +216,10 @@ impl LanguageServer for Backend {
         if !SNAPSHOT.with(|snapshot| snapshot.settings.inlay_hints) {
             return Ok(None);
         }
+        let with_comments = SNAPSHOT.with(|snapshot| snapshot.settings.comment_hints);
         whole(params.text_document.uri, move |_, place| {
-            let hints = ide::inlay_hints(place.document, place.span(params.range), place.language);
+            let hints = if with_comments { ide::inlay_hints } else { ide::value_hints };
+            let hints = hints(place.document, place.span(params.range), place.language);
             hints.into_iter().map(|hint| to_proto::inlay_hint(place, hint)).collect()
         })
         .await
@@ -229,6 +234,40 @@ impl LanguageServer for Backend {
         self.unless_changed(&uri, edits.await)
     }
 
+    async fn range_formatting(&self, params: DocumentRangeFormattingParams) -> Result<Option<Vec<TextEdit>>> {
+        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        whole(params.text_document.uri, move |around, place| {
+            let style = settings.style(&around.here().manifest);
+            place.edits(&ide::format_ranges(place.document, style, &[place.span(params.range)]))
+        })
+        .await
+    }
+
+    async fn signature_help(&self, params: SignatureHelpParams) -> Result<Option<SignatureHelp>> {
+        let at = params.text_document_position_params;
+        Ok(with_open(&at.text_document.uri, |_, place| {
+            features::signature_help(place, place.offset(at.position))
+        }))
+    }
+
+    async fn document_highlight(
+        &self,
+        params: DocumentHighlightParams,
+    ) -> Result<Option<Vec<DocumentHighlight>>> {
+        let at = params.text_document_position_params;
+        whole(at.text_document.uri, move |_, place| features::highlights(place, place.offset(at.position))).await
+    }
+
+    async fn code_lens(&self, params: CodeLensParams) -> Result<Option<Vec<CodeLens>>> {
+        let wanted = SNAPSHOT.with(|snapshot| snapshot.settings.lenses);
+        whole(params.text_document.uri, move |around, place| features::lenses(around.here(), place, wanted)).await
+    }
+
+    async fn code_lens_resolve(&self, lens: CodeLens) -> Result<CodeLens> {
+        let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
+        Ok(features::resolved(&snapshot, lens))
+    }
+
     async fn code_action(&self, params: CodeActionParams) -> Result<Option<CodeActionResponse>> {
         let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
         let resolves = self.resolves_actions.load(Ordering::Relaxed);
@@ -237,7 +276,8 @@ impl LanguageServer for Backend {
             let fixes = ide::fixes(&found, place.span(params.range)).into_iter();
             let fixes = fixes.map(|fix| quick_fix(around, place, &fix));
             let edits = editing::actions(open, place, &params, settings.style(&open.manifest), resolves);
-            fixes.chain(edits).map(|action| across::code_action(action, place.abilities)).collect()
+            let rewrites = features::rewrites(around.here(), place, &params);
+            fixes.chain(edits).chain(rewrites).map(|action| across::code_action(action, place.abilities)).collect()
         })
         .await
     }
@@ -331,12 +371,36 @@ impl LanguageServer for Backend {
         match params.command.as_str() {
             "rungwise.check" => whole(uri, |around, place| check_summary(around, place.language)).await,
             "rungwise.format" => self.format(uri).await,
+            "rungwise.usage" => {
+                whole(uri, |around, place| features::usage_json(around, place.language)).await
+            }
             other => Err(refused(Message::new("request.no-command").with("command", other))),
         }
     }
 }
 
 impl Backend {
+    /// `textDocument/rangesFormatting` of LSP 3.18: like the formatting of one range.
+    pub(super) async fn ranges_formatting(
+        &self,
+        params: features::RangesParams,
+    ) -> Result<Option<Vec<TextEdit>>> {
+        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        whole(params.text_document.uri, move |around, place| {
+            let style = settings.style(&around.here().manifest);
+            let spans: Vec<_> = params.ranges.iter().map(|range| place.span(*range)).collect();
+            place.edits(&ide::format_ranges(place.document, style, &spans))
+        })
+        .await
+    }
+
+    /// The content of a virtual document, `workspace/textDocumentContent` of LSP 3.18.
+    pub(super) async fn content(&self, params: features::ContentParams) -> Result<Option<features::Content>> {
+        let Some(uri) = features::told_document(&params.uri) else { return Ok(None) };
+        let text = whole(uri, |around, place| features::usage_text(around, place.language)).await?;
+        Ok(text.map(|text| features::Content { text }))
+    }
+
     /// Edits that were made for a text that has changed meanwhile help nobody.
     fn unless_changed<T>(&self, uri: &Uri, answer: Result<Option<T>>) -> Result<Option<T>> {
         let version = |snapshot: &Snapshot| snapshot.open(uri).map(|open| open.version);
@@ -402,6 +466,13 @@ fn with_open<T>(uri: &Uri, answer: impl FnOnce(&Open, Place<'_>) -> Option<T>) -
     let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
     let open = snapshot.open(uri)?;
     answer(open, Place::new(&open.document, snapshot.manner))
+}
+
+/// The same with the files of its project.
+fn with_around<T>(uri: &Uri, answer: impl FnOnce(&Around, Place<'_>) -> Option<T>) -> Option<T> {
+    let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
+    let around = snapshot.around(snapshot.open(uri)?);
+    answer(&around, Place::new(&around.here().document, snapshot.manner))
 }
 
 /// The same for answers that walk the whole document or other files: they run on a thread of their own, and the trees

@@ -1,13 +1,14 @@
 //! What the server offers, and what the client can do.
 
 use super::abilities::{Abilities, Requests};
+use super::features::USAGE_SCHEME;
 use super::{editing, to_proto};
 use crate::text::Encoding;
 use serde_json::json;
 use tower_lsp::ls_types::*;
 
 /// The commands of `workspace/executeCommand`.
-pub(super) const COMMANDS: &[&str] = &["rungwise.check", "rungwise.format", APPLY];
+pub(super) const COMMANDS: &[&str] = &["rungwise.check", "rungwise.format", "rungwise.usage", APPLY];
 
 /// Applies the `WorkspaceEdit` that is its argument: what a code action does where clients know commands alone.
 pub(super) const APPLY: &str = "rungwise.applyEdit";
@@ -45,11 +46,25 @@ pub(super) fn registrations(requests: Requests) -> Vec<Registration> {
         let section = json!({"section": "rungwise"});
         registration("rungwise-configuration", "workspace/didChangeConfiguration", Some(section))
     });
-    files.into_iter().chain(configuration).collect()
+    let content = requests.newer.content.then(|| {
+        let options = json!({"schemes": [USAGE_SCHEME]});
+        registration("rungwise-content", "workspace/textDocumentContent", Some(options))
+    });
+    let ranges = requests.newer.ranges.then(|| {
+        let languages = ["ladder", "plc-il"].map(|language| json!({"language": language}));
+        let options = json!({"documentSelector": languages, "rangesSupport": true});
+        registration("rungwise-ranges", "textDocument/rangeFormatting", Some(options))
+    });
+    files.into_iter().chain(configuration).chain(content).chain(ranges).collect()
 }
 
 /// The answer to `initialize`. `pulls` is the setting that turns pushed diagnostics off.
-pub(super) fn offered(client: &ClientCapabilities, encoding: Encoding, pulls: bool) -> InitializeResult {
+pub(super) fn offered(
+    client: &ClientCapabilities,
+    encoding: Encoding,
+    pulls: bool,
+    requests: Requests,
+) -> InitializeResult {
     let can_pull = client.text_document.as_ref().is_some_and(|document| document.diagnostic.is_some());
     // A client that pulls as well would show what is pushed twice. One that cannot pull ignores the offer.
     let diagnostic_provider = (pulls || !can_pull).then(|| {
@@ -91,6 +106,15 @@ pub(super) fn offered(client: &ClientCapabilities, encoding: Encoding, pulls: bo
         document_symbol_provider: Some(OneOf::Left(true)),
         folding_range_provider: Some(FoldingRangeProviderCapability::Simple(true)),
         document_formatting_provider: Some(OneOf::Left(true)),
+        // A client that takes several ranges at once gets a registration for both.
+        document_range_formatting_provider: (!requests.newer.ranges).then_some(OneOf::Left(true)),
+        document_highlight_provider: Some(OneOf::Left(true)),
+        signature_help_provider: Some(SignatureHelpOptions {
+            trigger_characters: Some(["(", ",", " "].map(str::to_string).to_vec()),
+            retrigger_characters: Some([",", " ", "="].map(str::to_string).to_vec()),
+            work_done_progress_options: WorkDoneProgressOptions::default(),
+        }),
+        code_lens_provider: Some(CodeLensOptions { resolve_provider: Some(true) }),
         rename_provider: Some(match Abilities::of(client).prepare_rename {
             true => OneOf::Right(RenameOptions {
                 prepare_provider: Some(true),

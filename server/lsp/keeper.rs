@@ -3,6 +3,7 @@
 
 use super::projects::{Loaded, OnDisk, canonical};
 use super::settings::Settings;
+use super::sheets;
 use super::to_proto;
 use super::workspace::{Open, Snapshot, Workspace, decided, frugal};
 use crate::check;
@@ -183,7 +184,7 @@ impl Task {
             let (key, root) = (key.clone(), root.to_path_buf());
             move || {
                 let old = snapshot.projects.get(&key).map(|old| &**old);
-                read_project(&key, &root, old, snapshot.settings, &progress)
+                read_project(&key, &root, old, &snapshot, &progress)
             }
         };
         match tokio::task::spawn_blocking(work).await {
@@ -245,6 +246,9 @@ impl Task {
             }
             false => Vec::new(),
         };
+        let sheet = snapshot.projects.get(key).and_then(|loaded| sheets::findings(&snapshot, loaded));
+        let sheet = sheet.filter(|_| !snapshot.settings.pulls());
+        let found = found.into_iter().chain(sheet);
         let of_project = |entry: &(&Uri, &(Arc<Path>, Option<u64>))| entry.1.0 == *key;
         let mut gone: FxHashSet<Uri> =
             self.published.iter().filter(of_project).map(|(uri, _)| uri.clone()).collect();
@@ -301,13 +305,16 @@ fn read_project(
     key: &Arc<Path>,
     root: &Path,
     old: Option<&Loaded>,
-    settings: Arc<Settings>,
+    snapshot: &Snapshot,
     progress: &super::progress::Progress,
 ) -> Option<Loaded> {
     if !root.join(MANIFEST_NAME).is_file() {
         return None;
     }
     let project = Project::read(root);
+    let settings = snapshot.settings.clone();
+    let comments_file = sheets::comments_file(root, &project.manifest, &snapshot.sheets);
+    let comments = comments_file.as_ref().map(|file| file.comments.clone()).unwrap_or_default();
     // Another target or dialect reads the same text as another program.
     let same = old.is_some_and(|old| *old.manifest == project.manifest && old.settings.reads_like(&settings));
     let known: FxHashMap<&Arc<Path>, &OnDisk> =
@@ -318,6 +325,8 @@ fn read_project(
         passed_over: paths.len().saturating_sub(MOST_FILES),
         manifest: Arc::new(project.manifest),
         settings,
+        comments_file,
+        comments: comments.clone(),
         ..Loaded::default()
     };
     let severities = Arc::new(loaded.manifest.severities());
@@ -341,7 +350,7 @@ fn read_project(
             bytes += length;
         }
         if let Some(old) = known.get(&canonical_path).filter(|old| same && old.stamp == stamp) {
-            loaded.files.push(OnDisk { name, ..OnDisk::clone(old) });
+            loaded.files.push(OnDisk { name, ..old.commented(&comments) });
             continue;
         }
         // What is no file, such as a pipe, might never end.
@@ -350,6 +359,7 @@ fn read_project(
         } else {
             read_file(&path, &loaded.settings, &loaded.manifest)
         };
+        let read = read.map(|(uri, document)| (uri, document.commented(&comments)));
         let exports = read.as_ref().map(|(_, document)| Arc::new(Exports::of(document)));
         let file = read.map(|(uri, document)| {
             Arc::new(Open {

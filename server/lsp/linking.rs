@@ -2,7 +2,7 @@
 
 use super::projects::{Loaded, OnDisk};
 use super::workspace::{Open, Snapshot, Workspace};
-use crate::document::{Document, Exports, Outer};
+use crate::document::{Comments, Document, Exports, Outer};
 use std::path::Path;
 use std::sync::Arc;
 use tower_lsp::ls_types::Uri;
@@ -47,11 +47,18 @@ impl Workspace {
         let mut published = Vec::new();
         for open in state.snapshot.opens_of(key) {
             let number = state.snapshot.projects.get(key).and_then(|loaded| loaded.number_of(&open));
+            let comments = state.snapshot.projects.get(key).map(|loaded| loaded.comments.clone());
+            let comments = comments.filter(|_| number.is_some()).unwrap_or_default();
+            let commented = *open.document.comments() != comments;
+            let open = match commented {
+                true => Arc::new(Open { document: open.document.commented(&comments), ..Open::clone(&open) }),
+                false => open,
+            };
             let document = match (&outer, number) {
                 (Some(outer), Some(number)) => relinked(&open.document, outer, number),
                 _ => open.document.outer().is_some().then(|| open.document.unlinked()),
             };
-            if document.is_some() || waited {
+            if document.is_some() || waited || commented {
                 published.push(open.uri.clone());
                 let document = document.unwrap_or_else(|| open.document.clone());
                 state.put(Open { document, ..Open::clone(&open) });
@@ -115,13 +122,22 @@ impl Loaded {
     pub(super) fn placed(&self, document: Document, path: Option<&Arc<Path>>) -> Document {
         let number = path.and_then(|path| self.files.iter().position(|file| file.path == *path));
         match number {
-            Some(number) => document.linked(self.outer.clone(), number),
+            Some(number) => document.commented(&self.comments).linked(self.outer.clone(), number),
             None => document,
         }
     }
 }
 
 impl OnDisk {
+    /// The same file with what the project says about devices.
+    pub(super) fn commented(&self, comments: &Arc<Comments>) -> OnDisk {
+        let file = self.file.as_ref().map(|open| match *open.document.comments() == *comments {
+            true => open.clone(),
+            false => Arc::new(Open { document: open.document.commented(comments), ..Open::clone(open) }),
+        });
+        OnDisk { file, ..self.clone() }
+    }
+
     fn linked(&self, outer: &Arc<Outer>, number: usize) -> OnDisk {
         let file = self.file.as_ref().map(|open| match relinked(&open.document, outer, number) {
             Some(document) => Arc::new(Open { document, ..Open::clone(open) }),

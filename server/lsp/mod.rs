@@ -9,6 +9,7 @@ mod across;
 mod backend;
 mod capabilities;
 mod editing;
+mod features;
 mod fences;
 mod folders;
 mod frames;
@@ -22,6 +23,7 @@ mod publisher;
 mod pulled;
 mod recording;
 mod service;
+mod sheets;
 mod settings;
 mod status;
 mod to_proto;
@@ -64,6 +66,8 @@ pub async fn serve_between(
     })
     .custom_method("rungwise/edit", backend::Backend::edit)
     .custom_method("rungwise/object", backend::Backend::object)
+    .custom_method("textDocument/rangesFormatting", backend::Backend::ranges_formatting)
+    .custom_method("workspace/textDocumentContent", backend::Backend::content)
     .finish();
     let Some(workspace) = workspace else { return 1 };
     let ordered = Ordered::new(service, workspace.clone());

@@ -3,8 +3,8 @@
 use super::settings::Settings;
 use super::workspace::{Open, Snapshot};
 use crate::check;
-use crate::document::{Exports, Member, Outer, ProjectView};
-use crate::project::{Manifest, Stamp};
+use crate::document::{Comments, Exports, Member, Outer, ProjectView};
+use crate::project::{CommentsFile, Manifest, Stamp};
 use crate::text::{Diagnostic, Message};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::path::{Path, PathBuf};
@@ -30,6 +30,10 @@ pub(super) struct Loaded {
     pub settings: Arc<Settings>,
     /// What the files declare for each other, in their order.
     pub outer: Arc<Outer>,
+    /// The device comments file, if the manifest names one.
+    pub comments_file: Option<Arc<CommentsFile>>,
+    /// What it says.
+    pub comments: Arc<Comments>,
 }
 
 /// A program file of a project on the disk.

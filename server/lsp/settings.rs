@@ -1,7 +1,7 @@
 //! The client's settings: the same shape in `initializationOptions` and in `didChangeConfiguration`.
 
 use crate::document::Notation;
-use crate::ide::Style;
+use crate::ide::{LensSettings, Style};
 use crate::project::{FormatStyle, MOST_WIDTH, Manifest};
 use crate::target::Target;
 use crate::text::Language;
@@ -22,6 +22,10 @@ pub(super) struct Settings {
     language: Option<Language>,
     /// `inlayHints.enabled`
     pub inlay_hints: bool,
+    /// `inlayHints.comments`: what the project says about devices, behind them.
+    pub comment_hints: bool,
+    /// `codeLens.steps`, `codeLens.references`, `codeLens.nextFree`.
+    pub lenses: LensSettings,
     /// `diagnostics.scope` is `project` and not `open`: files of a project that are not open are reported, too.
     pub whole_project: bool,
     /// `diagnostics.mode` is `pull` and not `push`. A client that shows both kinds would show everything twice.
@@ -48,6 +52,8 @@ impl Default for Settings {
             width: None,
             language: None,
             inlay_hints: true,
+            comment_hints: true,
+            lenses: LensSettings { steps: true, references: true, next_free: true },
             whole_project: true,
             pulls: false,
         }
@@ -74,6 +80,7 @@ impl Settings {
             Some("unicode") => Some(FormatStyle::Unicode),
             _ => None,
         };
+        let is_on = |section, name| part(section, name).and_then(Value::as_bool).unwrap_or(true);
         let language = match word(own.get("language")).as_deref() {
             Some("en") => Some(Language::English),
             Some("zh-cn" | "zh") => Some(Language::SimplifiedChinese),
@@ -86,7 +93,13 @@ impl Settings {
             style,
             width: width.map(|width| width.min(u64::from(MOST_WIDTH)) as u32),
             language,
-            inlay_hints: part("inlayHints", "enabled").and_then(Value::as_bool).unwrap_or(true),
+            inlay_hints: is_on("inlayHints", "enabled"),
+            comment_hints: is_on("inlayHints", "comments"),
+            lenses: LensSettings {
+                steps: is_on("codeLens", "steps"),
+                references: is_on("codeLens", "references"),
+                next_free: is_on("codeLens", "nextFree"),
+            },
             whole_project: word(part("diagnostics", "scope")).as_deref() != Some("open"),
             pulls: word(part("diagnostics", "mode")).as_deref() == Some("pull"),
         })

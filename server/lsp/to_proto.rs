@@ -154,6 +154,7 @@ pub(super) fn completion(place: Place<'_>, mut proposal: ide::Completion) -> lsp
         documentation: (!documentation.value.is_empty())
             .then_some(lsp::Documentation::MarkupContent(documentation)),
         sort_text: Some(format!("{:05}{}", proposal.rank, proposal.label)),
+        filter_text: (!proposal.filter.is_empty()).then_some(proposal.filter),
         insert_text_format: proposal.is_snippet.then_some(lsp::InsertTextFormat::SNIPPET),
         text_edit: Some(lsp::CompletionTextEdit::Edit(place.edit(&proposal.edit))),
         label: proposal.label,

@@ -1,12 +1,13 @@
 //! The state of the server: settings and open documents, changed in message order, read through snapshots.
 
-use super::abilities::{Abilities, Requests};
+use super::abilities::{Abilities, Newer, Requests};
 use super::capabilities;
 use super::keeper::Keeper;
 use super::manifests::Manifests;
 use super::projects::{Projects, canonical, file_path};
 use super::publisher::{Closing, Publisher};
 use super::settings::{Settings, Speech};
+use super::sheets::Sheets;
 use super::to_proto::Manner;
 use super::tokens::SentTokens;
 use crate::check::Severities;
@@ -48,6 +49,7 @@ pub(super) struct Snapshot {
     pub manner: Manner,
     pub settings: Arc<Settings>,
     pub projects: Arc<Projects>,
+    pub sheets: Arc<Sheets>,
     documents: Arc<FxHashMap<Uri, Arc<Open>>>,
     /// The open document of each file, by canonical path.
     paths: Arc<FxHashMap<Arc<Path>, Uri>>,
@@ -154,11 +156,11 @@ impl Workspace {
 
     /// Takes from a message what it says about the life of the server. What `initialize` says is in force before the
     /// next message is read, although its answer is made later.
-    pub(super) fn note_lifecycle(self: &Arc<Workspace>, method: &str, params: Option<&LSPAny>) {
+    pub(super) fn note_lifecycle(self: &Arc<Workspace>, method: &str, source: Option<&LSPAny>) {
         match method {
             "initialize" if !self.initialised.load(Ordering::Relaxed) => {
-                if let Ok(params) = InitializeParams::deserialize(params.unwrap_or(&Value::Null)) {
-                    self.initialise(&params);
+                if let Ok(params) = InitializeParams::deserialize(source.unwrap_or(&Value::Null)) {
+                    self.initialise(&params, Newer::of(source));
                 }
             }
             "shutdown" if self.initialised.load(Ordering::Relaxed) => {
@@ -168,7 +170,7 @@ impl Workspace {
         }
     }
 
-    fn initialise(self: &Arc<Workspace>, params: &InitializeParams) {
+    fn initialise(self: &Arc<Workspace>, params: &InitializeParams, newer: Newer) {
         let mut state = self.state();
         state.keeper = Some(Keeper::start(self));
         state.speech.client = params.locale.as_deref().map(Language::of_locale);
@@ -180,7 +182,7 @@ impl Workspace {
         };
         state.settings_source = params.initialization_options.clone();
         state.snapshot.settings = Arc::new(settings);
-        state.requests = Requests::of(&params.capabilities);
+        state.requests = Requests { newer, ..Requests::of(&params.capabilities) };
         // A client that sends its settings of its own accord would answer with something else, such as its defaults.
         if state.settings_source.as_ref().is_some_and(|source| !source.is_null()) {
             state.requests.configuration = false;
@@ -219,7 +221,8 @@ impl Workspace {
     }
 
     fn open(&self, params: DidOpenTextDocumentParams) {
-        let TextDocumentItem { uri, language_id, version, text } = params.text_document;
+        let Some(item) = self.open_sheet(params.text_document) else { return };
+        let TextDocumentItem { uri, language_id, version, text } = item;
         let mut state = self.state();
         // A document that is opened a second time was closed in the client's eyes.
         if let Some(publisher) = state.publishers.remove(&uri) {
@@ -255,6 +258,9 @@ impl Workspace {
     }
 
     fn change(&self, params: DidChangeTextDocumentParams) {
+        if self.change_sheet(&params) {
+            return;
+        }
         let mut state = self.state();
         let Some(open) = state.snapshot.open(&params.text_document.uri) else {
             tracing::warn!("a change of a document that is not open");
@@ -291,6 +297,9 @@ impl Workspace {
     }
 
     fn close(&self, params: DidCloseTextDocumentParams) {
+        if self.close_sheet(&params.text_document.uri) {
+            return;
+        }
         let mut state = self.state();
         let uri = params.text_document.uri;
         self.tokens.forget(&uri);
@@ -500,7 +509,7 @@ fn guarded<T>(make: impl FnOnce() -> T) -> Option<T> {
         .ok()
 }
 
-fn edit_of(document: &Document, change: TextDocumentContentChangeEvent, encoding: Encoding) -> Edit {
+pub(super) fn edit_of(document: &Document, change: TextDocumentContentChangeEvent, encoding: Encoding) -> Edit {
     let offset = |position: tower_lsp::ls_types::Position| {
         document.offset(LineColumn { line: position.line, column: position.character }, encoding)
     };
@@ -511,7 +520,7 @@ fn edit_of(document: &Document, change: TextDocumentContentChangeEvent, encoding
     Edit { range, text: change.text }
 }
 
-fn spliced(document: &Document, edit: &Edit) -> String {
+pub(super) fn spliced(document: &Document, edit: &Edit) -> String {
     let Some(range) = &edit.range else { return edit.text.clone() };
     let mut text = document.text();
     text.replace_range(range.clone(), &edit.text);

@@ -1,7 +1,7 @@
 //! Finding projects and their files, and opening a file the way its project wants it.
 
-use super::{Manifest, ManifestError};
-use crate::document::{Document, Notation, detect_ladder_target, detect_notation};
+use super::{CommentsFile, Manifest, ManifestError};
+use crate::document::{Document, Notation, detect_ladder_target, detect_notation, Symbol};
 use crate::target::{Model, Target};
 use crate::text::{Encoding, LineColumn, Message, Span, column_of_offset};
 use std::fs::DirEntry;
@@ -49,6 +49,7 @@ impl Project {
                 Ok(manifest) => (manifest, None),
                 Err(error) => (Manifest::default(), Some(error)),
             };
+        let manifest = with_target_of_comments(manifest, folder);
         Project { root: folder.to_path_buf(), manifest, error, source: text.unwrap_or_default() }
     }
 
@@ -96,6 +97,16 @@ impl Project {
         let _ = walk.folder(&self.root, true);
         walk.files
     }
+}
+
+/// A project that says nothing of its target but names devices of the FX family is for one of these: otherwise the
+/// symbols in a drawing would be taken for the names of IEC variables.
+fn with_target_of_comments(manifest: Manifest, folder: &Path) -> Manifest {
+    let (None, Some(name)) = (&manifest.target, &manifest.comments) else { return manifest };
+    let file = CommentsFile::open(&folder.join(name), Target::of(Model::Fx3u));
+    let has_devices = file.comments.rows().iter().any(|row| matches!(row.thing, Symbol::Device(_)));
+    let target = has_devices.then(|| Target::of(Model::Fx2n).name.to_string());
+    Manifest { target, ..manifest }
 }
 
 /// Whether the name ends in `.lad` or `.il`.

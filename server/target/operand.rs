@@ -1,5 +1,6 @@
 //! Operands: one word of a program read as a device, a constant, an address or a name.
 
+use std::fmt;
 use super::{Device, Model, fx, iec};
 
 /// What an operand word says. The word itself stays in the text; its span is kept beside this value.
@@ -140,6 +141,28 @@ impl Operand {
             Operand::Nibbles { first, .. } => Some(first),
             Operand::WordBit { word, .. } => Some(word),
             _ => None,
+        }
+    }
+}
+
+impl fmt::Display for DirectAddress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let area = match self.location {
+            Location::Input => 'I',
+            Location::Output => 'Q',
+            Location::Memory => 'M',
+        };
+        let width = match self.width {
+            Width::Bit => 'X',
+            Width::Byte => 'B',
+            Width::Word => 'W',
+            Width::Double => 'D',
+            Width::Long => 'L',
+        };
+        let numbers: Vec<String> = self.path.iter().flatten().map(u32::to_string).collect();
+        match numbers.is_empty() {
+            true => write!(f, "%{area}*"),
+            false => write!(f, "%{area}{width}{}", numbers.join(".")),
         }
     }
 }

@@ -60,7 +60,7 @@
 //! END_PROGRAM
 //! ```
 
-use super::labels::{END_POINTER, Labels, name_of};
+use super::labels::{END_POINTER, Labels};
 use crate::check::{ProgramContext, Rule, Run};
 use crate::document::Symbol;
 use crate::text::{Diagnostic, Message, Severity, Span};
@@ -83,7 +83,7 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
             if other == label.span && !is_end {
                 continue;
             }
-            let message = Message::new(key).with("label", name_of(&label.symbol));
+            let message = Message::new(key).with("label", &label.name);
             let mut diagnostic = Diagnostic::new(RULE.code, label.span, message);
             if other != label.span {
                 diagnostic = diagnostic.related(other, Message::new("duplicate-label.first"));

@@ -1,7 +1,7 @@
 //! # for-next-balance
 //!
 //! `FOR` begins a loop and `NEXT` ends it, one for one, within the same part of the program: before `FEND`, or before
-//! the `SRET` of the subroutine. Without its half the PLC cannot know what to repeat (error 6607), and it does not run.
+//! the `SRET` of the subroutine. Without its half the PLC cannot know what to repeat, and it does not run.
 //!
 //! ```fx
 //! FOR K10

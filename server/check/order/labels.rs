@@ -26,6 +26,8 @@ pub(super) struct Labels {
 /// A label at its place.
 pub(super) struct Label {
     pub symbol: Symbol,
+    /// As it is written.
+    pub name: String,
     pub span: Span,
     /// Takes it out.
     pub removal: Option<TextEdit>,
@@ -34,6 +36,8 @@ pub(super) struct Label {
 /// A place that names a label.
 pub(super) struct Jump {
     pub symbol: Symbol,
+    /// The label's name as it is written; empty where it is missing.
+    pub name: String,
     pub span: Span,
 }
 
@@ -63,6 +67,7 @@ impl Labels {
             match statement.kind {
                 StatementKind::Label(device) => labels.declared.push(Label {
                     symbol: Symbol::Device(device),
+                    name: device.to_string(),
                     span: statement.word,
                     removal: statement.removal(),
                 }),
@@ -78,7 +83,8 @@ impl Labels {
         let Some(operand) = statement.first else { return };
         match operand.value {
             Operand::Device(device) if device.kind == DeviceKind::P => {
-                self.jumps.push(Jump { symbol: Symbol::Device(device), span: operand.span });
+                let (symbol, name) = (Symbol::Device(device), device.to_string());
+                self.jumps.push(Jump { symbol, name, span: operand.span });
             }
             Operand::Indexed { .. } => self.any_may_be_meant = true,
             _ => {}
@@ -93,9 +99,10 @@ impl Labels {
             for mention in at.chunk.mentions().iter().filter(|m| matches!(m.symbol, Symbol::Label(_))) {
                 let labels = pous.entry(pou).or_default();
                 let (symbol, span) = (mention.symbol.clone(), mention.span.shifted(at.start + file.start));
+                let name = mention.span.of(at.chunk.text()).to_string();
                 match mention.usage {
-                    Use::Declare => labels.declared.push(Label { symbol, span, removal: None }),
-                    Use::Jump => labels.jumps.push(Jump { symbol, span }),
+                    Use::Declare => labels.declared.push(Label { symbol, name, span, removal: None }),
+                    Use::Jump => labels.jumps.push(Jump { symbol, name, span }),
                     Use::Read | Use::Write | Use::ReadWrite => {}
                 }
             }
@@ -103,14 +110,5 @@ impl Labels {
         let mut pous: Vec<(usize, Labels)> = pous.into_iter().collect();
         pous.sort_by_key(|(pou, _)| *pou);
         pous.into_iter().map(|(_, labels)| labels).collect()
-    }
-}
-
-/// The name of a label as people write it.
-pub(super) fn name_of(symbol: &Symbol) -> String {
-    match symbol {
-        Symbol::Device(device) => device.to_string(),
-        Symbol::Label(name) => name.to_string(),
-        _ => String::new(),
     }
 }

@@ -39,7 +39,7 @@
 //! END_PROGRAM
 //! ```
 
-use super::labels::{END_POINTER, Labels, name_of};
+use super::labels::{END_POINTER, Labels};
 use crate::check::{ProgramContext, Rule, Run};
 use crate::document::Symbol;
 use crate::text::{Diagnostic, Message, Severity};
@@ -64,7 +64,10 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
                 _ => false,
             };
             if !is_reported {
-                let message = Message::new("undefined-label.found").with("label", name_of(&jump.symbol));
+                let message = match jump.name.is_empty() {
+                    true => Message::new("undefined-label.nameless"),
+                    false => Message::new("undefined-label.found").with("label", &jump.name),
+                };
                 found.push(Diagnostic::new(RULE.code, jump.span, message));
             }
         }

@@ -33,7 +33,7 @@
 //! END_PROGRAM
 //! ```
 
-use super::labels::{END_POINTER, Labels, name_of};
+use super::labels::{END_POINTER, Labels};
 use crate::check::{ProgramContext, Rule, Run};
 use crate::document::Symbol;
 use crate::target::DeviceKind;
@@ -61,7 +61,7 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
                 _ if labels.any_may_be_meant => continue,
                 _ => "unused-label.found",
             };
-            let message = Message::new(key).with("label", name_of(&label.symbol));
+            let message = Message::new(key).with("label", &label.name);
             let diagnostic = Diagnostic::new(RULE.code, label.span, message);
             found.push(match label.removal.clone().filter(|_| key == "unused-label.found") {
                 Some(removal) => diagnostic.fix(Message::new("unused-label.remove"), vec![removal]),

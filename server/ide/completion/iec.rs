@@ -2,10 +2,12 @@
 
 use super::{Place, Proposal};
 use crate::document::{DeclaredType, Symbol, Tree, Use, Variable};
+use crate::ide::bookkeeping::{self, Book};
 use crate::ide::names;
 use crate::ide::{CompletionKind, declared};
 use crate::il::iec::{ItemKind, PouKind, SectionKind};
 use crate::target::iec::{ElementaryType, Function, FunctionBlock, Operator, OperatorRole};
+use crate::target::{DirectAddress, Location, Width};
 use crate::text::{Encoding, Message, phrase};
 use rustc_hash::FxHashSet;
 
@@ -13,6 +15,10 @@ use rustc_hash::FxHashSet;
 const CALL_REACH: usize = 4000;
 
 pub(super) fn complete(place: &mut Place<'_>) {
+    let address = place.typed(|c| c.is_alphanumeric() || "%._".contains(c));
+    if address.starts_with('%') {
+        return addresses(place, address);
+    }
     let typed = place.typed(|c| c.is_alphanumeric() || c == '_');
     let before = &place.head[..place.head.len() - typed.len()];
     if in_section(place) {
@@ -179,6 +185,7 @@ fn variables<'d>(place: &Place<'d>) -> Vec<&'d Variable> {
 /// Proposes variables in scope, and names in use that nothing declares; only those that can be written if `written`.
 pub(super) fn propose_variables(place: &mut Place<'_>, typed: &str, written: bool) {
     let scopes = place.document.scopes().clone();
+    let comments = place.document.comments().clone();
     let variables = variables(place);
     let exported = declared::table_rows_of(place.document);
     for (rank, variable) in variables.iter().enumerate() {
@@ -193,8 +200,13 @@ pub(super) fn propose_variables(place: &mut Place<'_>, typed: &str, written: boo
                 message.with("kind", declared::type_name(&variable.declared, &scopes)).render(place.language)
             }
         };
+        let comment = variable.address.and_then(|address| comments.of(&Symbol::Direct(address)));
+        let words = comment.map(|row| row.words()).unwrap_or_default();
+        let detail = if words.is_empty() { detail } else { format!("{detail}, {words}") };
         let rank = 10 + (rank as u16).min(1000);
-        place.propose(typed, Proposal::new(variable.name.as_str(), CompletionKind::Variable, detail, rank));
+        let mut proposal = Proposal::new(variable.name.as_str(), CompletionKind::Variable, detail, rank);
+        proposal.search = words;
+        place.propose(typed, proposal);
     }
     undeclared(place, typed, &variables);
 }
@@ -226,6 +238,39 @@ fn undeclared(place: &mut Place<'_>, typed: &str, variables: &[&Variable]) {
     // The word that is being typed is no proposal for itself.
     for name in names.into_iter().filter(|name| *name != typed) {
         place.propose(typed, Proposal::new(name, CompletionKind::Variable, "", 1500));
+    }
+}
+
+/// Direct addresses: those in use, then the next free one of each area and size.
+fn addresses(place: &mut Place<'_>, typed: &str) {
+    let book = Book::of(place.view);
+    let comments = place.document.comments().clone();
+    let mut used: Vec<_> = book.addresses.iter().collect();
+    used.sort_unstable_by_key(|(address, _)| **address);
+    for (rank, (address, tally)) in used.into_iter().take(200).enumerate() {
+        let row = comments.of(&Symbol::Direct(*address));
+        let words = row.map(|row| row.words()).unwrap_or_default();
+        let detail = [words.clone(), tally.words(place.language)];
+        let detail: Vec<String> = detail.into_iter().filter(|part| !part.is_empty()).collect();
+        let kind = CompletionKind::Variable;
+        let mut proposal = Proposal::new(address.to_string(), kind, detail.join(", "), 10 + rank as u16);
+        proposal.search = words;
+        place.propose(typed, proposal);
+    }
+    let bit = |location| DirectAddress { location, width: Width::Bit, path: [Some(0), Some(0), None, None] };
+    let word = |location| DirectAddress { location, width: Width::Word, path: [Some(0), None, None, None] };
+    let locations = [Location::Input, Location::Output, Location::Memory];
+    for (rank, first) in locations.into_iter().flat_map(|at| [bit(at), word(at)]).enumerate() {
+        let free = bookkeeping::next_address(&book, first);
+        let kind = match first.location {
+            Location::Input => Message::new("address.input"),
+            Location::Output => Message::new("address.output"),
+            Location::Memory => Message::new("address.memory"),
+        };
+        let detail = Message::new("complete.free").with("kind", kind.render(place.language));
+        let detail = detail.render(place.language);
+        let proposal = Proposal::new(free.to_string(), CompletionKind::Variable, detail, 300 + rank as u16);
+        place.propose(typed, proposal);
     }
 }
 

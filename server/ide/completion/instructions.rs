@@ -60,10 +60,13 @@ pub(super) fn complete(place: &mut Place<'_>) {
     };
     words.next_if(is_label);
     match words.next() {
-        None => propose_forms(place, typed, |_| true),
+        None => {
+            operands::propose_missing_labels(place, typed);
+            propose_forms(place, typed, |_| true);
+        }
         Some(word) => {
             let Some(form) = Form::named(word) else { return };
-            let given: Vec<Operand> = words.map(|word| Operand::read(word, model)).collect();
+            let given: Vec<Operand> = words.map(|word| place.document.reader().read(word)).collect();
             operands::propose(place, typed, form, &given);
         }
     }

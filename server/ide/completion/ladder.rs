@@ -37,7 +37,7 @@ fn inside(place: &mut Place<'_>, bracket: char, content: &str) {
     let model = place.document.target().model;
     let mut words = before.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty());
     let first = words.next();
-    let given: Vec<Operand> = words.map(|word| Operand::read(word, model)).collect();
+    let given: Vec<Operand> = words.map(|word| place.document.reader().read(word)).collect();
     match (bracket, first) {
         ('[', None) => {
             if place.document.target().is_fx() {
@@ -56,7 +56,7 @@ fn inside(place: &mut Place<'_>, bracket: char, content: &str) {
         }
         (_, None) => names(place, typed, COIL, Access::Write),
         (_, Some(word)) => {
-            let device = Operand::read(word, model);
+            let device = place.document.reader().read(word);
             let is_letter =
                 matches!(word, "S" | "R" | "P" | "N" | "L" | "U" | "/" | "SET" | "RST" | "PLS" | "PLF");
             match device.device().map(|device| device.kind) {
@@ -79,7 +79,9 @@ const COIL: Accepts = Accepts::BIT_DESTINATION.or(Accepts::T).or(Accepts::C);
 fn names(place: &mut Place<'_>, typed: &str, accepts: Accepts, access: Access) {
     let target = place.document.target();
     if target.is_fx() {
-        operands::propose_devices(place, typed, accepts.on(target.model), access, 1);
+        let is_fresh = access == Access::Write;
+        let wanted = operands::Wanted { accepts: accepts.on(target.model), access, count: 1, is_fresh };
+        operands::propose_devices(place, typed, &wanted);
     } else {
         iec::propose_variables(place, typed, access != Access::Read);
     }

@@ -1,15 +1,25 @@
 //! Devices, constants and labels that an operand takes: those in use first, then free ones, special ones by meaning.
 
-use super::{Place, Proposal};
-use crate::document::{Document, Symbol, Use};
-use crate::ide::names::{self, Thing};
-use crate::ide::{CompletionKind, devices};
+use super::{Place, Proposal, is_abbreviation, is_found_by};
+use crate::document::{Symbol, Use};
+use crate::ide::bookkeeping::Book;
+use crate::ide::names::Thing;
+use crate::ide::{CompletionKind, devices, uses};
 use crate::target::{Accepts, Access, Device, DeviceKind, DeviceRange, Form, Operand};
-use crate::text::{Encoding, Message, phrase};
-use rustc_hash::FxHashMap;
+use crate::text::{Message, phrase};
 
 /// More devices in use are not proposed; typing narrows the choice.
 const USED_LIMIT: usize = 200;
+
+/// More symbols and devices with a comment are not proposed.
+const LIMIT: u16 = 200;
+
+/// The ranks of groups: free devices where a new one is wanted, those in use, those with a comment, free ones.
+const FRESH: u16 = 20;
+const USED: u16 = 100;
+const COMMENTED: u16 = 310;
+const FREE: u16 = 600;
+const FREE_ASIDE: u16 = 700;
 
 /// The first special relay and register.
 const SPECIAL: u32 = 8000;
@@ -28,7 +38,12 @@ pub(super) fn propose(place: &mut Place<'_>, typed: &str, form: Form, given: &[O
     let accepts = spec.accepts.on(place.document.target().model);
     let wide = form.wide && accepts.contains(Accepts::D);
     let count = if wide { 2 } else { u32::from(spec.count.max(1)) };
-    propose_devices(place, typed, accepts, spec.access, count);
+    // What is written for the first time wants a new device; a reset is for one that something else sets.
+    let is_fresh = spec.access == Access::Write
+        && !accepts.contains(Accepts::D)
+        && !matches!(form.instruction.mnemonic, "RST" | "ZRST");
+    let wanted = Wanted { accepts, access: spec.access, count, is_fresh };
+    propose_devices(place, typed, &wanted);
     if accepts.contains(Accepts::P) {
         propose_labels(place, typed, form.instruction.mnemonic == "CALL");
     }
@@ -41,63 +56,134 @@ pub(super) fn propose(place: &mut Place<'_>, typed: &str, form: Form, given: &[O
     );
 }
 
-/// Proposes devices of the kinds in `accepts`, in runs of `count`.
-pub(super) fn propose_devices(
-    place: &mut Place<'_>,
-    typed: &str,
-    accepts: Accepts,
-    access: Access,
-    count: u32,
-) {
+/// Which devices fit.
+pub(super) struct Wanted {
+    /// Of these kinds.
+    pub accepts: Accepts,
+    /// What is done with them.
+    pub access: Access,
+    /// In runs of so many.
+    pub count: u32,
+    /// Whether a device that nothing uses yet is the likeliest.
+    pub is_fresh: bool,
+}
+
+impl Wanted {
+    fn takes(&self, kind: DeviceKind) -> bool {
+        let is_label = matches!(kind, DeviceKind::P | DeviceKind::I);
+        let is_written = self.access != Access::Read;
+        self.accepts.contains(Accepts::of_kind(kind)) && !is_label && !(kind == DeviceKind::X && is_written)
+    }
+}
+
+/// Proposes the devices that are wanted: those in use, those with a comment, and the next free one of each range.
+pub(super) fn propose_devices(place: &mut Place<'_>, typed: &str, wanted: &Wanted) {
+    let mut book = Book::of(place.view);
+    if let Some((device, usage)) = typed_device(place) {
+        book.forget(device, usage);
+    }
+    propose_used(place, typed, wanted, &book);
+    propose_commented(place, typed, wanted, &book);
+    propose_free(place, typed, wanted, &book);
+    propose_special(place, typed, wanted, &book);
+}
+
+/// The device that is being typed and the use that it would be.
+fn typed_device(place: &Place<'_>) -> Option<(Device, Use)> {
+    let inside = place.offset - place.chunk_start;
+    let mention = place.chunk?.mentions().iter().find(|mention| mention.span.end as usize == inside)?;
+    match mention.symbol {
+        Symbol::Device(device) => Some((device, mention.usage)),
+        _ => None,
+    }
+}
+
+fn propose_used(place: &mut Place<'_>, typed: &str, wanted: &Wanted, book: &Book) {
     let target = place.document.target();
-    let takes = |kind: DeviceKind| accepts.contains(Accepts::of_kind(kind));
-    let is_label = |kind: DeviceKind| matches!(kind, DeviceKind::P | DeviceKind::I);
-    let used = used_devices(place.document);
-    let mut listed: Vec<(Device, u32)> = used.iter().map(|(device, uses)| (*device, *uses)).collect();
-    listed.retain(|(device, _)| takes(device.kind) && !is_label(device.kind) && starts_with(*device, typed));
-    listed.retain(|(device, _)| !(device.kind == DeviceKind::X && access != Access::Read));
+    let comments = place.document.comments().clone();
+    let search = |device: Device| comments.of_device(device).map(|row| row.words()).unwrap_or_default();
+    let fits = |device: Device| starts_with(device, typed) || is_found_by(typed, &search(device));
+    let mut listed: Vec<(Device, u32)> = book
+        .devices
+        .iter()
+        .filter(|(device, _)| wanted.takes(device.kind) && fits(**device))
+        .map(|(device, tally)| (*device, tally.mentions))
+        .collect();
     listed.sort_by_key(|(device, uses)| (std::cmp::Reverse(*uses), *device));
-    for (rank, (device, uses)) in listed.into_iter().take(USED_LIMIT).enumerate() {
-        let message =
-            if uses == 1 { Message::new("complete.used-once") } else { Message::new("complete.used") };
+    for (rank, (device, _)) in listed.into_iter().take(USED_LIMIT).enumerate() {
         let kind = match device.special_on(target) {
             Some(special) => phrase(special.meaning, place.language).to_string(),
             None => devices::kind_name(device.kind, place.language),
         };
-        let detail = message.with("kind", kind).with("count", uses).render(place.language);
-        place.propose(
-            typed,
-            Proposal::new(device.to_string(), CompletionKind::Device, detail, 10 + rank as u16),
-        );
+        let uses = book.words(device, place.view, place.language);
+        let parts = [search(device), kind, uses];
+        let detail = parts.iter().filter(|part| !part.is_empty()).cloned().collect::<Vec<_>>().join(", ");
+        let mut proposal =
+            Proposal::new(device.to_string(), CompletionKind::Device, detail, USED + rank as u16);
+        proposal.search = search(device);
+        place.propose(typed, proposal);
     }
-    for (rank, range) in target.devices.iter().enumerate() {
-        let is_counting_input = range.kind == DeviceKind::C && range.first >= HIGH_SPEED;
-        let is_proposed =
-            takes(range.kind) && !is_label(range.kind) && range.first < SPECIAL && !is_counting_input;
-        if let (true, Some(free)) = (is_proposed, free_in(range, &used, count)) {
-            let kind = devices::purpose(range, place.language);
-            let detail = Message::new("complete.free").with("kind", kind).render(place.language);
-            // Where a word is wanted, registers are what most people want.
-            let is_register = matches!(range.kind, DeviceKind::D | DeviceKind::R);
-            let aside = accepts.contains(Accepts::D) && !is_register;
-            let rank = if aside { 360 } else { 300 } + rank as u16;
-            place.propose(typed, Proposal::new(free.to_string(), CompletionKind::Device, detail, rank));
-        }
-    }
-    propose_special(place, typed, accepts, access, &used);
 }
 
-/// How often each device is named.
-pub(super) fn used_devices(document: &Document) -> FxHashMap<Device, u32> {
-    let mut used = FxHashMap::default();
-    for page in document.pages() {
-        for (symbol, count) in page.names().symbols() {
-            // Devices come first in the order of symbols.
-            let Symbol::Device(device) = symbol else { break };
-            *used.entry(*device).or_insert(0) += count;
+/// Symbols, and devices that have a comment and are not used yet.
+fn propose_commented(place: &mut Place<'_>, typed: &str, wanted: &Wanted, book: &Book) {
+    let comments = place.document.comments().clone();
+    let target = place.document.target();
+    let mut rank = COMMENTED;
+    for row in comments.rows() {
+        let Symbol::Device(device) = row.thing else { continue };
+        if !wanted.takes(device.kind) || device.range_on(target).is_none() || rank >= COMMENTED + LIMIT {
+            continue;
+        }
+        let words = row.words();
+        let fits = starts_with(device, typed) || is_found_by(typed, &words);
+        if !row.symbol.is_empty() && (fits || is_abbreviation(typed, &row.symbol)) {
+            let detail = [device.to_string().as_str(), row.comment.as_str()].join(" ").trim().to_string();
+            let mut proposal = Proposal::new(row.symbol.as_str(), CompletionKind::Variable, detail, rank);
+            proposal.search = format!("{device} {}", row.comment);
+            place.propose(typed, proposal);
+            rank += 1;
+        }
+        if fits && !book.devices.contains_key(&device) {
+            let kind = devices::kind_name(device.kind, place.language);
+            let unused = Message::new("usage-words.unused").render(place.language);
+            let detail = format!("{words}, {kind}, {unused}");
+            let mut proposal = Proposal::new(device.to_string(), CompletionKind::Device, detail, rank);
+            proposal.search = words;
+            place.propose(typed, proposal);
+            rank += 1;
         }
     }
-    used
+}
+
+fn propose_free(place: &mut Place<'_>, typed: &str, wanted: &Wanted, book: &Book) {
+    let target = place.document.target();
+    let comments = place.document.comments().clone();
+    let mut seen: Vec<&DeviceRange> = Vec::new();
+    for (rank, range) in target.devices.iter().enumerate() {
+        let is_counting_input = range.kind == DeviceKind::C && range.first >= HIGH_SPEED;
+        let is_proposed = wanted.takes(range.kind) && range.first < SPECIAL && !is_counting_input;
+        // Of two ranges of the same purpose the first one that has room is enough.
+        let is_same = |other: &&DeviceRange| other.kind == range.kind && other.purpose == range.purpose;
+        if !is_proposed || seen.iter().any(is_same) {
+            continue;
+        }
+        let reserved = |device| comments.of_device(device).is_some();
+        let Some(free) = book.free(range, wanted.count, reserved) else { continue };
+        seen.push(range);
+        let kind = devices::purpose(range, place.language);
+        let detail = Message::new("complete.free").with("kind", kind).render(place.language);
+        // Where a word is wanted, registers are what most people want.
+        let is_register = matches!(range.kind, DeviceKind::D | DeviceKind::R);
+        let is_aside = wanted.accepts.contains(Accepts::D) && !is_register;
+        let first = match (wanted.is_fresh, is_aside) {
+            (true, _) => FRESH,
+            (false, false) => FREE,
+            (false, true) => FREE_ASIDE,
+        };
+        let rank = first + rank as u16;
+        place.propose(typed, Proposal::new(free.to_string(), CompletionKind::Device, detail, rank));
+    }
 }
 
 fn starts_with(device: Device, typed: &str) -> bool {
@@ -105,22 +191,8 @@ fn starts_with(device: Device, typed: &str) -> bool {
         || device.to_string().get(..typed.len()).is_some_and(|head| head.eq_ignore_ascii_case(typed))
 }
 
-/// The first run of `count` devices of `range` that nothing uses.
-fn free_in(range: &DeviceRange, used: &FxHashMap<Device, u32>, count: u32) -> Option<Device> {
-    let device = |number| Device::new(range.kind, number);
-    let is_free = |first: u32| (first..first + count).all(|number| !used.contains_key(&device(number)));
-    let last = range.last.checked_sub(count - 1)?;
-    (range.first..=last).find(|first| is_free(*first)).map(device)
-}
-
 /// Special relays and registers, once their number is begun: there are hundreds.
-fn propose_special(
-    place: &mut Place<'_>,
-    typed: &str,
-    accepts: Accepts,
-    access: Access,
-    used: &FxHashMap<Device, u32>,
-) {
+fn propose_special(place: &mut Place<'_>, typed: &str, wanted: &Wanted, book: &Book) {
     let begun = typed.get(1..).is_some_and(|number| number.starts_with('8'));
     if !begun {
         return;
@@ -128,9 +200,9 @@ fn propose_special(
     for special in place.document.target().special {
         let device = special.device;
         let takes =
-            accepts.contains(Accepts::of_kind(device.kind)) && (special.writable || access == Access::Read);
-        if takes && !used.contains_key(&device) && starts_with(device, typed) {
-            let rank = 500 + (device.number.saturating_sub(SPECIAL) as u16).min(999);
+            wanted.takes(device.kind) && (special.writable || wanted.access == Access::Read);
+        if takes && !book.devices.contains_key(&device) && starts_with(device, typed) {
+            let rank = 900 + (device.number.saturating_sub(SPECIAL) as u16).min(999);
             place.propose(
                 typed,
                 Proposal::new(
@@ -160,14 +232,14 @@ fn propose_constants(
             None => format!("{least}–{greatest}"),
         };
         let detail = format!("{}, {limits}", Message::new("complete.constant-decimal").render(language));
-        let rank = if driven.is_some() { 5 } else { 440 };
+        let rank = if driven.is_some() { 5 } else { 840 };
         place.propose(typed, Proposal::new("K", kind, detail, rank).snippet("K${1:1}"));
         let detail = Message::new("complete.constant-hexadecimal").render(language);
-        place.propose(typed, Proposal::new("H", kind, detail, 441).snippet("H${1:0}"));
+        place.propose(typed, Proposal::new("H", kind, detail, 841).snippet("H${1:0}"));
     }
     if accepts.contains(Accepts::E) {
         let detail = Message::new("complete.constant-real").render(language);
-        place.propose(typed, Proposal::new("E", kind, detail, 442).snippet("E${1:1.0}"));
+        place.propose(typed, Proposal::new("E", kind, detail, 842).snippet("E${1:1.0}"));
     }
     let groups = [(Accepts::KNX, 'X'), (Accepts::KNY, 'Y'), (Accepts::KNM, 'M'), (Accepts::KNS, 'S')];
     for (rank, (group, letter)) in groups.into_iter().enumerate() {
@@ -177,7 +249,7 @@ fn propose_constants(
             let snippet = format!("K${{1:4}}{letter}${{2:0}}");
             place.propose(
                 typed,
-                Proposal::new(label, CompletionKind::Device, detail, 450 + rank as u16).snippet(snippet),
+                Proposal::new(label, CompletionKind::Device, detail, 850 + rank as u16).snippet(snippet),
             );
         }
     }
@@ -189,28 +261,46 @@ fn group_kind(letter: char) -> DeviceKind {
 
 /// The labels of the program, where they stand, and a free one.
 fn propose_labels(place: &mut Place<'_>, typed: &str, calls: bool) {
-    let document = place.document;
-    let used = used_devices(document);
+    let book = Book::of(place.view);
     let mut pointers: Vec<Device> =
-        used.keys().filter(|device| device.kind == DeviceKind::P).copied().collect();
+        book.devices.keys().filter(|device| device.kind == DeviceKind::P).copied().collect();
     pointers.sort();
     for pointer in pointers {
-        let mut line = None;
-        names::visit(document, &Thing::Devices(pointer, 1), |named| {
-            if named.usage == Use::Declare && line.is_none() {
-                line = Some(document.position(named.span.start as usize, Encoding::Utf8).line + 1);
-            }
-        });
-        if let Some(line) = line {
-            let detail = Message::new("complete.label").with("line", line).render(place.language);
+        let uses = uses::collect(place.view, &Thing::Devices(pointer, 1), 1);
+        if let Some(defined) = uses.declared.places.first() {
+            let style = uses::Style { view: place.view, language: place.language, link: &|_, _| None };
+            let jumps = Message::new("usage-words.jumped").with("count", uses.jumps.total).render(place.language);
+            let label = Message::new("usage-words.label").with("place", style.words(defined));
+            let detail = match uses.jumps.total {
+                0 => label.render(place.language),
+                _ => format!("{}, {jumps}", label.render(place.language)),
+            };
             place.propose(typed, Proposal::new(pointer.to_string(), CompletionKind::Label, detail, 5));
         }
     }
     // P63 means the end of the program to a jump, and nothing to a call.
-    let ranges = document.target().ranges(DeviceKind::P).filter(|range| !calls || range.first != 63);
-    let mut free = ranges.filter_map(|range| free_in(range, &used, 1));
-    if let Some(free) = free.next() {
+    let mut ranges = place.document.target().ranges(DeviceKind::P).filter(|range| !calls || range.first != 63);
+    if let Some(free) = ranges.find_map(|range| book.free(range, 1, |_| false)) {
         let detail = Message::new("complete.label-free").render(place.language);
         place.propose(typed, Proposal::new(free.to_string(), CompletionKind::Label, detail, 310));
+    }
+}
+
+/// Labels that something jumps to and that stand nowhere yet, for the start of a line.
+pub(super) fn propose_missing_labels(place: &mut Place<'_>, typed: &str) {
+    if !typed.starts_with(['P', 'p', 'I', 'i']) {
+        return;
+    }
+    let book = Book::of(place.view);
+    let is_label = |device: &&Device| device.kind == DeviceKind::P && starts_with(**device, typed);
+    let mut pointers: Vec<Device> = book.devices.keys().filter(is_label).copied().collect();
+    pointers.sort();
+    for pointer in pointers {
+        let uses = uses::collect(place.view, &Thing::Devices(pointer, 1), 1);
+        if uses.declared.total == 0 {
+            let detail = Message::new("usage-words.jumped-nowhere").with("count", uses.jumps.total);
+            let detail = detail.render(place.language);
+            place.propose(typed, Proposal::new(pointer.to_string(), CompletionKind::Label, detail, 3));
+        }
     }
 }

@@ -11,7 +11,7 @@ const WIRES: &[char] = &['-', '─', '━', '═', '_'];
 ///
 /// # Errors
 /// With the place for which there is no room.
-pub(super) fn edits(document: &Document, places: &[Span], new: &str) -> Result<Vec<TextEdit>, Span> {
+pub(in crate::ide) fn edits(document: &Document, places: &[Span], new: &str) -> Result<Vec<TextEdit>, Span> {
     let line_of = |span: &Span| document.position(span.start as usize, Encoding::Utf8).line;
     let mut edits = Vec::new();
     for run in places.chunk_by(|left, right| line_of(left) == line_of(right)) {
@@ -31,10 +31,11 @@ pub(super) fn edits(document: &Document, places: &[Span], new: &str) -> Result<V
     Ok(edits)
 }
 
-/// Whether the drawings touched by `edits` still say the same, but for the renamed places. Names belong to elements
-/// by their columns, so only reading them again can tell.
-pub(super) fn still_say_the_same(
+/// Whether the drawings touched by `edits`, read as those of `reader` are, say the same but for the renamed places.
+/// Names belong to elements by their columns, so only reading them again can tell.
+pub(in crate::ide) fn still_say_the_same(
     document: &Document,
+    reader: &Document,
     edits: &[TextEdit],
     places: &[Span],
 ) -> Result<(), Span> {
@@ -55,7 +56,7 @@ pub(super) fn still_say_the_same(
             continue;
         }
         let redrawn = TextEdit::apply_all(&inside, at.chunk.text());
-        let redrawn = document.chunk_of(&redrawn);
+        let redrawn = reader.chunk_of(&redrawn);
         let is_renamed = |mention: &Mention| places.binary_search(&mention.span.shifted(at.start)).is_ok();
         let pairs = at.chunk.mentions().iter().zip(redrawn.mentions());
         let same = |(old, new): (&Mention, &Mention)| {

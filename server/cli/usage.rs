@@ -1,0 +1,172 @@
+//! `rungwise usage`
+
+use super::input::{Program, programs, say};
+use super::{Outcome, paths_or_here};
+use crate::document::{Document, Member, ProjectView, Use};
+use crate::ide::{self, Usage, UsageAt, UsageRow};
+use crate::project::Project;
+use crate::text::Language;
+use clap::ValueEnum;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    /// Files, folders or projects; the current folder if left out.
+    paths: Vec<PathBuf>,
+    /// The shape of the result.
+    #[arg(long, value_enum, default_value = "text")]
+    format: TableFormat,
+}
+
+/// The shape of a table on standard output.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum TableFormat {
+    /// For people.
+    Text,
+    /// One JSON document.
+    Json,
+    /// One line for each device, for spreadsheets.
+    Csv,
+}
+
+/// The programs of one project, or one program that stands alone.
+struct Group {
+    files: Vec<(String, Document)>,
+}
+
+pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
+    let Some(programs) = programs(&paths_or_here(&arguments.paths), None, language) else {
+        return Outcome::Unusable;
+    };
+    let groups = groups(programs);
+    let mut projects = Vec::new();
+    let mut output = String::new();
+    for group in &groups {
+        let members = group.files.iter().map(|(name, document)| Member { name, document }).collect();
+        let Some(view) = ProjectView::new(members, 0, true) else { continue };
+        let usage = ide::usage(&view);
+        match arguments.format {
+            TableFormat::Json => projects.push(as_json(&usage, group)),
+            TableFormat::Csv => output += &as_csv(&usage, group, output.is_empty()),
+            TableFormat::Text => {
+                let separator = if output.is_empty() { "" } else { "\n" };
+                output += &format!("{separator}{}", usage.text(&view, language));
+            }
+        }
+    }
+    if arguments.format == TableFormat::Json {
+        output = format!("{:#}\n", json!({ "projects": projects }));
+    }
+    say(&output);
+    Outcome::Clean
+}
+
+/// Files of one project belong together, in the order in which they came; others stand alone.
+fn groups(programs: Vec<Program>) -> Vec<Group> {
+    let mut places: BTreeMap<PathBuf, usize> = BTreeMap::new();
+    let mut groups: Vec<Group> = Vec::new();
+    for program in programs {
+        let file = (program.path.display().to_string(), program.document);
+        let root = program.path.canonicalize().ok().and_then(|path| Project::folder_of(&path));
+        let known = root.as_ref().and_then(|root| places.get(root)).copied();
+        match known.and_then(|place| groups.get_mut(place)) {
+            Some(group) => group.files.push(file),
+            None => {
+                if let Some(root) = root {
+                    places.insert(root, groups.len());
+                }
+                groups.push(Group { files: vec![file] });
+            }
+        }
+    }
+    groups
+}
+
+impl Group {
+    fn path(&self, number: usize) -> &str {
+        self.files.get(number).map_or("", |(path, _)| path)
+    }
+}
+
+fn access_word(usage: Use) -> &'static str {
+    match usage {
+        Use::Read => "read",
+        Use::Write => "write",
+        Use::ReadWrite => "read-write",
+        Use::Declare => "define",
+        Use::Jump => "jump",
+    }
+}
+
+/// `{"target", "files", "devices": [{"device", "kind", "symbol", "comment", "latched", "preset", "read", "written",
+/// "uses": [{"path", "line", "column", "rung", "access", "coil", "count", "text"}]}]}`
+fn as_json(usage: &Usage, group: &Group) -> Value {
+    let one = |at: &UsageAt| {
+        json!({
+            "path": group.path(at.file),
+            "line": at.line + 1,
+            "column": at.column + 1,
+            "rung": at.rung,
+            "access": access_word(at.usage),
+            "coil": at.by_coil,
+            "count": at.count,
+            "text": at.text,
+        })
+    };
+    let row = |row: &UsageRow| {
+        json!({
+            "device": row.full_name(),
+            "kind": row.kind_word(),
+            "symbol": row.symbol,
+            "comment": row.comment,
+            "latched": row.is_latched,
+            "preset": row.preset,
+            "read": row.is_read(),
+            "written": row.is_written(),
+            "uses": row.uses.iter().map(one).collect::<Vec<_>>(),
+        })
+    };
+    let files: Vec<&str> = group.files.iter().map(|(path, _)| path.as_str()).collect();
+    json!({
+        "target": group.files.first().map(|(_, document)| document.target().name),
+        "files": files,
+        "devices": usage.rows.iter().map(row).collect::<Vec<_>>(),
+    })
+}
+
+/// One line for each device; its uses are in the last field, parted by blanks: `main.il:3:read`.
+fn as_csv(usage: &Usage, group: &Group, with_header: bool) -> String {
+    let mut text = String::new();
+    if with_header {
+        text += "device,symbol,comment,latched,preset,reads,writes,uses\n";
+    }
+    for row in &usage.rows {
+        let count = |is: fn(Use) -> bool| row.uses.iter().filter(|at| is(at.usage)).count().to_string();
+        let uses = row.uses.iter().map(|at| {
+            format!("{}:{}:{}", group.path(at.file), at.line + 1, access_word(at.usage))
+        });
+        let fields = [
+            row.full_name(),
+            row.symbol.clone(),
+            row.comment.clone(),
+            row.is_latched.to_string(),
+            row.preset.clone(),
+            count(Use::reads),
+            count(Use::writes),
+            uses.collect::<Vec<_>>().join(" "),
+        ];
+        text += &fields.iter().map(|field| quoted(field)).collect::<Vec<_>>().join(",");
+        text.push('\n');
+    }
+    text
+}
+
+/// A field as RFC 4180 wants it.
+fn quoted(field: &str) -> String {
+    match field.contains([',', '"', '\n', '\r']) {
+        true => format!("\"{}\"", field.replace('"', "\"\"")),
+        false => field.to_string(),
+    }
+}

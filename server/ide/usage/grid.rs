@@ -1,0 +1,118 @@
+//! The list of used devices as text: a grid for each kind of device, then every device with its uses.
+
+use super::{Usage, UsageKey, UsageRow, access_words};
+use crate::document::ProjectView;
+use crate::ide::devices;
+use crate::target::{Device, DeviceKind};
+use crate::text::{Language, Message, cell_width};
+use rustc_hash::FxHashMap;
+use std::collections::BTreeSet;
+
+/// What is done with a device, for its cell.
+#[derive(Clone, Copy, Default)]
+struct Mark {
+    read: bool,
+    written: bool,
+    coil: bool,
+    other: bool,
+}
+
+impl Mark {
+    /// Two characters: how it is read, how it is written.
+    fn cell(self) -> String {
+        let left = if self.read { 'r' } else { '-' };
+        let right = match (self.coil, self.written, self.other) {
+            (true, ..) => 'o',
+            (_, true, _) => 'w',
+            (_, _, true) => '*',
+            _ => '-',
+        };
+        format!("{left}{right}")
+    }
+}
+
+pub(super) fn text(usage: &Usage, view: &ProjectView<'_>, language: Language) -> String {
+    let marks = marks(usage);
+    let mut text = Message::new("usage.title").render(language) + "\n";
+    text += &(Message::new("usage.legend").render(language) + "\n");
+    if usage.rows.is_empty() {
+        return text + "\n" + &Message::new("usage.nothing").render(language) + "\n";
+    }
+    for kind in DeviceKind::ALL {
+        text += &grid(kind, &marks, language);
+    }
+    text.push('\n');
+    for row in &usage.rows {
+        text += &listed(row, view, language);
+    }
+    text
+}
+
+fn marks(usage: &Usage) -> FxHashMap<Device, Mark> {
+    let mut marks: FxHashMap<Device, Mark> = FxHashMap::default();
+    for row in &usage.rows {
+        let UsageKey::Device(device) = row.key else { continue };
+        for at in &row.uses {
+            let end = device.number.saturating_add(u32::from(at.count.max(1)));
+            for number in device.number..end {
+                let mark = marks.entry(Device::new(device.kind, number)).or_default();
+                mark.read |= at.usage.reads();
+                mark.written |= at.usage.writes();
+                mark.coil |= at.by_coil;
+                mark.other |= !at.usage.reads() && !at.usage.writes();
+            }
+        }
+    }
+    marks
+}
+
+/// Rows of ten devices; of eight for inputs and outputs, whose numbers are octal. Rows without a device are left out.
+fn grid(kind: DeviceKind, marks: &FxHashMap<Device, Mark>, language: Language) -> String {
+    let columns = kind.number_base();
+    let used = marks.keys().filter(|device| device.kind == kind);
+    let rows: BTreeSet<u32> = used.map(|device| device.number / columns).collect();
+    if rows.is_empty() {
+        return String::new();
+    }
+    let mut text = format!("\n{} {}\n{:8}", kind.letter(), devices::kind_name(kind, language), "");
+    for column in 0..columns {
+        text += &format!("  {column} ");
+    }
+    for row in rows {
+        text.truncate(text.trim_end().len());
+        let first = Device::new(kind, row * columns);
+        text += &format!("\n{:<8}", first.to_string());
+        for number in first.number..first.number.saturating_add(columns) {
+            match marks.get(&Device::new(kind, number)) {
+                Some(mark) => text += &format!(" {} ", mark.cell()),
+                None => text += "  . ",
+            }
+        }
+    }
+    text.truncate(text.trim_end().len());
+    text + "\n"
+}
+
+/// `Y0       Motor: contactor`, and below each use in a line.
+fn listed(row: &UsageRow, view: &ProjectView<'_>, language: Language) -> String {
+    let said = match (row.symbol.is_empty(), row.comment.is_empty()) {
+        (false, false) => format!("{}: {}", row.symbol, row.comment),
+        _ => format!("{}{}", row.symbol, row.comment),
+    };
+    let name = row.full_name();
+    let width: usize = name.chars().map(cell_width).sum();
+    let blanks = " ".repeat(9usize.saturating_sub(width).max(1));
+    let mut text = format!("{name}{blanks}{}", [said.as_str(), row.preset.as_str()].join("  ").trim());
+    text.truncate(text.trim_end().len());
+    for at in &row.uses {
+        let place = match at.rung {
+            Some(rung) => Message::new("uses.rung-line").with("rung", rung),
+            None => Message::new("uses.line"),
+        };
+        let place = place.with("line", at.line + 1).render(language);
+        let file = view.members().get(at.file).map_or("", |member| member.name);
+        let file = if file.is_empty() { String::new() } else { format!("{file}, ") };
+        text += &format!("\n    {file}{place}: {} — {}", access_words(at.usage, language), at.text);
+    }
+    text + "\n"
+}

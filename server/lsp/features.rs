@@ -1,0 +1,227 @@
+//! Answers of features about devices and one document, in the protocol's types.
+//!
+//! `rungwise.usage` takes a document's URI and answers
+//! `{"text", "target", "files": ["main.il", …], "devices": [{"device", "kind", "symbol", "comment", "latched",
+//! "preset", "read", "written", "uses": [{"file", "uri", "line", "column", "rung", "access", "coil", "count",
+//! "text"}]}]}`.
+//! `kind` is the device's letter, `address` or `variable`; `file` is the name in `files`; `line` and `column` count
+//! from 1, columns in Unicode scalar values; `rung` counts from 1 in its file or is `null`; `access` is `read`, `write`,
+//! `read-write`, `define` or `jump`; `text` is the same list as a page with a grid for each kind of device.
+//! The page alone is also the content of the virtual document `rungwise-usage:` + the path of the document, which
+//! clients of LSP 3.18 ask for with `workspace/textDocumentContent` (`{"uri"}` → `{"text"}`).
+
+use super::projects::Around;
+use super::sheets;
+use super::to_proto::Place;
+use super::workspace::{Open, Snapshot};
+use crate::document::{Document, Use};
+use crate::ide::{self, HighlightKind, LensKind, LensSettings};
+use crate::target::{Device, Operand};
+use crate::text::{Encoding, Language, column_of_offset};
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::sync::Arc;
+use tower_lsp::ls_types::*;
+
+/// The scheme of the virtual document with the list of used devices.
+pub(super) const USAGE_SCHEME: &str = "rungwise-usage";
+
+/// The parameters of `textDocument/rangesFormatting`; the client's options of formatting are the project's matter.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct RangesParams {
+    pub text_document: TextDocumentIdentifier,
+    pub ranges: Vec<Range>,
+}
+
+/// The parameters of `workspace/textDocumentContent`.
+#[derive(Deserialize)]
+pub(super) struct ContentParams {
+    pub uri: Uri,
+}
+
+/// Its answer.
+#[derive(Serialize)]
+pub(super) struct Content {
+    pub text: String,
+}
+
+/// The document of which a virtual one tells.
+pub(super) fn told_document(uri: &Uri) -> Option<Uri> {
+    let rest = uri.as_str().strip_prefix(USAGE_SCHEME)?.strip_prefix(':')?;
+    format!("file:{rest}").parse().ok()
+}
+
+/// The address of a line of a file, for links in Markdown.
+pub(super) fn link(around: &Around, file: usize, line: u32) -> Option<String> {
+    let uri = &around.file(file)?.uri;
+    let is_file = uri.scheme().as_str().eq_ignore_ascii_case("file");
+    is_file.then(|| format!("{}#L{}", uri.as_str(), line + 1))
+}
+
+pub(super) fn signature_help(place: Place<'_>, offset: usize) -> Option<SignatureHelp> {
+    let signature = ide::signature(place.document, offset, place.language)?;
+    // Labels are counted in UTF-16, whatever the encoding of positions is.
+    let unit = |byte: u32| column_of_offset(&signature.label, byte as usize, Encoding::Utf16);
+    let text = |value: &str| Some(Documentation::String(value.to_string()));
+    let parameters = signature.parameters.iter().map(|parameter| ParameterInformation {
+        label: ParameterLabel::LabelOffsets([unit(parameter.span.start), unit(parameter.span.end)]),
+        documentation: text(&parameter.documentation),
+    });
+    let parameters: Vec<_> = parameters.collect();
+    // A number behind the last one marks no parameter.
+    let active = signature.active.unwrap_or(parameters.len()) as u32;
+    let information = SignatureInformation {
+        documentation: text(&signature.documentation),
+        parameters: Some(parameters),
+        active_parameter: Some(active),
+        label: signature.label,
+    };
+    Some(SignatureHelp {
+        signatures: vec![information],
+        active_signature: Some(0),
+        active_parameter: Some(active),
+    })
+}
+
+pub(super) fn highlights(place: Place<'_>, offset: usize) -> Vec<DocumentHighlight> {
+    let marks = ide::highlights(place.document, offset).into_iter();
+    let kind = |kind| match kind {
+        HighlightKind::Text => DocumentHighlightKind::TEXT,
+        HighlightKind::Read => DocumentHighlightKind::READ,
+        HighlightKind::Write => DocumentHighlightKind::WRITE,
+    };
+    marks.map(|mark| DocumentHighlight { range: place.range(mark.span), kind: Some(kind(mark.kind)) }).collect()
+}
+
+/// What a lens carries until it is resolved.
+#[derive(Serialize, Deserialize)]
+struct LensData {
+    uri: String,
+    offset: usize,
+    kind: String,
+}
+
+pub(super) fn lenses(open: &Open, place: Place<'_>, wanted: LensSettings) -> Vec<CodeLens> {
+    let lenses = ide::lenses(place.document, wanted).into_iter();
+    let lens = |lens: ide::Lens| {
+        let kind = match lens.kind {
+            LensKind::Steps => "steps".to_string(),
+            LensKind::NextFree => "next-free".to_string(),
+            LensKind::References(device) => device.to_string(),
+        };
+        let data = LensData { uri: open.uri.to_string(), offset: lens.span.start as usize, kind };
+        CodeLens { range: place.range(lens.span), command: None, data: serde_json::to_value(data).ok() }
+    };
+    lenses.map(lens).collect()
+}
+
+/// The lens with its words, as a command that does nothing; every client shows that as text.
+pub(super) fn resolved(snapshot: &Snapshot, mut lens: CodeLens) -> CodeLens {
+    let title = lens.data.as_ref().and_then(|data| {
+        let data = LensData::deserialize(data).ok()?;
+        let around = snapshot.around(snapshot.open(&data.uri.parse().ok()?)?);
+        let kind = match data.kind.as_str() {
+            "steps" => LensKind::Steps,
+            "next-free" => LensKind::NextFree,
+            name => LensKind::References(device_named(&around.here().document, name)?),
+        };
+        ide::lens_title(&around.view(), data.offset, &kind, snapshot.manner.language)
+    });
+    let title = title.unwrap_or_else(|| "–".to_string());
+    lens.command = Some(Command { title, command: String::new(), arguments: None });
+    lens
+}
+
+fn device_named(document: &Document, name: &str) -> Option<Device> {
+    match Operand::read(name, document.target().model) {
+        Operand::Device(device) => Some(device),
+        _ => None,
+    }
+}
+
+/// The comments file of the project around a document, as a document of its own.
+pub(super) fn table(snapshot: &Snapshot, around: &Around) -> Option<Arc<Open>> {
+    let loaded = snapshot.projects.get(around.here().project.as_ref()?)?;
+    let table = sheets::around(snapshot, loaded.comments_file.as_ref()?)?;
+    Some(table.here().clone())
+}
+
+/// The actions that write a symbol for the device at the cursor, or the device for a symbol.
+pub(super) fn rewrites(open: &Open, place: Place<'_>, params: &CodeActionParams) -> Vec<CodeAction> {
+    // A kind stands for all kinds below it.
+    let takes = |kind: &CodeActionKind| CodeActionKind::REFACTOR_REWRITE.as_str().starts_with(kind.as_str());
+    if params.context.only.as_ref().is_some_and(|only| !only.iter().any(takes)) {
+        return Vec::new();
+    }
+    let rewrites = ide::rewrites(place.document, place.offset(params.range.start)).into_iter();
+    let action = |rewrite: ide::Rewrite| CodeAction {
+        title: rewrite.title.render(place.language),
+        kind: Some(CodeActionKind::REFACTOR_REWRITE),
+        edit: Some(WorkspaceEdit {
+            changes: Some([(open.uri.clone(), place.edits(&rewrite.edits))].into_iter().collect()),
+            ..WorkspaceEdit::default()
+        }),
+        ..CodeAction::default()
+    };
+    rewrites.map(action).collect()
+}
+
+/// The page of used devices.
+pub(super) fn usage_text(around: &Around, language: Language) -> String {
+    let view = around.view();
+    ide::usage(&view).text(&view, language)
+}
+
+/// The answer of `rungwise.usage`.
+pub(super) fn usage_json(around: &Around, language: Language) -> Value {
+    let view = around.view();
+    let usage = ide::usage(&view);
+    let text = usage.text(&view, language);
+    let name = |number: usize| view.members().get(number).map_or("", |member| member.name);
+    let uri = |number: usize| around.file(number).map(|file| file.uri.to_string());
+    let devices: Vec<Value> = usage.rows.iter().map(|row| row_json(row, &name, &uri)).collect();
+    let files: Vec<&str> = view.members().iter().map(|member| member.name).collect();
+    json!({"text": text, "target": view.here().target().name, "files": files, "devices": devices})
+}
+
+fn row_json<'a>(
+    row: &ide::UsageRow,
+    name: &dyn Fn(usize) -> &'a str,
+    uri: &dyn Fn(usize) -> Option<String>,
+) -> Value {
+    let uses = row.uses.iter().map(|at| {
+        json!({
+            "file": name(at.file),
+            "uri": uri(at.file),
+            "line": at.line + 1,
+            "column": at.column + 1,
+            "rung": at.rung,
+            "access": access_word(at.usage),
+            "coil": at.by_coil,
+            "count": at.count,
+            "text": at.text,
+        })
+    });
+    json!({
+        "device": row.full_name(),
+        "kind": row.kind_word(),
+        "symbol": row.symbol,
+        "comment": row.comment,
+        "latched": row.is_latched,
+        "preset": row.preset,
+        "read": row.is_read(),
+        "written": row.is_written(),
+        "uses": uses.collect::<Vec<_>>(),
+    })
+}
+
+fn access_word(usage: Use) -> &'static str {
+    match usage {
+        Use::Read => "read",
+        Use::Write => "write",
+        Use::ReadWrite => "read-write",
+        Use::Declare => "define",
+        Use::Jump => "jump",
+    }
+}
