@@ -6,18 +6,23 @@
 use rungwise::check::{self, Severities};
 use rungwise::document::{Document, Edit, Notation};
 use rungwise::ide::{self, Style};
-use rungwise::project::{FormatStyle, Manifest};
+use rungwise::project::{CommentsFile, FormatStyle, Manifest, decode};
 use rungwise::target::{Model, Target};
 use rungwise::text::{Encoding, Language, LineColumn, Span, TextEdit};
+use std::path::Path;
+
+/// What must hold for any bytes.
+pub type Body = fn(&[u8]);
 
 /// A target by the name of its folder in `fuzz/corpus`.
-pub const TARGETS: &[(&str, fn(&[u8]))] = &[
+pub const TARGETS: &[(&str, Body)] = &[
     ("fx", fx),
     ("iec", iec),
     ("ladder", ladder),
     ("edits", edits),
     ("session", session),
     ("manifest", manifest),
+    ("comments", comments),
 ];
 
 /// Instruction list of a PLC; the first byte chooses the model.
@@ -94,6 +99,18 @@ pub fn manifest(bytes: &[u8]) {
     }
 }
 
+/// A file of device comments, in any encoding.
+pub fn comments(bytes: &[u8]) {
+    let text = decode(bytes);
+    let file = CommentsFile::read(Path::new("devices.csv"), &text, Target::of(Model::Fx2n));
+    for found in &file.diagnostics {
+        assert!(text.get(found.span.start as usize..found.span.end as usize).is_some(), "{found:?}");
+        assert!(!found.message.render(Language::SimplifiedChinese).is_empty());
+    }
+    // A program of the words of the file is read with its symbols.
+    holds(&Document::new(&text, Notation::FxIl, Target::of(Model::Fx2n)).commented(&file.comments));
+}
+
 /// All that an editor asks of a document is answered with places inside it, and formatting is done after one time.
 fn holds(document: &Document) {
     let text = document.text();
@@ -130,7 +147,8 @@ fn holds(document: &Document) {
     for kind in [FormatStyle::Iec, FormatStyle::Brackets, FormatStyle::Unicode] {
         let style = Style { kind, width: 48 };
         let once = TextEdit::apply_all(&ide::format(document, style), &text);
-        let again = Document::new(&once, document.notation(), document.target());
+        let again =
+            Document::new(&once, document.notation(), document.target()).commented(document.comments());
         let twice = TextEdit::apply_all(&ide::format(&again, style), &once);
         assert_eq!(twice, once, "formatting {text:?} twice");
     }

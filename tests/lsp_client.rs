@@ -171,6 +171,7 @@ impl Client {
     }
 
     /// The notifications with this method that came while something else was waited for.
+    #[allow(dead_code, reason = "the bench asks")]
     pub fn notified(&self, method: &str) -> Vec<&Value> {
         self.kept.iter().filter(|message| message["method"] == json!(method)).collect()
     }
@@ -208,6 +209,7 @@ impl Client {
     }
 
     /// The processor time that the server has used, where the system tells, in steps of 10 ms.
+    #[allow(dead_code, reason = "the bench asks")]
     pub fn processor_time(&self) -> Option<Duration> {
         let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.server.id())).ok()?;
         // Behind the name, which may contain blanks: user time is the 12th field, system time the 13th.

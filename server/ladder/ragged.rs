@@ -130,7 +130,8 @@ impl<'a> Mender<'a> {
                 let (row, number) = (cell.row, cell.token);
                 let is_first = before.is_none_or(|before| !before.is_drawn());
                 let left_rail = is_first && !on_left && token.start <= self.left + ASIDE;
-                if !left_rail && !(wants == Wants::Much && self.is_right_rail(cell.row, number, reach)) {
+                let right_rail = wants == Wants::Much && self.is_right_rail(cell.row, number, reach);
+                if !left_rail && !right_rail {
                     seekers.push(Seeker { row, token, number, top, wants, bare, single });
                 }
             }

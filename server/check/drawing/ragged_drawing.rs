@@ -32,7 +32,9 @@ use rustc_hash::FxHashMap;
 pub(super) const RULE: Rule = Rule {
     code: "ragged-drawing",
     severity: Severity::Hint,
-    run: Run::Chunk(|context, found| super::run(offer_redrawing, context, found)),
+    run: Run::Chunk(|context, found| {
+        super::run(|drawn, found| offer_redrawing(drawn, found), context, found)
+    }),
     source: include_str!("ragged_drawing.rs"),
 };
 
@@ -40,7 +42,7 @@ pub(super) const RULE: Rule = Rule {
 const REDRAWN_MAX: usize = 8;
 
 /// Adds the fixes to what was found while reading: the rung as it was read, or as it would be in each reading.
-fn offer_redrawing(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
+fn offer_redrawing(drawn: &Drawn<'_>, found: &mut [Diagnostic]) {
     if !drawn.can_try() {
         return;
     }

@@ -170,12 +170,10 @@ pub(super) fn without_elements(site: &Site<'_>, gone: &[ElementId]) -> Option<St
             sketch.rows[row][first..last].fill(' ');
         }
         let cells = &mut sketch.rows[row];
-        let beside =
+        let mut beside =
             [first.checked_sub(1), Some(last)].into_iter().flatten().filter_map(|at| cells.get(at).copied());
-        let wire = beside
-            .filter(|cell| is_wire(*cell))
-            .last()
-            .or_else(|| cells.iter().copied().find(|c| is_wire(*c)))?;
+        let wire =
+            beside.rfind(|cell| is_wire(*cell)).or_else(|| cells.iter().copied().find(|c| is_wire(*c)))?;
         cells[first..last].fill(wire);
     }
     Some(sketch.text())

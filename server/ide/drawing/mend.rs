@@ -31,7 +31,7 @@ pub(super) fn is_ragged(site: &Site<'_>) -> bool {
     let found = site.tree.problems.iter().any(|problem| aside(problem.code) && inside(problem.span));
     let rows: Option<Vec<Row>> =
         lines.of(site.text).lines().map(|line| cells::row(line.trim_end())).collect();
-    let ends = rows.iter().flatten().filter_map(|row| rail_of(row)).collect::<Vec<_>>();
+    let ends = rows.iter().flatten().filter_map(rail_of).collect::<Vec<_>>();
     found || ends.windows(2).any(|pair| pair[0] != pair[1])
 }
 

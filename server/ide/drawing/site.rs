@@ -112,10 +112,10 @@ impl<'d> Site<'d> {
         let covers = |span: &&Span| {
             self.column(span.start as usize) <= column && column < self.column(span.end as usize)
         };
-        let elements = self.elements().filter_map(|(id, element)| {
-            (element.columns.0 <= column && column < element.columns.1)
-                .then(|| (distance(element.row), Spot::Element(id)))
-        });
+        let elements = self
+            .elements()
+            .filter(|(_, element)| element.columns.0 <= column && column < element.columns.1)
+            .map(|(id, element)| (distance(element.row), Spot::Element(id)));
         let wires = self.wires().filter_map(|(arc, cells)| {
             let cells = cells.iter().filter(covers);
             let near = cells.map(|span| distance(self.line_of(span.start as usize))).min()?;

@@ -354,13 +354,13 @@ fn block_of_leaf(carrier: &mut Carrier, words: &[String]) -> Element {
     let instance = values.first().map_or("", String::as_str);
     let rest = values.get(1..).unwrap_or(&[]);
     match kind.form {
-        Form::Timer if rest.first().is_some() => {
+        Form::Timer if !rest.is_empty() => {
             if rest.get(1).is_some_and(|adjust| adjust != "0" && adjust != "-1") {
                 carrier.note(Message::new("import.adjust").with("name", instance));
             }
             carrier.block(kind, instance, &rest[..1], None, false)
         }
-        Form::Counter if rest.first().is_some() => {
+        Form::Counter if !rest.is_empty() => {
             let falling = rest.get(2).is_some_and(|edge| edge == "\\");
             if rest.get(2).is_some_and(|edge| edge != "\\" && edge != "/") {
                 carrier.note(Message::new("import.level-counter").with("name", instance));

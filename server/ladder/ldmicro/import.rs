@@ -95,7 +95,7 @@ fn of_native(carrier: &mut Carrier, source: Vec<(u32, Vec<Node>)>) -> Vec<Rung> 
         carrier.line = line;
         series.retain(|node| match node {
             Node::Leaf(_, words) if words[0] == "COMMENT" => {
-                comments.extend(words[1].split("\\r\\n").map(|line| shown_comment(line)));
+                comments.extend(words[1].split("\\r\\n").map(shown_comment));
                 false
             }
             Node::Leaf(_, words) if words[0] == "LABEL" && words.len() > 1 => {
