@@ -2,7 +2,7 @@
 
 import * as vscode from 'vscode';
 import { joinStretches, linesToMend, rungPlaces, type PlainChange, type Stretch } from './mending';
-import { isMadeBy, moved, owedFor, type Owed } from './owed';
+import { burstEnd, isMadeBy, moved, oneCellLess, owedFor, type Owed } from './owed';
 import type { ServerController } from './server';
 import { operandOf, parseEditAnswer, STRUCTURAL_EDITS, type EditAnswer, type StructuralEdit } from './structuralEdits';
 
@@ -16,13 +16,17 @@ const MOST_OWED = 256;
 /** Cursors that type at the same time. */
 const MOST_CURSORS = 16;
 
+/** A note of what is owed, which stays the same one while it moves. */
+type Noted = Owed & { readonly id: number };
+
 export class DrawingEditor implements vscode.Disposable {
   /** Edits run one after another: each one must see the text that the one before it left. */
   private queue: Promise<unknown> = Promise.resolve();
   /** The edits that this class is making in a document, to know its own change from one of the person's. */
   private readonly making = new Map<vscode.TextDocument, readonly PlainChange[]>();
   /** Keystrokes that are not yet answered. */
-  private readonly owed = new Map<vscode.TextDocument, Owed[]>();
+  private readonly owed = new Map<vscode.TextDocument, Noted[]>();
+  private lastNote = 0;
   /** Versions to which the editor itself applies an answer to Enter. */
   private readonly enters = new WeakMap<vscode.TextDocument, number>();
   private readonly dirty = new Map<vscode.TextDocument, Stretch>();
@@ -156,7 +160,7 @@ export class DrawingEditor implements vscode.Disposable {
         this.mark(editor, stretch);
       }
     } else if (notes.length + owed.length <= MOST_OWED) {
-      this.owed.set(document, [...notes, ...owed]);
+      this.owed.set(document, [...notes, ...owed.map((note) => ({ ...note, id: ++this.lastNote }))]);
       owed.forEach(() => void this.enqueue(() => this.answer(editor)));
     }
   }
@@ -172,14 +176,13 @@ export class DrawingEditor implements vscode.Disposable {
           return;
         }
         const version = document.version;
-        const edits = first.kind === 'cells' ? [inserted(document, first)] : await this.askTyped(document, first);
+        const edits = first.kind === 'cells' ? [inserted(document, first)] : await this.answerTo(editor, first);
         if (document.version !== version) {
           continue;
         }
         const undo = { undoStopBefore: false, undoStopAfter: false };
         if (edits.length === 0 || (await this.apply(editor, { edits, selection: undefined }, undo))) {
-          // Its place may have moved meanwhile; it is still the first one.
-          this.owed.set(document, (this.owed.get(document) ?? []).slice(1));
+          this.owed.set(document, (this.owed.get(document) ?? []).filter(({ id }) => id !== first.id));
           return;
         }
       }
@@ -194,6 +197,21 @@ export class DrawingEditor implements vscode.Disposable {
         this.mark(editor, { first: Math.min(...lines), last: Math.max(...lines), places });
       }
     }
+  }
+
+  /** The edits for a typed character. In a burst the cells behind it give way for all but the last one. */
+  private async answerTo(editor: vscode.TextEditor, first: Owed): Promise<EditAnswer['edits']> {
+    const { document } = editor;
+    const end = burstEnd(this.owed.get(document) ?? []);
+    if (end === undefined) {
+      return this.askTyped(document, first);
+    }
+    const less = oneCellLess(document.lineAt(end.line).text, end);
+    if (less === undefined) {
+      this.mark(editor, { first: end.line, last: end.line, places: [end] });
+      return [];
+    }
+    return [{ range: less.range, newText: less.text }];
   }
 
   /** What the server makes of a typed character. */

@@ -18,7 +18,10 @@ export interface Owed {
 }
 
 /** The notes after a change, and how many typed characters it took away before they were answered, by line. */
-export function moved(notes: readonly Owed[], changes: readonly PlainChange[]): { notes: Owed[]; undone: Map<number, number> } {
+export function moved<Note extends Owed>(
+  notes: readonly Note[],
+  changes: readonly PlainChange[],
+): { notes: Note[]; undone: Map<number, number> } {
   const undone = new Map<number, number>();
   let left = [...notes];
   // Ranges are those before the change, so the lowest one is taken first: it moves nothing above it.
@@ -102,6 +105,29 @@ function filling(row: string, at: PlainPosition, from: number, missing: number):
   // Among cells of its kind it is all the same where a cell is put in, and away from the cursor it cannot move that.
   const character = at.character + (behind === wire ? 1 : 0);
   return { at: { line: at.line, character }, kind: 'cells', text: wire.repeat(missing) };
+}
+
+/**
+ * Where the burst of keystrokes ends to which the first note belongs: behind the last of the characters that follow it
+ * without a gap and are not answered either. `undefined` if it stands alone.
+ *
+ * The server takes what stands behind a character for the drawing, so it can be asked for the last one only.
+ */
+export function burstEnd([first, ...others]: readonly Owed[]): PlainPosition | undefined {
+  let end = first?.at;
+  for (const { at, kind, text } of first?.kind === 'typed' ? others : []) {
+    if (end !== undefined && kind === 'typed' && at.line === end.line && at.character === end.character + text.length) {
+      end = at;
+    }
+  }
+  return end === first?.at ? undefined : end;
+}
+
+/** The edit that takes one cell out of the wire or the blanks that begin at a place; `undefined` if there are none. */
+export function oneCellLess(row: string, { line, character }: PlainPosition): PlainChange | undefined {
+  const cell = row[character] ?? '';
+  const gives = /[ \-─]/.test(cell) && row[character + 1] === cell;
+  return gives ? { range: { start: { line, character }, end: { line, character: character + 1 } }, text: '' } : undefined;
 }
 
 /** Whether a change is the one that these edits make. */

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import type { PlainChange } from '../src/mending';
-import { isMadeBy, moved, owedFor, type Owed } from '../src/owed';
+import { burstEnd, isMadeBy, moved, oneCellLess, owedFor, type Owed } from '../src/owed';
 
 const change = (line: number, from: number, to: number, text: string, endLine = line): PlainChange => ({
   range: { start: { line, character: from }, end: { line: endLine, character: to } },
@@ -64,4 +64,17 @@ test('a change is known by its edits, in any order', () => {
   assert.ok(isMadeBy([change(3, 0, 0, 'a\nb'), change(0, 1, 2, '')], edits));
   assert.ok(!isMadeBy([change(0, 1, 2, '')], edits));
   assert.ok(!isMadeBy([change(0, 1, 1, '')], [change(0, 1, 2, '')]));
+});
+
+test('of a burst all but the last character take cells behind its end', () => {
+  const typed = (character: number, line = 0): Owed => ({ at: { line, character }, kind: 'typed', text: 'X' });
+  assert.deepEqual(burstEnd([typed(5), typed(6), typed(4, 3), typed(7), typed(9)]), { line: 0, character: 7 });
+  assert.equal(burstEnd([typed(5), typed(9)]), undefined);
+  assert.equal(burstEnd([{ ...typed(5), kind: 'cells' }, typed(6)]), undefined);
+  assert.equal(burstEnd([]), undefined);
+  const less = (row: string, character: number) => oneCellLess(row, { line: 0, character });
+  assert.deepEqual(less('+--| |---+', 6), change(0, 6, 7, ''));
+  assert.deepEqual(less('|  X1  X2 |', 5), change(0, 5, 6, ''));
+  assert.equal(less('+--| |-+', 6), undefined);
+  assert.equal(less('|  X1', 5), undefined);
 });
