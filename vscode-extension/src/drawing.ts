@@ -1,36 +1,51 @@
-/** Editing a drawing in the editor: structural edits by command, and mending after deletions and pastes. */
+/** Editing a drawing in the editor: structural edits by command, answers to keystrokes, and mending after pastes. */
 
 import * as vscode from 'vscode';
-import { filling, joinStretches, linesToMend, rungPlaces, typedOverSelection, type Stretch } from './mending';
+import { joinStretches, linesToMend, rungPlaces, type PlainChange, type Stretch } from './mending';
+import { burstEnd, isMadeBy, moved, oneCellLess, owedFor, type Owed } from './owed';
 import type { ServerController } from './server';
 import { operandOf, parseEditAnswer, STRUCTURAL_EDITS, type EditAnswer, type StructuralEdit } from './structuralEdits';
 
 const LANGUAGE = 'ladder';
 const EDIT_REQUEST = 'rungwise/edit';
+const TYPED_REQUEST = 'textDocument/onTypeFormatting';
 /** A person who types faster than the server answers has stopped after this many answers that came too late. */
 const MOST_ATTEMPTS = 8;
+/** Keystrokes of one burst that are still answered; what is more comes from no keyboard. */
+const MOST_OWED = 256;
+/** Cursors that type at the same time. */
+const MOST_CURSORS = 16;
+
+/** A note of what is owed, which stays the same one while it moves. */
+type Noted = Owed & { readonly id: number };
 
 export class DrawingEditor implements vscode.Disposable {
   /** Edits run one after another: each one must see the text that the one before it left. */
   private queue: Promise<unknown> = Promise.resolve();
-  /** Documents that are being changed by this class, whose change events are its own. */
-  private readonly busy = new Set<vscode.TextDocument>();
+  /** The edits that this class is making in a document, to know its own change from one of the person's. */
+  private readonly making = new Map<vscode.TextDocument, readonly PlainChange[]>();
+  /** Keystrokes that are not yet answered. */
+  private readonly owed = new Map<vscode.TextDocument, Noted[]>();
+  private lastNote = 0;
+  /** Versions to which the editor itself applies an answer to Enter. */
+  private readonly enters = new WeakMap<vscode.TextDocument, number>();
   private readonly dirty = new Map<vscode.TextDocument, Stretch>();
-  /** Where a character was last typed over a selection, and in which version. */
-  private readonly typedOver = new WeakMap<vscode.TextDocument, { version: number; stretch: Stretch; filled: boolean }>();
   private readonly subscriptions: vscode.Disposable[];
 
   constructor(
     private readonly server: ServerController,
     private readonly output: vscode.LogOutputChannel,
   ) {
-    server.typed = (document) => this.typed(document);
+    server.typed = (document, character, next) => this.typed(document, character, next);
     this.subscriptions = [
       ...STRUCTURAL_EDITS.map((edit) =>
         vscode.commands.registerCommand(`rungwise.${edit}`, (args?: unknown) => this.command(edit, args)),
       ),
       vscode.workspace.onDidChangeTextDocument((event) => this.changed(event)),
-      vscode.workspace.onDidCloseTextDocument((document) => this.dirty.delete(document)),
+      vscode.workspace.onDidCloseTextDocument((document) => {
+        this.dirty.delete(document);
+        this.owed.delete(document);
+      }),
     ];
   }
 
@@ -98,7 +113,7 @@ export class DrawingEditor implements vscode.Disposable {
     undo: { undoStopBefore: boolean; undoStopAfter: boolean },
   ): Promise<boolean> {
     const { document } = editor;
-    this.busy.add(document);
+    this.making.set(document, answer.edits.map((edit) => ({ range: edit.range, text: edit.newText })));
     try {
       const done =
         answer.edits.length === 0 ||
@@ -114,41 +129,100 @@ export class DrawingEditor implements vscode.Disposable {
       }
       return done;
     } finally {
-      this.busy.delete(document);
+      this.making.delete(document);
     }
   }
 
-  /** A deletion, a paste or an accepted completion has moved cells: what it moved is put back. */
+  /** A keystroke, a deletion, a paste or an accepted completion has moved cells: what it moved is put back. */
   private changed(event: vscode.TextDocumentChangeEvent): void {
     const { document, contentChanges, reason } = event;
     const editor = vscode.window.activeTextEditor;
-    if (document.languageId !== LANGUAGE || editor?.document !== document || this.busy.has(document)) {
+    if (document.languageId !== LANGUAGE || editor?.document !== document || contentChanges.length === 0) {
       return;
     }
+    const changes = contentChanges.map(({ range, text }) => ({ range, text }));
+    const { notes, undone } = moved(this.owed.get(document) ?? [], changes);
+    const answered = this.enters.get(document) === document.version - 1;
+    this.owed.set(document, notes);
     // What undo and redo bring back has been mended before.
     if (reason !== undefined || !mendsWhileTyping(document)) {
+      this.owed.delete(document);
       return;
     }
-    const row = document.lineAt(Math.min(contentChanges[0]?.range.start.line ?? 0, document.lineCount - 1)).text;
-    const fill = filling(contentChanges, row);
-    const over = typedOverSelection(contentChanges);
-    if (over !== undefined) {
-      this.typedOver.set(document, { version: document.version, stretch: over, filled: fill !== undefined });
+    if (answered || isMadeBy(changes, this.making.get(document) ?? [])) {
+      return;
     }
-    const stretch = linesToMend(contentChanges) ?? (fill && over);
-    if (fill !== undefined) {
-      void this.fill(editor, fill).then((done) => done || stretch === undefined || this.mark(editor, stretch));
-    } else if (stretch !== undefined) {
-      this.mark(editor, stretch);
+    const rowAt = (line: number) => (line < document.lineCount ? document.lineAt(line).text : '');
+    const owed = changes.length <= MOST_CURSORS ? owedFor(changes, rowAt, undone) : undefined;
+    if (owed === undefined) {
+      const stretch = linesToMend(changes);
+      if (stretch !== undefined) {
+        this.mark(editor, stretch);
+      }
+    } else if (notes.length + owed.length <= MOST_OWED) {
+      this.owed.set(document, [...notes, ...owed.map((note) => ({ ...note, id: ++this.lastNote }))]);
+      owed.forEach(() => void this.enqueue(() => this.answer(editor)));
     }
   }
 
-  /** Puts cells where others went away, at once; gives whether the text was still the same. */
-  private fill(editor: vscode.TextEditor, { at, text }: NonNullable<ReturnType<typeof filling>>): Promise<boolean> {
-    const range = { start: at, end: at };
-    const selection = editor.selections.length === 1 ? { start: at, end: at } : undefined;
-    const answer = { edits: [{ range, newText: text }], selection };
-    return this.apply(editor, answer, { undoStopBefore: false, undoStopAfter: false });
+  /** Gives the drawing the first thing that is owed to it, as a part of the undo step of the keystroke. */
+  private async answer(editor: vscode.TextEditor): Promise<void> {
+    const { document } = editor;
+    try {
+      // A person may type on while the server thinks; what is owed has moved then, and the server is asked again.
+      for (let attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
+        const [first] = this.owed.get(document) ?? [];
+        if (first === undefined || document.isClosed) {
+          return;
+        }
+        const version = document.version;
+        const edits = first.kind === 'cells' ? [inserted(document, first)] : await this.answerTo(editor, first);
+        if (document.version !== version) {
+          continue;
+        }
+        const undo = { undoStopBefore: false, undoStopAfter: false };
+        if (edits.length === 0 || (await this.apply(editor, { edits, selection: undefined }, undo))) {
+          this.owed.set(document, (this.owed.get(document) ?? []).filter(({ id }) => id !== first.id));
+          return;
+        }
+      }
+      throw new Error('the text did not stand still');
+    } catch (error) {
+      // What is left is mended as a whole; it would be owed for ever otherwise.
+      this.output.debug(`answer: ${String(error)}`);
+      const places = (this.owed.get(document) ?? []).map(({ at }) => at);
+      this.owed.delete(document);
+      if (places.length > 0) {
+        const lines = places.map(({ line }) => line);
+        this.mark(editor, { first: Math.min(...lines), last: Math.max(...lines), places });
+      }
+    }
+  }
+
+  /** The edits for a typed character. In a burst the cells behind it give way for all but the last one. */
+  private async answerTo(editor: vscode.TextEditor, first: Owed): Promise<EditAnswer['edits']> {
+    const { document } = editor;
+    const end = burstEnd(this.owed.get(document) ?? []);
+    if (end === undefined) {
+      return this.askTyped(document, first);
+    }
+    const less = oneCellLess(document.lineAt(end.line).text, end);
+    if (less === undefined) {
+      this.mark(editor, { first: end.line, last: end.line, places: [end] });
+      return [];
+    }
+    return [{ range: less.range, newText: less.text }];
+  }
+
+  /** What the server makes of a typed character. */
+  private async askTyped({ uri }: vscode.TextDocument, { at, text }: Owed): Promise<EditAnswer['edits']> {
+    const answer = await this.server.request(TYPED_REQUEST, {
+      textDocument: { uri: this.server.protocolUri(uri) },
+      position: at,
+      ch: text,
+      options: { tabSize: 8, insertSpaces: true },
+    });
+    return parseEditAnswer({ edits: answer ?? [] })?.edits ?? [];
   }
 
   /** Marks lines that the server has to mend. */
@@ -202,19 +276,23 @@ export class DrawingEditor implements vscode.Disposable {
   }
 
   /**
-   * Stands in for on-type formatting where that would be misled: after a character that was typed over a selection the
-   * drawing is mended. `undefined` leaves it to on-type formatting.
+   * Stands in for on-type formatting by the editor, which would answer some keystrokes only. Enter, which moves no cell
+   * sideways, is left to it.
    */
-  private async typed(document: vscode.TextDocument): Promise<vscode.TextEdit[] | undefined> {
-    const over = this.typedOver.get(document);
-    if (over === undefined || over.version !== document.version) {
-      return undefined;
-    }
-    if (over.filled) {
+  private async typed(
+    document: vscode.TextDocument,
+    character: string,
+    next: () => vscode.ProviderResult<vscode.TextEdit[]>,
+  ): Promise<vscode.TextEdit[] | null | undefined> {
+    if (document.languageId === LANGUAGE && character !== '\n') {
       return [];
     }
-    const edits = await this.mendingEdits(document, over.stretch);
-    return edits.map((edit) => vscode.TextEdit.replace(toRange(edit.range), edit.newText));
+    const version = document.version;
+    const edits = await next();
+    if (edits?.length && document.version === version) {
+      this.enters.set(document, version);
+    }
+    return edits;
   }
 
   private enqueue<T>(step: () => Promise<T>): Promise<T> {
@@ -231,6 +309,12 @@ function mendsWhileTyping(document: vscode.TextDocument): boolean {
 
 function plain(position: vscode.Position): { line: number; character: number } {
   return { line: position.line, character: position.character };
+}
+
+/** The edit that puts cells in. It takes the next character along, for an insertion at the cursor would move that. */
+function inserted(document: vscode.TextDocument, { at, text }: Owed): EditAnswer['edits'][number] {
+  const [next = ''] = document.lineAt(at.line).text.slice(at.character);
+  return { range: { start: at, end: { line: at.line, character: at.character + next.length } }, newText: text + next };
 }
 
 function toRange({ start, end }: { start: { line: number; character: number }; end: { line: number; character: number } }): vscode.Range {

@@ -23,7 +23,7 @@ const MOST_LINES = 400;
 /**
  * What may have lost its columns, in the text after the change.
  *
- * `undefined` for what needs no mending: a typed character (on-type formatting looks after it), a cell typed over
+ * `undefined` for what needs no mending: a typed character (it is answered by itself), a cell typed over
  * another one, and the removal of whole lines, which moves nothing sideways.
  */
 export function linesToMend(changes: readonly PlainChange[]): Stretch | undefined {
@@ -51,22 +51,6 @@ export function linesToMend(changes: readonly PlainChange[]): Stretch | undefine
 }
 
 /**
- * Where a single typed character replaced something else than one cell; else `undefined`.
- *
- * On-type formatting takes every character for one that was squeezed in, so after typing over a selection the drawing is
- * mended instead.
- */
-export function typedOverSelection(changes: readonly PlainChange[]): Stretch | undefined {
-  const change = changes[0];
-  if (changes.length !== 1 || change === undefined || [...change.text].length !== 1 || lineBreaks(change.text) > 0) {
-    return undefined;
-  }
-  const { start, end } = change.range;
-  const squeezed = start.line === end.line && start.character === end.character;
-  return squeezed ? undefined : { first: start.line, last: start.line, places: [endOf(start, change.text, start.line)] };
-}
-
-/**
  * One place in each block of lines without a blank one: a rung is mended as a whole, and a paste may bring several.
  *
  * The place of a change is taken first, then the first line of a drawing, which may have a comment above it.
@@ -85,28 +69,6 @@ export function rungPlaces(lineAt: (line: number) => string, { first, last, plac
     block = [];
   }
   return found;
-}
-
-/**
- * What brings a row back to its width where that is known without asking: cells of one line of a drawing went away.
- *
- * As many are put there, wire in a wire and blanks elsewhere. `row` is the line after the change.
- */
-export function filling(changes: readonly PlainChange[], row: string): { at: PlainPosition; text: string } | undefined {
-  const change = changes[0];
-  if (changes.length !== 1 || change === undefined || lineBreaks(change.text) > 0) {
-    return undefined;
-  }
-  const { start, end } = change.range;
-  const missing = start.line === end.line ? end.character - start.character - change.text.length : 0;
-  const drawn = /^\s*[|+│├└┌┝].*[|+│┤┘┐]\s*$/.test(row);
-  if (missing <= 0 || !drawn) {
-    return undefined;
-  }
-  const at = endOf(start, change.text, start.line);
-  const [before, behind] = [row[start.character - 1] ?? '', row[at.character] ?? ''];
-  const wire = [behind, before].find((cell) => /[-─]/.test(cell));
-  return { at, text: (wire ?? ' ').repeat(missing) };
 }
 
 /** Joins two stretches; the earlier one may have moved since, so one line is added on both sides. */

@@ -25,6 +25,8 @@ import { parseStatus } from './status';
 import type { ServerReport } from './statusPage';
 import type { StatusBar } from './statusBar';
 
+type NextTyped = () => vscode.ProviderResult<vscode.TextEdit[]>;
+
 const STOP_TIMEOUT_MS = 2_000;
 const DOCUMENTS = [
   { scheme: 'file', language: 'ladder' },
@@ -43,8 +45,8 @@ export class ServerController implements vscode.Disposable {
   /** Starts and stops run one after another; two restarts in a row must not leave two servers. */
   private queue: Promise<void> = Promise.resolve();
   private runningVersion: string | undefined;
-  /** Edits to take in place of on-type formatting; `undefined` from it leaves that to the server. */
-  typed: ((document: vscode.TextDocument) => Promise<vscode.TextEdit[] | undefined>) | undefined;
+  /** Stands before on-type formatting; `next` asks the server for it. */
+  typed: ((document: vscode.TextDocument, character: string, next: NextTyped) => ReturnType<NextTyped>) | undefined;
 
   constructor(
     private readonly context: vscode.ExtensionContext,
@@ -195,8 +197,10 @@ export class ServerController implements vscode.Disposable {
       synchronize: { fileEvents: this.watcher },
       middleware: {
         handleDiagnostics: (uri, diagnostics, next) => next(uri, diagnostics.map(linkCode)),
-        provideOnTypeFormattingEdits: async (document, position, character, format, token, next) =>
-          (await this.typed?.(document)) ?? next(document, position, character, format, token),
+        provideOnTypeFormattingEdits: (document, position, character, format, token, next) => {
+          const ask = () => next(document, position, character, format, token);
+          return this.typed === undefined ? ask() : this.typed(document, character, ask);
+        },
       },
       errorHandler: {
         error: () => ({ action: ErrorAction.Continue, handled: true }),

@@ -6,6 +6,7 @@
  */
 
 export type FormatStyle = 'iec' | 'brackets' | 'unicode';
+export type DiagnosticsScope = 'project' | 'open';
 
 /** What the server is told. `null` means that the server decides from `rungwise.toml` and the program. */
 export interface ServerSettings {
@@ -20,7 +21,11 @@ export interface ServerSettings {
   };
   /** Language of messages (`en` or `zh-CN`); `null` leaves it to the locale of the client. */
   readonly language: string | null;
-  readonly inlayHints: { readonly enabled: boolean };
+  /** `comments`: symbols and comments of the project behind devices. */
+  readonly inlayHints: { readonly enabled: boolean; readonly comments: boolean };
+  readonly codeLens: { readonly steps: boolean; readonly references: boolean; readonly nextFree: boolean };
+  /** `open` leaves out the programs of a project that are not open. */
+  readonly diagnostics: { readonly scope: DiagnosticsScope };
 }
 
 /** Reads one setting below `rungwise.` by its name; `undefined` when the user did not set it. */
@@ -30,17 +35,21 @@ export const TARGETS = ['fx1s', 'fx1n', 'fx2n', 'fx3u', 'iec'] as const;
 const DIALECTS: readonly string[] = ['fx', 'iec'];
 const LANGUAGES: readonly string[] = ['en', 'zh-CN'];
 const STYLES: readonly FormatStyle[] = ['iec', 'brackets', 'unicode'];
+const SCOPES: readonly DiagnosticsScope[] = ['project', 'open'];
 const MIN_WIDTH_CELLS = 24;
 const MAX_WIDTH_CELLS = 400;
 
 /** Collects the settings. A value of the wrong type counts as unset: the settings editor already underlines it. */
 export function readServerSettings(read: ReadSetting): ServerSettings {
+  const isOn = (name: string) => read(name) !== false;
   return {
     target: oneOf(read('target'), TARGETS),
     dialect: oneOf(read('dialect'), DIALECTS),
     format: { style: oneOf(read('format.style'), STYLES), width: width(read('format.width')) },
     language: oneOf(read('language'), LANGUAGES),
-    inlayHints: { enabled: read('inlayHints.enabled') !== false },
+    inlayHints: { enabled: isOn('inlayHints.enabled'), comments: isOn('inlayHints.comments') },
+    codeLens: { steps: isOn('codeLens.steps'), references: isOn('codeLens.references'), nextFree: isOn('codeLens.nextFree') },
+    diagnostics: { scope: oneOf(read('diagnostics.scope'), SCOPES) ?? 'project' },
   };
 }
 

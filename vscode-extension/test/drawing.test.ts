@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { filling, joinStretches, linesToMend, rungPlaces, typedOverSelection, type PlainChange } from '../src/mending';
+import { joinStretches, linesToMend, rungPlaces, type PlainChange } from '../src/mending';
 import { operandOf, parseEditAnswer } from '../src/structuralEdits';
 
 /** First line, last line and places of a stretch, each place as [line, character]. */
@@ -70,14 +70,6 @@ test('a keybinding may give an operand', () => {
   }
 });
 
-test('a character typed over a selection is told from one that is squeezed in', () => {
-  assert.deepEqual(plain(typedOverSelection([change(0, 14, 0, 17, 'X')])), [0, 0, [0, 15]]);
-  assert.equal(typedOverSelection([change(0, 14, 0, 14, 'X')]), undefined);
-  assert.equal(typedOverSelection([change(0, 14, 0, 17, 'X10')]), undefined);
-  assert.equal(typedOverSelection([change(0, 14, 0, 17, '\n')]), undefined);
-  assert.equal(typedOverSelection([change(0, 14, 0, 17, 'X'), change(4, 0, 4, 2, 'X')]), undefined);
-});
-
 test('each rung of a stretch is asked for once, where it was changed, else at a line of its drawing', () => {
   const lines = ['(* one *)', '|  X0 |', '+-| |-+', '', '  ', '|  X1 |', '+-| |-+', 'LABEL:'];
   const asked = (first: number, last: number, ...places: { line: number; character: number }[]) =>
@@ -86,21 +78,4 @@ test('each rung of a stretch is asked for once, where it was changed, else at a 
   assert.deepEqual(asked(2, 5, { line: 5, character: 4 }), [[2, 0], [5, 4]]);
   assert.deepEqual(asked(7, 7), [[7, 0]]);
   assert.deepEqual(asked(3, 4), []);
-});
-
-test('cells that go away leave the row as wide as it was', () => {
-  const fill = (row: string, from: number, to: number, text = 'X') => {
-    const at = filling([change(0, from, 0, to, text)], row.slice(0, from) + text + row.slice(to));
-    return at && [at.at.character, at.text];
-  };
-  assert.deepEqual(fill('|   ???   |', 4, 7), [5, '  ']);
-  assert.deepEqual(fill('+---???---+', 4, 7, 'P'), [5, '--']);
-  assert.deepEqual(fill('|   X1  |', 5, 6, ''), [5, ' ']);
-  assert.deepEqual(fill('+-------+', 4, 6, ''), [4, '--']);
-  assert.deepEqual(fill('+--|/|--+', 4, 5, ''), [4, ' ']);
-  assert.deepEqual(fill('|   X10   |', 4, 7, 'Y1'), [6, ' ']);
-  assert.equal(fill('|   ?   |', 4, 5), undefined);
-  assert.equal(fill('|   ?   |', 8, 9, ''), undefined);
-  assert.equal(fill('(* ??? *)', 3, 6), undefined);
-  assert.equal(filling([change(0, 4, 0, 4, 'X')], '|   X   |'), undefined);
 });

@@ -14,6 +14,12 @@ const manifest = JSON.parse(readFileSync('package.json', 'utf8')) as {
   contributes: { configuration: { properties: Record<string, Property> } };
 };
 const properties = manifest.contributes.configuration.properties;
+/** What is shown unless the user says no. */
+const SHOWN = {
+  inlayHints: { enabled: true, comments: true },
+  codeLens: { steps: true, references: true, nextFree: true },
+  diagnostics: { scope: 'project' },
+};
 
 test('what the user did not set is left to rungwise.toml', () => {
   assert.deepEqual(readServerSettings(() => undefined), {
@@ -21,7 +27,7 @@ test('what the user did not set is left to rungwise.toml', () => {
     dialect: null,
     format: { style: null, width: null },
     language: null,
-    inlayHints: { enabled: true },
+    ...SHOWN,
   });
 });
 
@@ -32,7 +38,7 @@ test('a default of package.json, set by hand, means what it says', () => {
     dialect: null,
     format: { style: 'iec', width: 48 },
     language: null,
-    inlayHints: { enabled: true },
+    ...SHOWN,
   });
 });
 
@@ -44,13 +50,20 @@ test('values are passed on', () => {
     'format.width': 60,
     language: 'zh-cn',
     'inlayHints.enabled': false,
+    'inlayHints.comments': false,
+    'codeLens.steps': false,
+    'codeLens.references': false,
+    'codeLens.nextFree': false,
+    'diagnostics.scope': 'open',
   };
   assert.deepEqual(readServerSettings((name) => values[name]), {
     target: 'fx3u',
     dialect: 'iec',
     format: { style: 'unicode', width: 60 },
     language: 'zh-CN',
-    inlayHints: { enabled: false },
+    inlayHints: { enabled: false, comments: false },
+    codeLens: { steps: false, references: false, nextFree: false },
+    diagnostics: { scope: 'open' },
   });
 });
 
@@ -60,6 +73,8 @@ test('wrong values count as unset, widths are kept in range', () => {
   assert.equal(read({ target: 7 }).target, null);
   assert.equal(read({ target: 'FX2N' }).target, 'fx2n');
   assert.equal(read({ 'format.style': 'ascii' }).format.style, null);
+  assert.equal(read({ 'diagnostics.scope': 'file' }).diagnostics.scope, 'project');
+  assert.deepEqual(read({ 'codeLens.steps': null }).codeLens, SHOWN.codeLens);
   assert.equal(read({ 'format.width': 3 }).format.width, 24);
   assert.equal(read({ 'format.width': 1e9 }).format.width, 400);
   assert.equal(read({ 'format.width': Number.NaN }).format.width, null);
@@ -71,6 +86,18 @@ test('the choices and bounds of package.json are those of the code', () => {
   const read = (value: unknown) => readServerSettings((name) => (name === 'format.width' ? value : undefined)).format.width;
   assert.equal(read(-1), width?.minimum);
   assert.equal(read(100_000), width?.maximum);
+});
+
+test('every setting of package.json reaches the server or the start of it', () => {
+  const asked = new Set<string>();
+  readServerSettings((name) => {
+    asked.add(name);
+    return undefined;
+  });
+  // The client library reads the trace itself; path and arguments are for starting the program.
+  const elsewhere = ['server.path', 'server.extraArgs', 'trace.server'];
+  const names = Object.keys(properties).map((name) => name.replace(/^rungwise\./, ''));
+  assert.deepEqual(names.filter((name) => !elsewhere.includes(name)).sort(), [...asked].sort());
 });
 
 test('a change is wrapped as the protocol asks', () => {

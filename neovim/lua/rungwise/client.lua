@@ -7,7 +7,8 @@ M.root_markers = { 'rungwise.toml', '.git' }
 
 --- The options that |g:rungwise| may have.
 M.option_names = {
-  'enable', 'server', 'extra_args', 'target', 'dialect', 'format', 'inlayHints', 'language', 'mappings', 'on_type',
+  'enable', 'server', 'extra_args', 'target', 'dialect', 'format', 'inlayHints', 'codeLens', 'diagnostics', 'language', 'mappings',
+  'on_type',
 }
 
 --- Last `rungwise/status` of each program, by URI: { uri, target, dialect, steps, capacity }.
@@ -51,12 +52,19 @@ function M.settings()
   local options = M.options()
   local format = options.format or {}
   local hints = options.inlayHints or {}
+  local lenses = options.codeLens or {}
   return {
     target = options.target or vim.NIL,
     dialect = options.dialect or vim.NIL,
     format = { style = format.style or vim.NIL, width = format.width or vim.NIL },
     language = words.language() or vim.NIL,
-    inlayHints = { enabled = hints.enabled ~= false },
+    inlayHints = { enabled = hints.enabled ~= false, comments = hints.comments ~= false },
+    codeLens = {
+      steps = lenses.steps ~= false,
+      references = lenses.references ~= false,
+      nextFree = lenses.nextFree ~= false,
+    },
+    diagnostics = { scope = (options.diagnostics or {}).scope or vim.NIL },
   }
 end
 

@@ -130,6 +130,36 @@ for _, script in ipairs(OBJECTS) do
   end)
 end
 
+local RUNG = table.concat(SEAL_IN, '\n') .. '\n'
+local NETWORK = RUNG .. table.concat(END, '\n') .. '\n'
+--- Each: the object, line and column of the cursor from 0, and what it holds.
+local HELD = {
+  { 'ie', 1, 15, '|/|' },
+  { 'ae', 1, 15, 'X1 \n|/|' },
+  { 'ib', 3, 5, 'Y0 \n| |' },
+  { 'ab', 3, 5, '   Y0    \n---| |---' },
+  { 'ir', 1, 15, RUNG },
+  { 'ar', 1, 15, RUNG .. '\n' },
+  { 'in', 1, 15, NETWORK },
+  { 'an', 1, 15, NETWORK },
+}
+
+for _, script in ipairs(HELD) do
+  local object, line, column, wanted = unpack(script)
+  for _, keys in ipairs({ '"zy' .. object, 'v' .. object .. '"zy' }) do
+    check(('the text object %s by %s'):format(object, keys), function()
+      nvim:open('held.lad', program(SEAL_IN), line, column)
+      nvim:request('nvim_command', 'let @z = ""')
+      nvim:press(keys)
+      local held = nvim:until_true('the copy', function()
+        local copy = nvim:request('nvim_eval', '@z')
+        return copy ~= '' and copy
+      end)
+      assert(held == wanted, vim.inspect(held))
+    end)
+  end
+end
+
 --- A command of the plugin whose placeholder is typed over.
 local function inserted(keys, operand)
   nvim:press(keys)

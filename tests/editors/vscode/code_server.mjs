@@ -14,7 +14,7 @@ const USER_SETTINGS = {
   'extensions.autoUpdate': false,
   'extensions.ignoreRecommendations': true,
   'git.enabled': false,
-  'security.workspace.trust.enabled': false,
+  'security.workspace.trust.startupPrompt': 'never',
   'telemetry.telemetryLevel': 'off',
   'update.mode': 'none',
   'window.commandCenter': false,
@@ -43,7 +43,16 @@ export class CodeServer {
     this.config = ['--config', join(home, 'config.yaml')];
     this.log = join(home, 'code-server.log');
     mkdirSync(join(this.userData, 'User'), { recursive: true });
-    writeFileSync(join(this.userData, 'User', 'settings.json'), JSON.stringify(USER_SETTINGS, null, 2));
+    this.settings = { ...USER_SETTINGS };
+    this.changeSetting();
+  }
+
+  /** Writes the user's settings with one of them changed, which VS Code notices; `undefined` takes it out. */
+  changeSetting(name, value) {
+    if (name !== undefined) {
+      this.settings[name] = value;
+    }
+    writeFileSync(join(this.userData, 'User', 'settings.json'), JSON.stringify(this.settings, null, 2));
   }
 
   /** Installs a VSIX the way a user of code-server does. Gives what the program printed. */
@@ -57,14 +66,17 @@ export class CodeServer {
    *
    * `environment` goes into its environment and so into the extension host. `testDriver` lets a page start tests in the
    * extension host; it also keeps notifications from popping up, so the tests that look at the page go without it.
+   * Without `trusted` the folder is one that nobody has trusted yet.
    */
-  async start(folder, { environment = {}, testDriver = false } = {}) {
+  async start(folder, { environment = {}, testDriver = false, trusted = true } = {}) {
+    this.changeSetting('security.workspace.trust.enabled', !trusted);
     this.port = await freePort();
     this.authority = `127.0.0.1:${this.port}`;
     const args = [
       this.entry, ...this.config, ...this.folders,
       '--auth', 'none', '--bind-addr', this.authority,
-      '--disable-telemetry', '--disable-update-check', '--disable-workspace-trust', '--disable-getting-started-override',
+      '--disable-telemetry', '--disable-update-check', '--disable-getting-started-override',
+      ...(trusted ? ['--disable-workspace-trust'] : []),
       '--reconnection-grace-time', '5', ...(testDriver ? ['--vscode-option', 'enable-smoke-test-driver'] : []), folder,
     ];
     // A process group of its own, so that the extension hosts and language servers end with it.

@@ -22,7 +22,7 @@ export async function runPageTests(server, workspace, home, report, artefacts) {
     for (const [name, test] of Object.entries(tests).filter(([name]) => chosen.test(name))) {
       await report.check(`page: ${name}`, async () => {
         try {
-          await test(workbench, workspace);
+          await test(workbench, workspace, server);
         } catch (error) {
           await workbench.screenshot(`failed-${test.name}`);
           await workbench.calm();

@@ -1,11 +1,110 @@
-// What the extension draws beside the program.
+// What the extension shows beside the program and draws into it: devices in use, lenses, hints, pages, the walkthrough.
 
 export const VIEW_TESTS = {
-  'hints are drawn into the program': hints,
+  'lenses and hints are drawn into the program': lensesAndHints,
+  'the setting of a lens takes it away': lensSetting,
+  'a drawing in a fence of a Markdown file has its errors': fences,
+  'the devices in use stand beside the program and follow it': usage,
+  'the code of an error opens the page of its rule': explain,
+  'the walkthrough opens with its steps': walkthrough,
 };
 
-async function hints(workbench) {
+/** The lenses on the screen, one text for each line; VS Code joins them with no-break spaces. */
+async function lensTexts(workbench) {
+  const texts = await workbench.page.locator('.codelens-decoration').evaluateAll((nodes) => nodes.map((node) => node.textContent));
+  return texts.map((text) => text.replaceAll('\u00a0', ' '));
+}
+
+/** Waits until one of the lenses on the screen has these words. */
+function untilLens(workbench, words) {
+  return workbench.until(`the lens ${words}`, async () => (await lensTexts(workbench)).some((text) => words.test(text)));
+}
+
+async function lensesAndHints(workbench) {
   await workbench.openFile('conveyor_fx.il');
+  await untilLens(workbench, /4 steps.*Y0: 2 references/);
+  await untilLens(workbench, /next free:.*T1.*D1/);
   await workbench.until('the hint', async () => (await workbench.editorLines()).some((line) => /K50.*5\ss/.test(line)));
-  await workbench.screenshot('18-hints');
+  await workbench.screenshot('18-lenses-and-hints');
+}
+
+async function lensSetting(workbench, workspace, server) {
+  await workbench.openFile('conveyor_fx.il');
+  await untilLens(workbench, /4 steps/);
+  server.changeSetting('rungwise.codeLens.steps', false);
+  // What the editor has is shown until the text changes or the lenses are asked for anew.
+  await workbench.openFile('mixer_iec.il');
+  await workbench.openFile('conveyor_fx.il');
+  await workbench.until('lenses without steps', async () => {
+    const texts = await lensTexts(workbench);
+    return texts.some((text) => /Y0: 2 references/.test(text)) && !texts.some((text) => /steps/.test(text));
+  });
+  server.changeSetting('rungwise.codeLens.steps', undefined);
+}
+
+async function fences(workbench) {
+  await workbench.openFile('notes.md');
+  await workbench.until('a squiggle', async () => (await workbench.errorSquiggles()) >= 1);
+  await workbench.screenshot('19-fence');
+}
+
+async function usage(workbench) {
+  await workbench.openFile('conveyor_fx.il');
+  await workbench.focusEditor();
+  await workbench.chord('u');
+  await workbench.page.waitForSelector('.tab[data-resource-name="conveyor_fx.il.usage"]', { timeout: 15_000 });
+  const rows = async () =>
+    (await workbench.page.locator('.editor-instance').last().locator('.view-line').allInnerTexts()).map((row) => row.replaceAll('\u00a0', ' '));
+  await workbench.until('the devices', async () => (await rows()).some((row) => /^T0\s+ro\b/.test(row)));
+  await workbench.screenshot('17-devices-in-use');
+  // The keyboard is still in the program.
+  await workbench.page.keyboard.press('Control+End');
+  await workbench.page.keyboard.type('LD M7\n');
+  await workbench.until('the new device', async () => (await rows()).some((row) => /^M0\b.*r-/.test(row)));
+  for (let i = 0; i < 3; i++) {
+    await workbench.page.keyboard.press('Control+z');
+  }
+  const tab = workbench.page.locator('.tab[data-resource-name="conveyor_fx.il.usage"]').first();
+  await tab.click({ button: 'middle' });
+  await tab.waitFor({ state: 'detached', timeout: 15_000 });
+}
+
+async function explain(workbench) {
+  await workbench.openFile('three_mistakes.lad');
+  await workbench.goTo(7, 3);
+  await workbench.until('the squiggle', async () => (await workbench.errorSquiggles()) >= 3);
+  // The hover at the cursor has the code as a link; a person points and clicks.
+  await workbench.page.keyboard.press('Control+k');
+  await workbench.page.keyboard.press('Control+i');
+  const link = workbench.page.locator('.monaco-hover:visible a', { hasText: 'short-circuit' }).first();
+  await link.waitFor({ timeout: 15_000 });
+  await workbench.screenshot('15-link-of-an-error');
+  await link.click();
+  const page = workbench.page.locator('.tab[data-resource-name="short-circuit.md"]').first();
+  await page.waitFor({ timeout: 15_000 });
+  await workbench.until('the page in the preview', async () => {
+    for (const frame of workbench.page.frames().slice(1)) {
+      if (/A branch made only of wire/.test(await frame.locator('body').innerText({ timeout: 500 }).catch(() => ''))) {
+        return true;
+      }
+    }
+    return false;
+  }, 30_000);
+  await workbench.screenshot('16-page-of-a-rule');
+  await page.click({ button: 'middle' });
+  await page.waitFor({ state: 'detached', timeout: 15_000 });
+}
+
+async function walkthrough(workbench) {
+  await workbench.openFile('conveyor_fx.il');
+  await workbench.focusEditor();
+  await workbench.command('Rungwise: Get Started');
+  const page = workbench.page.locator('.gettingStartedContainer');
+  await page.locator('text=Get started with Rungwise').first().waitFor({ timeout: 30_000 });
+  await workbench.until('all steps', async () => {
+    const text = await page.innerText();
+    return ['Open the example', 'Make a mistake', 'Edit the drawing', 'Check the program', 'Choose your PLC'].every((step) => text.includes(step));
+  });
+  await workbench.page.waitForTimeout(800); // The picture is drawn in a page of its own.
+  await workbench.screenshot('20-walkthrough');
 }
