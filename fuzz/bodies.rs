@@ -58,8 +58,7 @@ pub fn edits(bytes: &[u8]) {
         rest = more;
         let start = inside(&document, document.len() * usize::from(*place) / 255);
         let end = inside(&document, start + usize::from(*gone) % 64).max(start);
-        document
-            .apply(&[Edit { range: Some(start..end), text: String::from_utf8_lossy(new).into_owned() }]);
+        document.apply(&[Edit { range: Some(start..end), text: String::from_utf8_lossy(new).into_owned() }]);
     }
     let scratch = Document::new(&document.text(), notation, Target::of(model));
     let pieces = |document: &Document| -> Vec<String> {
@@ -100,7 +99,10 @@ fn holds(document: &Document) {
     let text = document.text();
     let found = check::all(document, &Severities::default());
     for diagnostic in &found {
-        assert!(text.get(diagnostic.span.start as usize..diagnostic.span.end as usize).is_some(), "{diagnostic:?}");
+        assert!(
+            text.get(diagnostic.span.start as usize..diagnostic.span.end as usize).is_some(),
+            "{diagnostic:?}"
+        );
         diagnostic.message.render(Language::English);
         for fix in &diagnostic.fixes {
             TextEdit::apply_all(&fix.edits, &text);
@@ -108,7 +110,9 @@ fn holds(document: &Document) {
     }
     let mut end = 0;
     for token in ide::semantic_tokens(document) {
-        assert!(token.span.start >= end && text.get(token.span.start as usize..token.span.end as usize).is_some());
+        assert!(
+            token.span.start >= end && text.get(token.span.start as usize..token.span.end as usize).is_some()
+        );
         end = token.span.end;
     }
     for offset in [0, inside(document, text.len() / 3), inside(document, text.len() / 2), text.len()] {

@@ -187,7 +187,9 @@ fn what_is_not_utf8_is_checked_with_a_word_and_never_written() {
     std::fs::write(&path, bytes).unwrap();
     let (_, err) = check(&files, &["check", "torn.il"], 0);
     assert!(err.starts_with("warning[not-utf-8]: torn.il") && err.contains("help: "), "{err}");
-    for arguments in [&["fmt", "torn.il"][..], &["fmt", "--check", "torn.il"], &["fmt", "--stdout", "torn.il"]] {
+    for arguments in
+        [&["fmt", "torn.il"][..], &["fmt", "--check", "torn.il"], &["fmt", "--stdout", "torn.il"]]
+    {
         check(&files, arguments, 2);
     }
     assert_eq!(std::fs::read(&path).unwrap(), bytes);

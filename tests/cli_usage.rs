@@ -46,7 +46,8 @@ fn usage_as_json_over_the_files_of_a_project() {
     let uses = y0["uses"].as_array().unwrap();
     assert_eq!(uses.len(), 2);
     assert!(uses[1]["path"].as_str().unwrap().ends_with("pump.il"));
-    let told = json!([uses[1]["line"], uses[1]["column"], uses[1]["rung"], uses[1]["access"], uses[1]["text"]]);
+    let told =
+        json!([uses[1]["line"], uses[1]["column"], uses[1]["rung"], uses[1]["access"], uses[1]["text"]]);
     assert_eq!(told, json!([2, 5, 1, "read", "AND Motor"]));
     assert_eq!((&uses[0]["access"], &uses[0]["coil"]), (&json!("write"), &json!(true)));
 }

@@ -114,16 +114,20 @@ fn every_encoding_of_the_trade() {
 #[test]
 fn the_page_of_the_rule_is_true() {
     let page = Rule::named("device-comments").unwrap().page();
-    let tables: Vec<&str> = page.split("```csv\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
+    let tables: Vec<&str> =
+        page.split("```csv\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
     assert_eq!(tables.len(), 2);
     for table in tables {
         let is_mark = |line: &str| line.contains('^');
-        let text: String = table.lines().filter(|line| !is_mark(line)).map(|line| format!("{line}\n")).collect();
+        let text: String =
+            table.lines().filter(|line| !is_mark(line)).map(|line| format!("{line}\n")).collect();
         let mut expected = Vec::new();
         let mut line_number = 0;
         for line in table.lines() {
             match is_mark(line) {
-                true => expected.push((line_number, line.find('^').unwrap() as u32, line.matches('^').count())),
+                true => {
+                    expected.push((line_number, line.find('^').unwrap() as u32, line.matches('^').count()))
+                }
                 false => line_number += 1,
             }
         }

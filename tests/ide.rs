@@ -775,7 +775,7 @@ fn completion_in_iec() {
         iec,
         12,
         &expect![[r#"
-            Finish | complete.label 14 |     JMPC FinishFinish
+            Finish | label, line 14 |     JMPC FinishFinish
         "#]],
     );
     check_completions(

@@ -10,7 +10,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 const EN: Language = Language::English;
-const TABLE: &str = "X0,Start,green button\nY0,Motor,\"contactor, main\"\nM7,,reserve\nT0,Delay,\nX3,Spare,spare sensor\n";
+const TABLE: &str =
+    "X0,Start,green button\nY0,Motor,\"contactor, main\"\nM7,,reserve\nT0,Delay,\nX3,Spare,spare sensor\n";
 
 fn fx2n() -> &'static Target {
     Target::of(Model::Fx2n)
@@ -168,10 +169,8 @@ fn comments_stand_behind_devices() {
 #[test]
 fn a_symbol_is_renamed_everywhere_and_in_its_table() {
     let main = known("LD Start\nOR X0\nOUT Motor\nEND\n", Notation::FxIl);
-    let drawing = known(
-        "|  Start                Motor  |\n+--| |-----------------( )----+\n",
-        Notation::Ladder,
-    );
+    let drawing =
+        known("|  Start                Motor  |\n+--| |-----------------( )----+\n", Notation::Ladder);
     let members =
         vec![Member { name: "main.il", document: &main }, Member { name: "a.lad", document: &drawing }];
     let view = ProjectView::new(members, 0, true).unwrap();
@@ -357,7 +356,8 @@ fn variables_are_listed_by_unit() {
     let text = "PROGRAM Main\nVAR\n a AT %IX0.0 : BOOL;\nEND_VAR\nLD a\nST b\nEND_PROGRAM\nPROGRAM Two\nVAR\n a : BOOL;\nEND_VAR\nLD a\nEND_PROGRAM\n";
     let document = Document::new(text, Notation::IecIl, Target::of(Model::Iec));
     let usage = ide::usage(&ProjectView::alone(&document));
-    let names: Vec<String> = usage.rows.iter().map(|row| format!("{} {}", row.full_name(), row.uses.len())).collect();
+    let names: Vec<String> =
+        usage.rows.iter().map(|row| format!("{} {}", row.full_name(), row.uses.len())).collect();
     assert_eq!(names, ["%IX0.0 1", "Main.a 2", "Main.b 1", "Two.a 2"]);
 }
 

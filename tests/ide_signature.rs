@@ -107,8 +107,14 @@ fn calls_of_blocks_and_functions() {
     assert_eq!(iec("    CAL Valve($0"), gate.replace("Open : BOOL", "[Open : BOOL]"));
     assert_eq!(iec("    CAL Valve(a, $0)"), gate.replace("Speed : INT", "[Speed : INT]"));
     assert_eq!(iec("    CAL Valve(Speed := $0"), gate.replace("Speed : INT", "[Speed : INT]"));
-    assert_eq!(iec("    CAL Valve(\n    Open := a,\n    Done => $0"), gate.replace("Done => BOOL", "[Done => BOOL]"));
-    assert_eq!(iec("    CAL Delay(IN := a, PT := $0"), "Delay(IN : BOOL, [PT : TIME], Q => BOOL, ET => TIME)");
+    assert_eq!(
+        iec("    CAL Valve(\n    Open := a,\n    Done => $0"),
+        gate.replace("Done => BOOL", "[Done => BOOL]")
+    );
+    assert_eq!(
+        iec("    CAL Delay(IN := a, PT := $0"),
+        "Delay(IN : BOOL, [PT : TIME], Q => BOOL, ET => TIME)"
+    );
     // A comma in a comment or a text parts nothing.
     assert_eq!(iec("    CAL Valve((* a, b *) $0"), gate.replace("Open : BOOL", "[Open : BOOL]"));
 }

@@ -498,10 +498,10 @@ fn a_rung_comes_beside_the_one_at_the_cursor() {
 #[test]
 fn a_drawing_by_hand_stays_as_its_author_laid_it_out() {
     let drawn = [
-        "   1 ||    X0       X1                    Y0   ||",
-        "     ||----| |--+---|/|-------------------( )--||",
-        "     ||    Y0   |                              ||",
-        "     ||----| |--+                              ||",
+        "1 ||    X0       X1                    Y0   ||",
+        "  ||----| |--+---|/|-------------------( )--||",
+        "  ||    Y0   |                              ||",
+        "  ||----| |--+                              ||",
         "",
     ]
     .join("\n");
@@ -512,7 +512,7 @@ fn a_drawing_by_hand_stays_as_its_author_laid_it_out() {
         text
     };
     check(
-        &at(1, 30),
+        &at(1, 27),
         EditKind::InsertContact,
         Some("M10"),
         expect![[r#"
@@ -523,7 +523,7 @@ fn a_drawing_by_hand_stays_as_its_author_laid_it_out() {
         "#]],
     );
     check(
-        &at(1, 14),
+        &at(1, 11),
         EditKind::InsertContact,
         None,
         expect![[r#"
@@ -534,7 +534,7 @@ fn a_drawing_by_hand_stays_as_its_author_laid_it_out() {
         "#]],
     );
     check(
-        &at(1, 21),
+        &at(1, 18),
         EditKind::Negate,
         None,
         expect![[r#"
@@ -545,7 +545,7 @@ fn a_drawing_by_hand_stays_as_its_author_laid_it_out() {
         "#]],
     );
     check(
-        &at(1, 21),
+        &at(1, 18),
         EditKind::DeleteElement,
         None,
         expect![[r#"
@@ -556,7 +556,7 @@ fn a_drawing_by_hand_stays_as_its_author_laid_it_out() {
         "#]],
     );
     check(
-        &at(1, 21),
+        &at(1, 18),
         EditKind::InsertBranch,
         None,
         expect![[r#"
@@ -567,7 +567,7 @@ fn a_drawing_by_hand_stays_as_its_author_laid_it_out() {
         "#]],
     );
     check(
-        &at(3, 12),
+        &at(3, 9),
         EditKind::MoveBranchUp,
         None,
         expect![[r#"
@@ -578,7 +578,7 @@ fn a_drawing_by_hand_stays_as_its_author_laid_it_out() {
         "#]],
     );
     check(
-        &at(1, 33),
+        &at(1, 30),
         EditKind::InsertCoil,
         None,
         expect![[r#"
@@ -589,7 +589,7 @@ fn a_drawing_by_hand_stays_as_its_author_laid_it_out() {
         "#]],
     );
     check(
-        &at(1, 33),
+        &at(1, 30),
         EditKind::InsertRung,
         None,
         expect![[r#"

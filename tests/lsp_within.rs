@@ -85,7 +85,8 @@ fn the_table_is_known_and_followed() {
 #[test]
 fn a_symbol_is_no_mistake_and_proposed() {
     let (_folder, mut client, main, _) = project(Value::Null);
-    let found = published(&mut client, &main, |found| found.iter().all(|one| one["code"] != "unknown-device"));
+    let found =
+        published(&mut client, &main, |found| found.iter().all(|one| one["code"] != "unknown-device"));
     assert!(found.iter().all(|one| one["severity"] != 1), "{found:?}");
     let params = at(&main, 2, 3);
     let answer = until(&mut client, "textDocument/completion", &params, |answer| {
@@ -118,12 +119,16 @@ fn a_renamed_symbol_changes_program_and_table() {
     params["newName"] = json!("Y7");
     let edit = client.request("textDocument/rename", params)["result"].clone();
     let changes = edit["documentChanges"].as_array().unwrap();
-    assert_eq!((&changes[1]["textDocument"]["uri"], &changes[1]["edits"][0]["newText"]), (&json!(table), &json!("Y7")));
+    assert_eq!(
+        (&changes[1]["textDocument"]["uri"], &changes[1]["edits"][0]["newText"]),
+        (&json!(table), &json!("Y7"))
+    );
     // The action writes the symbol.
     let range = json!({"start": {"line": 1, "character": 4}, "end": {"line": 1, "character": 4}});
     let params = json!({"textDocument": {"uri": main}, "range": range, "context": {"diagnostics": []}});
     let actions = client.request("textDocument/codeAction", params)["result"].clone();
-    let titles: Vec<&str> = actions.as_array().unwrap().iter().map(|one| one["title"].as_str().unwrap()).collect();
+    let titles: Vec<&str> =
+        actions.as_array().unwrap().iter().map(|one| one["title"].as_str().unwrap()).collect();
     assert!(titles.contains(&"Write Motor for Y0 in the whole file"), "{titles:?}");
 }
 
@@ -146,7 +151,8 @@ fn signatures_marks_lenses_and_ranges() {
     let marks = client.request("textDocument/documentHighlight", at(&main, 1, 5))["result"].clone();
     let kinds: Vec<i64> = marks.as_array().unwrap().iter().map(|one| one["kind"].as_i64().unwrap()).collect();
     assert_eq!(kinds, [3, 2], "written, then read");
-    let lenses = client.request("textDocument/codeLens", json!({"textDocument": {"uri": main}}))["result"].clone();
+    let lenses =
+        client.request("textDocument/codeLens", json!({"textDocument": {"uri": main}}))["result"].clone();
     let lenses = lenses.as_array().unwrap();
     assert!(lenses.iter().all(|lens| lens["command"].is_null()), "they are resolved one by one");
     let titles: Vec<String> = lenses
@@ -158,7 +164,10 @@ fn signatures_marks_lenses_and_ranges() {
         })
         .collect();
     assert!(titles.contains(&"2 steps".to_string()), "{titles:?}");
-    assert!(titles.iter().any(|title| title.starts_with("Y0") && title.ends_with("1 reference")), "{titles:?}");
+    assert!(
+        titles.iter().any(|title| title.starts_with("Y0") && title.ends_with("1 reference")),
+        "{titles:?}"
+    );
     client.change(&main, 2, (2, 0), (2, 2), "ld");
     client.change(&main, 3, (0, 0), (0, 2), "ld");
     let options = json!({"tabSize": 4, "insertSpaces": true});
@@ -203,7 +212,8 @@ fn the_list_of_used_devices_as_command_and_as_document() {
     let page = answer["text"].as_str().unwrap();
     assert!(page.contains("Start: green button"), "{page}");
     let virtual_uri = main.replacen("file:", "rungwise-usage:", 1);
-    let content = client.request("workspace/textDocumentContent", json!({"uri": virtual_uri}))["result"].clone();
+    let content =
+        client.request("workspace/textDocumentContent", json!({"uri": virtual_uri}))["result"].clone();
     assert_eq!(content["text"], json!(page));
 }
 

@@ -10,8 +10,8 @@
 
 mod chinese;
 mod cli;
-mod command_line;
 mod cli_usage;
+mod command_line;
 mod comments;
 mod corpus;
 mod document;

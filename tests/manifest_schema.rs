@@ -84,7 +84,10 @@ fn every_rule_is_there_with_its_sentence() {
         .iter()
         .map(|rule| {
             let severity = json!([{"$ref": "#/definitions/severity"}]);
-            (rule.code.to_string(), json!({"allOf": severity, "description": rule.summary(Language::English)}))
+            (
+                rule.code.to_string(),
+                json!({"allOf": severity, "description": rule.summary(Language::English)}),
+            )
         })
         .collect();
     if std::env::var_os("UPDATE_EXPECT").is_some() {

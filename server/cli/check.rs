@@ -68,12 +68,7 @@ fn denied(summary: &Summary, least: Deny) -> usize {
     }
 }
 
-fn say_text(
-    checked: &[(Program, Vec<Diagnostic>)],
-    summary: &Summary,
-    colour: Colour,
-    language: Language,
-) {
+fn say_text(checked: &[(Program, Vec<Diagnostic>)], summary: &Summary, colour: Colour, language: Language) {
     let colours = render::Colours::new(colour.on());
     for (program, diagnostics) in checked {
         let name = program.path.display().to_string();

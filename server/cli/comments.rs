@@ -36,9 +36,10 @@ pub(super) fn findings(programs: &[Program]) -> Vec<(Program, Vec<Diagnostic>)> 
     for program in programs {
         let Some(file) = file_of(&program.path, &program.manifest) else { continue };
         let severities = program.manifest.severities();
-        let graded = file.diagnostics.iter().filter_map(|found| {
-            Some(Diagnostic { severity: severities.of(found.code)?, ..found.clone() })
-        });
+        let graded = file
+            .diagnostics
+            .iter()
+            .filter_map(|found| Some(Diagnostic { severity: severities.of(found.code)?, ..found.clone() }));
         let graded: Vec<Diagnostic> = graded.collect();
         if graded.is_empty() || !seen.insert(file.path.clone()) {
             continue;

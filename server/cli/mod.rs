@@ -19,8 +19,8 @@ mod server;
 mod usage;
 
 use crate::text::Language;
-use colour::Colour;
 use clap::{Parser, Subcommand, ValueEnum};
+use colour::Colour;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -104,7 +104,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     match arguments.verb {
-        Verb::Lsp { stdio: _, mirror, replay } => server::run(mirror.as_deref(), replay.as_deref(), arguments.language),
+        Verb::Lsp { stdio: _, mirror, replay } => {
+            server::run(mirror.as_deref(), replay.as_deref(), arguments.language)
+        }
         Verb::Check(verb) => check::run(&verb, arguments.color, language).into(),
         Verb::Fmt(verb) => fmt::run(&verb, arguments.color, language).into(),
         Verb::Usage(verb) => usage::run(&verb, language).into(),

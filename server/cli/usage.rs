@@ -144,9 +144,10 @@ fn as_csv(usage: &Usage, group: &Group, with_header: bool) -> String {
     }
     for row in &usage.rows {
         let count = |is: fn(Use) -> bool| row.uses.iter().filter(|at| is(at.usage)).count().to_string();
-        let uses = row.uses.iter().map(|at| {
-            format!("{}:{}:{}", group.path(at.file), at.line + 1, access_word(at.usage))
-        });
+        let uses = row
+            .uses
+            .iter()
+            .map(|at| format!("{}:{}:{}", group.path(at.file), at.line + 1, access_word(at.usage)));
         let fields = [
             row.full_name(),
             row.symbol.clone(),

@@ -64,11 +64,8 @@ pub fn detect_notation(text: &str) -> Notation {
 /// `MO`) or mnemonic is still meant for the FX, so that it is reported and not taken for a variable.
 pub fn detect_ladder_target(text: &str) -> &'static Target {
     let header = text.lines().any(|line| line.split_whitespace().next().is_some_and(is_declaration_keyword));
-    let exported = text
-        .trim_start_matches('\u{feff}')
-        .lines()
-        .take(3)
-        .any(|line| line.starts_with("LDmicro export "));
+    let exported =
+        text.trim_start_matches('\u{feff}').lines().take(3).any(|line| line.starts_with("LDmicro export "));
     let foreign = || {
         drawing_words(text).any(|word| {
             word.chars().any(char::is_alphabetic)

@@ -35,7 +35,12 @@ pub struct At<T> {
 impl<'a> ProjectView<'a> {
     /// A document without others.
     pub fn alone(document: &'a Document) -> ProjectView<'a> {
-        ProjectView { members: vec![Member { name: "", document }], here: 0, is_listed: false, cancelled: None }
+        ProjectView {
+            members: vec![Member { name: "", document }],
+            here: 0,
+            is_listed: false,
+            cancelled: None,
+        }
     }
 
     /// The files `members`, seen from number `here`; nothing if there is no such number. `is_listed` says that the

@@ -49,12 +49,21 @@ pub(super) fn span_at(document: &Document, offset: usize) -> Option<Span> {
 }
 
 /// Renames the symbol at `offset`; nothing if something else stands there.
-pub(super) fn rename(view: &ProjectView<'_>, offset: usize, new: &str) -> Option<Result<SymbolRename, Message>> {
+pub(super) fn rename(
+    view: &ProjectView<'_>,
+    offset: usize,
+    new: &str,
+) -> Option<Result<SymbolRename, Message>> {
     let (_, device, row) = at(view.here(), offset)?;
     Some(renamed(view, device, row, new.trim()))
 }
 
-fn renamed(view: &ProjectView<'_>, device: Device, row: &DeviceComment, new: &str) -> Result<SymbolRename, Message> {
+fn renamed(
+    view: &ProjectView<'_>,
+    device: Device,
+    row: &DeviceComment,
+    new: &str,
+) -> Result<SymbolRename, Message> {
     let document = view.here();
     if let Some(problem) = Symbols::problem(new, document.target()) {
         let message = match problem {
@@ -146,7 +155,9 @@ pub(super) fn rewrites(document: &Document, offset: usize) -> Vec<Rewrite> {
     let Some(named) = names::at(document, offset) else { return Vec::new() };
     let Thing::Devices(device, 1) = named.thing else { return Vec::new() };
     let comments = document.comments();
-    let Some(row) = comments.of_device(device).filter(|row| !row.symbol.is_empty()) else { return Vec::new() };
+    let Some(row) = comments.of_device(device).filter(|row| !row.symbol.is_empty()) else {
+        return Vec::new();
+    };
     let is_symbol = written_at(document, named.span).is_some();
     let (new, old) = match is_symbol {
         true => (device.to_string(), row.symbol.to_string()),
@@ -154,7 +165,8 @@ pub(super) fn rewrites(document: &Document, offset: usize) -> Vec<Rewrite> {
     };
     let same_way = |span: Span| written_at(document, span).is_some() == is_symbol && is_whole(document, span);
     let mut found = Vec::new();
-    let here = exchanged(document, device, &new, comments, |span| span == named.span && is_whole(document, span));
+    let here =
+        exchanged(document, device, &new, comments, |span| span == named.span && is_whole(document, span));
     if let Some(edits) = here.ok().filter(|edits| !edits.is_empty()) {
         let title = Message::new("alias.here").with("new", &new).with("old", &old);
         found.push(Rewrite { title, edits });

@@ -72,7 +72,12 @@ impl Book {
     }
 
     /// The first run of `count` devices of `range` that are neither used nor `taken`.
-    pub(super) fn free(&self, range: &DeviceRange, count: u32, taken: impl Fn(Device) -> bool) -> Option<Device> {
+    pub(super) fn free(
+        &self,
+        range: &DeviceRange,
+        count: u32,
+        taken: impl Fn(Device) -> bool,
+    ) -> Option<Device> {
         let device = |number| Device::new(range.kind, number);
         let is_free = |number: u32| !self.uses(device(number)) && !taken(device(number));
         let last = range.last.checked_sub(count.saturating_sub(1))?;
@@ -114,7 +119,11 @@ impl Tally {
 }
 
 /// The number of the rung in a page that writes `symbol`.
-fn first_writing_rung(symbol: &Symbol, (file, number): (usize, usize), view: &ProjectView<'_>) -> Option<usize> {
+fn first_writing_rung(
+    symbol: &Symbol,
+    (file, number): (usize, usize),
+    view: &ProjectView<'_>,
+) -> Option<usize> {
     let document = view.members().get(file)?.document;
     let pages = document.pages();
     let mut start: usize = pages.get(..number)?.iter().map(|page| page.bytes()).sum();
@@ -133,7 +142,9 @@ pub(super) fn next_address(book: &Book, model: DirectAddress) -> DirectAddress {
     let same = |address: &&DirectAddress| {
         address.location == model.location && address.width == model.width && address.path[0].is_some()
     };
-    let Some(last) = book.addresses.keys().filter(same).max_by_key(|address| address.path) else { return model };
+    let Some(last) = book.addresses.keys().filter(same).max_by_key(|address| address.path) else {
+        return model;
+    };
     let mut next = *last;
     let deepest = next.path.iter().rposition(Option::is_some).unwrap_or(0);
     let number = next.path[deepest].unwrap_or(0);

@@ -74,7 +74,15 @@ struct Proposal {
 impl Proposal {
     fn new(label: impl Into<String>, kind: CompletionKind, detail: impl Into<String>, rank: u16) -> Proposal {
         let (label, detail) = (label.into(), detail.into());
-        Proposal { label, kind, detail, documentation: String::new(), snippet: None, search: String::new(), rank }
+        Proposal {
+            label,
+            kind,
+            detail,
+            documentation: String::new(),
+            snippet: None,
+            search: String::new(),
+            rank,
+        }
     }
 
     fn snippet(self, snippet: impl Into<String>) -> Proposal {

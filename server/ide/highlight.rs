@@ -111,11 +111,14 @@ fn in_fx(document: &Document, found: ChunkRef<'_>, inside: usize) -> Option<Vec<
             continue;
         }
         for operation in at.chunk.operations() {
-            let Some((_, part)) = part_of(&operation).filter(|(other, _)| *other == structure) else { continue };
+            let Some((_, part)) = part_of(&operation).filter(|(other, _)| *other == structure) else {
+                continue;
+            };
             let span = operation.symbol.shifted(at.start);
             is_own_group |= span == own_span;
             // A step ladder has no word that opens it.
-            if part == Part::Open || open.is_empty() && part == Part::Middle && structure == Structure::Steps {
+            if part == Part::Open || open.is_empty() && part == Part::Middle && structure == Structure::Steps
+            {
                 open.push(Vec::new());
             }
             if let Some(group) = open.last_mut() {
@@ -123,7 +126,10 @@ fn in_fx(document: &Document, found: ChunkRef<'_>, inside: usize) -> Option<Vec<
             }
             let closes = part == Part::Close;
             let holds_own = open.last().is_some_and(|group| group.contains(&own_span));
-            if closes && let Some(group) = open.pop() && holds_own {
+            if closes
+                && let Some(group) = open.pop()
+                && holds_own
+            {
                 return Some(group);
             }
         }

@@ -306,7 +306,10 @@ impl View<'_> {
         let symbol = match (&row.thing, row.symbol.as_str()) {
             (_, "") => String::new(),
             (Symbol::Device(device), symbol) if symbol.eq_ignore_ascii_case(word) => {
-                Message::new("uses.symbol-of").with("symbol", symbol).with("device", device).render(self.language)
+                Message::new("uses.symbol-of")
+                    .with("symbol", symbol)
+                    .with("device", device)
+                    .render(self.language)
             }
             (_, symbol) => Message::new("uses.symbol").with("symbol", symbol).render(self.language),
         };

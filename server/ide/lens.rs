@@ -155,7 +155,9 @@ fn next_free(view: &ProjectView<'_>) -> Vec<String> {
     let kinds: Vec<DeviceKind> = COUNTED.into_iter().filter(is_used).collect();
     let kinds = if kinds.is_empty() { vec![DeviceKind::M] } else { kinds };
     let free = kinds.into_iter().filter_map(|kind| {
-        target.ranges(kind).find_map(|range| book.free(range, 1, |device| comments.of_device(device).is_some()))
+        target
+            .ranges(kind)
+            .find_map(|range| book.free(range, 1, |device| comments.of_device(device).is_some()))
     });
     free.map(|device| device.to_string()).collect()
 }

@@ -1,7 +1,7 @@
 //! Editor features, one file each: offsets of a document in, plain structs out. No protocol, no files, no threads.
 
-pub use crate::document::{Token, TokenKind};
 use crate::document::{ChunkRef, Document};
+pub use crate::document::{Token, TokenKind};
 use crate::text::{Diagnostic, Language, Message, Span, TextEdit};
 
 mod answer;
@@ -129,7 +129,12 @@ pub fn lenses(document: &Document, wanted: LensSettings) -> Vec<Lens> {
 }
 
 /// The words of a lens that stands at `offset`.
-pub fn lens_title(view: &ProjectView<'_>, offset: usize, kind: &LensKind, language: Language) -> Option<String> {
+pub fn lens_title(
+    view: &ProjectView<'_>,
+    offset: usize,
+    kind: &LensKind,
+    language: Language,
+) -> Option<String> {
     lens::title(view, offset, kind, language)
 }
 
@@ -172,7 +177,11 @@ pub fn rename(document: &Document, offset: usize, new: &str) -> Result<Vec<TextE
 ///
 /// # Errors
 /// The same, in any of the files.
-pub fn rename_in(view: &ProjectView<'_>, offset: usize, new: &str) -> Result<Vec<At<Vec<TextEdit>>>, Message> {
+pub fn rename_in(
+    view: &ProjectView<'_>,
+    offset: usize,
+    new: &str,
+) -> Result<Vec<At<Vec<TextEdit>>>, Message> {
     rename::rename(view, offset, new)
 }
 
@@ -224,7 +233,11 @@ pub fn rename_symbol(
 ///
 /// # Errors
 /// If the file has a line for the new device already.
-pub fn rename_in_comments(document: &Document, offset: usize, new: &str) -> Result<Option<TextEdit>, Message> {
+pub fn rename_in_comments(
+    document: &Document,
+    offset: usize,
+    new: &str,
+) -> Result<Option<TextEdit>, Message> {
     aliases::table_edit(document, offset, new)
 }
 

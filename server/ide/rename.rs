@@ -1,8 +1,8 @@
 //! Renaming: the same program with another name, and the drawing kept whole. What would change the program's meaning
 //! is refused with a reason.
 
-use super::aliases;
 use super::across::{self, InFile};
+use super::aliases;
 use super::names::{self, Named, Thing};
 use crate::document::{At, Document, Mention, ProjectView, Symbol, Tree};
 use crate::target::iec::{is_identifier, is_keyword};

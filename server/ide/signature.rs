@@ -4,7 +4,7 @@ use super::{declared, names, pages};
 use crate::document::{DeclaredType, Document, Notation, Tree};
 use crate::il::iec::{PouKind, SectionKind};
 use crate::target::iec::{Function, FunctionBlock, Operator, Parameter};
-use crate::target::{Access, Accepts, DeviceKind, Form, Opcode, Operand};
+use crate::target::{Accepts, Access, DeviceKind, Form, Opcode, Operand};
 use crate::text::{Language, Message, Span, phrase};
 
 /// The shape of an instruction or a call.
@@ -123,7 +123,8 @@ fn of_form(document: &Document, form: Form, operands: &[&str], language: Languag
         let (least, greatest) = form.constant_limits(place, &given);
         let accepts = spec.accepts.on(document.target().model);
         let kinds = pages::kinds(accepts);
-        let limits = if accepts.contains(Accepts::K) { format!(", K {least}–{greatest}") } else { String::new() };
+        let limits =
+            if accepts.contains(Accepts::K) { format!(", K {least}–{greatest}") } else { String::new() };
         let access = match spec.access {
             Access::Read => Message::new("signature.read"),
             Access::Write => Message::new("signature.written"),
@@ -202,7 +203,8 @@ fn signature(
         let arrow = if formal.is_output { " => " } else { " : " };
         label.push_str(&format!("{}{arrow}{}", formal.name, formal.kind));
         let span = Span::new(start, label.len());
-        parameters.push(SignatureParameter { span, documentation: phrase(formal.meaning, language).to_string() });
+        parameters
+            .push(SignatureParameter { span, documentation: phrase(formal.meaning, language).to_string() });
     }
     label.push_str(if extensible { ", …)" } else { ")" });
     if !result.is_empty() {
@@ -289,7 +291,8 @@ fn formals(document: &Document, chunk_start: usize, callee: &str) -> Option<Call
         is_output,
     };
     if let Some(declared_unit) = scopes.pou_named(&unit) {
-        let parameters = declared_unit.variables.iter().filter(|variable| declared::is_parameter(variable.section));
+        let parameters =
+            declared_unit.variables.iter().filter(|variable| declared::is_parameter(variable.section));
         let formals = parameters.map(|variable| Formal {
             name: variable.name.to_string(),
             kind: declared::type_name(&variable.declared, scopes),

@@ -146,7 +146,8 @@ fn coils(chunk: &Chunk) -> FxHashSet<u32> {
             form.instruction.role == Role::Output && !matches!(form.instruction.opcode, Opcode::Function(_))
         })
     };
-    let operands = chunk.operations().filter(drives).filter_map(|operation| operation.operands.first().copied());
+    let operands =
+        chunk.operations().filter(drives).filter_map(|operation| operation.operands.first().copied());
     operands.map(|operand| operand.span.start).collect()
 }
 
@@ -159,7 +160,10 @@ fn key_of(symbol: &Symbol, pou: Option<usize>, scopes: &crate::document::Scopes)
             let declared = scopes.variable(pou, name);
             let is_global = declared.is_some_and(|variable| matches!(variable.section, Global | External));
             let unit = pou.filter(|_| !is_global).and_then(|number| scopes.pous.get(number));
-            Some(UsageKey::Variable(unit.map(|unit| unit.name.to_string()).unwrap_or_default(), name.to_string()))
+            Some(UsageKey::Variable(
+                unit.map(|unit| unit.name.to_string()).unwrap_or_default(),
+                name.to_string(),
+            ))
         }
         Symbol::Label(_) | Symbol::Pou(_) | Symbol::Type(_) | Symbol::Connector(_) => None,
     }
@@ -200,8 +204,9 @@ fn preset(document: &crate::document::Document, chunk: &Chunk, device: Device) -
     let Some(found) = devices::preset_of(chunk, device) else { return String::new() };
     let word = found.span.of(chunk.text());
     let time = match found.value {
-        Operand::Constant { value, index: None } => devices::integer(value)
-            .and_then(|count| devices::timer_time(device, count, document.target())),
+        Operand::Constant { value, index: None } => {
+            devices::integer(value).and_then(|count| devices::timer_time(device, count, document.target()))
+        }
         _ => None,
     };
     time.map_or_else(|| word.to_string(), |time| format!("{word} = {time}"))

@@ -1,7 +1,7 @@
 //! Where a thing is used: its writers and readers with the rung, the line and what stands there.
 
-use super::{across, devices};
 use super::names::{self, Named, Thing};
+use super::{across, devices};
 use crate::document::{Chunk, ChunkRef, Document, Names, ProjectView, Symbol, Tree, Use};
 use crate::ladder::{CoilKind, ContactKind, ElementKind, Rung};
 use crate::target::{DeviceKind, Operand};

@@ -92,7 +92,9 @@ impl Element {
                 Operand::Literal(Literal { value: LiteralValue::Time(_), .. }) if !word.contains('#') => {
                     time_literal(word).map_or(Cow::Borrowed(word), Cow::Owned)
                 }
-                Operand::Literal(Literal { value: LiteralValue::Bool(false), .. }) if word.starts_with('+') => {
+                Operand::Literal(Literal { value: LiteralValue::Bool(false), .. })
+                    if word.starts_with('+') =>
+                {
                     Cow::Borrowed("FALSE")
                 }
                 _ => Cow::Borrowed(word),

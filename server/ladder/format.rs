@@ -412,7 +412,8 @@ fn push_line_between(text: &mut String, line: &str, page: Option<&Page>) {
     // Counts that an LDmicro export writes beside its rails stay there.
     let number = content.trim_start().trim_start_matches(|c: char| c.is_ascii_digit());
     let number = &content[..content.len() - number.len()];
-    let rails = content[number.len()..].split([' ', '\t']).filter(|word| !word.is_empty()).collect::<Vec<_>>();
+    let rails =
+        content[number.len()..].split([' ', '\t']).filter(|word| !word.is_empty()).collect::<Vec<_>>();
     let is_rail = |word: &&str| matches!(*word, "|" | "||" | "│" | "││" | "┃" | "!");
     match (rails.as_slice(), page) {
         ([left, right], Some(page)) if is_rail(left) && is_rail(right) && left == right => {

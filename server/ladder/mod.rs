@@ -27,9 +27,7 @@ mod inline;
 mod blocks;
 
 mod ldmicro;
-pub use ldmicro::{
-    BoxKind, Import, ImportError, NameKind, Note, TableRow, import, table_rows, time_literal,
-};
+pub use ldmicro::{BoxKind, Import, ImportError, NameKind, Note, TableRow, import, table_rows, time_literal};
 
 mod scan;
 

@@ -60,7 +60,9 @@ pub(super) struct Newer {
 impl Newer {
     /// From the parameters of `initialize` as they were sent.
     pub(super) fn of(params: Option<&Value>) -> Newer {
-        let is = |path: &str| params.and_then(|params| params.pointer(path)).and_then(Value::as_bool) == Some(true);
+        let is = |path: &str| {
+            params.and_then(|params| params.pointer(path)).and_then(Value::as_bool) == Some(true)
+        };
         let ranges = "/capabilities/textDocument/rangeFormatting";
         Newer {
             content: is("/capabilities/workspace/textDocumentContent/dynamicRegistration"),

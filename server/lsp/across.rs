@@ -1,10 +1,10 @@
 //! Answers that name several files: places, edits, calls, links.
 
 use super::abilities::Abilities;
-use super::{capabilities, features};
 use super::projects::{Around, file_path};
 use super::to_proto::{self, Manner, Place};
 use super::workspace::{Open, Snapshot};
+use super::{capabilities, features};
 use crate::document::{At, ProjectView};
 use crate::ide::{self, CallItem};
 use crate::project::MANIFEST_NAME;

@@ -2,13 +2,13 @@
 
 use super::across;
 use super::editing;
-use super::{capabilities, features};
 use super::progress::Progress;
 use super::projects::Around;
 use super::pulled::{self, PartialReport, PartialReportParams};
 use super::to_proto::{self, Place};
 use super::tokens;
 use super::workspace::{Open, SNAPSHOT, Snapshot, Workspace};
+use super::{capabilities, features};
 use crate::ide;
 use crate::text::{Language, Message};
 use serde_json::{Value, json};
@@ -37,7 +37,12 @@ impl LanguageServer for Backend {
         self.resolves_actions.store(editing::resolves_actions(&params.capabilities), Ordering::Relaxed);
         // The workspace took what these say when the message was read.
         let Snapshot { manner, settings, .. } = self.workspace.snapshot();
-        Ok(capabilities::offered(&params.capabilities, manner.encoding, settings.pulls(), self.workspace.requests()))
+        Ok(capabilities::offered(
+            &params.capabilities,
+            manner.encoding,
+            settings.pulls(),
+            self.workspace.requests(),
+        ))
     }
 
     async fn initialized(&self, _: InitializedParams) {
@@ -65,7 +70,8 @@ impl LanguageServer for Backend {
     async fn hover(&self, params: HoverParams) -> Result<Option<Hover>> {
         let at = params.text_document_position_params;
         Ok(with_around(&at.text_document.uri, |around, place| {
-            let link = |file, line| features::link(around, file, line).filter(|_| place.abilities.markdown_hover);
+            let link =
+                |file, line| features::link(around, file, line).filter(|_| place.abilities.markdown_hover);
             let hover = ide::hover_in(&around.view(), place.offset(at.position), place.language, &link)?;
             Some(to_proto::hover(place, hover))
         }))
@@ -255,12 +261,14 @@ impl LanguageServer for Backend {
         params: DocumentHighlightParams,
     ) -> Result<Option<Vec<DocumentHighlight>>> {
         let at = params.text_document_position_params;
-        whole(at.text_document.uri, move |_, place| features::highlights(place, place.offset(at.position))).await
+        whole(at.text_document.uri, move |_, place| features::highlights(place, place.offset(at.position)))
+            .await
     }
 
     async fn code_lens(&self, params: CodeLensParams) -> Result<Option<Vec<CodeLens>>> {
         let wanted = SNAPSHOT.with(|snapshot| snapshot.settings.lenses);
-        whole(params.text_document.uri, move |around, place| features::lenses(around.here(), place, wanted)).await
+        whole(params.text_document.uri, move |around, place| features::lenses(around.here(), place, wanted))
+            .await
     }
 
     async fn code_lens_resolve(&self, lens: CodeLens) -> Result<CodeLens> {
@@ -277,7 +285,11 @@ impl LanguageServer for Backend {
             let fixes = fixes.map(|fix| quick_fix(around, place, &fix));
             let edits = editing::actions(open, place, &params, settings.style(&open.manifest), resolves);
             let rewrites = features::rewrites(around.here(), place, &params);
-            fixes.chain(edits).chain(rewrites).map(|action| across::code_action(action, place.abilities)).collect()
+            fixes
+                .chain(edits)
+                .chain(rewrites)
+                .map(|action| across::code_action(action, place.abilities))
+                .collect()
         })
         .await
     }

@@ -5,8 +5,8 @@
 //! "preset", "read", "written", "uses": [{"file", "uri", "line", "column", "rung", "access", "coil", "count",
 //! "text"}]}]}`.
 //! `kind` is the device's letter, `address` or `variable`; `file` is the name in `files`; `line` and `column` count
-//! from 1, columns in Unicode scalar values; `rung` counts from 1 in its file or is `null`; `access` is `read`, `write`,
-//! `read-write`, `define` or `jump`; `text` is the same list as a page with a grid for each kind of device.
+//! from 1, columns in Unicode scalar values; `rung` counts from 1 in its file or is `null`; `access` is `read`,
+//! `write`, `read-write`, `define` or `jump`; `text` is the same list as a page with a grid for each kind of device.
 //! The page alone is also the content of the virtual document `rungwise-usage:` + the path of the document, which
 //! clients of LSP 3.18 ask for with `workspace/textDocumentContent` (`{"uri"}` → `{"text"}`).
 
@@ -91,7 +91,9 @@ pub(super) fn highlights(place: Place<'_>, offset: usize) -> Vec<DocumentHighlig
         HighlightKind::Read => DocumentHighlightKind::READ,
         HighlightKind::Write => DocumentHighlightKind::WRITE,
     };
-    marks.map(|mark| DocumentHighlight { range: place.range(mark.span), kind: Some(kind(mark.kind)) }).collect()
+    marks
+        .map(|mark| DocumentHighlight { range: place.range(mark.span), kind: Some(kind(mark.kind)) })
+        .collect()
 }
 
 /// What a lens carries until it is resolved.

@@ -123,7 +123,9 @@ pub(super) fn sound(
             }
             for body in translate(body) {
                 let header = format!("Content-Length: {}\r\n\r\n", body.len());
-                if writer.write_all(header.as_bytes()).await.is_err() || writer.write_all(&body).await.is_err() {
+                if writer.write_all(header.as_bytes()).await.is_err()
+                    || writer.write_all(&body).await.is_err()
+                {
                     return;
                 }
             }

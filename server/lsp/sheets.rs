@@ -68,7 +68,9 @@ impl Workspace {
             None => _ = sheets.remove(&key),
         }
         let Some(keeper) = &state.keeper else { return };
-        let names = |root: &Path, manifest: &Manifest| path_of(root, manifest).is_some_and(|one| canonical(&one) == key);
+        let names = |root: &Path, manifest: &Manifest| {
+            path_of(root, manifest).is_some_and(|one| canonical(&one) == key)
+        };
         let mut is_known = false;
         for (project, loaded) in state.snapshot.projects.iter() {
             if names(&loaded.root, &loaded.manifest) {
@@ -112,9 +114,10 @@ pub(super) fn comments_file(root: &Path, manifest: &Manifest, sheets: &Sheets) -
 pub(super) fn findings(snapshot: &Snapshot, loaded: &Loaded) -> Option<(Uri, Vec<lsp::Diagnostic>)> {
     let file = loaded.comments_file.as_ref()?;
     let severities = loaded.manifest.severities();
-    let graded = file.diagnostics.iter().filter_map(|found| {
-        Some(Diagnostic { severity: severities.of(found.code)?, ..found.clone() })
-    });
+    let graded = file
+        .diagnostics
+        .iter()
+        .filter_map(|found| Some(Diagnostic { severity: severities.of(found.code)?, ..found.clone() }));
     let around = around(snapshot, file)?;
     let uri = around.here().uri.clone();
     Some((uri, to_proto::diagnostics(&around, graded.collect(), snapshot.manner)))

@@ -509,7 +509,11 @@ fn guarded<T>(make: impl FnOnce() -> T) -> Option<T> {
         .ok()
 }
 
-pub(super) fn edit_of(document: &Document, change: TextDocumentContentChangeEvent, encoding: Encoding) -> Edit {
+pub(super) fn edit_of(
+    document: &Document,
+    change: TextDocumentContentChangeEvent,
+    encoding: Encoding,
+) -> Edit {
     let offset = |position: tower_lsp::ls_types::Position| {
         document.offset(LineColumn { line: position.line, column: position.character }, encoding)
     };

@@ -52,7 +52,8 @@ impl CommentsFile {
     /// Reads `text`, the content of the file at `path`, for programs on `target`.
     pub fn read(path: &Path, text: &str, target: &Target) -> CommentsFile {
         let separator = fields::separator_of(text);
-        let mut reader = Reader { target, rows: Vec::new(), diagnostics: Vec::new(), columns: Columns::default() };
+        let mut reader =
+            Reader { target, rows: Vec::new(), diagnostics: Vec::new(), columns: Columns::default() };
         if let Some(place) = text.find('\u{fffd}') {
             let message = Message::new("device-comments.encoding");
             reader.diagnostics.push(Diagnostic::new(CODE, Span::new(place, place + 3), message));
@@ -67,7 +68,13 @@ impl CommentsFile {
         let mut diagnostics = reader.diagnostics;
         diagnostics.sort_by_key(|diagnostic| diagnostic.span);
         let comments = Arc::new(Comments::new(reader.rows));
-        CommentsFile { path: path.to_path_buf(), comments, diagnostics, separator: separator.into(), text: text.into() }
+        CommentsFile {
+            path: path.to_path_buf(),
+            comments,
+            diagnostics,
+            separator: separator.into(),
+            text: text.into(),
+        }
     }
 
     /// The text of which the spans count the bytes.
@@ -136,7 +143,8 @@ impl Reader<'_> {
                 let device = record.get(self.columns.thing).map_or("", |field| field.text.as_str());
                 let message = Message::new("device-comments.device-twice").with("device", device);
                 let related = Message::new("device-comments.first");
-                self.diagnostics.push(Diagnostic::new(CODE, row.thing_span, message).related(*first, related));
+                self.diagnostics
+                    .push(Diagnostic::new(CODE, row.thing_span, message).related(*first, related));
                 continue;
             }
             things.insert(row.thing.clone(), row.thing_span);
@@ -145,7 +153,8 @@ impl Reader<'_> {
                 if let Some(first) = names.get(&folded) {
                     let message = Message::new("device-comments.symbol-twice").with("symbol", &row.symbol);
                     let related = Message::new("device-comments.first");
-                    self.diagnostics.push(Diagnostic::new(CODE, row.symbol_span, message).related(*first, related));
+                    self.diagnostics
+                        .push(Diagnostic::new(CODE, row.symbol_span, message).related(*first, related));
                     row.symbol = SmolStr::default();
                 } else {
                     names.insert(folded, row.symbol_span);

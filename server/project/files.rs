@@ -1,7 +1,7 @@
 //! Finding projects and their files, and opening a file the way its project wants it.
 
 use super::{CommentsFile, Manifest, ManifestError};
-use crate::document::{Document, Notation, detect_ladder_target, detect_notation, Symbol};
+use crate::document::{Document, Notation, Symbol, detect_ladder_target, detect_notation};
 use crate::target::{Model, Target};
 use crate::text::{Encoding, LineColumn, Message, Span, column_of_offset};
 use std::fs::DirEntry;

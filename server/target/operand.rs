@@ -1,7 +1,7 @@
 //! Operands: one word of a program read as a device, a constant, an address or a name.
 
-use std::fmt;
 use super::{Device, Model, fx, iec};
+use std::fmt;
 
 /// What an operand word says. The word itself stays in the text; its span is kept beside this value.
 #[derive(Clone, Copy, PartialEq, Debug)]

@@ -44,6 +44,9 @@ pub(super) const RULE: Rule = Rule {
 /// So many names are compared with all others; who has more names that are used once has another habit.
 const MOST_COMPARED: usize = 100;
 
+/// Shorter names differ in one letter because they have no more.
+const LEAST_CHARACTERS: usize = 4;
+
 /// The uses of a name.
 #[derive(Default)]
 struct Uses {
@@ -74,7 +77,7 @@ fn check_file(document: &Document, found: &mut Vec<Diagnostic>) {
     }
     let mut single: Vec<(&SmolStr, Span)> = names
         .iter()
-        .filter(|(_, uses)| uses.count == 1 && !uses.written)
+        .filter(|(name, uses)| uses.count == 1 && !uses.written && name.chars().count() >= LEAST_CHARACTERS)
         .map(|(name, uses)| (*name, uses.first))
         .collect();
     single.sort_unstable_by_key(|(_, span)| *span);

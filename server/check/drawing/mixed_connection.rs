@@ -59,7 +59,7 @@ pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
                     _ => Message::new("mixed-connection.beside"),
                 };
                 let related = crate::text::Related {
-                        file: None,
+                    file: None,
                     span: element.span,
                     message: message.with("element", drawn.name(element)),
                 };

@@ -1,7 +1,7 @@
 //! The labels of a program and the jumps to them, once for all rules about labels.
 
-use crate::check::{ProgramContext, ProgramFile};
 use crate::check::statements::{Statement, StatementKind, is_fx_program};
+use crate::check::{ProgramContext, ProgramFile};
 use crate::document::{Symbol, Use};
 use crate::target::{Device, DeviceKind, Flow, Operand};
 use crate::text::{Span, TextEdit};

@@ -199,8 +199,7 @@ fn propose_special(place: &mut Place<'_>, typed: &str, wanted: &Wanted, book: &B
     }
     for special in place.document.target().special {
         let device = special.device;
-        let takes =
-            wanted.takes(device.kind) && (special.writable || wanted.access == Access::Read);
+        let takes = wanted.takes(device.kind) && (special.writable || wanted.access == Access::Read);
         if takes && !book.devices.contains_key(&device) && starts_with(device, typed) {
             let rank = 900 + (device.number.saturating_sub(SPECIAL) as u16).min(999);
             place.propose(
@@ -269,7 +268,8 @@ fn propose_labels(place: &mut Place<'_>, typed: &str, calls: bool) {
         let uses = uses::collect(place.view, &Thing::Devices(pointer, 1), 1);
         if let Some(defined) = uses.declared.places.first() {
             let style = uses::Style { view: place.view, language: place.language, link: &|_, _| None };
-            let jumps = Message::new("usage-words.jumped").with("count", uses.jumps.total).render(place.language);
+            let jumps =
+                Message::new("usage-words.jumped").with("count", uses.jumps.total).render(place.language);
             let label = Message::new("usage-words.label").with("place", style.words(defined));
             let detail = match uses.jumps.total {
                 0 => label.render(place.language),
@@ -279,7 +279,8 @@ fn propose_labels(place: &mut Place<'_>, typed: &str, calls: bool) {
         }
     }
     // P63 means the end of the program to a jump, and nothing to a call.
-    let mut ranges = place.document.target().ranges(DeviceKind::P).filter(|range| !calls || range.first != 63);
+    let mut ranges =
+        place.document.target().ranges(DeviceKind::P).filter(|range| !calls || range.first != 63);
     if let Some(free) = ranges.find_map(|range| book.free(range, 1, |_| false)) {
         let detail = Message::new("complete.label-free").render(place.language);
         place.propose(typed, Proposal::new(free.to_string(), CompletionKind::Label, detail, 310));

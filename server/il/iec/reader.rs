@@ -161,7 +161,8 @@ impl<'a> Reader<'a> {
 
     /// Something is expected behind `before`, where a line or a text ends.
     pub fn expected_at_end(&mut self, before: Span, expected: &str) {
-        let message = Message::new("syntax-error.expected-at-end").with_words("expected", expected.split(", "), ", ");
+        let message =
+            Message::new("syntax-error.expected-at-end").with_words("expected", expected.split(", "), ", ");
         self.problem("syntax-error", Span::at(before.end as usize), message);
     }
 

@@ -234,7 +234,10 @@ fn of_chunk(
     for rung in &tree.rungs {
         let line = first_line + rung.lines.0;
         let first = rung.graph.elements.first();
-        let is_end = |element: &Element| matches!(element.kind, ElementKind::Instruction { mnemonic, .. } if mnemonic.of(chunk) == "END");
+        let is_end = |element: &Element| match element.kind {
+            ElementKind::Instruction { mnemonic, .. } => mnemonic.of(chunk) == "END",
+            _ => false,
+        };
         if rung.graph.elements.len() == 1 && first.is_some_and(is_end) {
             continue;
         }

@@ -83,11 +83,13 @@ fn read(text: &str, start: usize, separator: u8, records: &mut Vec<Record>) -> O
         }
         // The reader passes over empty lines before a record.
         if record.is_empty() {
-            field_start += bytes[field_start..at].iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
+            field_start +=
+                bytes[field_start..at].iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
         }
         let raw = text.get(field_start..at).unwrap_or("");
         let inner = raw.trim_end_matches(['\r', '\n']);
-        let inner = inner.strip_suffix(char::from(separator)).filter(|_| raw.len() == inner.len()).unwrap_or(inner);
+        let inner =
+            inner.strip_suffix(char::from(separator)).filter(|_| raw.len() == inner.len()).unwrap_or(inner);
         if at == bytes.len() && inner.starts_with('"') && !is_closed(inner) {
             return Some(field_start);
         }
