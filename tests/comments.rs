@@ -71,7 +71,10 @@ fn a_quote_that_nothing_closes_loses_its_line_only() {
 #[test]
 fn what_cannot_be_used_is_found_at_its_place() {
     assert_eq!(
-        shown("X0,Start,\nX8,Eight,\nX0,Again,\nM0,start,\nM1,LD,\nM2,Y5,\nM3,two words,\nM4000,Far,\n%IX0.0,,in\n%IX0.0,,out\n"),
+        shown(
+            "X0,Start,\nX8,Eight,\nX0,Again,\nM0,start,\nM1,LD,\nM2,Y5,\nM3,two words,\nM4000,Far,\n\
+             %IX0.0,,in\n%IX0.0,,out\n"
+        ),
         "X0|Start|\nM0||\nM1||LD\nM2||Y5\nM3||two words\nM4000|Far|\n%IX0.0||in\n\
          device-comments.no-device 2:1 `X8`\n\
          device-comments.device-twice 3:1 `X0`\n\

@@ -174,7 +174,8 @@ impl Carrier {
         let number = self.names.of(original);
         let name = self.names.get(number);
         let identifier = name.identifier.clone();
-        if original != identifier {
+        // That an element has no name is said where it was read.
+        if !original.is_empty() && original != identifier {
             self.note(Message::new("import.renamed").with("name", original).with("new", &identifier));
         }
         identifier
