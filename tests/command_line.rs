@@ -60,6 +60,27 @@ fn sarif_has_the_form_of_the_standard() {
 }
 
 #[test]
+fn sarif_names_the_file_of_a_related_place() {
+    let unit = |name: &str| format!("PROGRAM {name}\nVAR\n a : BOOL;\nEND_VAR\nLD a\nST a\nEND_PROGRAM\n");
+    let files = folder(&[
+        ("rungwise.toml", "name = \"line\"\n"),
+        ("a.il", &unit("same")),
+        ("b.il", &format!("\n\n{}", unit("same"))),
+    ]);
+    let (out, _) = check(&files, &["check", "--format", "sarif", "."], 1);
+    let log: Value = serde_json::from_str(&out).unwrap();
+    let [found] = log["runs"][0]["results"].as_array().unwrap().as_slice() else { panic!("{out}") };
+    let (place, related) = (&found["locations"][0], &found["relatedLocations"][0]);
+    assert_eq!(place["physicalLocation"]["artifactLocation"]["uri"], "b.il");
+    assert_eq!(place["physicalLocation"]["region"]["startLine"], 3);
+    assert_eq!(related["physicalLocation"]["artifactLocation"]["uri"], "a.il");
+    assert_eq!(
+        related["physicalLocation"]["region"],
+        json!({"startLine": 1, "startColumn": 9, "endLine": 1, "endColumn": 13})
+    );
+}
+
+#[test]
 fn fmt_check_shows_a_diff_that_patch_applies() {
     let files = folder(&[("a.il", "ld x0\nout y0\nend"), ("b.il", "LD X0\nOUT Y0\nEND\n")]);
     let (out, _) = check(&files, &["fmt", "--check"], 1);

@@ -71,15 +71,19 @@ fn a_quote_that_nothing_closes_loses_its_line_only() {
 #[test]
 fn what_cannot_be_used_is_found_at_its_place() {
     assert_eq!(
-        shown("X0,Start,\nX8,Eight,\nX0,Again,\nM0,start,\nM1,LD,\nM2,Y5,\nM3,two words,\nM4000,Far,\n"),
-        "X0|Start|\nM0||\nM1||LD\nM2||Y5\nM3||two words\nM4000|Far|\n\
+        shown(
+            "X0,Start,\nX8,Eight,\nX0,Again,\nM0,start,\nM1,LD,\nM2,Y5,\nM3,two words,\nM4000,Far,\n\
+             %IX0.0,,in\n%IX0.0,,out\n"
+        ),
+        "X0|Start|\nM0||\nM1||LD\nM2||Y5\nM3||two words\nM4000|Far|\n%IX0.0||in\n\
          device-comments.no-device 2:1 `X8`\n\
          device-comments.device-twice 3:1 `X0`\n\
          device-comments.symbol-twice 4:4 `start`\n\
          device-comments.is-instruction 5:4 `LD`\n\
          device-comments.reads-as-device 6:4 `Y5`\n\
          device-comments.no-identifier 7:4 `two words`\n\
-         device-comments.not-on-target 8:1 `M4000`"
+         device-comments.not-on-target 8:1 `M4000`\n\
+         device-comments.device-twice 10:1 `%IX0.0`"
     );
 }
 

@@ -586,11 +586,25 @@ fn a_native_file_becomes_a_program() {
 }
 
 #[test]
+fn what_is_missing_is_said_once() {
+    let open = imported("LDmicro0.1\nPROGRAM\nRUNG\nPARALLEL\nSERIES\nPARALLEL\nSERIES\nCONTACTS Xa 0\n");
+    assert_eq!(notes(&open), ["8: a circuit has no END"]);
+    let drawing = "   ||                   ||\n 1 ||-----] [----( )-----||\n";
+    let nameless = imported(&format!("LDmicro export text\n\nLADDER DIAGRAM:\n\n{drawing}"));
+    let named = |name: &str| nameless.text.contains(&format!("    {name} : BOOL;\n"));
+    assert!(named("v_1") && named("v_2"), "{}", nameless.text);
+    let said = ["6: an element has no name; it is called v_1", "6: an element has no name; it is called v_2"];
+    assert!(said.iter().all(|said| notes(&nameless).contains(&said.to_string())), "{:?}", notes(&nameless));
+}
+
+#[test]
 fn an_export_becomes_the_same_program_with_pins_and_types() {
     for text in [FIRST, SECOND] {
         let import = imported(text);
         assert_eq!(logic(&import.text), unindent(LAMP).replace("number 2\n", "").replace("number 3\n", ""));
         assert_eq!(notes(&import), [""; 0]);
+        // The head is long, and all of it is carried over.
+        assert!(import.text.contains(" ms cycle time"), "{}", import.text);
         let kind = if text == FIRST { "digital in" } else { "Entr\u{e9}e digitale" };
         assert!(import.text.contains(&format!("Xbutton : BOOL; (* {kind}, pin 17 *)")), "{}", import.text);
         assert!(

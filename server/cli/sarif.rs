@@ -2,6 +2,7 @@
 
 use super::input::Program;
 use crate::check::{RULES, Rule};
+use crate::document::Document;
 use crate::text::{Diagnostic, Encoding, Fix, Language, Severity, Span};
 use serde_json::{Value, json};
 use std::path::{Component, Path};
@@ -46,14 +47,16 @@ fn descriptor(rule: &Rule, language: Language) -> Value {
 }
 
 fn result(program: &Program, found: &Diagnostic, rules: &[&Rule], language: Language) -> Value {
+    let own = program.path.to_string_lossy();
     let mut result = json!({
         "ruleId": found.code,
         "level": level(found.severity),
         "message": {"text": found.message.render(language)},
-        "locations": [location(program, found.span)],
+        "locations": [location(&program.path, &program.document, found.span)],
     });
     let related = found.related.iter().enumerate().map(|(id, related)| {
-        let mut place = location(program, related.span);
+        let (path, document) = program.file(related, &own);
+        let mut place = location(Path::new(path), document, related.span);
         place["id"] = json!(id);
         place["message"] = json!({"text": related.message.render(language)});
         place
@@ -78,7 +81,7 @@ fn list(values: Vec<Value>) -> Option<Value> {
 
 fn fix(program: &Program, fix: &Fix, language: Language) -> Value {
     let replacements = fix.edits.iter().map(|edit| {
-        let mut replacement = json!({"deletedRegion": region(program, edit.span)});
+        let mut replacement = json!({"deletedRegion": region(&program.document, edit.span)});
         if !edit.text.is_empty() {
             replacement["insertedContent"] = json!({"text": edit.text});
         }
@@ -93,14 +96,14 @@ fn fix(program: &Program, fix: &Fix, language: Language) -> Value {
     })
 }
 
-fn location(program: &Program, span: Span) -> Value {
-    let artifact = json!({"uri": uri(&program.path)});
-    json!({"physicalLocation": {"artifactLocation": artifact, "region": region(program, span)}})
+fn location(path: &Path, document: &Document, span: Span) -> Value {
+    let artifact = json!({"uri": uri(path)});
+    json!({"physicalLocation": {"artifactLocation": artifact, "region": region(document, span)}})
 }
 
 /// Lines and columns from 1; the end column is one past the last character.
-fn region(program: &Program, span: Span) -> Value {
-    let place = |offset: u32| program.document.position(offset as usize, Encoding::Utf32);
+fn region(document: &Document, span: Span) -> Value {
+    let place = |offset: u32| document.position(offset as usize, Encoding::Utf32);
     let (start, end) = (place(span.start), place(span.end));
     json!({
         "startLine": start.line + 1,

@@ -160,7 +160,7 @@ pub fn redraw(chunk: &str, tree: &LadderTree, offset: u32, target: &Target) -> O
     Some(TextEdit::new(Span::new(start, end), formatted.get(new.starts[common]..new_end)?))
 }
 
-/// Whether `formatted` reads as the same rungs, with no further problem and all comments.
+/// Whether `formatted` reads as the same rungs with the same notes, with no further problem and all comments.
 fn same(chunk: &str, tree: &LadderTree, formatted: &str, target: &Target) -> bool {
     let again = parse(formatted, target);
     again.rungs.len() == tree.rungs.len()
@@ -173,8 +173,18 @@ fn same(chunk: &str, tree: &LadderTree, formatted: &str, target: &Target) -> boo
             .all(|(a, b)| words(a.of(chunk)).eq(words(b.of(formatted))))
         && tree.rungs.iter().zip(&again.rungs).all(|(rung, again)| {
             rung.number.map(|number| number.value) == again.number.map(|number| number.value)
+                && notes(rung, chunk) == notes(again, formatted)
                 && rung.graph.same_logic(chunk, &again.graph, formatted)
         })
+}
+
+/// The words at a rung's elements that are no operands, in alphabetical order. One more than was drawn is a word of
+/// another line, which the next drawing would take along.
+fn notes<'t>(rung: &Rung, chunk: &'t str) -> Vec<&'t str> {
+    let spans = rung.graph.elements.iter().flat_map(|element| &element.notes);
+    let mut notes: Vec<&str> = spans.map(|note| note.of(chunk)).collect();
+    notes.sort_unstable();
+    notes
 }
 
 /// A text but for its blanks, which may be trimmed at the ends of lines.

@@ -10,7 +10,7 @@ pub use decode::decode;
 mod fields;
 
 use crate::document::{Comments, DeviceComment, Symbol};
-use crate::target::{Device, Model, Operand, SymbolProblem, Symbols, Target};
+use crate::target::{Model, Operand, SymbolProblem, Symbols, Target};
 use crate::text::{Diagnostic, Encoding, LineColumn, Message, Span, column_of_offset};
 use fields::{Field, Record};
 use rustc_hash::FxHashMap;
@@ -140,8 +140,8 @@ impl Reader<'_> {
         for record in &records[first..] {
             let Some(mut row) = self.row(record) else { continue };
             if let Some(first) = things.get(&row.thing) {
-                let message =
-                    Message::new("device-comments.device-twice").with("device", name_of(&row.thing));
+                let device = record.get(self.columns.thing).map_or("", |field| field.text.as_str());
+                let message = Message::new("device-comments.device-twice").with("device", device);
                 let related = Message::new("device-comments.first");
                 self.diagnostics
                     .push(Diagnostic::new(CODE, row.thing_span, message).related(*first, related));
@@ -231,12 +231,5 @@ fn thing(word: &str) -> Option<Symbol> {
     match Operand::read(word, Model::Iec) {
         Operand::Direct(address) => Some(Symbol::Direct(address)),
         _ => None,
-    }
-}
-
-fn name_of(thing: &Symbol) -> String {
-    match thing {
-        Symbol::Device(device) => Device::to_string(device),
-        _ => String::new(),
     }
 }

@@ -171,6 +171,13 @@ impl Carrier {
     }
 
     fn name(&mut self, original: &str) -> String {
+        if original.is_empty() {
+            // Elements without a name are not the same variable.
+            let number = self.names.instance("v", "BOOL");
+            let identifier = self.names.get(number).identifier.clone();
+            self.note(Message::new("import.unnamed").with("new", &identifier));
+            return identifier;
+        }
         let number = self.names.of(original);
         let name = self.names.get(number);
         let identifier = name.identifier.clone();

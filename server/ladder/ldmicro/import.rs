@@ -58,7 +58,7 @@ pub fn import(source: &str, name: &str, language: Language) -> Result<Import, Im
             settings
                 .into_iter()
                 .filter(|(key, _)| key != "COMPILED")
-                .map(|(key, value)| format!("{key} = {}", shown(&value))),
+                .map(|(key, value)| format!("{key} = {value}")),
         );
         for (name, pin) in &pins {
             let number = carrier.names.of(name);
@@ -66,8 +66,8 @@ pub fn import(source: &str, name: &str, language: Language) -> Result<Import, Im
         }
         of_native(&mut carrier, rungs)
     } else if is_export(source) {
-        head.extend(source.lines().skip(1).take_while(|line| !line.starts_with("LADDER")).map(shown));
-        head.retain(|line| !line.trim().is_empty());
+        let lines = source.lines().skip(1).take_while(|line| !line.starts_with("LADDER"));
+        head.extend(lines.filter(|line| !line.trim().is_empty()).map(str::to_string));
         of_export(&mut carrier, source)
     } else {
         return Err(ImportError::Unknown);

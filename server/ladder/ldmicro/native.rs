@@ -69,7 +69,11 @@ impl<'t> Reader<'t> {
     }
 
     fn note(&mut self, line: u32, message: Message) {
-        self.program.notes.push(Note { line, message });
+        let note = Note { line, message };
+        // One line can end many circuits.
+        if self.program.notes.last() != Some(&note) {
+            self.program.notes.push(note);
+        }
     }
 
     /// Everything before `PROGRAM`.
