@@ -16,6 +16,9 @@ pub const LIMIT_BYTES: usize = 64 << 20;
 /// In documents up to this size, some five thousand lines, all trees are kept; larger ones would take too much memory.
 const KEPT_TREES_BYTES: usize = 256 << 10;
 
+/// So many chunks are worth the start of a thread that makes half of them.
+const WORTH_A_THREAD: usize = 1_000;
+
 /// A document at one moment. Cloning copies a pointer for each page of chunks and shares the text.
 #[derive(Clone, Debug)]
 pub struct Document {
@@ -418,17 +421,25 @@ impl Document {
             old.iter().map(|chunk| (chunk.text(), chunk)).collect();
         let ends = chunk::split(text, self.notation());
         let keeps_trees = !self.is_frugal && self.len() <= KEPT_TREES_BYTES;
-        let mut start = 0;
-        ends.into_iter()
-            .map(|end| {
-                let piece = &text[start..end];
-                start = end;
-                match known.get(piece) {
-                    Some(chunk) => Arc::clone(chunk),
-                    None => Arc::new(Chunk::new(piece, &self.dialect, keeps_trees)),
-                }
-            })
-            .collect()
+        let starts = std::iter::once(0).chain(ends.iter().copied());
+        let pieces: Vec<&str> = starts.zip(&ends).map(|(start, end)| &text[start..*end]).collect();
+        let read = |pieces: &[&str]| -> Vec<Arc<Chunk>> {
+            let chunk = |piece: &&str| match known.get(piece) {
+                Some(chunk) => Arc::clone(chunk),
+                None => Arc::new(Chunk::new(piece, &self.dialect, keeps_trees)),
+            };
+            pieces.iter().map(chunk).collect()
+        };
+        if pieces.len() < WORTH_A_THREAD {
+            return read(&pieces);
+        }
+        let (first, second) = pieces.split_at(pieces.len() / 2);
+        std::thread::scope(|scope| {
+            let second = scope.spawn(|| read(second));
+            let mut chunks = read(first);
+            chunks.extend(second.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+            chunks
+        })
     }
 }
 

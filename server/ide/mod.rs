@@ -248,7 +248,16 @@ pub fn rewrites(document: &Document, offset: usize) -> Vec<Rewrite> {
 
 /// The outline.
 pub fn symbols(document: &Document, language: Language) -> Vec<SymbolNode> {
-    symbols::of(document, language)
+    symbols::of(document, language, || false)
+}
+
+/// The outline, or its beginning if `is_cancelled` says on the way that nobody waits for it any more.
+pub fn symbols_unless(
+    document: &Document,
+    language: Language,
+    is_cancelled: impl Fn() -> bool,
+) -> Vec<SymbolNode> {
+    symbols::of(document, language, is_cancelled)
 }
 
 /// What can be folded.

@@ -1,7 +1,7 @@
 //! The outline: program units with their variables, networks, steps, labels, rungs with the outputs they drive.
 
 use super::{SymbolKind, SymbolNode, declared};
-use crate::document::{Chunk, ChunkRef, Document, Operation, Tree};
+use crate::document::{Chunk, Document, Operation, Tree};
 use crate::il::fx::{FxTree, LineKind};
 use crate::il::iec::{IecTree, ItemKind, PouKind, Run};
 use crate::ladder::LadderTree;
@@ -11,10 +11,16 @@ use crate::text::{Language, Message, Span};
 /// The longest comment that becomes a part of a rung's name, in characters.
 const TITLE_LENGTH: usize = 60;
 
-pub(super) fn of(document: &Document, language: Language) -> Vec<SymbolNode> {
+pub(super) fn of(
+    document: &Document,
+    language: Language,
+    is_cancelled: impl Fn() -> bool,
+) -> Vec<SymbolNode> {
     let mut outline = Outline { language, open: Vec::new(), roots: Vec::new(), rungs: 0, subroutines: false };
-    for at in document.chunks() {
-        match at.chunk.tree() {
+    for at in document.chunks().take_while(|_| !is_cancelled()) {
+        let chunk = &*at.chunk.reading();
+        let at = Here { start: at.start, chunk };
+        match chunk.tree() {
             Tree::Fx(tree) => outline.fx(at, tree),
             Tree::Ladder(tree) => outline.ladder(at, tree),
             Tree::Iec(tree) => outline.iec(at, tree),
@@ -22,6 +28,13 @@ pub(super) fn of(document: &Document, language: Language) -> Vec<SymbolNode> {
     }
     outline.close(0);
     outline.roots
+}
+
+/// A chunk at its place in the document.
+#[derive(Clone, Copy)]
+struct Here<'a> {
+    start: usize,
+    chunk: &'a Chunk,
 }
 
 struct Outline {
@@ -48,7 +61,7 @@ fn level(kind: SymbolKind) -> usize {
 }
 
 impl Outline {
-    fn fx(&mut self, at: ChunkRef<'_>, tree: &FxTree) {
+    fn fx(&mut self, at: Here<'_>, tree: &FxTree) {
         let text = at.chunk.text();
         for line in &tree.lines {
             let span = line.mnemonic.shifted(at.start);
@@ -90,7 +103,7 @@ impl Outline {
         }
     }
 
-    fn ladder(&mut self, at: ChunkRef<'_>, tree: &LadderTree) {
+    fn ladder(&mut self, at: Here<'_>, tree: &LadderTree) {
         let text = at.chunk.text();
         if let Some(header) = &tree.header {
             let span = header.span.shifted(at.start);
@@ -114,7 +127,7 @@ impl Outline {
         }
     }
 
-    fn iec(&mut self, at: ChunkRef<'_>, tree: &IecTree) {
+    fn iec(&mut self, at: Here<'_>, tree: &IecTree) {
         let text = at.chunk.text();
         for item in &tree.items {
             let span = item.span.shifted(at.start);
@@ -172,7 +185,7 @@ impl Outline {
         self.add(leaf);
     }
 
-    fn rung(&mut self, at: ChunkRef<'_>, span: Span, first_line: Span, title: Option<&str>) {
+    fn rung(&mut self, at: Here<'_>, span: Span, first_line: Span, title: Option<&str>) {
         self.rungs += 1;
         let mut name = Message::new("outline.rung").with("number", self.rungs).render(self.language);
         if let Some(title) = title {
@@ -235,7 +248,7 @@ fn pou_kind(kind: PouKind) -> SymbolKind {
     }
 }
 
-fn variables(at: ChunkRef<'_>, tree: &IecTree, declarations: Run, kind: SymbolKind) -> Vec<SymbolNode> {
+fn variables(at: Here<'_>, tree: &IecTree, declarations: Run, kind: SymbolKind) -> Vec<SymbolNode> {
     let text = at.chunk.text();
     let declarations = declarations.of(&tree.declarations).iter();
     let nodes = declarations.flat_map(|declaration| {

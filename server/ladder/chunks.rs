@@ -102,6 +102,8 @@ struct Chunk {
 struct BlockSoFar {
     /// Whether there is any drawing line.
     started: bool,
+    /// Drawing lines that were not measured yet. Most blocks end without a line that asks for their columns.
+    waiting: Vec<Line>,
     /// The leftmost column of the drawing.
     left: Option<u32>,
     /// The rightmost column.
@@ -156,7 +158,7 @@ impl Chunk {
             _ => return line.continues,
         };
         if kind == LineKind::Drawing {
-            self.block.add(line, text);
+            self.block.add(line);
         }
         self.phase = next;
         true
@@ -176,8 +178,12 @@ impl Chunk {
 }
 
 impl BlockSoFar {
-    fn add(&mut self, line: &Line, text: &str) {
+    fn add(&mut self, line: &Line) {
         self.started = true;
+        self.waiting.push(line.clone());
+    }
+
+    fn measure(&mut self, line: Line, text: &str) {
         let mut margin = true;
         let mut has_wires = false;
         let mut last = None;
@@ -199,12 +205,15 @@ impl BlockSoFar {
             }
         }
         if has_wires {
-            self.wires = Some((line.clone(), last, None));
+            self.wires = Some((line, last, None));
         }
     }
 
     /// Whether one of `bars` on a line without anything else is a vertical wire, not a rail.
     fn is_crossed(&mut self, bars: &[u32], text: &str) -> bool {
+        for line in std::mem::take(&mut self.waiting) {
+            self.measure(line, text);
+        }
         let inner: &[u32] = match (bars, self.left) {
             ([first, rest @ ..], Some(left)) if *first <= left + 1 => rest,
             _ => bars,

@@ -33,10 +33,14 @@ pub(super) fn take_inline(grid: &mut Grid) -> Vec<InlineName> {
 /// where.
 fn inline_row(grid: &Grid, row: usize) -> Option<Vec<(usize, usize, usize, usize)>> {
     let at = |column: usize| grid.at(row, column);
+    let width = grid.width(row);
+    // Most rows of wires have no word at all.
+    if !(0..width).any(|column| starts_word(at(column))) {
+        return None;
+    }
     let mut found = Vec::new();
     let mut symbols: Vec<usize> = Vec::new();
     let mut column = 0;
-    let width = grid.width(row);
     while column < width {
         if let Some(end) = bare_symbol(grid, row, column) {
             symbols.push(column);

@@ -127,7 +127,8 @@ impl LanguageServer for Backend {
 
     async fn document_symbol(&self, params: DocumentSymbolParams) -> Result<Option<DocumentSymbolResponse>> {
         whole(params.text_document.uri, |around, place| {
-            to_proto::outline(place, ide::symbols(place.document, place.language), &around.here().uri)
+            let symbols = ide::symbols_unless(place.document, place.language, || around.is_cancelled());
+            to_proto::outline(place, symbols, &around.here().uri)
         })
         .await
     }

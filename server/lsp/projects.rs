@@ -9,7 +9,7 @@ use crate::text::{Diagnostic, Message};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use tower_lsp::ls_types::Uri;
 
 /// The projects that were read, by the canonical path of their folder.
@@ -108,6 +108,11 @@ impl Around {
     /// The same files for work that ends early once `flag` is set.
     pub fn cancellable(self, flag: &Arc<AtomicBool>) -> Around {
         Around { cancelled: flag.clone(), ..self }
+    }
+
+    /// Whether nobody waits for the answer any more.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
     }
 
     /// A file without others.

@@ -25,8 +25,9 @@
 //! ```
 
 use crate::check::{ChunkContext, Rule, Run};
-use crate::document::{Symbol, Use};
-use crate::target::{Device, DeviceKind, Form, Operand, Target};
+use crate::document::{Chunk, Symbol, Tree, Use};
+use crate::il::fx::LineKind;
+use crate::target::{Device, DeviceKind, DeviceRange, Form, Operand, Target};
 use crate::text::{Diagnostic, Message, Severity, Span};
 
 pub(super) const RULE: Rule = Rule {
@@ -50,10 +51,22 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
             );
         }
     }
+    if !declares_devices(context.chunk) {
+        return;
+    }
     for mention in context.chunk.mentions().iter().filter(|mention| mention.usage == Use::Declare) {
         if let Symbol::Device(label) = mention.symbol {
             found.extend(outside(label, label, mention.span, target));
         }
+    }
+}
+
+/// Whether any of a chunk's mentions may declare a device, which lists do with labels only.
+fn declares_devices(chunk: &Chunk) -> bool {
+    match chunk.tree() {
+        Tree::Fx(tree) => tree.lines.iter().any(|line| matches!(line.kind, LineKind::Label(_))),
+        Tree::Ladder(tree) => tree.header.as_ref().is_some_and(|header| header.label.is_some()),
+        Tree::Iec(_) => true,
     }
 }
 
@@ -84,6 +97,11 @@ fn index_of(operand: &Operand) -> Option<Device> {
 }
 
 fn outside(first: Device, last: Device, span: Span, target: &Target) -> Option<Diagnostic> {
+    let within = |range: &DeviceRange| range.first <= first.number && last.number <= range.last;
+    // Nearly all devices lie in one range, for which nothing has to be joined.
+    if target.ranges(first.kind).any(|range| within(range)) {
+        return None;
+    }
     let runs = runs(first.kind, target);
     let holds = |device: Device, &(least, most): &(u32, u32)| (least..=most).contains(&device.number);
     if runs.is_empty() || runs.iter().any(|run| holds(first, run) && holds(last, run)) {
