@@ -1,9 +1,8 @@
-// What the extension shows beside the program and draws into it: devices in use, lenses, hints, pages, the walkthrough.
+// What the extension shows beside the program and draws into it: lenses, hints, pages, the walkthrough.
 
 export const VIEW_TESTS = {
   'lenses and hints are drawn into the program': lensesAndHints,
   'a drawing in a fence of a Markdown file has its errors': fences,
-  'the devices in use stand beside the program and follow it': usage,
   'the code of an error opens the page of its rule': explain,
   'the walkthrough opens with its steps': walkthrough,
 };
@@ -31,25 +30,6 @@ async function fences(workbench) {
   await workbench.openFile('notes.md');
   await workbench.until('a squiggle', async () => (await workbench.errorSquiggles()) >= 1);
   await workbench.screenshot('19-fence');
-}
-
-async function usage(workbench) {
-  await workbench.openFile('conveyor_fx.il');
-  await workbench.focusEditor();
-  await workbench.chord('u');
-  await workbench.page.waitForSelector('.tab[data-resource-name="conveyor_fx.il.usage"]', { timeout: 15_000 });
-  const rows = async () =>
-    (await workbench.page.locator('.editor-instance').last().locator('.view-line').allInnerTexts()).map((row) => row.replaceAll('\u00a0', ' '));
-  await workbench.until('the devices', async () => (await rows()).some((row) => /^T0\s+ro\b/.test(row)));
-  await workbench.screenshot('17-devices-in-use');
-  // The keyboard is still in the program.
-  await workbench.page.keyboard.press('Control+End');
-  await workbench.page.keyboard.type('LD M7\n');
-  await workbench.until('the new device', async () => (await rows()).some((row) => /^M0\b.*r-/.test(row)));
-  for (let i = 0; i < 3; i++) {
-    await workbench.page.keyboard.press('Control+z');
-  }
-  await workbench.command('View: Close Editors in Other Groups');
 }
 
 async function explain(workbench) {
