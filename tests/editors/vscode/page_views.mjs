@@ -1,10 +1,8 @@
-// What the extension shows beside the program and draws into it: devices in use, lenses, hints, pages, the walkthrough.
+// What the extension shows beside the program and draws into it: lenses, hints, pages, the walkthrough.
 
 export const VIEW_TESTS = {
   'lenses and hints are drawn into the program': lensesAndHints,
-  'the setting of a lens takes it away': lensSetting,
   'a drawing in a fence of a Markdown file has its errors': fences,
-  'the devices in use stand beside the program and follow it': usage,
   'the code of an error opens the page of its rule': explain,
   'the walkthrough opens with its steps': walkthrough,
 };
@@ -23,50 +21,15 @@ function untilLens(workbench, words) {
 async function lensesAndHints(workbench) {
   await workbench.openFile('conveyor_fx.il');
   await untilLens(workbench, /4 steps.*Y0: 2 references/);
-  await untilLens(workbench, /next free:.*T1.*D1/);
+  await untilLens(workbench, /next free: /);
   await workbench.until('the hint', async () => (await workbench.editorLines()).some((line) => /K50.*5\ss/.test(line)));
   await workbench.screenshot('18-lenses-and-hints');
-}
-
-async function lensSetting(workbench, workspace, server) {
-  await workbench.openFile('conveyor_fx.il');
-  await untilLens(workbench, /4 steps/);
-  server.changeSetting('rungwise.codeLens.steps', false);
-  // What the editor has is shown until the text changes or the lenses are asked for anew.
-  await workbench.openFile('mixer_iec.il');
-  await workbench.openFile('conveyor_fx.il');
-  await workbench.until('lenses without steps', async () => {
-    const texts = await lensTexts(workbench);
-    return texts.some((text) => /Y0: 2 references/.test(text)) && !texts.some((text) => /steps/.test(text));
-  });
-  server.changeSetting('rungwise.codeLens.steps', undefined);
 }
 
 async function fences(workbench) {
   await workbench.openFile('notes.md');
   await workbench.until('a squiggle', async () => (await workbench.errorSquiggles()) >= 1);
   await workbench.screenshot('19-fence');
-}
-
-async function usage(workbench) {
-  await workbench.openFile('conveyor_fx.il');
-  await workbench.focusEditor();
-  await workbench.chord('u');
-  await workbench.page.waitForSelector('.tab[data-resource-name="conveyor_fx.il.usage"]', { timeout: 15_000 });
-  const rows = async () =>
-    (await workbench.page.locator('.editor-instance').last().locator('.view-line').allInnerTexts()).map((row) => row.replaceAll('\u00a0', ' '));
-  await workbench.until('the devices', async () => (await rows()).some((row) => /^T0\s+ro\b/.test(row)));
-  await workbench.screenshot('17-devices-in-use');
-  // The keyboard is still in the program.
-  await workbench.page.keyboard.press('Control+End');
-  await workbench.page.keyboard.type('LD M7\n');
-  await workbench.until('the new device', async () => (await rows()).some((row) => /^M0\b.*r-/.test(row)));
-  for (let i = 0; i < 3; i++) {
-    await workbench.page.keyboard.press('Control+z');
-  }
-  const tab = workbench.page.locator('.tab[data-resource-name="conveyor_fx.il.usage"]').first();
-  await tab.click({ button: 'middle' });
-  await tab.waitFor({ state: 'detached', timeout: 15_000 });
 }
 
 async function explain(workbench) {
