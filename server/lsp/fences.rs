@@ -375,7 +375,9 @@ fn real_names(value: &mut Value) -> bool {
         },
         Value::Array(values) => values.iter_mut().fold(false, |found, value| real_names(value) | found),
         Value::Object(map) => {
-            let mut found = map.values_mut().fold(false, |found, value| real_names(value) | found);
+            // What the server keeps with a lens or an action comes back to it as it was.
+            let shown = map.iter_mut().filter(|(key, _)| *key != "data");
+            let mut found = shown.fold(false, |found, (_, value)| real_names(value) | found);
             // The changes of a workspace edit have documents for keys.
             let named: Vec<String> = map.keys().filter(|key| key.contains(MARK)).cloned().collect();
             for key in named {
