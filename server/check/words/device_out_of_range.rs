@@ -99,7 +99,7 @@ fn index_of(operand: &Operand) -> Option<Device> {
 fn outside(first: Device, last: Device, span: Span, target: &Target) -> Option<Diagnostic> {
     let within = |range: &DeviceRange| range.first <= first.number && last.number <= range.last;
     // Nearly all devices lie in one range, for which nothing has to be joined.
-    if target.ranges(first.kind).any(|range| within(range)) {
+    if target.ranges(first.kind).any(within) {
         return None;
     }
     let runs = runs(first.kind, target);
