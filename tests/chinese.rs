@@ -303,7 +303,8 @@ const NOT_FOR_USERS: &[&str] = &[
 fn no_sentence_bypasses_the_catalogue() {
     let mut found = Vec::new();
     for path in crate::tidy::source_files() {
-        let name = path.to_string_lossy().into_owned();
+        // The folder that holds the project may be called anything.
+        let name = path.strip_prefix(env!("CARGO_MANIFEST_DIR")).unwrap().to_string_lossy().into_owned();
         let speaks = ["/ide/", "/cli/", "/lsp/", "/check/", "/project/", "/document/", "/il/", "/ladder/"];
         if !speaks.iter().any(|room| name.contains(room)) {
             continue;

@@ -1120,6 +1120,34 @@ proptest! {
 }
 
 #[test]
+fn a_rail_that_no_wire_reaches_stays() {
+    check(
+        "\
+|     timer0                           |
+|     +------+                         |
+|     | TON  |      T237               |
++----O|IN   Q|O--+---|P|------->>P5751 |
+| D0--|PT  ET|   |                     |
+|     +------+   |                     |
+|                |                     |
++--[= K^0 K0]-----+                     |
+",
+        EditKind::Negate,
+        None,
+        expect![[r#"
+            |     timer0                           |
+            |     +------+                         |
+            |     | TON  |      T237               |
+            +----O|IN   Q|O--+---|P|------->>P5751 |
+            | D0--|PT  ET|   |                     |
+            |     +------+   |                     |
+            |                |                     |
+            +--[<> K0 K0]^----+                     |
+        "#]],
+    );
+}
+
+#[test]
 fn no_edit_anywhere_in_any_text_harms() {
     let mut texts: Vec<String> = (0..MOTOR.len()).step_by(23).map(|end| MOTOR[..end].to_string()).collect();
     texts.extend((0..MOTOR.len()).step_by(31).map(|at| [&MOTOR[..at], "|\t日本\n+", &MOTOR[at..]].concat()));

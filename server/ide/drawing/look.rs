@@ -33,7 +33,8 @@ impl Look {
         let left = lines.iter().filter_map(|line| first_drawn(line)).min().unwrap_or(0);
         let double_left = lines.iter().any(|line| bars_at(line, left) > 1);
         let rail = site.rung.right_rail.iter().map(|rail| rail.value);
-        let rail = most_common(rail.collect());
+        // A rung that ends in jumps reaches no rail, though one may be drawn.
+        let rail = most_common(rail.collect()).or_else(|| rail_behind(&lines, left));
         let double_right = rail.is_some_and(|rail| lines.iter().any(|line| bars_at(line, rail) > 1));
         let widest = lines.iter().map(|line| line.chars().fold(0, column_after)).max().unwrap_or(1);
         let inner = left + u32::from(double_left);
@@ -214,6 +215,17 @@ fn bars_at(line: &str, from: u32) -> usize {
         (at, character)
     });
     cells.skip_while(|(at, _)| *at < from).take_while(|(_, character)| is_bar(*character)).count()
+}
+
+/// The column right of `left` at which every line ends in bars.
+fn rail_behind(lines: &[&str], left: u32) -> Option<u32> {
+    let mut columns = lines.iter().map(|line| {
+        let line = line.trim_end();
+        let bare = line.trim_end_matches(is_bar);
+        (bare.len() < line.len()).then(|| bare.chars().fold(0, column_after))
+    });
+    let first = columns.next()??;
+    (first > left && columns.all(|column| column == Some(first))).then_some(first)
 }
 
 fn most_common(mut values: Vec<u32>) -> Option<u32> {
