@@ -5,11 +5,12 @@
 //! off by a column or two are straightened where they have one reading. What was redrawn is read again, and taken
 //! only if the logic is the same.
 
+use super::paths::{rest_is_same, same_ways};
 use super::ragged::TWO_READINGS;
-use super::reduce::reduce;
+use super::reduce::{Shape, reduce};
 use super::symbol::width;
 use super::{
-    Drawing, Element, ElementKind, LadderTree, NameHabit, OperandPlace, Rung, Style, StyleKind, parse,
+    Drawing, Element, ElementKind, Graph, LadderTree, NameHabit, OperandPlace, Rung, Style, StyleKind, parse,
     parse_with, split,
 };
 use crate::target::Target;
@@ -130,7 +131,42 @@ pub fn format_chunk(chunk: &str, tree: &LadderTree, target: &Target, page: &Page
 /// `tree` may be one of several readings of the chunk. Nothing if the rung cannot be drawn, or is drawn so already.
 pub fn redraw(chunk: &str, tree: &LadderTree, offset: u32, target: &Target) -> Option<TextEdit> {
     let number = tree.rungs.iter().position(|rung| rung.span.start <= offset && offset < rung.span.end)?;
+    let lines = Lines::of(chunk);
     let rung = &tree.rungs[number];
+    let (formatted, edit) = redrawn(chunk, tree, number, |kind| drawing(chunk, tree, rung, &lines, kind))?;
+    same(chunk, tree, &formatted, target).then_some(edit)
+}
+
+/// The edit that draws rung `number` as `shape`, whose elements are those of `plan` with their words in `chunk`, and
+/// leaves the rest of the chunk as it is. Nothing unless, read again, power takes the same ways through it as
+/// through `plan`, and everything else says the same.
+pub fn redraw_as(
+    chunk: &str,
+    tree: &LadderTree,
+    number: usize,
+    (plan, shape): (&Graph, &Shape),
+    target: &Target,
+) -> Option<TextEdit> {
+    let lines = Lines::of(chunk);
+    let rung = tree.rungs.get(number)?;
+    may_be_redrawn(chunk, tree, rung, &lines).then_some(())?;
+    let (formatted, edit) = redrawn(chunk, tree, number, |kind| Drawing::new(shape, plan, chunk, kind))?;
+    let again = parse_with(&formatted, target, tree.names);
+    let other = again.rungs.get(number)?;
+    let is_meant = rest_is_same((tree, chunk), (&again, &formatted), number)
+        && other.number.map(|number| number.value) == rung.number.map(|number| number.value)
+        && same_ways((plan, chunk), (&other.graph, &formatted));
+    is_meant.then_some(edit)
+}
+
+/// The chunk with a new drawing of one rung, and the edit that makes it; nothing if it is drawn so already.
+fn redrawn(
+    chunk: &str,
+    tree: &LadderTree,
+    number: usize,
+    drawing: impl FnOnce(StyleKind) -> Option<Drawing>,
+) -> Option<(String, TextEdit)> {
+    let rung = tree.rungs.get(number)?;
     let lines = Lines::of(chunk);
     let is_box_drawing = |c: char| ('\u{2500}'..='\u{257F}').contains(&c);
     let inside = rung.graph.elements.iter().filter(|element| element.place == OperandPlace::Inside);
@@ -142,12 +178,14 @@ pub fn redraw(chunk: &str, tree: &LadderTree, offset: u32, target: &Target) -> O
     // Other rungs of the chunk that have their rail further right keep it there, and so does this one.
     let usual = tree.rungs.iter().flat_map(|rung| &rung.right_rail).map(|rail| rail.value + 1).max();
     let style = Style { kind, width: usual.unwrap_or(0).max(Style::default().width) };
-    let page = Page::of([(chunk, tree)], &style);
-    let text = drawing(chunk, tree, rung, &lines, kind)?.paint(page.rail)?;
+    let drawing = drawing(kind)?;
+    let mut page = Page::of([(chunk, tree)], &style);
+    page.rail = page.rail.max(drawing.rail_column_min());
+    let text = drawing.paint(page.rail)?;
     let mut drawn = vec![None; tree.rungs.len()];
     drawn[number] = Some(text);
     let formatted = lines.with_rungs(tree, &drawn, &page);
-    if formatted == chunk || !same(chunk, tree, &formatted, target) {
+    if formatted == chunk {
         return None;
     }
     // The lines that stay are no part of the edit.
@@ -157,7 +195,8 @@ pub fn redraw(chunk: &str, tree: &LadderTree, offset: u32, target: &Target) -> O
     let tail = old_rest.iter().rev().zip(new_rest.iter().rev()).take_while(|(a, b)| a == b).count();
     let (start, end) = (old.starts[common], old.starts[old.lines.len() - tail]);
     let new_end = new.starts[new.lines.len() - tail];
-    Some(TextEdit::new(Span::new(start, end), formatted.get(new.starts[common]..new_end)?))
+    let edit = TextEdit::new(Span::new(start, end), formatted.get(new.starts[common]..new_end)?);
+    Some((formatted, edit))
 }
 
 /// Whether `formatted` reads as the same rungs with the same notes, with no further problem and all comments.
@@ -239,19 +278,21 @@ fn drawing(
     lines: &Lines<'_>,
     kind: StyleKind,
 ) -> Option<Drawing> {
+    may_be_redrawn(chunk, tree, rung, lines).then_some(())?;
+    let shape = reduce(&rung.graph).ok()?;
+    let drawing = Drawing::new(&shape, &rung.graph, chunk, kind)?;
+    keeps_order(rung, &drawing).then_some(drawing)
+}
+
+/// Whether a rung says what its author meant, as far as one can see, and a new drawing of it would lose no word.
+fn may_be_redrawn(chunk: &str, tree: &LadderTree, rung: &Rung, lines: &Lines<'_>) -> bool {
     let (start, end) = lines.bytes(rung.lines);
     // An empty span marks the place between two cells.
     let inside = |span: Span| (span.start as usize) < end && (span.end.max(span.start + 1) as usize) > start;
     let doubtful = tree.problems.iter().any(|problem| !is_mended(problem) && inside(problem.span));
-    if doubtful || line_comments(chunk, tree, rung, lines).is_none() {
-        return None;
-    }
-    if !keeps_words(chunk, tree, rung, (start, end)) {
-        return None;
-    }
-    let shape = reduce(&rung.graph).ok()?;
-    let drawing = Drawing::new(&shape, &rung.graph, chunk, kind)?;
-    keeps_order(rung, &drawing).then_some(drawing)
+    !doubtful
+        && line_comments(chunk, tree, rung, lines).is_some()
+        && keeps_words(chunk, tree, rung, (start, end))
 }
 
 /// Whether the lines of a rung, at these bytes, hold all its words and no letter that is not drawn again.
