@@ -78,4 +78,7 @@ mod paths;
 pub use paths::drawn_apart;
 
 mod format;
-pub use format::{Page, format, format_chunk, redraw, redraw_as};
+pub use format::{Kept, Page, format, format_chunk, kept_rungs};
+
+mod redraw;
+pub use redraw::{redraw, redraw_as};
