@@ -4,7 +4,7 @@ use super::across;
 use super::names::{self, Thing};
 use super::rename::drawing;
 use crate::document::{At, Comments, DeviceComment, Document, ProjectView, Symbol, Tree};
-use crate::target::{Device, Operand, SymbolProblem, Symbols};
+use crate::target::{Device, Operand, Symbols};
 use crate::text::{Message, Span, TextEdit};
 use std::sync::Arc;
 
@@ -66,12 +66,7 @@ fn renamed(
 ) -> Result<SymbolRename, Message> {
     let document = view.here();
     if let Some(problem) = Symbols::problem(new, document.target()) {
-        let message = match problem {
-            SymbolProblem::NoIdentifier => Message::new("device-comments.no-identifier"),
-            SymbolProblem::Device => Message::new("device-comments.reads-as-device"),
-            SymbolProblem::Instruction => Message::new("device-comments.is-instruction"),
-        };
-        return Err(message.with("symbol", new));
+        return Err(problem.message().with("symbol", new));
     }
     if document.comments().symbols().device(new).is_some_and(|other| other != device) {
         return Err(Message::new("device-comments.symbol-twice").with("symbol", new));
@@ -109,20 +104,12 @@ fn exchanged(
             places.push((place.span, matches!(place.chunk.tree(), Tree::Ladder(_))));
         }
     });
-    places.sort_unstable();
-    places.dedup();
-    let drawn: Vec<Span> = places.iter().filter(|(_, is_drawn)| *is_drawn).map(|(span, _)| *span).collect();
-    let plain = places.iter().filter(|(_, is_drawn)| !is_drawn);
-    let mut edits: Vec<TextEdit> = plain.map(|(span, _)| TextEdit::new(*span, new)).collect();
     let no_room = |span: Span| {
         let line = document.line_of(span.start as usize) + 1;
         Message::new("rename.drawing").with("name", new).with("line", line)
     };
-    edits.extend(drawing::edits(document, &drawn, new).map_err(no_room)?);
-    edits.sort_by_key(|edit| edit.span);
     let reader = Document::with_comments("", document.notation(), document.target(), comments.clone());
-    drawing::still_say_the_same(document, &reader, &edits, &drawn).map_err(no_room)?;
-    Ok(edits)
+    drawing::written(document, &reader, places, new).map_err(no_room)
 }
 
 /// The edit of the comments file that goes with the renaming of the device at `offset` to `new`.

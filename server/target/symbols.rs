@@ -1,6 +1,7 @@
 //! The symbols that a project gives to devices, and words read with them.
 
 use super::{Device, Form, Operand, Target};
+use crate::text::{Message, folded};
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 use std::sync::Arc;
@@ -20,6 +21,17 @@ pub enum SymbolProblem {
     Device,
     /// It is a mnemonic, or a mark of drawings such as the `S` of a set coil.
     Instruction,
+}
+
+impl SymbolProblem {
+    /// What people are told, with the place `symbol` for the name.
+    pub fn message(self) -> Message {
+        Message::new(match self {
+            SymbolProblem::NoIdentifier => "device-comments.no-identifier",
+            SymbolProblem::Device => "device-comments.reads-as-device",
+            SymbolProblem::Instruction => "device-comments.is-instruction",
+        })
+    }
 }
 
 /// Words that mean something in the brackets of a drawing.
@@ -76,13 +88,5 @@ impl Target {
             (Operand::Invalid(_), Some(symbols)) => symbols.device(word).map_or(operand, Operand::Device),
             _ => operand,
         }
-    }
-}
-
-fn folded(name: &str) -> SmolStr {
-    if name.is_ascii() {
-        SmolStr::from(name.to_ascii_lowercase())
-    } else {
-        SmolStr::from(name.to_lowercase())
     }
 }

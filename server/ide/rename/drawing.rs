@@ -2,7 +2,8 @@
 //! of its line stays in its column.
 
 use crate::document::{Chunk, Document, Mention, Tree};
-use crate::text::{Encoding, LineColumn, Span, TextEdit, cell_width};
+use crate::ide::changes;
+use crate::text::{Span, TextEdit, text_width};
 
 /// What may be shortened and lengthened.
 const WIRES: &[char] = &['-', '─', '━', '═', '_'];
@@ -11,29 +12,52 @@ const WIRES: &[char] = &['-', '─', '━', '═', '_'];
 ///
 /// # Errors
 /// With the place for which there is no room.
-pub(in crate::ide) fn edits(document: &Document, places: &[Span], new: &str) -> Result<Vec<TextEdit>, Span> {
-    let line_of = |span: &Span| document.position(span.start as usize, Encoding::Utf8).line;
+fn edits(document: &Document, places: &[Span], new: &str) -> Result<Vec<TextEdit>, Span> {
+    let line_of = |span: &Span| document.line_of(span.start as usize);
     let mut edits = Vec::new();
     for run in places.chunk_by(|left, right| line_of(left) == line_of(right)) {
-        let line = line_of(&run[0]);
-        let start = document.offset(LineColumn { line, column: 0 }, Encoding::Utf8);
-        let end = document.offset(LineColumn { line, column: u32::MAX }, Encoding::Utf8);
-        let old = document.slice(Span::new(start, end));
+        let (_, start, line) = document.line_at(run[0].start as usize);
+        let old = line.trim_end_matches(['\n', '\r']);
         let inside: Vec<Span> = run
             .iter()
             .map(|span| Span::new(span.start as usize - start, span.end as usize - start))
             .collect();
-        let Some(redrawn) = redrawn(&old, &inside, new) else {
+        let Some(redrawn) = redrawn(old, &inside, new) else {
             return Err(run[0]);
         };
-        edits.push(smallest(&old, &redrawn, start));
+        edits.extend(changes::smallest(old, &redrawn, start));
     }
     Ok(edits)
 }
 
+/// The edits that write `new` at `places`, each with whether it stands in a drawing; read as `reader` reads, the
+/// drawings say the same as before.
+///
+/// # Errors
+/// With the first place that has no room, or after whose edit a drawing would say something else.
+pub(in crate::ide) fn written(
+    document: &Document,
+    reader: &Document,
+    mut places: Vec<(Span, bool)>,
+    new: &str,
+) -> Result<Vec<TextEdit>, Span> {
+    places.sort_unstable();
+    places.dedup();
+    let of_kind = |drawn: bool| {
+        let chosen = places.iter().filter(move |(_, is_drawn)| *is_drawn == drawn);
+        chosen.map(|(span, _)| *span).collect::<Vec<_>>()
+    };
+    let drawn = of_kind(true);
+    let mut all: Vec<TextEdit> = of_kind(false).into_iter().map(|span| TextEdit::new(span, new)).collect();
+    all.extend(edits(document, &drawn, new)?);
+    all.sort_by_key(|edit| edit.span);
+    still_say_the_same(document, reader, &all, &drawn)?;
+    Ok(all)
+}
+
 /// Whether the drawings touched by `edits`, read as those of `reader` are, say the same but for the renamed places.
 /// Names belong to elements by their columns, so only reading them again can tell.
-pub(in crate::ide) fn still_say_the_same(
+fn still_say_the_same(
     document: &Document,
     reader: &Document,
     edits: &[TextEdit],
@@ -82,7 +106,7 @@ fn redrawn(line: &str, places: &[Span], new: &str) -> Option<String> {
 fn replaced(line: &str, place: Span, new: &str) -> Option<String> {
     let (head, old, tail) =
         (line.get(..place.start as usize)?, line.get(place.range())?, line.get(place.end as usize..)?);
-    let (old_width, new_width) = (width(old), width(new));
+    let (old_width, new_width) = (text_width(old), text_width(new));
     // A label before its colon, and a name with nothing drawn behind it, move nothing.
     let is_free = tail.trim().is_empty() || (head.trim().is_empty() && tail.trim_start().starts_with(':'));
     if is_free || old_width == new_width {
@@ -154,21 +178,4 @@ fn shortened_end(text: &str, count: usize) -> Option<&str> {
     let fill = text.chars().next_back().filter(|last| *last == ' ' || WIRES.contains(last))?;
     let run = text.chars().rev().take_while(|character| *character == fill).count();
     (run > count).then(|| text.get(..text.len() - count * fill.len_utf8())).flatten()
-}
-
-fn width(text: &str) -> usize {
-    text.chars().map(cell_width).sum()
-}
-
-/// The one edit that makes `new` of `old`, which starts at `start`, without what both have in common at their ends.
-fn smallest(old: &str, new: &str, start: usize) -> TextEdit {
-    let head: usize = old
-        .chars()
-        .zip(new.chars())
-        .take_while(|(left, right)| left == right)
-        .map(|(c, _)| c.len_utf8())
-        .sum();
-    let tails = old[head..].chars().rev().zip(new[head..].chars().rev());
-    let tail: usize = tails.take_while(|(left, right)| left == right).map(|(c, _)| c.len_utf8()).sum();
-    TextEdit::new(Span::new(start + head, start + old.len() - tail), &new[head..new.len() - tail])
 }

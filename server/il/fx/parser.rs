@@ -2,7 +2,7 @@
 
 use super::lexer::Token;
 use super::{FxLine, FxTree, LineKind};
-use crate::target::{Accepts, DeviceKind, Form, Model, Operand, OperandProblem, Target};
+use crate::target::{Accepts, Form, Model, Operand, OperandProblem, Target};
 use crate::text::{Diagnostic, Message, Span, Spanned, TextEdit};
 use logos::Logos;
 
@@ -328,9 +328,7 @@ fn label(word: &str, model: Model) -> Option<LineKind> {
         return None;
     }
     match Operand::read(word, model) {
-        Operand::Device(device) if matches!(device.kind, DeviceKind::P | DeviceKind::I) => {
-            Some(LineKind::Label(device))
-        }
+        Operand::Device(device) if device.kind.is_pointer() => Some(LineKind::Label(device)),
         _ => None,
     }
 }
