@@ -300,8 +300,11 @@ impl Parser<'_> {
     /// A word with characters that no token contains: a symbol of the project, or unreadable.
     fn read_glued(&self, span: Span) -> Operand {
         match self.target.read(span.of(self.chunk)) {
-            Operand::Device(device) => Operand::Device(device),
-            _ => Operand::Invalid(OperandProblem::Unreadable),
+            Operand::Invalid(problem @ (OperandProblem::SymbolForm(_) | OperandProblem::SymbolTwice)) => {
+                Operand::Invalid(problem)
+            }
+            Operand::Invalid(_) => Operand::Invalid(OperandProblem::Unreadable),
+            operand => operand,
         }
     }
 
