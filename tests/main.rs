@@ -50,3 +50,4 @@ mod target_fx;
 mod target_fx_applied;
 mod target_iec;
 mod tidy;
+mod token_scopes;

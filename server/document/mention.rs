@@ -4,7 +4,7 @@ use super::{Chunk, Operation, Tree};
 use crate::il::fx::LineKind;
 use crate::ladder::{Element, ElementKind, LadderTree};
 use crate::target::{Access, Device, DeviceKind, DirectAddress, Model, Operand};
-use crate::text::Span;
+use crate::text::{Span, folded};
 use smol_str::SmolStr;
 
 /// A name at a place.
@@ -75,20 +75,9 @@ impl Symbol {
     /// The label called `name`: a pointer of the PLC where it reads as one, as in FX programs, else an IEC label.
     pub fn label(name: &str) -> Symbol {
         match Operand::read(name, Model::Fx3u) {
-            Operand::Device(device) if matches!(device.kind, DeviceKind::P | DeviceKind::I) => {
-                Symbol::Device(device)
-            }
+            Operand::Device(device) if device.kind.is_pointer() => Symbol::Device(device),
             _ => Symbol::Label(folded(name)),
         }
-    }
-}
-
-/// A name without letter case.
-pub(super) fn folded(name: &str) -> SmolStr {
-    if name.is_ascii() {
-        SmolStr::from(name.to_ascii_lowercase())
-    } else {
-        SmolStr::from(name.to_lowercase())
     }
 }
 

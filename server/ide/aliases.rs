@@ -4,7 +4,7 @@ use super::across;
 use super::names::{self, Thing};
 use super::rename::drawing::{self, Misfit, Place};
 use crate::document::{At, Comments, DeviceComment, Document, ProjectView, Symbol, Tree};
-use crate::target::{Device, Operand, SymbolProblem, Symbols};
+use crate::target::{Device, Operand, Symbols};
 use crate::text::{Message, Span, TextEdit};
 use std::sync::Arc;
 
@@ -66,12 +66,7 @@ fn renamed(
 ) -> Result<SymbolRename, Message> {
     let document = view.here();
     if let Some(problem) = Symbols::problem(new, document.target()) {
-        let message = match problem {
-            SymbolProblem::NoIdentifier => Message::new("device-comments.no-identifier"),
-            SymbolProblem::Device => Message::new("device-comments.reads-as-device"),
-            SymbolProblem::Instruction => Message::new("device-comments.is-instruction"),
-        };
-        return Err(message.with("symbol", new));
+        return Err(problem.message().with("symbol", new));
     }
     if let Some(other) = document.comments().symbols().device(new).filter(|other| *other != device) {
         return Err(Message::new("alias.taken").with("symbol", new).with("device", other));
@@ -114,20 +109,12 @@ fn exchanged(
             _ => plain.push(place.span),
         }
     });
-    drawn.sort_unstable();
-    drawn.dedup();
-    plain.sort_unstable();
-    plain.dedup();
-    let mut edits: Vec<TextEdit> = plain.iter().map(|span| TextEdit::new(*span, new)).collect();
     let misfit = |misfit: Misfit| {
         let line = document.line_of(misfit.place().start as usize) + 1;
         misfit.fill(Message::new(misfit.keys()[0])).with("name", new).with("line", line)
     };
-    edits.extend(drawing::edits(document, &drawn).map_err(misfit)?);
-    edits.sort_by_key(|edit| edit.span);
     let reader = Document::with_comments("", document.notation(), document.target(), comments.clone());
-    drawing::still_say_the_same(document, &reader, &edits, &drawn, new).map_err(misfit)?;
-    Ok(edits)
+    drawing::written(document, &reader, (plain, drawn), new).map_err(misfit)
 }
 
 /// The edit of the comments file that goes with the renaming of the device at `offset` to `new`.

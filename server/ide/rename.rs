@@ -7,7 +7,7 @@ use super::names::{self, Named, Thing};
 use crate::document::{At, Document, Mention, ProjectView, Symbol, Tree};
 use crate::target::iec::{is_identifier, is_keyword};
 use crate::target::{Device, DeviceKind, DirectAddress, Operand, Target};
-use crate::text::{Encoding, Message, Span, TextEdit};
+use crate::text::{Message, Span, TextEdit, folded};
 use drawing::{Misfit, Place};
 use smol_str::SmolStr;
 
@@ -99,21 +99,13 @@ impl<'a> Change<'_, 'a> {
             let message = self.placed(misfit.keys(), file, misfit.place());
             misfit.fill(message).with("name", written)
         };
-        let mut drawn = drawn.map_err(misfit)?;
-        drawn.sort_unstable();
-        drawn.dedup();
-        plain.sort_unstable();
-        plain.dedup();
-        let mut edits: Vec<TextEdit> = plain.iter().map(|span| TextEdit::new(*span, written)).collect();
-        edits.extend(drawing::edits(file.document, &drawn).map_err(misfit)?);
-        edits.sort_by_key(|edit| edit.span);
-        drawing::still_say_the_same(file.document, file.document, &edits, &drawn, written).map_err(misfit)?;
-        Ok(edits)
+        let places = (plain, drawn.map_err(misfit)?);
+        drawing::written(file.document, file.document, places, written).map_err(misfit)
     }
 
     /// The first of two messages for a place in the file that is looked at, the second for another file.
     fn placed(&self, [here, elsewhere]: [&'static str; 2], file: &InFile<'a>, span: Span) -> Message {
-        let line = line_of(file.document, span);
+        let line = file.document.line_of(span.start as usize) + 1;
         if file.file == self.view.here_number() {
             return Message::new(here).with("line", line);
         }
@@ -199,8 +191,7 @@ impl<'a> Change<'_, 'a> {
         if is_keyword(new) {
             return Err(Message::new("rename.keyword").with("name", new));
         }
-        let folded =
-            SmolStr::from(if new.is_ascii() { new.to_ascii_lowercase() } else { new.to_lowercase() });
+        let folded = folded(new);
         let is_same = match thing {
             Thing::Variable { name, .. }
             | Thing::Label { name, .. }
@@ -274,8 +265,4 @@ fn first_place(document: &Document, thing: &Thing) -> Option<Span> {
         first.get_or_insert(place.span);
     });
     first
-}
-
-fn line_of(document: &Document, span: Span) -> u32 {
-    document.position(span.start as usize, Encoding::Utf8).line + 1
 }

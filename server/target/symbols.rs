@@ -1,6 +1,7 @@
 //! The symbols that a project gives to devices, and words read with them.
 
 use super::{Device, Form, Operand, OperandProblem, Target};
+use crate::text::{Message, folded};
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 use std::sync::Arc;
@@ -20,6 +21,17 @@ pub enum SymbolProblem {
     Device,
     /// It is a mnemonic, or a mark of drawings such as the `S` of a set coil.
     Instruction,
+}
+
+impl SymbolProblem {
+    /// What people are told, with the place `symbol` for the name.
+    pub fn message(self) -> Message {
+        Message::new(match self {
+            SymbolProblem::NoIdentifier => "device-comments.no-identifier",
+            SymbolProblem::Device => "device-comments.reads-as-device",
+            SymbolProblem::Instruction => "device-comments.is-instruction",
+        })
+    }
 }
 
 /// Words that mean something in the brackets of a drawing.
@@ -123,12 +135,4 @@ fn suffix_length(word: &str) -> usize {
     let digits = word.bytes().rev().take_while(u8::is_ascii_digit).count();
     let is_index = word[..word.len() - digits].ends_with(['V', 'v', 'Z', 'z']);
     if digits > 0 && is_index { digits + 1 } else { 0 }
-}
-
-fn folded(name: &str) -> SmolStr {
-    if name.is_ascii() {
-        SmolStr::from(name.to_ascii_lowercase())
-    } else {
-        SmolStr::from(name.to_lowercase())
-    }
 }

@@ -44,7 +44,7 @@ pub(super) const RULE: Rule = Rule {
 
 fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     // What stands behind an unknown word may be anything; the word itself is reported.
-    let known = context.chunk.operations().filter(|operation| operation.form.is_some());
+    let known = context.doubtful.iter().filter(|operation| operation.form.is_some());
     for operand in known.flat_map(|operation| operation.operands) {
         let word = operand.span.of(context.chunk.text());
         if let Some(message) = symbol_problem(&operand.value, word) {

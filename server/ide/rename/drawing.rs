@@ -2,8 +2,9 @@
 //! of its line stays in its column.
 
 use crate::document::{Chunk, Document, Mention, Symbol, Tree};
+use crate::ide::changes;
 use crate::ide::names::Named;
-use crate::text::{Encoding, LineColumn, Message, Span, TextEdit, cell_width};
+use crate::text::{Message, Span, TextEdit, text_width};
 
 /// What may be shortened and lengthened.
 const WIRES: &[char] = &['-', '─', '━', '═', '_'];
@@ -90,7 +91,7 @@ fn parted(new: &str, old: &[&str]) -> Option<Vec<String>> {
         return (!new.is_empty()).then(|| vec![new.to_string()]);
     }
     let excess = |parts: &[String]| -> usize {
-        parts.iter().zip(old).map(|(part, old)| width(part).saturating_sub(width(old))).sum()
+        parts.iter().zip(old).map(|(part, old)| text_width(part).saturating_sub(text_width(old))).sum()
     };
     let cuts = new.match_indices('_').take(MOST_CUTS);
     let ways = cuts.filter(|(at, _)| *at > 0).filter_map(|(at, _)| {
@@ -106,14 +107,12 @@ fn parted(new: &str, old: &[&str]) -> Option<Vec<String>> {
 ///
 /// # Errors
 /// With the place for which there is no room.
-pub(in crate::ide) fn edits(document: &Document, places: &[Place]) -> Result<Vec<TextEdit>, Misfit> {
-    let line_of = |place: &Place| document.position(place.span.start as usize, Encoding::Utf8).line;
+fn edits(document: &Document, places: &[Place]) -> Result<Vec<TextEdit>, Misfit> {
+    let line_of = |place: &Place| document.line_of(place.span.start as usize);
     let mut edits = Vec::new();
     for run in places.chunk_by(|left, right| line_of(left) == line_of(right)) {
-        let line = line_of(&run[0]);
-        let start = document.offset(LineColumn { line, column: 0 }, Encoding::Utf8);
-        let end = document.offset(LineColumn { line, column: u32::MAX }, Encoding::Utf8);
-        let old = document.slice(Span::new(start, end));
+        let (_, start, line) = document.line_at(run[0].span.start as usize);
+        let old = line.trim_end_matches(['\n', '\r']);
         // From right to left, so that offsets stay valid.
         let mut redrawn = old.to_string();
         for place in run.iter().rev() {
@@ -121,9 +120,31 @@ pub(in crate::ide) fn edits(document: &Document, places: &[Place]) -> Result<Vec
             let wider = replaced(&redrawn, inside, &place.text);
             redrawn = wider.ok_or_else(|| Misfit::NoRoom(place.span, neighbour(&redrawn, inside)))?;
         }
-        edits.push(smallest(&old, &redrawn, start));
+        edits.extend(changes::smallest(old, &redrawn, start));
     }
     Ok(edits)
+}
+
+/// The edits that write `new` at the places `plain` and what belongs there at those of `drawn`; read as `reader` reads,
+/// the drawings say the same as before.
+///
+/// # Errors
+/// With the first place where that cannot be.
+pub(in crate::ide) fn written(
+    document: &Document,
+    reader: &Document,
+    (mut plain, mut drawn): (Vec<Span>, Vec<Place>),
+    new: &str,
+) -> Result<Vec<TextEdit>, Misfit> {
+    plain.sort_unstable();
+    plain.dedup();
+    drawn.sort_unstable();
+    drawn.dedup();
+    let mut all: Vec<TextEdit> = plain.into_iter().map(|span| TextEdit::new(span, new)).collect();
+    all.extend(edits(document, &drawn)?);
+    all.sort_by_key(|edit| edit.span);
+    still_say_the_same(document, reader, &all, &drawn, new)?;
+    Ok(all)
 }
 
 /// What stands nearest to the right of `place` in `line`, wire aside; to its left if there is nothing.
@@ -139,7 +160,7 @@ fn neighbour(line: &str, place: Span) -> String {
 
 /// Whether the drawings touched by `edits`, read as those of `reader` are, say the same but for the renamed places.
 /// Names belong to elements by their columns, so only reading them again can tell. A variable must have become `new`.
-pub(in crate::ide) fn still_say_the_same(
+fn still_say_the_same(
     document: &Document,
     reader: &Document,
     edits: &[TextEdit],
@@ -187,7 +208,7 @@ pub(in crate::ide) fn still_say_the_same(
 fn replaced(line: &str, place: Span, new: &str) -> Option<String> {
     let (head, old, tail) =
         (line.get(..place.start as usize)?, line.get(place.range())?, line.get(place.end as usize..)?);
-    let (old_width, new_width) = (width(old), width(new));
+    let (old_width, new_width) = (text_width(old), text_width(new));
     // A label before its colon, and a name with nothing drawn behind it, move nothing.
     let is_free = tail.trim().is_empty() || (head.trim().is_empty() && tail.trim_start().starts_with(':'));
     if is_free || old_width == new_width {
@@ -259,21 +280,4 @@ fn shortened_end(text: &str, count: usize) -> Option<&str> {
     let fill = text.chars().next_back().filter(|last| *last == ' ' || WIRES.contains(last))?;
     let run = text.chars().rev().take_while(|character| *character == fill).count();
     (run > count).then(|| text.get(..text.len() - count * fill.len_utf8())).flatten()
-}
-
-fn width(text: &str) -> usize {
-    text.chars().map(cell_width).sum()
-}
-
-/// The one edit that makes `new` of `old`, which starts at `start`, without what both have in common at their ends.
-fn smallest(old: &str, new: &str, start: usize) -> TextEdit {
-    let head: usize = old
-        .chars()
-        .zip(new.chars())
-        .take_while(|(left, right)| left == right)
-        .map(|(c, _)| c.len_utf8())
-        .sum();
-    let tails = old[head..].chars().rev().zip(new[head..].chars().rev());
-    let tail: usize = tails.take_while(|(left, right)| left == right).map(|(c, _)| c.len_utf8()).sum();
-    TextEdit::new(Span::new(start + head, start + old.len() - tail), &new[head..new.len() - tail])
 }
