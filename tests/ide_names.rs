@@ -186,7 +186,7 @@ fn a_variable_of_a_ladder_without_header_has_the_type_of_its_first_use() {
     let all = Span::new(0, text.len());
     let hints: Vec<(u32, String)> = ide::inlay_hints(&document, all, EN)
         .into_iter()
-        .map(|hint| (document.line_of(hint.offset) as u32, hint.label))
+        .map(|hint| (document.line_of(hint.offset), hint.label))
         .collect();
     let expected = [
         (0, "start, stop, motor: BOOL"),

@@ -47,7 +47,7 @@ fn implicit_variables(
 ) {
     let old = hints.len();
     for (span, kind) in implicit::first_uses(document, first, last) {
-        let line = document.line_of(span.start as usize) as u32;
+        let line = document.line_of(span.start as usize);
         let offset = document.offset(LineColumn { line, column: u32::MAX }, Encoding::Utf8);
         let name = document.slice(span);
         // Names of one line and type share a hint.

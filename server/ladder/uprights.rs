@@ -119,8 +119,10 @@ impl Uprights {
                 let token = &line[number];
                 number != cell.token && token.is_drawn() && !has_role(cell.row, number, Role::LeftRail)
             };
-            let named = line.iter().any(|token| token.what == What::Word);
-            named && cell.token + 1 == line.len() && !(0..line.len()).any(is_other)
+            // First what costs nothing: a row may have thousands of bars.
+            cell.token + 1 == line.len()
+                && line.iter().any(|token| token.what == What::Word)
+                && !(0..line.len()).any(is_other)
         };
         let is_railed = |row: &usize| {
             let uprights = || {

@@ -85,14 +85,10 @@ pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
 
 /// The names of the elements that a shape has more than once.
 fn twice(drawn: &Drawn<'_>, graph: &Graph, shape: &Shape) -> String {
-    let all = shape.elements();
-    let mut names: Vec<String> = Vec::new();
-    for (number, id) in all.iter().enumerate().filter(|(number, id)| all[..*number].contains(*id)) {
-        if !all[..number].iter().filter(|other| *other == id).nth(1).is_some() {
-            names.push(drawn.name(graph.element(*id)));
-        }
-    }
-    names.join(", ")
+    let mut all = shape.elements();
+    all.sort_unstable();
+    let several = all.chunk_by(|left, right| left == right).filter(|run| run.len() > 1);
+    several.map(|run| drawn.name(graph.element(run[0]))).collect::<Vec<_>>().join(", ")
 }
 
 /// The middle cell of the bridge's vertical wire.
