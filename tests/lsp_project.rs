@@ -155,6 +155,17 @@ fn place(name: &str, line: u64, character: u64) -> (String, u64, u64) {
     (name.to_string(), line, character)
 }
 
+/// A client that has the program and the block of `folder` open, both published.
+fn with_both_open(folder: &Folder) -> (Client, String, String) {
+    let (main, fill) = (folder.uri("main.il"), folder.uri("fill.lad"));
+    let mut client = Client::start();
+    client.open(&main, "plc-il", MAIN);
+    client.open(&fill, "ladder", FILL);
+    published(&mut client, &main);
+    published(&mut client, &fill);
+    (client, main, fill)
+}
+
 #[test]
 fn iec_files_know_what_the_others_declare() {
     let folder = iec();
@@ -184,12 +195,7 @@ fn iec_files_know_what_the_others_declare() {
 #[test]
 fn a_keystroke_costs_nothing_in_other_files() {
     let folder = iec();
-    let (main, fill) = (folder.uri("main.il"), folder.uri("fill.lad"));
-    let mut client = Client::start();
-    client.open(&main, "plc-il", MAIN);
-    client.open(&fill, "ladder", FILL);
-    published(&mut client, &main);
-    published(&mut client, &fill);
+    let (mut client, main, fill) = with_both_open(&folder);
     client.stays_silent(QUIET, |_| false);
     while client.take(is_about(&main)).is_some() {}
     client.change(&fill, 2, (11, 13), (11, 15), "-|");
@@ -364,12 +370,7 @@ fn renamed(edit: &Value, texts: &[(&str, &str)]) -> Vec<String> {
 #[test]
 fn rename_changes_all_files() {
     let folder = iec();
-    let (main, fill) = (folder.uri("main.il"), folder.uri("fill.lad"));
-    let mut client = Client::start();
-    client.open(&main, "plc-il", MAIN);
-    client.open(&fill, "ladder", FILL);
-    published(&mut client, &main);
-    published(&mut client, &fill);
+    let (mut client, main, _) = with_both_open(&folder);
     let mut rename = |uri: &str, line, character, new: &str| {
         let mut params = at(uri, line, character);
         params["newName"] = json!(new);

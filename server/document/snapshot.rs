@@ -140,12 +140,6 @@ impl Document {
         Chunk::new(text, &self.dialect, true)
     }
 
-    /// The same text read as another language or for another target.
-    pub fn reread(&self, notation: Notation, target: &'static Target) -> Document {
-        let read = Document::with_comments(&self.text(), notation, target, self.comments.clone());
-        Document { outer: self.outer.clone(), ..read }
-    }
-
     /// The same text with other comments; it is read anew only if the symbols differ.
     pub fn commented(&self, comments: &Arc<Comments>) -> Document {
         if self.comments.symbols() != comments.symbols() {
