@@ -155,6 +155,19 @@ fn place(name: &str, line: u64, character: u64) -> (String, u64, u64) {
     (name.to_string(), line, character)
 }
 
+#[test]
+fn a_file_that_is_not_open_is_read_in_its_encoding() {
+    let folder = iec();
+    let [globals, main] = [GLOBALS, MAIN].map(|text| text.replace("Level", "电机"));
+    let bytes = encoding_rs::GBK.encode(&globals).0.into_owned();
+    std::fs::write(folder.path("globals.il"), bytes).unwrap();
+    let mut client = Client::start();
+    client.open(&folder.uri("main.il"), "plc-il", &main);
+    awaits(&mut client, &folder.uri("main.il"), &[]);
+    let found = client.request("textDocument/definition", at(&folder.uri("main.il"), 14, 7));
+    assert_eq!(places(&found["result"]), [place("globals.il", 1, 4)]);
+}
+
 /// A client that has the program and the block of `folder` open, both published.
 fn with_both_open(folder: &Folder) -> (Client, String, String) {
     let (main, fill) = (folder.uri("main.il"), folder.uri("fill.lad"));
