@@ -279,7 +279,13 @@ impl LanguageServer for Backend {
         let settings = settings();
         let resolves = self.resolves_actions.load(Ordering::Relaxed);
         whole(params.text_document.uri.clone(), move |around, place| {
-            let (open, found) = (around.here(), around.findings());
+            let open = around.here();
+            let only = params.context.only.as_deref();
+            // To find what could be mended, all rules run.
+            let found = match editing::is_wanted(&CodeActionKind::QUICKFIX, only) {
+                true => around.findings(),
+                false => Vec::new(),
+            };
             let fixes = ide::fixes(&found, place.span(params.range)).into_iter();
             let fixes = fixes.map(|fix| features::quick_fix(around, place, &fix));
             let edits = editing::actions(open, place, &params, settings.style(&open.manifest), resolves);
