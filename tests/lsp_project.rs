@@ -168,6 +168,36 @@ fn a_file_that_is_not_open_is_read_in_its_encoding() {
     assert_eq!(places(&found["result"]), [place("globals.il", 1, 4)]);
 }
 
+#[test]
+fn a_file_belongs_to_the_innermost_of_projects_in_each_other() {
+    let manifest = "target = \"fx2n\"\n";
+    let names: Vec<String> = (0..8).map(|depth| "in/".repeat(depth)).collect();
+    let folder = fx();
+    for name in &names[1..] {
+        folder.write(&format!("{name}rungwise.toml"), manifest);
+    }
+    let inner = names.last().unwrap();
+    let main = folder.uri(&format!("{inner}main.il"));
+    folder.write(&format!("{inner}main.il"), FX_MAIN);
+    folder.write(&format!("{inner}subs.lad"), FX_SUBS);
+    let mut client = Client::spawn();
+    let folders = json!([{"uri": folder.uri(""), "name": "plant"}]);
+    client.request("initialize", json!({"processId": null, "capabilities": {}, "workspaceFolders": folders}));
+    client.notify("initialized", json!({}));
+    client.open(&main, "plc-il", FX_MAIN);
+    published(&mut client, &main);
+    for _ in 0..100 {
+        let prepared = client.request("textDocument/prepareCallHierarchy", at(&main, 1, 6));
+        let item = prepared["result"][0].clone();
+        let incoming = client.request("callHierarchy/incomingCalls", json!({"item": item}));
+        if incoming["result"][0]["from"]["name"] == json!("main.il") {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    panic!("the file of the call is in no project");
+}
+
 /// A client that has the program and the block of `folder` open, both published.
 fn with_both_open(folder: &Folder) -> (Client, String, String) {
     let (main, fill) = (folder.uri("main.il"), folder.uri("fill.lad"));
