@@ -7,7 +7,7 @@ use crate::ladder::{self, LadderTree, NameHabit};
 use crate::target::Target;
 use crate::text::{Diagnostic, Span};
 use std::ops::Deref;
-use std::sync::{Arc, LazyLock, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// A piece of a document that can be read by itself. Its offsets start at 0.
 ///
@@ -91,7 +91,19 @@ impl Deref for Reading<'_> {
 }
 
 /// Diagnostics and the key under which they hold.
-pub(super) type Kept = Mutex<Option<(u64, Arc<[Diagnostic]>)>>;
+pub(super) type Kept = Mutex<Option<(u64, Found)>>;
+
+/// Diagnostics that are shared. Most chunks have none, and threads that look at many of those share nothing.
+#[derive(Clone, Debug, Default)]
+pub struct Found(Option<Arc<[Diagnostic]>>);
+
+impl Deref for Found {
+    type Target = [Diagnostic];
+
+    fn deref(&self) -> &[Diagnostic] {
+        self.0.as_deref().unwrap_or_default()
+    }
+}
 
 /// What a chunk says.
 #[derive(Clone, PartialEq, Debug)]
@@ -256,7 +268,7 @@ impl Chunk {
         key: u64,
         with_mentions: bool,
         find: impl FnOnce(&Chunk) -> Vec<Diagnostic>,
-    ) -> Arc<[Diagnostic]> {
+    ) -> Found {
         kept(&self.known.found, key, || {
             let reading = self.reading();
             let found = find(&reading);
@@ -270,16 +282,14 @@ impl Chunk {
 }
 
 /// The value kept under `key`, or a new one. A panic elsewhere leaves the slot usable: it holds a whole value or none.
-pub(super) fn kept(slot: &Kept, key: u64, make: impl FnOnce() -> Vec<Diagnostic>) -> Arc<[Diagnostic]> {
+pub(super) fn kept(slot: &Kept, key: u64, make: impl FnOnce() -> Vec<Diagnostic>) -> Found {
     if let Some((kept_key, value)) = &*locked(slot)
         && *kept_key == key
     {
         return value.clone();
     }
-    let value: Arc<[Diagnostic]> = match make() {
-        found if found.is_empty() => NOTHING.clone(),
-        found => found.into(),
-    };
+    let made = make();
+    let value = Found((!made.is_empty()).then(|| made.into()));
     *locked(slot) = Some((key, value.clone()));
     value
 }
@@ -289,12 +299,9 @@ pub(super) fn is_kept(slot: &Kept, key: u64) -> bool {
     matches!(&*locked(slot), Some((kept_key, _)) if *kept_key == key)
 }
 
-fn locked(slot: &Kept) -> MutexGuard<'_, Option<(u64, Arc<[Diagnostic]>)>> {
+fn locked(slot: &Kept) -> MutexGuard<'_, Option<(u64, Found)>> {
     slot.lock().unwrap_or_else(PoisonError::into_inner)
 }
-
-/// Most chunks have no diagnostics, and share that.
-static NOTHING: LazyLock<Arc<[Diagnostic]>> = LazyLock::new(|| Arc::new([]));
 
 /// Ends of the chunks of `text`, which starts at a chunk boundary.
 pub(super) fn split(text: &str, notation: Notation) -> Vec<usize> {

@@ -183,7 +183,11 @@ fn device_spans(text: &str, operand: &Operand, span: Span) -> (Span, Span) {
     };
     let end = index.unwrap_or(word.len());
     let start = match operand {
-        Operand::Nibbles { .. } => word.find(['X', 'x', 'Y', 'y', 'M', 'm', 'S', 's']).unwrap_or(0).min(end),
+        // Behind `K4` stands a device or its symbol.
+        Operand::Nibbles { .. } => {
+            let digits = word.bytes().skip(1).take_while(u8::is_ascii_digit).count();
+            (1 + digits).min(end)
+        }
         _ => 0,
     };
     (at(start, end), at(end, word.len()))

@@ -11,7 +11,7 @@ mod snapshot;
 pub use snapshot::{ChunkRef, Document, Edit, LIMIT_BYTES};
 
 mod chunk;
-pub use chunk::{Chunk, Reading, Tree};
+pub use chunk::{Chunk, Found, Reading, Tree};
 
 mod exported;
 

@@ -148,7 +148,7 @@ impl Scopes {
     pub(super) fn of(document: &Document) -> Scopes {
         let mut scopes = Scopes::default();
         let mut hasher = FxHasher::default();
-        for at in document.chunks().filter(|at| at.chunk.declares()) {
+        for (at, _) in document.iec_chunks().filter(|(at, _)| at.chunk.declares()) {
             at.chunk.text().hash(&mut hasher);
             if let Tree::Iec(tree) = at.chunk.tree() {
                 scopes.add(at.chunk.text(), tree);

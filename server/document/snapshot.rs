@@ -1,7 +1,7 @@
 //! The document itself: text, chunks, and how an edit changes both.
 
 use super::chunk::{self, Dialect};
-use super::pages::{Cursor, Page, Pages};
+use super::pages::{self, Cursor, Page, Pages};
 use super::{Chunk, Comments, Notation, Outer, Scopes, Size};
 use crate::ladder::NameHabit;
 use crate::target::Target;
@@ -313,8 +313,10 @@ impl Document {
     }
 
     fn read_all(&mut self, text: &str, old: &[Arc<Chunk>]) {
-        let chunks = if text.len() > LIMIT_BYTES { Vec::new() } else { self.read_pieces(text, old) };
-        self.pages = Pages::new(chunks);
+        self.pages = match text.len() > LIMIT_BYTES {
+            true => Pages::default(),
+            false => Pages::of(self.read_pieces(text, old, pages::paginate)),
+        };
         self.scopes = OnceLock::new();
         self.settle_names();
     }
@@ -384,7 +386,7 @@ impl Document {
             let start_holds =
                 window_start == 0 || (ends.first() == Some(&head) && window_start + head <= range.start);
             if end_holds && start_holds {
-                let new = self.read_pieces(&text, &old);
+                let new = self.read_pieces(&text, &old, |chunks| chunks);
                 let declares = |chunks: &[Arc<Chunk>]| chunks.iter().any(|chunk| chunk.declares());
                 if declares(&old) || declares(&new) {
                     self.scopes = OnceLock::new();
@@ -409,20 +411,26 @@ impl Document {
         }
     }
 
-    /// Splits and reads `text`; pieces that stood among `old` are taken over with all that is known of them.
-    fn read_pieces(&self, text: &str, old: &[Arc<Chunk>]) -> Vec<Arc<Chunk>> {
+    /// Splits and reads `text` and makes `gather` of its chunks; pieces that stood among `old` are taken over with all
+    /// that is known of them. Two threads share many pieces, so `gather` may see the chunks in two portions.
+    fn read_pieces<T: Send>(
+        &self,
+        text: &str,
+        old: &[Arc<Chunk>],
+        gather: impl Fn(Vec<Arc<Chunk>>) -> Vec<T> + Sync,
+    ) -> Vec<T> {
         let known: rustc_hash::FxHashMap<&str, &Arc<Chunk>> =
             old.iter().map(|chunk| (chunk.text(), chunk)).collect();
         let ends = chunk::split(text, self.notation());
         let keeps_trees = !self.is_frugal && self.len() <= KEPT_TREES_BYTES;
         let starts = std::iter::once(0).chain(ends.iter().copied());
         let pieces: Vec<&str> = starts.zip(&ends).map(|(start, end)| &text[start..*end]).collect();
-        let read = |pieces: &[&str]| -> Vec<Arc<Chunk>> {
+        let read = |pieces: &[&str]| {
             let chunk = |piece: &&str| match known.get(piece) {
                 Some(chunk) => Arc::clone(chunk),
                 None => Arc::new(Chunk::new(piece, &self.dialect, keeps_trees)),
             };
-            pieces.iter().map(chunk).collect()
+            gather(pieces.iter().map(chunk).collect())
         };
         if pieces.len() < WORTH_A_THREAD {
             return read(&pieces);
@@ -430,9 +438,9 @@ impl Document {
         let (first, second) = pieces.split_at(pieces.len() / 2);
         std::thread::scope(|scope| {
             let second = scope.spawn(|| read(second));
-            let mut chunks = read(first);
-            chunks.extend(second.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
-            chunks
+            let mut gathered = read(first);
+            gathered.extend(second.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+            gathered
         })
     }
 }

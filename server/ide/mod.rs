@@ -22,6 +22,8 @@ mod devices;
 
 mod declared;
 
+mod implicit;
+
 mod uses;
 
 mod bookkeeping;

@@ -8,6 +8,7 @@ use crate::document::{At, Document, Mention, ProjectView, Symbol, Tree};
 use crate::target::iec::{is_identifier, is_keyword};
 use crate::target::{Device, DeviceKind, DirectAddress, Operand, Target};
 use crate::text::{Message, Span, TextEdit, folded};
+use drawing::{Misfit, Place};
 use smol_str::SmolStr;
 
 pub(super) mod drawing;
@@ -78,20 +79,28 @@ struct Change<'v, 'a> {
 impl<'a> Change<'_, 'a> {
     /// The edits that write the new name in one file.
     fn edits(&self, file: &InFile<'a>, written: &str) -> Result<Vec<TextEdit>, Message> {
-        let mut places: Vec<(Span, bool)> = Vec::new();
+        let mut plain: Vec<Span> = Vec::new();
+        let mut drawn: Result<Vec<Place>, Misfit> = Ok(Vec::new());
         names::visit(file.document, &file.thing, |place| {
             // A symbol stays: the comments file gives it the new device.
             if aliases::written_at(file.document, place.span).is_some() {
                 return;
             }
-            let is_drawn = matches!(place.chunk.tree(), Tree::Ladder(_));
-            places.push((place.span, is_drawn));
+            match (place.chunk.tree(), &mut drawn) {
+                (Tree::Ladder(_), Ok(places)) => match drawing::place(&place, written) {
+                    Ok(found) => places.push(found),
+                    Err(misfit) => drawn = Err(misfit),
+                },
+                (Tree::Ladder(_), Err(_)) => {}
+                _ => plain.push(place.span),
+            }
         });
-        let no_room = |span: Span| {
-            let message = self.placed(["rename.drawing", "rename.drawing-elsewhere"], file, span);
-            message.with("name", written)
+        let misfit = |misfit: Misfit| {
+            let message = self.placed(misfit.keys(), file, misfit.place());
+            misfit.fill(message).with("name", written)
         };
-        drawing::written(file.document, file.document, places, written).map_err(no_room)
+        let places = (plain, drawn.map_err(misfit)?);
+        drawing::written(file.document, file.document, places, written).map_err(misfit)
     }
 
     /// The first of two messages for a place in the file that is looked at, the second for another file.

@@ -7,6 +7,7 @@ use super::progress::Progress;
 use super::pulled::{self, PartialReport, PartialReportParams};
 use super::to_proto;
 use super::tokens;
+use super::typed;
 use super::workspace::{SNAPSHOT, Snapshot, Workspace};
 use super::{capabilities, features};
 use crate::ide;
@@ -454,6 +455,15 @@ impl Backend {
             Some(editing::edit(open, place, &params, settings.style(&open.manifest)))
         });
         edited.transpose()
+    }
+
+    /// `rungwise/typed`
+    pub(super) async fn typed(&self, params: typed::TypedParams) -> Result<Option<Vec<TextEdit>>> {
+        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let edits = with_open(&params.text_document.uri, |open, place| {
+            Some(typed::edits(open, place, &params, settings.style(&open.manifest)))
+        });
+        edits.transpose()
     }
 
     /// `rungwise/object`

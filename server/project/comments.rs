@@ -59,12 +59,8 @@ impl CommentsFile {
             let message = Message::new("device-comments.encoding");
             reader.diagnostics.push(Diagnostic::new(CODE, Span::new(place, place + 3), message));
         }
-        let records = fields::records(text, separator, |quote| {
-            let message = Message::new("device-comments.open-quote");
-            Diagnostic::new(CODE, quote, message)
-        });
-        let (records, open_quotes) = records;
-        reader.diagnostics.extend(open_quotes);
+        let (records, problems) = fields::records(text, separator);
+        reader.diagnostics.extend(problems);
         reader.read(&records);
         let mut diagnostics = reader.diagnostics;
         diagnostics.sort_by_key(|diagnostic| diagnostic.span);

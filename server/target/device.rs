@@ -62,8 +62,23 @@ impl DeviceKind {
 
     /// The kind with this letter, upper or lower case.
     pub fn of_letter(letter: char) -> Option<DeviceKind> {
-        let letter = letter.to_ascii_uppercase();
-        DeviceKind::ALL.into_iter().find(|kind| kind.letter() == letter)
+        use DeviceKind::*;
+        Some(match letter.to_ascii_uppercase() {
+            'X' => X,
+            'Y' => Y,
+            'M' => M,
+            'S' => S,
+            'T' => T,
+            'C' => C,
+            'D' => D,
+            'R' => R,
+            'V' => V,
+            'Z' => Z,
+            'P' => P,
+            'I' => I,
+            'N' => N,
+            _ => return None,
+        })
     }
 
     /// 8 for inputs and outputs, else 10.

@@ -94,7 +94,7 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     let is_drawn = matches!(context.chunk.tree(), Tree::Ladder(_));
     let mut problems: Vec<u32> = context.chunk.problems().iter().map(|problem| problem.span.start).collect();
     problems.sort_unstable();
-    for operation in context.chunk.operations().filter(|operation| operation.is_word || !is_drawn) {
+    for operation in context.doubtful.iter().filter(|operation| operation.is_word || !is_drawn) {
         let Some(form) = operation.form else { continue };
         let (least, most) = places(form, operation.operands.first().map(|operand| &operand.value));
         let count = operation.operands.len();

@@ -274,9 +274,7 @@ impl Printer<'_> {
             match operand.value {
                 Operand::Text => row.push_str(word),
                 // A symbol keeps the letters that the project gave it.
-                Operand::Device(_) if matches!(Operand::read(word, Model::Fx3u), Operand::Invalid(_)) => {
-                    row.push_str(word);
-                }
+                operand if operand != Operand::read(word, Model::Fx3u) => row.push_str(word),
                 _ => row.push_str(&word.to_ascii_uppercase()),
             }
         }
