@@ -459,7 +459,7 @@ impl Backend {
 
     /// `rungwise/typed`
     pub(super) async fn typed(&self, params: typed::TypedParams) -> Result<Option<Vec<TextEdit>>> {
-        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let settings = settings();
         let edits = with_open(&params.text_document.uri, |open, place| {
             Some(typed::edits(open, place, &params, settings.style(&open.manifest)))
         });
