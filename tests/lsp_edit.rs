@@ -129,3 +129,38 @@ fn objects_ranges_and_typing_go_through_the_wire() {
     let linked = json!({"textDocument": {"uri": URI}, "position": {"line": 2, "character": 5}});
     assert!(client.request("textDocument/linkedEditingRange", linked)["result"].is_null());
 }
+
+#[test]
+fn keystrokes_are_answered_in_a_text_that_the_server_does_not_have_yet() {
+    let mut client = started(json!({}), "en");
+    let mut typed = |text: &str, at: (u32, u32), character: &str, version: Value| {
+        let params = json!({
+            "textDocument": {"uri": URI, "version": version},
+            "lines": {"first": 0, "end": 2, "text": text},
+            "position": {"line": at.0, "character": at.1},
+            "ch": character,
+        });
+        client.request("rungwise/typed", params)
+    };
+    let rows: Vec<&str> = MOTOR.lines().collect();
+    let wider = format!("{}\n{}\n", rows[0].replace("X0 ", "X07 "), rows[1]);
+    let answer = typed(&wider, (0, 6), "7", Value::Null);
+    let edits = answer["result"].as_array().unwrap_or_else(|| panic!("{answer}"));
+    assert_eq!(edits.len(), 1, "{edits:?}");
+    assert_eq!((&edits[0]["newText"], &edits[0]["range"]["start"]["line"]), (&json!(""), &json!(0)));
+    // Nothing of that is kept: the same place in the document has no such character before it.
+    let plain = format!("{}\n{}\n", rows[0], rows[1]);
+    assert_eq!(typed(&plain, (0, 6), "7", Value::Null)["result"], json!([]));
+    let stale = typed(&wider, (0, 6), "7", json!(99));
+    assert_eq!(stale["error"]["code"], json!(-32801), "{stale}");
+    // Lines and places that are not there are no harm.
+    let mut beyond = |first: u32, end: u32| {
+        let lines = json!({"first": first, "end": end, "text": "| X |\n"});
+        let position = json!({"line": 4_000_000_000_u32, "character": 7});
+        let params = json!({"textDocument": {"uri": URI}, "lines": lines, "position": position, "ch": "\n"});
+        client.request("rungwise/typed", params)
+    };
+    for (first, end) in [(0, 0), (3, 1), (900, 2_000_000_000), (4_000_000_000, 4_294_967_295)] {
+        assert!(beyond(first, end)["result"].is_array());
+    }
+}

@@ -172,6 +172,11 @@ fn files_at(path: &Path, language: Language) -> Result<Vec<(PathBuf, Arc<Manifes
     files.into_iter().map(|file| manifest_for(&file, language).map(|manifest| (file, manifest))).collect()
 }
 
+/// The folder of the project to which a file belongs.
+pub(super) fn folder_of(path: &Path) -> Option<PathBuf> {
+    Project::folder_of(&path.canonicalize().ok()?)
+}
+
 fn manifest_for(path: &Path, language: Language) -> Result<Arc<Manifest>, String> {
     match Project::of(&path.canonicalize().unwrap_or_else(|_| path.to_path_buf())) {
         Some(project) => usable(&project, language),

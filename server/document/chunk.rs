@@ -5,7 +5,7 @@ use super::{Mention, Notation, Size, Token, exported, mention, tokens};
 use crate::il::{fx, iec};
 use crate::ladder::{self, LadderTree, NameHabit};
 use crate::target::Target;
-use crate::text::Diagnostic;
+use crate::text::{Diagnostic, Span};
 use std::ops::Deref;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
@@ -114,6 +114,17 @@ pub enum Tree {
     Fx(fx::FxTree),
     /// Declarations or statements of IEC 61131-3.
     Iec(iec::IecTree),
+}
+
+impl Tree {
+    /// The comments in the order of the text, with offsets into the chunk.
+    pub fn comments(&self) -> &[Span] {
+        match self {
+            Tree::Ladder(tree) => &tree.comments,
+            Tree::Fx(tree) => &tree.comments,
+            Tree::Iec(tree) => &tree.comments,
+        }
+    }
 }
 
 impl Chunk {

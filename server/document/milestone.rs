@@ -7,7 +7,7 @@
 use super::{Chunk, Operation, Tree};
 use crate::il::fx::LineKind;
 use crate::ladder::ElementKind;
-use crate::target::{Device, DeviceKind, Flow, Model, Operand};
+use crate::target::{Device, Flow, Model, Operand};
 use crate::text::{Span, Spanned};
 use std::sync::Arc;
 
@@ -161,5 +161,5 @@ fn run_end(milestones: &mut [Milestone], kind: MilestoneKind) -> Option<&mut Mil
 /// The pointer of the PLC that a label names.
 fn pointer(name: &str) -> Option<Device> {
     let device = Operand::read(name, Model::Fx3u).device()?;
-    matches!(device.kind, DeviceKind::P | DeviceKind::I).then_some(device)
+    device.kind.is_pointer().then_some(device)
 }

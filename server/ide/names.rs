@@ -4,7 +4,7 @@ use super::{declared, members};
 use crate::document::{Chunk, Document, Mention, Names, Scopes, Symbol, Use};
 use crate::il::iec::{PouKind, SectionKind};
 use crate::target::iec::FunctionBlock;
-use crate::target::{Device, DeviceKind, DirectAddress};
+use crate::target::{Device, DirectAddress};
 use crate::text::Span;
 use smol_str::SmolStr;
 use std::sync::Arc;
@@ -123,7 +123,7 @@ impl Thing {
     /// Whether it is a place in the program: a pointer or a label.
     pub(super) fn is_label(&self) -> bool {
         match self {
-            Thing::Devices(device, _) => matches!(device.kind, DeviceKind::P | DeviceKind::I),
+            Thing::Devices(device, _) => device.kind.is_pointer(),
             Thing::Label { .. } => true,
             _ => false,
         }

@@ -3,7 +3,7 @@
 use super::names::PouWalk;
 use super::{devices, uses};
 use crate::document::{Chunk, ChunkRef, Mention, ProjectView, Symbol, Use};
-use crate::target::{Device, DeviceKind, Opcode, Operand, Role};
+use crate::target::{Device, Opcode, Operand, Role};
 use crate::text::{Encoding, Language, Message};
 use rustc_hash::FxHashSet;
 use std::collections::BTreeMap;
@@ -66,6 +66,19 @@ pub struct UsageAt {
     pub count: u16,
     /// The instruction, or the drawn rung in a line.
     pub text: String,
+}
+
+impl UsageAt {
+    /// What is done, in the tables that programs read: `read`, `write`, `read-write`, `define`, `jump`.
+    pub fn access_word(&self) -> &'static str {
+        match self.usage {
+            Use::Read => "read",
+            Use::Write => "write",
+            Use::ReadWrite => "read-write",
+            Use::Declare => "define",
+            Use::Jump => "jump",
+        }
+    }
 }
 
 impl UsageRow {
@@ -198,7 +211,7 @@ fn new_row(
 
 /// `K50 = 5 s`
 fn preset(document: &crate::document::Document, chunk: &Chunk, device: Device) -> String {
-    if !matches!(device.kind, DeviceKind::T | DeviceKind::C) {
+    if !device.kind.has_preset() {
         return String::new();
     }
     let Some(found) = devices::preset_of(chunk, device) else { return String::new() };

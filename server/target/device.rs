@@ -97,6 +97,16 @@ impl DeviceKind {
         use DeviceKind::*;
         matches!(self, T | C | D | R | V | Z)
     }
+
+    /// Whether its coil counts up to a preset: timers and counters.
+    pub fn has_preset(self) -> bool {
+        matches!(self, DeviceKind::T | DeviceKind::C)
+    }
+
+    /// Whether it names a place in the program: the pointers of jumps, subroutines and interrupts.
+    pub fn is_pointer(self) -> bool {
+        matches!(self, DeviceKind::P | DeviceKind::I)
+    }
 }
 
 /// A device: its kind and its number, the octal number's value for inputs and outputs (X10 is number 8).

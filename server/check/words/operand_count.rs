@@ -76,7 +76,7 @@
 use crate::check::iec::{View, operand_counts};
 use crate::check::{ChunkContext, Rule, Run};
 use crate::document::{Operation, Tree};
-use crate::target::{DeviceKind, Form, Operand, OperandSpec};
+use crate::target::{Form, Operand, OperandSpec};
 use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
 
 pub(super) const RULE: Rule = Rule {
@@ -111,7 +111,7 @@ fn places(form: Form, first: Option<&Operand>) -> (usize, usize) {
     let specs = form.instruction.operands;
     let least = specs.iter().filter(|spec| !spec.optional).count();
     let device = first.and_then(Operand::device);
-    let has_preset = device.is_none_or(|device| matches!(device.kind, DeviceKind::T | DeviceKind::C));
+    let has_preset = device.is_none_or(|device| device.kind.has_preset());
     (least, if has_preset { specs.len() } else { least })
 }
 

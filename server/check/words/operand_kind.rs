@@ -122,7 +122,7 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
 fn expected(form: Form, operation: &Operation<'_>) -> usize {
     let specs = form.instruction.operands;
     let driven = operation.operands.first().and_then(|operand| operand.value.device());
-    let has_preset = driven.is_none_or(|device| matches!(device.kind, DeviceKind::T | DeviceKind::C));
+    let has_preset = driven.is_none_or(|device| device.kind.has_preset());
     specs.iter().filter(|spec| has_preset || !spec.optional).count()
 }
 

@@ -2,7 +2,7 @@
 
 use super::lexer::Token;
 use super::{FxLine, FxTree, LineKind};
-use crate::target::{Accepts, DeviceKind, Form, Model, Operand, OperandProblem, Target};
+use crate::target::{Accepts, Form, Model, Operand, OperandProblem, Target};
 use crate::text::{Diagnostic, Message, Span, Spanned, TextEdit};
 use logos::Logos;
 
@@ -306,8 +306,11 @@ impl Parser<'_> {
     /// A word with characters that no token contains: a symbol of the project, or unreadable.
     fn read_glued(&self, span: Span) -> Operand {
         match self.target.read(span.of(self.chunk)) {
-            Operand::Device(device) => Operand::Device(device),
-            _ => Operand::Invalid(OperandProblem::Unreadable),
+            Operand::Invalid(problem @ (OperandProblem::SymbolForm(_) | OperandProblem::SymbolTwice)) => {
+                Operand::Invalid(problem)
+            }
+            Operand::Invalid(_) => Operand::Invalid(OperandProblem::Unreadable),
+            operand => operand,
         }
     }
 
@@ -334,9 +337,7 @@ fn label(word: &str, model: Model) -> Option<LineKind> {
         return None;
     }
     match Operand::read(word, model) {
-        Operand::Device(device) if matches!(device.kind, DeviceKind::P | DeviceKind::I) => {
-            Some(LineKind::Label(device))
-        }
+        Operand::Device(device) if device.kind.is_pointer() => Some(LineKind::Label(device)),
         _ => None,
     }
 }
