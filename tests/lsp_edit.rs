@@ -162,14 +162,14 @@ fn keystrokes_are_answered_in_a_text_that_the_server_does_not_have_yet() {
     };
     let rows: Vec<&str> = MOTOR.lines().collect();
     let wider = format!("{}\n{}\n", rows[0].replace("X0 ", "X07 "), rows[1]);
-    let answer = typed(&wider, (0, 6), "7", Value::Null);
+    let answer = typed(&wider, (0, 7), "7", Value::Null);
     let edits = answer["result"].as_array().unwrap_or_else(|| panic!("{answer}"));
     assert_eq!(edits.len(), 1, "{edits:?}");
     assert_eq!((&edits[0]["newText"], &edits[0]["range"]["start"]["line"]), (&json!(""), &json!(0)));
     // Nothing of that is kept: the same place in the document has no such character before it.
     let plain = format!("{}\n{}\n", rows[0], rows[1]);
     assert_eq!(typed(&plain, (0, 6), "7", Value::Null)["result"], json!([]));
-    let stale = typed(&wider, (0, 6), "7", json!(99));
+    let stale = typed(&wider, (0, 7), "7", json!(99));
     assert_eq!(stale["error"]["code"], json!(-32801), "{stale}");
     // Lines and places that are not there are no harm.
     let mut beyond = |first: u32, end: u32| {

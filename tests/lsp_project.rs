@@ -598,6 +598,61 @@ fn settings_are_asked_for() {
 }
 
 #[test]
+fn another_language_has_everything_asked_for_again() {
+    const TEXT: &str = "PROGRAM p\nLD a\nEND_PROGRAM\n";
+    let folder = Folder::new(&[("rungwise.toml", "target = \"iec\"\n"), ("main.il", TEXT)]);
+    let capabilities = json!({"workspace": {"diagnostics": {"refreshSupport": true},
+        "inlayHint": {"refreshSupport": true}}, "textDocument": {"diagnostic": {}}});
+    let mut client = Client::start_with(capabilities, json!({"diagnostics": {"mode": "pull"}}));
+    client.open(&folder.uri("main.il"), "plc-il", TEXT);
+    let ask = |client: &mut Client| {
+        let answer = client.request("workspace/diagnostic", json!({"previousResultIds": []}));
+        answer["result"]["items"].to_string()
+    };
+    // The project is read in the background, which is a reason to ask again as well.
+    let is_read = (0..200).any(|_| {
+        std::thread::sleep(Duration::from_millis(25));
+        ask(&mut client).contains("is not declared")
+    });
+    assert!(is_read);
+    client.stays_silent(Duration::from_millis(300), |_| false);
+    while client.take(|message| message["method"] == json!("workspace/diagnostic/refresh")).is_some() {}
+    while client.take(|message| message["method"] == json!("workspace/inlayHint/refresh")).is_some() {}
+    let settings = json!({"settings": {"rungwise": {"language": "zh-CN", "diagnostics": {"mode": "pull"}}}});
+    client.notify("workspace/didChangeConfiguration", settings);
+    let request = client.wait_for_method("workspace/diagnostic/refresh");
+    client.send(json!({"jsonrpc": "2.0", "id": request["id"], "result": null}));
+    client.wait_for_method("workspace/inlayHint/refresh");
+    let found = ask(&mut client);
+    assert!(found.contains("没有在 p 中声明") && !found.contains("is not declared"), "{found}");
+}
+
+#[test]
+fn symbols_are_known_in_files_that_are_not_open() {
+    let folder = iec();
+    folder.write("rungwise.toml", "target = \"fx2n\"\ncomments = \"devices.csv\"\n");
+    folder.write("devices.csv", "X0,Start,\nM0,Lamps,\n");
+    for name in ["main.il", "globals.il"] {
+        std::fs::remove_file(folder.path(name)).ok();
+    }
+    folder.write("one.il", "LD Start\nMOV K4Lamps D0\nOUT Nobody\nEND\n");
+    folder.write("two.lad", "|  Start    Lamps  |\n+--| |-------( )---+\n\n[END]\n");
+    let mut client = Client::start_with(json!({}), json!({"diagnostics": {"mode": "pull"}}));
+    client.open(&folder.uri("two.lad"), "ladder", "|  Start    Lamps  |\n+--| |-------( )---+\n\n[END]\n");
+    let mut found = String::new();
+    for _ in 0..200 {
+        let answer = client.request("workspace/diagnostic", json!({"previousResultIds": []}));
+        found = answer["result"]["items"].to_string();
+        if found.contains("Nobody") {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(25));
+    }
+    assert!(found.contains("`Nobody` is no device"), "{found}");
+    assert!(!found.contains("`Start`") && !found.contains("K4Lamps"), "{found}");
+}
+
+#[test]
 fn the_workspace_is_reported_on_demand() {
     let folder = iec();
     let main = folder.uri("main.il");

@@ -15,6 +15,7 @@ mod command_line;
 mod comments;
 mod corpus;
 mod document;
+mod drawing_redrawn;
 mod extremes;
 mod fuzz;
 mod grammar;

@@ -134,6 +134,11 @@ pub(super) fn complain(code: &str, reason: &str, help: &str, language: Language)
     let _ = writeln!(std::io::stderr(), "error[{code}]: {reason}\n  {help}");
 }
 
+/// A line on standard error that is no complaint.
+pub(super) fn remark(words: &str) {
+    let _ = writeln!(std::io::stderr(), "{words}");
+}
+
 /// A warning on standard error, of the same form; it changes no exit code.
 pub(super) fn caution(code: &str, reason: &str, help: &str, language: Language) {
     let help = Message::new("cli.help").with("help", help).render(language);

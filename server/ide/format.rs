@@ -5,7 +5,7 @@ use crate::document::{Document, Tree};
 use crate::il::{fx, iec};
 use crate::ladder;
 use crate::project::FormatStyle;
-use crate::text::{Span, TextEdit};
+use crate::text::{Message, Span, TextEdit};
 
 /// How to format.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -47,6 +47,30 @@ pub(super) fn edits_within(document: &Document, style: Style, spans: &[Span]) ->
         at.is_some_and(|at| is_touched(Span::new(at.start, at.start + at.chunk.len())))
     });
     edits
+}
+
+/// The rungs that formatting leaves as they were drawn, and why.
+pub(super) fn kept(document: &Document, style: Style) -> Vec<(Span, Message)> {
+    let mut kept = Vec::new();
+    let page = ladder_page(document, style);
+    for at in document.chunks() {
+        let Tree::Ladder(tree) = at.chunk.tree() else { continue };
+        for (span, reason) in ladder::kept_rungs(at.chunk.text(), tree, document.reader(), &page) {
+            kept.push((span.shifted(at.start), Message::new(key_of(reason))));
+        }
+    }
+    kept
+}
+
+fn key_of(reason: ladder::Kept) -> &'static str {
+    match reason {
+        ladder::Kept::Mistake => "kept.mistake",
+        ladder::Kept::Comment => "kept.comment",
+        ladder::Kept::Words => "kept.words",
+        ladder::Kept::Bridge => "kept.bridge",
+        ladder::Kept::Order => "kept.order",
+        ladder::Kept::Surroundings => "kept.surroundings",
+    }
 }
 
 fn edits_where(document: &Document, style: Style, wanted: impl Fn(Span) -> bool) -> Vec<TextEdit> {

@@ -293,6 +293,11 @@ pub fn format(document: &Document, style: Style) -> Vec<TextEdit> {
     format::edits(document, style)
 }
 
+/// The rungs that [`format()`] leaves as they were drawn, each with the reason.
+pub fn kept_rungs(document: &Document, style: Style) -> Vec<(Span, Message)> {
+    format::kept(document, style)
+}
+
 /// The edits that make the rungs and lines canonical that `spans` touch.
 pub fn format_ranges(document: &Document, style: Style, spans: &[Span]) -> Vec<TextEdit> {
     format::edits_within(document, style, spans)

@@ -24,6 +24,8 @@ export class DrawingEditor implements vscode.Disposable {
   private queue: Promise<unknown> = Promise.resolve();
   /** The edits that this class is making in a document, to know its own change from one of the person's. */
   private readonly making = new Map<vscode.TextDocument, EditAnswer['edits']>();
+  /** The burst whose edits are being made. */
+  private applying: Burst | undefined;
   /** Keystrokes that are not yet answered, in the rungs in which they were typed. */
   private readonly bursts = new Map<vscode.TextDocument, Burst[]>();
   /** The lines of the cursors before a change, by number: a change does not tell what it replaced. */
@@ -162,7 +164,7 @@ export class DrawingEditor implements vscode.Disposable {
 
   /** The editor has made edits of ours: the lines of a burst are as it wanted them, or are no longer what it thinks. */
   private made(document: vscode.TextDocument, changes: readonly PlainChange[]): void {
-    const done = (this.bursts.get(document) ?? []).find((burst) => burst.isAnswered && isMadeBy(changes, burst.edits()));
+    const done = this.bursts.get(document)?.find((burst) => burst === this.applying);
     const more = changes.reduce((sum, change) => sum + addedLines(change), 0);
     if (done === undefined) {
       this.dropped(document, changes);
@@ -243,14 +245,35 @@ export class DrawingEditor implements vscode.Disposable {
       if (edits.length === 0) {
         return;
       }
-      const undo = { undoStopBefore: false, undoStopAfter: false };
-      if (!(await this.apply(editor, { edits, selection: undefined }, undo)) && burst.isAnswered) {
+      if (!(await this.applyBurst(editor, burst, edits)) && burst.isAnswered) {
         // The editor has a keystroke of which no event has come yet.
         await pause();
       }
     }
     if (stands()) {
       throw new Error('the text did not stand still');
+    }
+  }
+
+  /** Makes the edits of a burst, as a part of the undo step of the last keystroke. */
+  private async applyBurst(editor: vscode.TextEditor, burst: Burst, edits: EditAnswer['edits']): Promise<boolean> {
+    const undo = { undoStopBefore: false, undoStopAfter: false };
+    this.applying = burst;
+    try {
+      const placed = burst.placed();
+      if (placed === undefined) {
+        return await this.apply(editor, { edits, selection: undefined }, undo);
+      }
+      // A snippet brings its cursor along; a key that came before a cursor set afterwards would go elsewhere.
+      const { edit, from, to } = placed;
+      const text = edit.newText;
+      const snippet = new vscode.SnippetString().appendText(text.slice(0, from));
+      snippet.appendPlaceholder(text.slice(from, to), 0).appendText(text.slice(to));
+      this.making.set(editor.document, [edit]);
+      return await editor.insertSnippet(snippet, toRange(edit.range), undo);
+    } finally {
+      this.making.delete(editor.document);
+      this.applying = undefined;
     }
   }
 
@@ -395,7 +418,10 @@ function addedLines({ range, text }: PlainChange): number {
   return text.split(/\r\n|\r|\n/).length - 1 - (range.end.line - range.start.line);
 }
 
-/** The lines without a blank one around a line, and those that a change has added to it; no line of another burst. */
+/**
+ * The lines without a blank one around a line, those that a change has added to it, and the one below, where the answer to
+ * Enter may put others; no line of another burst.
+ */
 function rungLines(
   document: vscode.TextDocument,
   line: number,
@@ -411,7 +437,8 @@ function rungLines(
   while (last - first < MOST_LINES && isOpen(last + 1)) {
     last += 1;
   }
-  return { first, last };
+  const isFree = last + 1 < document.lineCount && !bursts.some((burst) => burst.has(last + 1));
+  return { first, last: isFree ? last + 1 : last };
 }
 
 function stretchOf({ first, lineCount }: Burst): Stretch {

@@ -134,6 +134,33 @@ test('Enter may be answered with lines, and what is typed behind it finds its pl
   assert.deepEqual(await typed(rows, [enter, [change(2, 4, 5, 'X')]], 2, branch), ['+---+---+', '|   X   |', '+---+   |']);
 });
 
+test('what is typed behind Enter goes where its answer wants it', async () => {
+  const branch: Ask = async ({ text, character }) =>
+    character === '\n'
+      ? [{ range: { start: { line: 0, character: 1 }, end: { line: 1, character: 0 } }, newText: '' },
+        { range: { start: { line: 1, character: 3 }, end: { line: 1, character: 3 } }, newText: '\n|   ???  |' }]
+      : squeezed({ text, position: { line: 1, character: text.split('\n')[1]!.search(/\w +\|$/) + 1 }, character });
+  const enter = [change(0, 1, 1, '\n')];
+  const end = async (...changes: PlainChange[]) => {
+    let text = changedRows(['+--+'], enter);
+    const burst = new Burst(0, text.join('\n'), [...enter]);
+    for (const next of changes) {
+      text = changedRows(text, [next]);
+      burst.add([next]);
+    }
+    while (!burst.isAnswered) {
+      await burst.answerNext(branch);
+    }
+    const { edit, from, to } = burst.placed()!;
+    const rows = applied(text, burst.edits());
+    assert.deepEqual(applied(text, [edit]), rows);
+    return [...rows, edit.newText.slice(0, from).split('\n').at(-1), edit.newText.slice(from, to)];
+  };
+  assert.deepEqual(await end(), ['+--+', '|   ???  |', '|   ', '???']);
+  assert.deepEqual(await end(change(1, 0, 0, 'X'), change(1, 1, 1, '9')), ['+--+', '|   X9   |', '|   X9', '']);
+  assert.deepEqual(await end(change(1, 0, 0, 'X'), change(1, 1, 1, '8'), change(1, 1, 2, ''), change(1, 1, 1, '9')), ['+--+', '|   X9   |', '|   X9', '']);
+});
+
 test('lines that are no drawing lose cells without others, and places outside are refused', async () => {
   await assert.rejects(typed(['(* ??? *)'], [[change(0, 3, 6, 'X')]], 1));
   await assert.rejects(typed(['(* ??? *)'], [[change(0, 3, 4, '')]], 1));

@@ -188,7 +188,7 @@ fn fitted(row: &Row, rail: usize, cursor: Option<usize>) -> Vec<(usize, Row)> {
     while column < row.len() {
         let end = (column..row.len()).find(|at| row[*at] != row[column]).unwrap_or(row.len());
         let mut changed = row.clone();
-        let doubt = usize::from(!cursor.is_some_and(|cursor| (column..=end).contains(&cursor)));
+        let doubt = 2 * usize::from(!cursor.is_some_and(|cursor| (column..=end).contains(&cursor)));
         // What stands before the left rail can go altogether.
         let surplus = if column == 0 && row[0] == ' ' { end + 1 } else { end - column };
         if cells::is_within(row, column) {
@@ -215,13 +215,14 @@ fn misfit(above: &Row, below: &Row) -> usize {
         let (upper, lower) = (at(above, column), at(below, column));
         // A bar of a contact leads nowhere, and so costs the same wherever it stands.
         if Strokes::of(upper).down != Strokes::of(lower).up {
-            misfit += 4;
+            misfit += 8;
         }
     }
     misfit + beside(above, below)
 }
 
-/// Twice the cells by which the words of a row stand beside the middle of what is below them.
+/// Four times the cells by which the words of a row stand beside the middle of what is below them. A name that cannot
+/// stand over the very middle stands to its left where it is drawn anew, so the other side costs more than any doubt.
 fn beside(above: &Row, below: &Row) -> usize {
     let mut cost = 0;
     let mut column = 0;
@@ -231,16 +232,23 @@ fn beside(above: &Row, below: &Row) -> usize {
             continue;
         }
         let end = (column..above.len()).find(|at| !is_word(above[*at])).unwrap_or(above.len());
-        let is_body = |at: usize| {
-            below.get(at).is_some_and(|cell| is_upright(*cell) || matches!(cell, '(' | ')' | '[' | ']'))
-        };
         let middle = column + end - 1;
-        let near = (column.saturating_sub(2)..end + 2).filter(|at| is_body(*at)).collect::<Vec<_>>();
+        let near = (column.saturating_sub(2)..end + 2).filter(|at| is_body(below, *at)).collect::<Vec<_>>();
         cost += match (near.first(), near.last()) {
-            (Some(first), Some(last)) => middle.abs_diff(first + last),
-            _ => 6,
+            (Some(first), Some(last)) => {
+                2 * middle.abs_diff(first + last) + 3 * usize::from(middle > first + last)
+            }
+            _ => 12,
         };
         column = end;
     }
     cost
+}
+
+/// Whether a cell is an edge of an element: a bracket or a bar. Rails and junctions are none, however near.
+fn is_body(row: &Row, column: usize) -> bool {
+    let Some(cell) = row.get(column).copied() else { return false };
+    let Strokes { left, right, up, down } = Strokes::of(cell);
+    let is_bar = up && down && !(left && right) && column > 0 && column + 1 < row.len();
+    is_bar || matches!(cell, '(' | ')' | '[' | ']')
 }

@@ -264,7 +264,14 @@ check('a rung is typed from a snippet, name by name, and a branch by Enter', fun
   end)
   nvim:press('<Esc>')
   nvim:settle()
-  print(nvim:text())
+  nvim:press('/???<CR>cwX5<Esc>')
+  nvim:settle()
+  same('the rung with its branch', table.concat(join({
+    '|   X10      Stop                         Y107 |',
+    '+---| |---+---| |--------------------------( )-+',
+    '|   X5    |                                    |',
+    '+---| |---+                                    |',
+  }, '', END[2]), '\n'))
 end)
 
 check('deleting a character of a name keeps the columns, and is undone at once', function()

@@ -89,7 +89,7 @@ async function frameWith(workbench, words) {
 /** In a preview that is narrower than a drawing the rows are not folded. */
 async function wholeDrawings(workbench, page) {
   const size = workbench.page.viewportSize();
-  await workbench.page.setViewportSize({ ...size, width: 900 });
+  await workbench.page.setViewportSize({ ...size, width: 640 });
   const heights = () => page.locator('pre code').evaluateAll((blocks) => blocks.map((block) => {
     const rows = block.textContent.trimEnd().split('\n').length;
     return block.getBoundingClientRect().height / Number.parseFloat(getComputedStyle(block).lineHeight) - rows;
