@@ -20,7 +20,10 @@ impl Size {
     pub(super) fn of(chunk: &Chunk) -> Size {
         match chunk.tree() {
             Tree::Fx(tree) => {
-                let drives = |line: &FxLine| matches!(line.kind, LineKind::Instruction(form) if form.instruction.role == Role::Output);
+                let drives = |line: &FxLine| match line.kind {
+                    LineKind::Instruction(form) => form.instruction.role == Role::Output,
+                    _ => false,
+                };
                 Size { rungs: usize::from(tree.lines.iter().any(drives)), steps: fx::steps(tree) }
             }
             Tree::Ladder(tree) => {
