@@ -49,7 +49,12 @@ pub(super) struct Lines {
 }
 
 /// Answers `rungwise/typed`.
-pub(super) fn edits(open: &Open, place: Place<'_>, params: &TypedParams, style: Style) -> Result<Vec<TextEdit>> {
+pub(super) fn edits(
+    open: &Open,
+    place: Place<'_>,
+    params: &TypedParams,
+    style: Style,
+) -> Result<Vec<TextEdit>> {
     if params.text_document.version.is_some_and(|version| version != open.version) {
         let message = Message::new("edit.stale").render(place.language);
         return Err(Error { message: message.into(), ..Error::content_modified() });
