@@ -91,6 +91,24 @@ fn edits_are_code_actions_where_they_make_sense() {
 }
 
 #[test]
+fn quick_fixes_come_only_to_who_wants_them() {
+    let mut client = started(json!({}), "en");
+    let uri = "file:///tmp/edit/main.il";
+    client.open(uri, "plc-il", "LD X0\nOUTT Y0\nEND\n");
+    let mut fixes = |context: Value| {
+        let params =
+            json!({"textDocument": {"uri": uri}, "range": range((1, 0), (1, 0)), "context": context});
+        let actions = client.request("textDocument/codeAction", params)["result"].clone();
+        let actions = actions.as_array().unwrap().clone();
+        actions.iter().filter(|action| action["kind"] == "quickfix").count()
+    };
+    let offered = fixes(json!({"diagnostics": []}));
+    assert!(offered > 0);
+    assert_eq!(fixes(json!({"diagnostics": [], "only": ["quickfix"]})), offered);
+    assert_eq!(fixes(json!({"diagnostics": [], "only": ["refactor"]})), 0);
+}
+
+#[test]
 fn a_client_that_resolves_edits_gets_them_when_it_asks() {
     let support = json!({"textDocument": {"codeAction": {"dataSupport": true,
         "resolveSupport": {"properties": ["edit"]}}}});

@@ -20,6 +20,7 @@ mod fuzz;
 mod grammar;
 mod ide;
 mod ide_devices;
+mod ide_names;
 mod ide_signature;
 mod ide_structure;
 mod ide_typing;

@@ -7,13 +7,12 @@
 
 use super::ragged::TWO_READINGS;
 use super::reduce::reduce;
-use super::symbol::width;
 use super::{
     Drawing, Element, ElementKind, LadderTree, NameHabit, OperandPlace, Rung, Style, StyleKind, parse,
     parse_with, split,
 };
 use crate::target::Target;
-use crate::text::{Diagnostic, Span, TextEdit};
+use crate::text::{BYTE_ORDER_MARK, Diagnostic, Span, TextEdit, text_width};
 
 /// Whether redrawing mends a problem. Every other one means that the rung may not say what its author meant.
 fn is_mended(problem: &Diagnostic) -> bool {
@@ -47,7 +46,7 @@ impl Page {
             let lines = Lines::of(chunk);
             for rung in &tree.rungs {
                 if let Some(number) = rung.number {
-                    page.margin = page.margin.max(width(number.span.of(chunk)) as u32 + 1);
+                    page.margin = page.margin.max(text_width(number.span.of(chunk)) as u32 + 1);
                 }
                 if let Some(drawing) = drawing(chunk, tree, rung, &lines, style.kind) {
                     page.rail = page.rail.max(drawing.rail_column_min());
@@ -400,8 +399,6 @@ impl<'t> Lines<'t> {
         }
     }
 }
-
-const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// A line that belongs to no rung: kept but for blanks at its end; rails without anything between follow the page
 /// if there is one.

@@ -6,6 +6,7 @@
 
 mod abilities;
 mod across;
+mod answering;
 mod backend;
 mod capabilities;
 mod editing;
