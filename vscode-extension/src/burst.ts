@@ -151,8 +151,11 @@ export class Burst {
       return undefined;
     }
     const to = from + (this.cursor === undefined ? (this.target?.over.length ?? 0) : 0);
-    const range = { start: this.inDocument({ line: 0, character: 0 }), end: this.inDocument(this.editor.position(this.editor.text.length)) };
-    return { edit: { range, newText: text }, from, to };
+    const [start, end] = [0, this.editor.text.length].map((offset) => this.inDocument(this.editor.position(offset))) as [
+      PlainPosition,
+      PlainPosition,
+    ];
+    return { edit: { range: { start, end }, newText: text }, from, to };
   }
 
   /** The edits of the document that make it what the answers say. */

@@ -71,7 +71,7 @@ export class DrawingEditor implements vscode.Disposable {
         const version = editor.document.version;
         const isCurrent = () => editor.document.version === version;
         const answer = await this.ask(editor.document, edit, editor.selection, operand).catch((error: unknown) => {
-          // The server refuses an edit of a text that has changed meanwhile; it is asked again.
+          // What was wrong with a text that has changed meanwhile may not be so any more.
           if (isCurrent()) {
             throw error;
           }
@@ -90,18 +90,17 @@ export class DrawingEditor implements vscode.Disposable {
   }
 
   private async ask(
-    { uri, version }: vscode.TextDocument,
+    document: vscode.TextDocument,
     edit: StructuralEdit,
     range: vscode.Range,
     operand?: string,
   ): Promise<EditAnswer> {
     const answer = parseEditAnswer(
-      await this.server.request(EDIT_REQUEST, {
-        textDocument: { uri: this.server.protocolUri(uri), version },
+      await this.current(EDIT_REQUEST, document, () => ({
         range: { start: plain(range.start), end: plain(range.end) },
         edit,
         ...(operand === undefined ? {} : { operand }),
-      }),
+      })),
     );
     if (answer === undefined) {
       throw new Error(vscode.l10n.t('the server gave no answer to the edit.'));
@@ -116,14 +115,14 @@ export class DrawingEditor implements vscode.Disposable {
   ): Promise<boolean> {
     const { document } = editor;
     this.making.set(document, answer.edits);
+    const shown = vscode.window.visibleTextEditors.find((other) => other.document === document);
     try {
       const done =
         answer.edits.length === 0 ||
-        (await editor.edit((builder) => {
-          for (const edit of answer.edits) {
-            builder.replace(toRange(edit.range), edit.newText);
-          }
-        }, undo));
+        // A person may have gone to another file in a hurry; then it is an undo step of its own.
+        (await (shown
+          ? shown.edit((builder) => answer.edits.forEach((edit) => builder.replace(toRange(edit.range), edit.newText)), undo)
+          : applied(document, answer.edits)));
       if (done && answer.selection !== undefined) {
         const { start, end } = toRange(answer.selection);
         editor.selection = new vscode.Selection(start, end);
@@ -149,8 +148,10 @@ export class DrawingEditor implements vscode.Disposable {
     }
     const follows = editor?.document === document && mendsWhileTyping(document);
     // What undo and redo bring back has been mended before.
-    if (reason !== undefined || !follows) {
+    if (reason !== undefined) {
       this.bursts.delete(document);
+    } else if (!follows) {
+      this.dropped(document, changes);
     } else if (changes.length <= MOST_CURSORS && areKeystrokes(changes)) {
       this.typed(editor, changes);
     } else {
@@ -278,21 +279,33 @@ export class DrawingEditor implements vscode.Disposable {
   }
 
   /** What the server makes of a character typed into lines of a burst; line 0 is its first one. */
-  private async askTyped(document: vscode.TextDocument, burst: Burst, { text, position, character }: Typed): Promise<EditAnswer['edits']> {
-    for (let step = 0; ; step++) {
-      const { first, lineCount } = burst;
+  private async askTyped(
+    document: vscode.TextDocument,
+    burst: Burst,
+    { text, position, character }: Typed,
+  ): Promise<EditAnswer['edits']> {
+    let { first } = burst;
+    const answer = await this.current(TYPED_REQUEST, document, () => {
+      const { lineCount } = burst;
+      ({ first } = burst);
       const isLast = first + lineCount >= document.lineCount;
+      return {
+        lines: { first, end: first + lineCount, text: isLast ? text : `${text}\n` },
+        position: { line: first + position.line, character: position.character },
+        ch: character,
+      };
+    });
+    const edits = parseEditAnswer({ edits: answer ?? [] })?.edits ?? [];
+    return edits.map(({ range, newText }) => ({ range: lowered(range, first), newText }));
+  }
+
+  /** Sends a request about a document as it is now, again while the server has not got its last change yet. */
+  private async current(method: string, document: vscode.TextDocument, more: () => object): Promise<unknown> {
+    for (let step = 0; ; step++) {
+      const textDocument = { uri: this.server.protocolUri(document.uri), version: document.version };
       try {
-        const answer = await this.server.request(TYPED_REQUEST, {
-          textDocument: { uri: this.server.protocolUri(document.uri), version: document.version },
-          lines: { first, end: first + lineCount, text: isLast ? text : `${text}\n` },
-          position: { line: first + position.line, character: position.character },
-          ch: character,
-        });
-        const edits = parseEditAnswer({ edits: answer ?? [] })?.edits ?? [];
-        return edits.map(({ range, newText }) => ({ range: lowered(range, first), newText }));
+        return await this.server.request(method, { textDocument, ...more() });
       } catch (error) {
-        // The server has not got the last change yet.
         if ((error as { code?: unknown }).code !== CONTENT_MODIFIED || step >= MOST_STEPS) {
           throw error;
         }
@@ -400,6 +413,13 @@ function mendsWhileTyping(document: vscode.TextDocument): boolean {
 
 function plain(position: vscode.Position): { line: number; character: number } {
   return { line: position.line, character: position.character };
+}
+
+/** Makes edits of a document that no editor shows. */
+function applied(document: vscode.TextDocument, edits: EditAnswer['edits']): Thenable<boolean> {
+  const all = new vscode.WorkspaceEdit();
+  edits.forEach((edit) => all.replace(document.uri, toRange(edit.range), edit.newText));
+  return vscode.workspace.applyEdit(all);
 }
 
 function lowered({ start, end }: PlainRange, by: number): PlainRange {

@@ -71,6 +71,8 @@ async function wholeProgram(workbench) {
   await workbench.openFile('typed.lad');
   await workbench.focusEditor();
   await snippet(workbench, 'seal', ['X10', 'X11', 'Y10']);
+  // All is answered when the rails stand below each other.
+  await workbench.until('the rung', async () => new Set((await workbench.documentLines()).slice(0, 4).map((row) => row.length)).size === 1);
   await workbench.screenshot('11-typed-seal-in');
   await keyboard.press('Enter');
   await snippet(workbench, 'timer', ['Y10', 'T1', 'K30', 'Y11']);
