@@ -37,7 +37,7 @@ struct Known {
 }
 
 /// How the chunks of a document are read.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Dialect {
     pub(super) notation: Notation,
     pub(super) target: &'static Target,

@@ -73,8 +73,7 @@ impl Document {
         let symbols = (!symbols.is_empty()).then(|| Arc::new(target.with_symbols(symbols.clone())));
         let dialect = Arc::new(Dialect { notation, target, symbols, names_below: false });
         let mut document = Document { comments, dialect, ..Document::unread("", notation, target) };
-        let ((), rope) =
-            both(text.len() >= LONG, || document.read_all(text, &[]), || Rope::from_str(text));
+        let ((), rope) = both(text.len() >= LONG, || document.read_all(text, &[]), || Rope::from_str(text));
         Document { rope, ..document }
     }
 
@@ -439,9 +438,11 @@ impl Document {
         let starts = std::iter::once(0).chain(ends.iter().copied());
         let pieces: Vec<&str> = starts.zip(&ends).map(|(start, end)| &text[start..*end]).collect();
         let read = |pieces: &[&str]| {
+            // Threads that count the users of one and the same thing wait for each other.
+            let dialect = Arc::new(Dialect::clone(&self.dialect));
             let chunk = |piece: &&str| match known.get(piece) {
                 Some(chunk) => Arc::clone(chunk),
-                None => Arc::new(Chunk::new(piece, &self.dialect, keeps_trees)),
+                None => Arc::new(Chunk::new(piece, &dialect, keeps_trees)),
             };
             gather(pieces.iter().map(chunk).collect())
         };
