@@ -172,9 +172,10 @@ fn content_length(line: &str) -> Option<usize> {
 fn is_message(body: &[u8]) -> bool {
     let Ok(shape) = serde_json::from_slice::<Shape>(body) else { return false };
     let parameters = shape.params.is_none_or(|params| params.allowed);
-    let answer =
-        shape.result.is_some() || shape.error.is_some() || body.windows(8).any(|part| part == b"\"result\"");
-    if shape.method.is_some() { parameters } else { answer }
+    let answers = || {
+        shape.result.is_some() || shape.error.is_some() || body.windows(8).any(|part| part == b"\"result\"")
+    };
+    if shape.method.is_some() { parameters } else { answers() }
 }
 
 #[cfg(test)]
