@@ -61,11 +61,16 @@ const MOTOR: &str = "\
 +---| |---+                                      |
 ";
 
-fn motor(line: usize, column: usize) -> String {
-    let start: usize = MOTOR.split_inclusive('\n').take(line).map(str::len).sum();
-    let mut text = MOTOR.to_string();
+/// `drawing` with the mark of the cursor before a cell of a line, both from 0.
+pub fn with_cursor(drawing: &str, line: usize, column: usize) -> String {
+    let start: usize = drawing.split_inclusive('\n').take(line).map(str::len).sum();
+    let mut text = drawing.to_string();
     text.insert(start + column, '^');
     text
+}
+
+fn motor(line: usize, column: usize) -> String {
+    with_cursor(MOTOR, line, column)
 }
 
 #[test]

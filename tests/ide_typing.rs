@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::ide_structure::marked;
+use crate::ide_structure::{marked, with_cursor};
 use expect_test::{Expect, expect};
 use rungwise::document::{Document, Edit, Notation, Tree};
 use rungwise::ide::{self, Style};
@@ -69,10 +69,7 @@ const MOTOR: &str = "\
 ";
 
 fn motor(line: usize, column: usize) -> String {
-    let start: usize = MOTOR.split_inclusive('\n').take(line).map(str::len).sum();
-    let mut text = MOTOR.to_string();
-    text.insert(start + column, '^');
-    text
+    with_cursor(MOTOR, line, column)
 }
 
 #[test]
@@ -205,6 +202,21 @@ fn where_there_is_no_room_all_rows_get_a_cell() {
         +-| |-| |-/^( )-+
     "#]],
     );
+}
+
+#[test]
+fn no_character_of_a_name_joins_it_to_the_next_one() {
+    for name in ["Start_button_left", "M_1.Q_x", "_______"] {
+        let text = with_cursor("|   X0      X1     Y0  |\n+---| |-----| |----( )-+\n", 0, 6);
+        let (text, span) = marked(&text);
+        let mut typist = Typist::at(&text, span.start as usize);
+        for key in name.chars() {
+            typist.key(key);
+            let text = typist.document.text();
+            let names: Vec<&str> = text.lines().next().unwrap().split_whitespace().collect();
+            assert!(names.contains(&"X1") && names.contains(&"Y0"), "{text}");
+        }
+    }
 }
 
 #[test]

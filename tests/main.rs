@@ -42,6 +42,7 @@ mod lsp_within;
 mod manifest_schema;
 mod markdown;
 mod mistakes;
+mod plain_instructions;
 mod rules;
 mod rules_drawing;
 mod rules_fx;

@@ -6,13 +6,42 @@ use std::collections::BTreeSet;
 
 /// Types and modifiers of the protocol, which editors know by themselves.
 const STANDARD_TYPES: &[&str] = &[
-    "namespace", "type", "class", "enum", "interface", "struct", "typeParameter", "parameter", "variable",
-    "property", "enumMember", "event", "function", "method", "macro", "keyword", "modifier", "comment", "string",
-    "number", "regexp", "operator", "decorator", "label",
+    "namespace",
+    "type",
+    "class",
+    "enum",
+    "interface",
+    "struct",
+    "typeParameter",
+    "parameter",
+    "variable",
+    "property",
+    "enumMember",
+    "event",
+    "function",
+    "method",
+    "macro",
+    "keyword",
+    "modifier",
+    "comment",
+    "string",
+    "number",
+    "regexp",
+    "operator",
+    "decorator",
+    "label",
 ];
 const STANDARD_MODIFIERS: &[&str] = &[
-    "declaration", "definition", "readonly", "static", "deprecated", "abstract", "async", "modification",
-    "documentation", "defaultLibrary",
+    "declaration",
+    "definition",
+    "readonly",
+    "static",
+    "deprecated",
+    "abstract",
+    "async",
+    "modification",
+    "documentation",
+    "defaultLibrary",
 ];
 
 fn words(list: &Value) -> BTreeSet<String> {
@@ -39,7 +68,8 @@ fn beyond(words: &BTreeSet<String>, standard: &[&str]) -> BTreeSet<String> {
 }
 
 fn declared(list: &Value) -> BTreeSet<String> {
-    let ids = list.as_array().into_iter().flatten().map(|entry| entry["id"].as_str().expect("an id").to_string());
+    let ids =
+        list.as_array().into_iter().flatten().map(|entry| entry["id"].as_str().expect("an id").to_string());
     ids.collect()
 }
 

@@ -151,6 +151,15 @@ pub fn sorted(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
     diagnostics
 }
 
+/// What the rules of the real-time tier do with a chunk, in the order of the catalogue.
+static CHUNK_JUDGES: LazyLock<Vec<fn(&ChunkContext<'_>, &mut Vec<Diagnostic>)>> = LazyLock::new(|| {
+    let judges = RULES.iter().filter_map(|rule| match rule.run {
+        Run::Chunk(judge) | Run::Both(judge, _) => Some(judge),
+        _ => None,
+    });
+    judges.collect()
+});
+
 /// The findings in a page whose first chunk comes after `pou_number` starts of a POU, from the page's start.
 fn judge_page(
     document: &Document,
@@ -166,11 +175,7 @@ fn judge_page(
         let found = chunk.found(hash_of((scopes.key, pou_number)), with_mentions, |chunk| {
             let mut found = chunk.problems().to_vec();
             let context = ChunkContext::new(chunk, document, pou_number.checked_sub(1));
-            for rule in RULES.iter() {
-                if let Rule { run: Run::Chunk(judge) | Run::Both(judge, _), .. } = rule {
-                    judge(&context, &mut found);
-                }
-            }
+            CHUNK_JUDGES.iter().for_each(|judge| judge(&context, &mut found));
             found
         });
         diagnostics.extend(found.iter().map(|diagnostic| diagnostic.shifted(start)));

@@ -1,8 +1,8 @@
 //! The device comments of projects, read once for each project however many of its files are asked for.
 
-use super::encoding::Encoding;
 use super::input::{Program, folder_of};
 use crate::document::{Comments, Document, Notation};
+use crate::project::encoding::Encoding;
 use crate::project::{CommentsFile, Manifest};
 use crate::target::{Model, Target};
 use crate::text::Diagnostic;

@@ -2,11 +2,10 @@
 
 use super::colour::Colour;
 use super::diff;
-use super::encoding;
 use super::input::{Program, complain, programs, remark, say, say_bytes};
 use super::{Outcome, paths_or_here};
 use crate::ide::{self, Style};
-use crate::project::FormatStyle;
+use crate::project::{FormatStyle, encoding};
 use crate::text::{Language, Message, Span, TextEdit};
 use clap::ValueEnum;
 use std::path::PathBuf;

@@ -1,9 +1,8 @@
 //! Reading programs from files, folders and projects, and telling what cannot be read.
 
-use super::encoding;
 use crate::document::{Document, fences};
 use crate::project::{
-    MANIFEST_NAME, Manifest, Project, is_program_file, open_document, program_files, projects_in,
+    MANIFEST_NAME, Manifest, Project, encoding, is_program_file, open_document, program_files, projects_in,
 };
 use crate::target::Target;
 use crate::text::{Encoding, Language, LineColumn, Message, Related};

@@ -4,6 +4,7 @@ use super::{Outcome, input, language};
 use crate::lsp;
 use crate::text::{Language, Message};
 use std::future::Future;
+use std::num::NonZero;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -46,7 +47,14 @@ fn refuse(code: &str, reason: &str, help: &'static str) -> u8 {
 /// Does not return to the caller: a thread that still reads standard input would hold the runtime, and the process,
 /// for as long as the client keeps it open.
 fn on_runtime(serve: impl Future<Output = u8>) -> ExitCode {
-    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().worker_threads(4).build();
+    // Two threads read and write. The others share the processors: more of them would be no faster, and the allocator
+    // keeps some memory back for each.
+    let processors = std::thread::available_parallelism().map_or(2, NonZero::get).max(2);
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .enable_all()
+        .worker_threads(4)
+        .max_blocking_threads(2 + 2 * processors)
+        .build();
     match runtime {
         Ok(runtime) => {
             let code = runtime.block_on(serve);

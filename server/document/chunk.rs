@@ -37,7 +37,7 @@ struct Known {
 }
 
 /// How the chunks of a document are read.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Dialect {
     pub(super) notation: Notation,
     pub(super) target: &'static Target,
@@ -128,7 +128,7 @@ impl Tree {
 }
 
 impl Chunk {
-    /// The chunk of `text`, which must be one of the pieces that [`split`] makes.
+    /// The chunk of `text`, which must be one of the pieces that [`split`](super::split::split) makes.
     /// `keeps_tree` says whether it stands in a document so small that all trees are kept.
     pub(super) fn new(text: &str, dialect: &Arc<Dialect>, keeps_tree: bool) -> Chunk {
         let kind = match dialect.notation {
@@ -301,13 +301,4 @@ pub(super) fn is_kept(slot: &Kept, key: u64) -> bool {
 
 fn locked(slot: &Kept) -> MutexGuard<'_, Option<(u64, Found)>> {
     slot.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Ends of the chunks of `text`, which starts at a chunk boundary.
-pub(super) fn split(text: &str, notation: Notation) -> Vec<usize> {
-    match notation {
-        Notation::Ladder => ladder::split(text),
-        Notation::FxIl => fx::split(text),
-        Notation::IecIl => iec::split(text),
-    }
 }

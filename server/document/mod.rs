@@ -10,6 +10,10 @@ pub use notation::{Notation, detect_ladder_target, detect_notation, dialect_comm
 mod snapshot;
 pub use snapshot::{ChunkRef, Document, Edit, LIMIT_BYTES};
 
+mod both;
+
+mod split;
+
 mod chunk;
 pub use chunk::{Chunk, Found, Reading, Tree};
 

@@ -90,8 +90,10 @@ fn drawing_words(text: &str) -> impl Iterator<Item = &str> {
     let mut in_comment = false;
     text.lines()
         .filter(move |line| {
-            let opens = line.rfind("(*");
-            let closes = line.rfind("*)");
+            let (opens, closes) = match line.contains('*') {
+                true => (line.rfind("(*"), line.rfind("*)")),
+                false => (None, None),
+            };
             let starts_inside = in_comment;
             in_comment = match (opens, closes) {
                 (Some(open), Some(close)) => open > close,
@@ -110,14 +112,14 @@ fn drawing_words(text: &str) -> impl Iterator<Item = &str> {
 fn operand_words(line: &str) -> impl Iterator<Item = &str> {
     let part = |c: char| c.is_alphanumeric() || "_.%#".contains(c);
     let line = line.split("//").next().unwrap_or("");
-    line.split(move |c: char| !part(c)).filter(move |word| {
+    line.split(move |c: char| !part(c)).filter(|word| !word.is_empty()).filter(move |word| {
         let start = word.as_ptr() as usize - line.as_ptr() as usize;
         let (before, after) = (&line[..start], &line[start + word.len()..]);
         let beside = |sign: Option<char>| sign.is_some_and(|sign| "()[]{}|!┤├│┃".contains(sign));
         let mark = word.len() == 1 && "SRLUPNsrlupn".contains(word);
         let single = mark && (beside(before.chars().next_back()) || beside(after.chars().next()));
         let mnemonic = before.trim_end().ends_with(['[', '(', '{']) && after.trim_start().starts_with(part);
-        !(word.is_empty() || single || mnemonic)
+        !(single || mnemonic)
     })
 }
 

@@ -5,6 +5,7 @@ use crate::il::fx::LineKind;
 use crate::ladder::{CoilKind, CompareOperator, ContactKind, Element, ElementKind};
 use crate::target::{Form, Operand};
 use crate::text::{Span, Spanned};
+use std::sync::LazyLock;
 
 /// An FX instruction of a chunk, written in a line or drawn as an element.
 #[derive(Clone, Copy, Debug)]
@@ -56,19 +57,39 @@ impl<'a> Operation<'a> {
 
 /// The instruction of an element, its cells, and whether these are a word.
 fn form_of(element: &Element) -> Option<(Option<Form>, Span, bool)> {
-    Some(match &element.kind {
-        ElementKind::Contact(kind) => (Form::named(contact_mnemonic(*kind)), element.span, false),
-        ElementKind::Compare(operator) => (Form::named(compare_mnemonic(*operator)), element.span, false),
-        ElementKind::Coil(kind) => (Form::named(coil_mnemonic(*kind)), element.span, false),
-        ElementKind::Instruction { form, mnemonic } => (*form, *mnemonic, true),
-        ElementKind::Invert => (Form::named("INV"), element.span, false),
+    let form = match &element.kind {
+        ElementKind::Contact(kind) => DRAWN.contacts[*kind as usize],
+        ElementKind::Compare(operator) => Form::named(compare_mnemonic(*operator)),
+        ElementKind::Coil(kind) => DRAWN.coils[*kind as usize],
+        ElementKind::Instruction { form, mnemonic } => return Some((*form, *mnemonic, true)),
+        ElementKind::Invert => Form::named("INV"),
         ElementKind::Block(_)
         | ElementKind::Jump(_)
         | ElementKind::Return
         | ElementKind::ConnectorOut(_)
         | ElementKind::ConnectorIn(_) => return None,
-    })
+    };
+    Some((form, element.span, false))
 }
+
+/// The instructions of the commonest elements, looked up once: each rule asks for them at each element.
+struct DrawnForms {
+    /// By [`ContactKind`].
+    contacts: [Option<Form>; 4],
+    /// By [`CoilKind`].
+    coils: [Option<Form>; 7],
+}
+
+static DRAWN: LazyLock<DrawnForms> = LazyLock::new(|| {
+    use {CoilKind as Coil, ContactKind as Contact};
+    let contacts = [Contact::NormallyOpen, Contact::NormallyClosed, Contact::Rising, Contact::Falling];
+    let coils =
+        [Coil::Plain, Coil::Negated, Coil::Set, Coil::Reset, Coil::Rising, Coil::Falling, Coil::Toggle];
+    let mut forms = DrawnForms { contacts: [None; 4], coils: [None; 7] };
+    contacts.iter().for_each(|kind| forms.contacts[*kind as usize] = Form::named(contact_mnemonic(*kind)));
+    coils.iter().for_each(|kind| forms.coils[*kind as usize] = Form::named(coil_mnemonic(*kind)));
+    forms
+});
 
 fn contact_mnemonic(kind: ContactKind) -> &'static str {
     match kind {

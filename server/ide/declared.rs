@@ -49,7 +49,7 @@ pub(super) fn table_rows_of(document: &Document) -> FxHashMap<String, String> {
         return rows;
     }
     let is_table = |text: &&str| kind_of(text) == ChunkKind::Ldmicro;
-    let declaring = document.chunks().filter(|at| matches!(at.chunk.tree(), Tree::Iec(_)));
+    let declaring = document.chunks().filter(|at| at.chunk.is_iec());
     for text in declaring.map(|at| at.chunk.text()).filter(is_table) {
         let words = |row: TableRow| (row.name.of(text).to_string(), row_words(text, &row));
         rows.extend(table_rows(text).into_iter().map(words));
@@ -128,9 +128,4 @@ pub(super) fn type_name(declared: &DeclaredType, scopes: &Scopes) -> String {
         DeclaredType::Structure(_) => "STRUCT".to_string(),
         DeclaredType::Unknown => "?".to_string(),
     }
-}
-
-/// Whether callers see variables of this section.
-pub(super) fn is_parameter(kind: SectionKind) -> bool {
-    matches!(kind, SectionKind::Input | SectionKind::Output | SectionKind::InOut)
 }

@@ -11,7 +11,8 @@ use crate::text::Span;
 pub(super) fn of(document: &Document) -> Vec<Fold> {
     let mut folding = Folding { document, folds: Vec::new(), open: Vec::new(), network: None };
     for at in document.chunks() {
-        match at.chunk.tree() {
+        let reading = at.chunk.reading();
+        match reading.tree() {
             Tree::Fx(tree) => folding.fx(at, tree),
             Tree::Ladder(tree) => folding.ladder(at, tree),
             Tree::Iec(tree) => folding.iec(at, tree),

@@ -360,7 +360,7 @@ impl View<'_> {
             if let Some(result) = &pou.result {
                 text += &format!(" : {}", declared::type_name(result, scopes));
             }
-            for variable in pou.variables.iter().filter(|variable| declared::is_parameter(variable.section)) {
+            for variable in pou.variables.iter().filter(|variable| variable.section.is_parameter()) {
                 let kind = declared::type_name(&variable.declared, scopes);
                 let section = declared::section_keyword(variable.section);
                 text += &format!("\n{section} {} : {kind}", variable.name);

@@ -287,8 +287,7 @@ fn formals(document: &Document, chunk_start: usize, callee: &str) -> Option<Call
         is_output,
     };
     if let Some(declared_unit) = scopes.pou_named(&unit) {
-        let parameters =
-            declared_unit.variables.iter().filter(|variable| declared::is_parameter(variable.section));
+        let parameters = declared_unit.variables.iter().filter(|variable| variable.section.is_parameter());
         let formals = parameters.map(|variable| Formal {
             name: variable.name.to_string(),
             kind: declared::type_name(&variable.declared, scopes),

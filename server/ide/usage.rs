@@ -169,9 +169,8 @@ fn key_of(symbol: &Symbol, pou: Option<usize>, scopes: &crate::document::Scopes)
         Symbol::Device(device) => Some(UsageKey::Device(*device)),
         Symbol::Direct(address) => Some(UsageKey::Direct(*address)),
         Symbol::Variable(name) => {
-            use crate::il::iec::SectionKind::{External, Global};
             let declared = scopes.variable(pou, name);
-            let is_global = declared.is_some_and(|variable| matches!(variable.section, Global | External));
+            let is_global = declared.is_some_and(|variable| variable.section.is_global());
             let unit = pou.filter(|_| !is_global).and_then(|number| scopes.pous.get(number));
             Some(UsageKey::Variable(
                 unit.map(|unit| unit.name.to_string()).unwrap_or_default(),

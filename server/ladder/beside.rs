@@ -10,12 +10,14 @@ const GAP: usize = 3;
 /// Blanks out what stands to the right of the drawing behind blank columns, is made of lines and words, and has no
 /// element in it; says so once.
 pub(super) fn take_beside(grid: &mut Grid, problems: &mut Vec<Diagnostic>) {
+    if grid.is_ascii() {
+        return;
+    }
     let is_element = |c: char| matches!(c, '[' | ']' | '(' | ')' | '{' | '}');
     // Words beside a rail are remarks, which have a finding of their own.
     let is_strange = |c: char| !c.is_ascii() && c != WIDE && !c.is_alphanumeric() && !Arms::of(c).is_line();
     let rows: Vec<usize> = (0..grid.height()).collect();
-    let strange = |row: &usize| (0..grid.width(*row)).any(|column| is_strange(grid.at(*row, column)));
-    if !rows.iter().any(strange) {
+    if !rows.iter().any(|row| grid.characters(*row).any(is_strange)) {
         return;
     }
     let drawn = |row: &&usize| (0..grid.width(**row)).any(|column| grid.arms(**row, column).is_upright());

@@ -1,7 +1,7 @@
 //! Function blocks drawn as boxes of `+`, `-` and `|`.
 
 use super::content::Wants;
-use super::glyph::{continues_word, is_operator, starts_word};
+use super::glyph::{Arms, continues_word, is_operator, starts_word};
 use super::grid::{Grid, WIDE};
 use super::scan::Symbol;
 use super::{Block, Element, ElementKind, OperandPlace, Pin, PinWire};
@@ -38,9 +38,9 @@ pub(super) fn find_blocks(grid: &mut Grid, text: &str, target: &Target) -> (Vec<
     let mut rows = Vec::new();
     for top in 0..grid.height() {
         let mut column = 0;
-        while column < grid.width(top) {
-            let Some(frame) = frame_at(grid, top, column) else {
-                column += 1;
+        while let Some(corner) = grid.find(top, column, |character| Arms::of(character).is_junction()) {
+            let Some(frame) = frame_at(grid, top, corner) else {
+                column = corner + 1;
                 continue;
             };
             let number = symbols.len();
@@ -290,7 +290,7 @@ fn outside(
         Side::Right => Some(edge + distance),
     };
     let at = |distance: usize, grid: &Grid| column(distance).map_or(' ', |column| grid.at(row, column));
-    let is_wire = |distance: usize, grid: &Grid| super::glyph::Arms::of(at(distance, grid)).is_horizontal();
+    let is_wire = |distance: usize, grid: &Grid| Arms::of(at(distance, grid)).is_horizontal();
     let negated = matches!(at(1, grid), 'O' | 'o') && is_wire(2, grid);
     let first = 1 + usize::from(negated);
     let mut distance = first;
@@ -316,7 +316,7 @@ fn outside(
         // The wire leads up to the box.
         grid.bridge(row, column(1));
     }
-    let joined = super::glyph::Arms::of(at(first, grid)).is_line();
+    let joined = Arms::of(at(first, grid)).is_line();
     (if wired || joined { Outside::Wire } else { Outside::Nothing }, negated)
 }
 
@@ -373,7 +373,7 @@ fn word_beside(
     };
     let span = grid.span(row, first, last + 1);
     let far = if side == Side::Left { first } else { last };
-    let arms = super::glyph::Arms::of(beyond);
+    let arms = Arms::of(beyond);
     // The circle of the next box touches that box.
     let circle = arms.is_upright() && first == last && matches!(grid.at(row, first), 'O' | 'o');
     (!circle && !arms.is_horizontal() && !span.of(text).is_empty()).then_some((far, span))

@@ -119,13 +119,15 @@ impl Chunk {
         if let Phase::Declarations(Some(last)) = self.phase {
             return self.takes_declaration(line, last, text);
         }
-        let words = line.span.of(text).trim_matches(is_blank);
+        let words = || line.span.of(text).trim_matches(is_blank);
         if self.phase == (Phase::Ldmicro { open: true }) {
+            let words = words();
             // Without its last line the head ends where the drawing starts.
             self.phase = Phase::Ldmicro { open: !words.starts_with(LDMICRO_DRAWING) };
             return line.continues || !words.starts_with('|');
         }
         if self.phase == Phase::Table {
+            let words = words();
             return line.continues || words.is_empty() || is_row(words);
         }
         let kind = line.kind(text);

@@ -13,13 +13,24 @@ const DOWN: u8 = 8;
 const BOX_DRAWING: &[u8; 128] = b"33cc33cc33ccaaaa999966665555eeeeeeeeddddddddbbbbbbbb77777777ffff\
     ffffffffffff33cc3caaa999666555eeedddbbb777fffa956000142814283c3c";
 
+/// The arms of the ASCII characters: every cell of a drawing is asked for them many times.
+const ASCII: [u8; 128] = {
+    let mut arms = [0; 128];
+    arms[b'-' as usize] = LEFT | RIGHT;
+    arms[b'_' as usize] = LEFT | RIGHT;
+    arms[b'=' as usize] = LEFT | RIGHT;
+    arms[b'|' as usize] = UP | DOWN;
+    arms[b'!' as usize] = UP | DOWN;
+    arms[b'+' as usize] = LEFT | RIGHT | UP | DOWN;
+    arms[b'*' as usize] = LEFT | RIGHT | UP | DOWN;
+    arms
+};
+
 impl Arms {
     /// The arms of `character`. `+` and `*` run in all four directions.
     pub(super) fn of(character: char) -> Arms {
         Arms(match character {
-            '-' | '_' | '=' => LEFT | RIGHT,
-            '|' | '!' => UP | DOWN,
-            '+' | '*' => LEFT | RIGHT | UP | DOWN,
+            '\0'..='\x7F' => ASCII[character as usize & 0x7F],
             '\u{2500}'..='\u{257F}' => {
                 let digit = BOX_DRAWING[(character as usize - 0x2500) & 0x7F];
                 if digit <= b'9' { digit - b'0' } else { digit - b'a' + 10 }

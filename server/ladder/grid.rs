@@ -14,6 +14,8 @@ pub(super) const MOST_COLUMNS: usize = 10_000;
 #[derive(Debug, Default)]
 pub(super) struct Grid {
     rows: Vec<Row>,
+    /// Whether a row came with other characters than ASCII, or with comments or tabs.
+    is_mixed: bool,
 }
 
 #[derive(Debug)]
@@ -38,14 +40,16 @@ impl Grid {
     pub(super) fn push(&mut self, line: &Line, number: u32, text: &str) {
         let mut row = Row { line: number, end: line.span.end, cells: Vec::with_capacity(line.span.len()) };
         let content = line.span.of(text);
-        if line.comments.is_empty() && content.bytes().all(|byte| byte.is_ascii() && byte != b'\t') {
-            row.cells.extend((line.span.start..).zip(content.bytes()).map(|(start, byte)| {
-                let shown = if is_blank(char::from(byte)) { ' ' } else { char::from(byte) };
-                Cell { character: shown, start, end: start + 1 }
+        if line.comments.is_empty() && content.is_ascii() && !content.contains('\t') {
+            row.cells.extend(content.bytes().enumerate().map(|(column, byte)| {
+                let start = line.span.start + column as u32;
+                let blank = matches!(byte, b'\t'..=b'\r');
+                Cell { character: if blank { ' ' } else { char::from(byte) }, start, end: start + 1 }
             }));
             self.rows.push(row);
             return;
         }
+        self.is_mixed = true;
         for (column, offset, character) in line.cells(text) {
             let length = text[offset..].chars().next().map_or(0, char::len_utf8);
             let (start, end) = (offset as u32, (offset + length) as u32);
@@ -71,6 +75,11 @@ impl Grid {
         self.rows.push(row);
     }
 
+    /// Whether all characters are sure to be ASCII.
+    pub(super) fn is_ascii(&self) -> bool {
+        !self.is_mixed
+    }
+
     /// Number of rows.
     pub(super) fn height(&self) -> usize {
         self.rows.len()
@@ -89,6 +98,17 @@ impl Grid {
     /// The character of a cell, a blank outside the drawing.
     pub(super) fn at(&self, row: usize, column: usize) -> char {
         self.rows.get(row).and_then(|row| row.cells.get(column)).map_or(' ', |cell| cell.character)
+    }
+
+    /// The characters of a row.
+    pub(super) fn characters(&self, row: usize) -> impl Iterator<Item = char> {
+        self.rows.get(row).into_iter().flat_map(|row| &row.cells).map(|cell| cell.character)
+    }
+
+    /// The first column of a row from `from` on with a character that is wanted.
+    pub(super) fn find(&self, row: usize, from: usize, is_wanted: impl Fn(char) -> bool) -> Option<usize> {
+        let cells = self.rows.get(row)?.cells.get(from..)?;
+        cells.iter().position(|cell| is_wanted(cell.character)).map(|column| from + column)
     }
 
     /// The lines that a cell's character draws.

@@ -2,7 +2,7 @@
 
 use super::OperandPlace;
 use super::content::Wants;
-use super::glyph::{continues_word, starts_word};
+use super::glyph::{Arms, contact_mark, continues_word, starts_word};
 use super::grid::{Grid, WIDE};
 use super::scan::{Tokens, What};
 use crate::target::Target;
@@ -34,10 +34,9 @@ pub(super) fn take_inline(grid: &mut Grid) -> Vec<InlineName> {
 fn inline_row(grid: &Grid, row: usize) -> Option<Vec<(usize, usize, usize, usize)>> {
     let at = |column: usize| grid.at(row, column);
     let width = grid.width(row);
-    // Most rows of wires have no word at all.
-    if !(0..width).any(|column| starts_word(at(column))) {
-        return None;
-    }
+    // Most rows have no word or no wire.
+    grid.find(row, 0, |character| Arms::of(character).is_horizontal())?;
+    grid.find(row, 0, starts_word)?;
     let mut found = Vec::new();
     let mut symbols: Vec<usize> = Vec::new();
     let mut column = 0;
@@ -88,7 +87,6 @@ fn bare_symbol(grid: &Grid, row: usize, column: usize) -> Option<usize> {
         let arms = grid.arms(row, column);
         arms.is_vertical() || arms.is_left_tee() || arms.is_right_tee()
     };
-    let mark = super::glyph::contact_mark(at(column + 1)).is_some();
     let closes = match at(column) {
         '(' => {
             let mark = matches!(at(column + 1), ' ' | '/' | 'S' | 'R' | 'L' | 'U' | 'P' | 'N');
@@ -100,7 +98,7 @@ fn bare_symbol(grid: &Grid, row: usize, column: usize) -> Option<usize> {
     };
     // The rail is no contact, however near the next bar is.
     let wired = column > 0 && at(column - 1) != ' ' || matches!(at(column + 3), '-' | '─');
-    (mark && closes && wired).then_some(column + 3)
+    (closes && wired && contact_mark(at(column + 1)).is_some()).then_some(column + 3)
 }
 
 /// Gives the names in the wire to their elements.

@@ -3,6 +3,7 @@
 use super::glyph::Arms;
 use super::ldmicro::is_title;
 use crate::text::{Span, cell_width};
+use memchr::memchr2;
 
 /// A line of the text with the comments in it.
 #[derive(Clone, PartialEq, Debug)]
@@ -61,13 +62,12 @@ impl Iterator for Lines<'_> {
         if start >= bytes.len() {
             return None;
         }
-        let mut end = start;
-        // A comment or pragma can only begin with one of these; most lines have none.
-        let mut suspicious = self.open.is_some();
-        while end < bytes.len() && !matches!(bytes[end], b'\n' | b'\r') {
-            suspicious |= matches!(bytes[end], b'/' | b'{' | b';' | b'*');
-            end += 1;
-        }
+        let end = memchr2(b'\n', b'\r', &bytes[start..]).map_or(bytes.len(), |length| start + length);
+        // A comment or pragma can only begin with one of these; most lines have none. All bytes are looked at, since
+        // a loop without a way out looks at many at a time.
+        let begins = |byte: &u8| matches!(byte, b'/' | b'{' | b';' | b'*');
+        let suspicious =
+            self.open.is_some() | bytes[start..end].iter().fold(false, |any, byte| any | begins(byte));
         let ending = if bytes[end..].starts_with(b"\r\n") { 2 } else { usize::from(end < bytes.len()) };
         self.offset = end + ending;
         let continues = self.open.is_some();
@@ -212,6 +212,10 @@ impl Line {
         let numbered = number > 0 && words[number..].trim_start().starts_with("||");
         if numbered || Arms::of(words.chars().next().unwrap_or(' ')).is_upright() {
             let from = content.start as usize + number;
+            let is_bar = |character: char| is_blank(character) || Arms::of(character).is_vertical();
+            if self.comments.is_empty() && !words[number..].chars().all(is_bar) {
+                return LineKind::Drawing;
+            }
             return self.bars(text, from).map_or(LineKind::Drawing, LineKind::Bars);
         }
         if let Some(header) = read_header(words, content.start as usize) {
@@ -236,9 +240,10 @@ impl Line {
         let ends = self.comments.iter().map(|comment| (comment.start as usize, comment.end as usize));
         for (gap_end, resume) in ends.chain([(self.span.end as usize, 0)]) {
             let gap = text.get(at..gap_end).unwrap_or("");
-            let inner = gap.trim_matches(is_blank);
+            let inner = gap.trim_start_matches(is_blank);
             if !inner.is_empty() {
-                let start = at + (gap.len() - gap.trim_start_matches(is_blank).len());
+                let start = at + (gap.len() - inner.len());
+                let inner = inner.trim_end_matches(is_blank);
                 let part = Span::new(start, start + inner.len());
                 content = Some(content.map_or(part, |content| content.to(part)));
             }

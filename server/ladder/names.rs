@@ -82,15 +82,14 @@ impl Naming<'_> {
         let names_below = habit.decided().or(hint.decided()).unwrap_or(false);
         self.own(&mut words, names_below);
         let mut named = Named { habit, rows: vec![None; self.tokens.symbols.len()] };
-        let mut owned: Vec<Vec<Word>> = vec![Vec::new(); self.tokens.symbols.len()];
-        for word in &words {
-            let Some(owner) = word.owner else { continue };
-            owned[owner].push(*word);
-            let rows = &mut named.rows[owner];
-            *rows = Some(rows.map_or((word.row, word.row), |(a, b)| (a.min(word.row), b.max(word.row))));
-        }
-        for (symbol, words) in owned.iter().enumerate() {
-            self.give(symbol, words);
+        let mut owned: Vec<(usize, Word)> =
+            words.iter().filter_map(|word| Some((word.owner?, *word))).collect();
+        owned.sort_by_key(|(owner, _)| *owner);
+        for words in owned.chunk_by(|(left, _), (right, _)| left == right) {
+            let (owner, first) = words[0];
+            let last = words.iter().map(|(_, word)| word.row).max().unwrap_or(first.row);
+            named.rows[owner] = Some((first.row, last));
+            self.give(owner, words.iter().map(|(_, word)| *word));
         }
         self.mend_in_order(&mut words, &mut named, names_below);
         self.mend(&mut words, &mut named);
@@ -249,6 +248,9 @@ impl Naming<'_> {
     /// The second operand of a comparison may stand on the other side. It can be told from the upper line of a name
     /// only if the element there has a nearer name.
     fn second_operands(&self, words: &mut [Word], counts: &mut [usize], names_below: bool) {
+        if !self.tokens.symbols.iter().any(|symbol| symbol.wants == Wants::TwoOperands) {
+            return;
+        }
         let nearest = nearest_words(words, names_below);
         for (number, word) in words.iter_mut().enumerate() {
             let other = if names_below { word.below } else { word.above };
@@ -265,13 +267,10 @@ impl Naming<'_> {
 
     /// The preset of a timer or counter that has none may stand on the other side of its coil, or behind it.
     fn presets(&self, words: &mut [Word], counts: &mut [usize]) {
-        if !self.target.is_fx() {
+        if !self.target.is_fx() || words.iter().all(|word| word.owner.is_some()) {
             return;
         }
-        let read = |word: &Word| {
-            let span = self.grid.span(word.row, word.start, word.end);
-            self.target.read(span.of(self.text))
-        };
+        let read = |word: &Word| self.read(word).value;
         let mut devices: rustc_hash::FxHashMap<usize, Operand> = rustc_hash::FxHashMap::default();
         for word in words.iter() {
             if let Some(owner) = word.owner.filter(|owner| counts[*owner] == 1) {
@@ -295,6 +294,12 @@ impl Naming<'_> {
                 counts[symbol] += 1;
             }
         }
+    }
+
+    /// The word as an operand.
+    fn read(&self, word: &Word) -> Spanned<Operand> {
+        let span = self.grid.span(word.row, word.start, word.end);
+        Spanned::new(self.target.read(span.of(self.text)), span)
     }
 
     /// The symbol on the left of a word, at most two blanks away.
@@ -330,14 +335,11 @@ impl Naming<'_> {
     }
 
     /// Makes operands of the words of a symbol, which come in reading order.
-    fn give(&mut self, number: usize, words: &[Word]) {
-        let Some(first) = words.first() else { return };
+    fn give(&mut self, number: usize, words: impl Iterator<Item = Word> + Clone) {
+        let Some(first) = words.clone().next() else { return };
         let target = self.target;
-        let spans: Vec<Span> =
-            words.iter().map(|word| self.grid.span(word.row, word.start, word.end)).collect();
-        let read = |span: &Span| Spanned::new(target.read(span.of(self.text)), *span);
-        let operands: Vec<Spanned<Operand>> = spans.iter().map(read).collect();
-        let one_line = words.iter().all(|word| word.row == first.row);
+        let operands: Vec<Spanned<Operand>> = words.clone().map(|word| self.read(&word)).collect();
+        let one_line = words.clone().all(|word| word.row == first.row);
         let symbol = &mut self.tokens.symbols[number];
         let place = if first.row < symbol.row { OperandPlace::Above } else { OperandPlace::Below };
         let mut surplus = Vec::new();
@@ -361,13 +363,17 @@ impl Naming<'_> {
                 surplus = operands.get(2..).map_or(Vec::new(), <[_]>::to_vec);
                 symbol.element.operands = operands.into_iter().take(2).collect();
             }
+            Wants::Device | Wants::DeviceAndPreset if operands.len() == 1 => {
+                symbol.element.operands = operands
+            }
             Wants::Device | Wants::DeviceAndPreset => {
                 let preset = matches!(&operands[..], [device, preset] if is_preset(&device.value, &preset.value)
                     || (!target.is_fx() && one_line));
                 if symbol.wants == Wants::DeviceAndPreset && preset {
                     symbol.element.operands = operands;
                 } else {
-                    surplus = name_device(symbol, &operands, words, place, (self.text, target));
+                    let rows: Vec<usize> = words.map(|word| word.row).collect();
+                    surplus = name_device(symbol, &operands, &rows, place, (self.text, target));
                 }
             }
         }
@@ -489,7 +495,7 @@ impl Naming<'_> {
         words[number].owner = Some(symbol);
         let rows = &mut named.rows[symbol];
         *rows = Some(rows.map_or((word.row, word.row), |(a, b)| (a.min(word.row), b.max(word.row))));
-        self.give(symbol, &[word]);
+        self.give(symbol, std::iter::once(word));
         let span = self.grid.span(word.row, word.start, word.end);
         let found = &self.tokens.symbols[symbol];
         let message = Message::new("ragged-drawing.operand").with("text", span.of(self.text));
@@ -662,14 +668,14 @@ fn name_instance(block: &mut Block, mut operands: Vec<Spanned<Operand>>) -> Vec<
 fn name_device(
     symbol: &mut Symbol,
     operands: &[Spanned<Operand>],
-    words: &[Word],
+    rows: &[usize],
     place: OperandPlace,
     (text, target): (&str, &Target),
 ) -> Vec<Spanned<Operand>> {
     let addressed = |operand: &Spanned<Operand>| {
         !matches!(operand.value, Operand::Invalid(_) | Operand::Variable | Operand::Literal(_))
     };
-    let lines_differ = words.windows(2).all(|pair| pair[0].row != pair[1].row);
+    let lines_differ = rows.windows(2).all(|pair| pair[0] != pair[1]);
     let all_names = !operands.iter().any(addressed);
     if operands.len() > 1 && operands.len() <= FARTHEST && lines_differ && all_names && !target.is_fx() {
         symbol.element.name_lines = operands.iter().map(|operand| operand.span).collect();
@@ -681,11 +687,10 @@ fn name_device(
         return Vec::new();
     }
     // Nearest line first, and in it left to right.
-    let row = |number: &usize| words[*number].row;
     let mut order: Vec<usize> = (0..operands.len()).collect();
     order.sort_by_key(|number| match place {
-        OperandPlace::Above => usize::MAX - row(number),
-        _ => row(number),
+        OperandPlace::Above => usize::MAX - rows[*number],
+        _ => rows[*number],
     });
     let chosen =
         order.iter().copied().find(|number| addressed(&operands[*number])).or(order.first().copied());

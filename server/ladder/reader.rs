@@ -122,11 +122,7 @@ fn read_drawing(
 /// The leftmost column in which a line or an element is drawn; a number in the margin is passed over.
 fn left_column(grid: &Grid) -> usize {
     let first = |row: usize| {
-        let skipped = |column: &usize| {
-            let character = grid.at(row, *column);
-            character != ' ' && !character.is_ascii_digit()
-        };
-        let column = (0..grid.width(row)).find(skipped)?;
+        let column = grid.find(row, 0, |character| character != ' ' && !character.is_ascii_digit())?;
         let character = grid.at(row, column);
         let drawn = Arms::of(character).is_line() || matches!(character, '[' | ']' | '(' | ')');
         drawn.then_some(column)

@@ -6,7 +6,6 @@ use super::uprights::{Role, Uprights};
 use super::wires::{Link, Node, Wiring};
 use super::{Graph, Rung, VertexId, VertexKind};
 use crate::text::{Span, Spanned};
-use rustc_hash::FxHashMap;
 
 /// The rungs of a drawing, top to bottom. Rows that a vertical wire or a function block joins are one rung, with the
 /// rows between them, so that no two rungs share a line. `names` has the first and last row of each symbol's names.
@@ -25,6 +24,7 @@ pub(super) fn build_rungs(
         .any(|upright| upright.role == Role::LeftRail && upright.cells.iter().any(|cell| cell.right));
     let groups = row_groups(&tokens, uprights);
     let Tokens { rows, symbols, .. } = tokens;
+    let mut places = Places { uprights: vec![None; uprights.all.len()], symbols: vec![None; symbols.len()] };
     let mut symbols: Vec<Option<Symbol>> = symbols.into_iter().map(Some).collect();
     let mut rungs = Vec::with_capacity(groups.len());
     let mut links = wiring.links.as_slice();
@@ -55,7 +55,8 @@ pub(super) fn build_rungs(
         }
         let mut builder = Builder {
             graph: Graph::with_room(members.len(), own.len()),
-            vertices: FxHashMap::default(),
+            rung: number,
+            places: &mut places,
             grid,
             rows: &rows,
             uprights,
@@ -145,11 +146,18 @@ fn margin_number(
     Some(Spanned::new(span.of(text).parse().ok()?, span))
 }
 
+/// The vertices of a drawing's uprights and symbols, each with the number of its rung.
+struct Places {
+    uprights: Vec<Option<(usize, VertexId)>>,
+    symbols: Vec<Option<(usize, VertexId)>>,
+}
+
 /// Builds the graph of one rung.
 struct Builder<'a> {
     graph: Graph,
-    /// Vertices of uprights (false) and symbols (true) by their numbers.
-    vertices: FxHashMap<(bool, usize), VertexId>,
+    /// The number of the rung.
+    rung: usize,
+    places: &'a mut Places,
     grid: &'a Grid,
     rows: &'a [Vec<super::scan::Token>],
     uprights: &'a Uprights,
@@ -180,8 +188,10 @@ impl Builder<'_> {
                 (self.graph.add_vertex(VertexKind::LooseEnd, &[end.span]), 0)
             }
             Node::Upright(upright) => {
-                if let Some(vertex) = self.vertices.get(&(false, upright)) {
-                    return (*vertex, 0);
+                if let Some((_, vertex)) =
+                    self.places.uprights[upright].filter(|(rung, _)| *rung == self.rung)
+                {
+                    return (vertex, 0);
                 }
                 let cells = &self.uprights.all[upright].cells;
                 let span = |cell: &super::uprights::Cell| {
@@ -190,7 +200,7 @@ impl Builder<'_> {
                 };
                 let cells: Vec<Span> = cells.iter().map(span).collect();
                 let vertex = self.graph.add_vertex(VertexKind::Junction, &cells);
-                self.vertices.insert((false, upright), vertex);
+                self.places.uprights[upright] = Some((self.rung, vertex));
                 (vertex, 0)
             }
             Node::Symbol(symbol, pin) => (self.place(symbol), pin),
@@ -199,15 +209,15 @@ impl Builder<'_> {
 
     /// The vertex of a symbol, added when it is met first.
     fn place(&mut self, number: usize) -> VertexId {
-        if let Some(vertex) = self.vertices.get(&(true, number)) {
-            return *vertex;
+        if let Some((_, vertex)) = self.places.symbols[number].filter(|(rung, _)| *rung == self.rung) {
+            return vertex;
         }
         // Each symbol belongs to one rung, and is moved into its graph once.
         let Some(symbol) = self.symbols.get_mut(number).and_then(Option::take) else {
             return Graph::LEFT_RAIL;
         };
         let vertex = self.graph.add_element(symbol.element);
-        self.vertices.insert((true, number), vertex);
+        self.places.symbols[number] = Some((self.rung, vertex));
         vertex
     }
 }

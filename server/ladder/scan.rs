@@ -107,24 +107,23 @@ impl Scanner<'_> {
         let mut rows = Vec::with_capacity(self.grid.height());
         let mut blocks = blocks.iter().peekable();
         for row in 0..self.grid.height() {
-            let mut tokens = Vec::new();
+            let mut tokens = Vec::with_capacity(self.grid.width(row) / 4 + 1);
             let mut column = 0;
-            while column < self.grid.width(row) {
-                let token = match self.grid.at(row, column) {
-                    ' ' => None,
+            while let Some(start) = self.grid.find(row, column, |character| character != ' ') {
+                let token = match self.grid.at(row, start) {
                     TAKEN => {
-                        while blocks.next_if(|block| (block.row, block.end) <= (row, column)).is_some() {}
+                        while blocks.next_if(|block| (block.row, block.end) <= (row, start)).is_some() {}
                         blocks.peek().map(|block| Token {
-                            start: column,
+                            start,
                             end: block.end,
                             what: What::Symbol(block.symbol),
                         })
                     }
                     character => {
-                        Some(self.token(row, column, character).unwrap_or_else(|| self.no_token(row, column)))
+                        Some(self.token(row, start, character).unwrap_or_else(|| self.no_token(row, start)))
                     }
                 };
-                column = token.map_or(column + 1, |token| token.end.max(column + 1));
+                column = token.map_or(start + 1, |token| token.end.max(start + 1));
                 tokens.extend(token);
             }
             rows.push(tokens);
@@ -226,6 +225,9 @@ impl Scanner<'_> {
     fn word_end(&self, row: usize, column: usize) -> Option<usize> {
         let at = |column: usize| self.grid.at(row, column);
         let first = at(column);
+        if !(starts_word(first) || matches!(first, '_' | '?')) {
+            return None;
+        }
         let after_wire = column > 0 && Arms::of(at(column - 1)).is_horizontal();
         // `???` stands where a name is still to be given.
         if first == '?' && at(column + 1) == '?' {
@@ -289,8 +291,14 @@ impl Scanner<'_> {
         if (column == 0 || open(column - 1)) && corner(column) {
             return junction(column);
         }
-        let mut end = column;
-        while horizontal(end) && (end == column || self.word_end(row, end).is_none()) {
+        // Of all that draws wire only an underscore can begin a name.
+        let ends = |character| !Arms::of(character).is_horizontal() || character == '_';
+        let mut end = column + 1;
+        loop {
+            end = self.grid.find(row, end, ends).unwrap_or(self.grid.width(row));
+            if !horizontal(end) || self.word_end(row, end).is_some() {
+                break;
+            }
             end += 1;
         }
         if open(end) && end - column > 1 && corner(end - 1) {

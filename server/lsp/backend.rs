@@ -9,6 +9,7 @@ use super::to_proto;
 use super::tokens;
 use super::typed;
 use super::workspace::{SNAPSHOT, Snapshot, Workspace};
+use super::written::{given, write};
 use super::{capabilities, features};
 use crate::ide;
 use crate::text::Message;
@@ -89,16 +90,18 @@ impl LanguageServer for Backend {
 
     async fn goto_definition(&self, params: GotoDefinitionParams) -> Result<Option<GotoDefinitionResponse>> {
         let at = params.text_document_position_params;
-        whole(at.text_document.uri, move |around, place| across::definition(around, place, at.position)).await
+        // Only the chunk at the position is read; elsewhere names are looked up.
+        aside(at.text_document.uri, move |around, place| across::definition(around, place, at.position)).await
     }
 
     async fn references(&self, params: ReferenceParams) -> Result<Option<Vec<Location>>> {
         let at = params.text_document_position;
         let with_declaration = params.context.include_declaration;
         whole(at.text_document.uri, move |around, place| {
-            across::references(around, place, at.position, with_declaration)
+            write(&across::references(around, place, at.position, with_declaration))
         })
         .await
+        .map(given)
     }
 
     async fn prepare_rename(
@@ -127,9 +130,13 @@ impl LanguageServer for Backend {
     async fn document_symbol(&self, params: DocumentSymbolParams) -> Result<Option<DocumentSymbolResponse>> {
         whole(params.text_document.uri, |around, place| {
             let symbols = ide::symbols_unless(place.document, place.language, || around.is_cancelled());
-            to_proto::outline(place, symbols, &around.here().uri)
+            if around.is_cancelled() {
+                return None;
+            }
+            write(&to_proto::outline(place, symbols, &around.here().uri))
         })
         .await
+        .map(given)
     }
 
     async fn symbol(&self, params: WorkspaceSymbolParams) -> Result<Option<WorkspaceSymbolResponse>> {
@@ -181,9 +188,11 @@ impl LanguageServer for Backend {
 
     async fn folding_range(&self, params: FoldingRangeParams) -> Result<Option<Vec<FoldingRange>>> {
         whole(params.text_document.uri, |_, place| {
-            ide::folds(place.document).into_iter().map(|fold| to_proto::fold(place, fold)).collect()
+            let folds = ide::folds(place.document).into_iter().map(|fold| to_proto::fold(place, fold));
+            write(&folds.collect::<Vec<_>>())
         })
         .await
+        .map(given)
     }
 
     async fn semantic_tokens_full(
@@ -192,9 +201,10 @@ impl LanguageServer for Backend {
     ) -> Result<Option<SemanticTokensResult>> {
         let workspace = self.workspace.clone();
         aside(params.text_document.uri, move |around, place| {
-            workspace.tokens.full(&around.here().uri, place).into()
+            write(&workspace.tokens.full(&around.here().uri, place))
         })
         .await
+        .map(given)
     }
 
     async fn semantic_tokens_full_delta(
@@ -203,9 +213,10 @@ impl LanguageServer for Backend {
     ) -> Result<Option<SemanticTokensFullDeltaResult>> {
         let workspace = self.workspace.clone();
         aside(params.text_document.uri, move |around, place| {
-            workspace.tokens.delta(&around.here().uri, &params.previous_result_id, place)
+            write(&workspace.tokens.delta(&around.here().uri, &params.previous_result_id, place))
         })
         .await
+        .map(given)
     }
 
     async fn semantic_tokens_range(
@@ -213,9 +224,10 @@ impl LanguageServer for Backend {
         params: SemanticTokensRangeParams,
     ) -> Result<Option<SemanticTokensRangeResult>> {
         aside(params.text_document.uri, move |_, place| {
-            tokens::within(place, place.span(params.range).range()).into()
+            write(&tokens::within(place, place.span(params.range).range()))
         })
         .await
+        .map(given)
     }
 
     async fn inlay_hint(&self, params: InlayHintParams) -> Result<Option<Vec<InlayHint>>> {
@@ -226,9 +238,11 @@ impl LanguageServer for Backend {
         whole(params.text_document.uri, move |_, place| {
             let hints = if settings.comment_hints { ide::inlay_hints } else { ide::value_hints };
             let hints = hints(place.document, place.span(params.range), place.language);
-            hints.into_iter().map(|hint| to_proto::inlay_hint(place, hint)).collect()
+            let hints = hints.into_iter().map(|hint| to_proto::inlay_hint(place, hint));
+            write(&hints.collect::<Vec<_>>())
         })
         .await
+        .map(given)
     }
 
     async fn formatting(&self, params: DocumentFormattingParams) -> Result<Option<Vec<TextEdit>>> {
@@ -261,14 +275,20 @@ impl LanguageServer for Backend {
         params: DocumentHighlightParams,
     ) -> Result<Option<Vec<DocumentHighlight>>> {
         let at = params.text_document_position_params;
-        whole(at.text_document.uri, move |_, place| features::highlights(place, place.offset(at.position)))
-            .await
+        whole(at.text_document.uri, move |_, place| {
+            write(&features::highlights(place, place.offset(at.position)))
+        })
+        .await
+        .map(given)
     }
 
     async fn code_lens(&self, params: CodeLensParams) -> Result<Option<Vec<CodeLens>>> {
         let wanted = settings().lenses;
-        whole(params.text_document.uri, move |around, place| features::lenses(around.here(), place, wanted))
-            .await
+        whole(params.text_document.uri, move |around, place| {
+            write(&features::lenses(around.here(), place, wanted))
+        })
+        .await
+        .map(given)
     }
 
     async fn code_lens_resolve(&self, lens: CodeLens) -> Result<CodeLens> {
@@ -280,7 +300,13 @@ impl LanguageServer for Backend {
         let settings = settings();
         let resolves = self.resolves_actions.load(Ordering::Relaxed);
         whole(params.text_document.uri.clone(), move |around, place| {
-            let (open, found) = (around.here(), around.findings());
+            let open = around.here();
+            let only = params.context.only.as_deref();
+            // To find what could be mended, all rules run.
+            let found = match editing::is_wanted(&CodeActionKind::QUICKFIX, only) {
+                true => around.findings(),
+                false => Vec::new(),
+            };
             let fixes = ide::fixes(&found, place.span(params.range)).into_iter();
             let fixes = fixes.map(|fix| features::quick_fix(around, place, &fix));
             let edits = editing::actions(open, place, &params, settings.style(&open.manifest), resolves);
@@ -453,7 +479,7 @@ impl Backend {
 
     /// `rungwise/typed`
     pub(super) async fn typed(&self, params: typed::TypedParams) -> Result<Option<Vec<TextEdit>>> {
-        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let settings = settings();
         let edits = with_open(&params.text_document.uri, |open, place| {
             Some(typed::edits(open, place, &params, settings.style(&open.manifest)))
         });

@@ -46,7 +46,7 @@
 use super::to_proto::Place;
 use super::workspace::Open;
 use crate::ide::{self, EditKind, ObjectKind, Style};
-use crate::text::Message;
+use crate::text::{Language, Message};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::collections::HashMap;
@@ -70,6 +70,17 @@ pub(super) struct MaybeVersioned {
     pub version: Option<i32>,
 }
 
+impl MaybeVersioned {
+    /// Refuses what was asked about another version than the one that is open.
+    pub(super) fn refuse_other(&self, open: &Open, language: Language) -> Result<()> {
+        if self.version.is_none_or(|version| version == open.version) {
+            return Ok(());
+        }
+        let message = Message::new("edit.stale").render(language);
+        Err(Error { message: message.into(), ..Error::content_modified() })
+    }
+}
+
 /// Result of `rungwise/edit`.
 #[derive(Clone, Serialize, Debug)]
 pub(super) struct EditResult {
@@ -79,10 +90,7 @@ pub(super) struct EditResult {
 
 /// Answers `rungwise/edit`.
 pub(super) fn edit(open: &Open, place: Place<'_>, params: &EditParams, style: Style) -> Result<EditResult> {
-    if params.text_document.version.is_some_and(|version| version != open.version) {
-        let message = Message::new("edit.stale").render(place.language);
-        return Err(Error { message: message.into(), ..Error::content_modified() });
-    }
+    params.text_document.refuse_other(open, place.language)?;
     let refused = |message: Message| Error::invalid_params(message.render(place.language));
     let unknown = || refused(Message::new("edit.unknown").with("edit", &params.edit));
     let kind = EditKind::named(&params.edit).ok_or_else(unknown)?;

@@ -80,7 +80,7 @@ impl Translator {
     /// What the server gets for a message of the client. `encoding` is asked only if it matters.
     pub(super) fn incoming(&self, body: Vec<u8>, encoding: impl FnOnce() -> Encoding) -> Vec<Vec<u8>> {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        if state.documents.is_empty() && !(contains(&body, b"didOpen") && contains(&body, b"arkdown")) {
+        if state.documents.is_empty() && !(contains(&body, "didOpen") && contains(&body, "arkdown")) {
             return vec![body];
         }
         let Ok(message) = serde_json::from_slice::<Value>(&body) else { return vec![body] };
@@ -94,7 +94,7 @@ impl Translator {
     /// What the client gets for a message of the server.
     pub(super) fn outgoing(&self, body: Vec<u8>) -> Vec<Vec<u8>> {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        if state.pending.is_empty() && !contains(&body, MARK.as_bytes()) {
+        if state.pending.is_empty() && !contains(&body, MARK) {
             return vec![body];
         }
         let Ok(mut message) = serde_json::from_slice::<Value>(&body) else { return vec![body] };
@@ -419,6 +419,7 @@ fn offset(text: &str, position: &Value, encoding: Encoding) -> usize {
     text.len()
 }
 
-fn contains(body: &[u8], part: &[u8]) -> bool {
-    body.windows(part.len()).any(|window| window == part)
+fn contains(body: &[u8], part: &str) -> bool {
+    // The search in texts looks at many bytes at a time.
+    str::from_utf8(body).is_ok_and(|body| body.contains(part))
 }

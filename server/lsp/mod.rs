@@ -31,6 +31,7 @@ mod to_proto;
 mod tokens;
 mod typed;
 mod workspace;
+mod written;
 
 pub use recording::{NoEntry, replay, serve_mirrored};
 
@@ -40,6 +41,7 @@ use settings::Speech;
 use tokio::io::{AsyncRead, AsyncWrite};
 use tower_lsp::{LspService, Server};
 use workspace::Workspace;
+use written::Written;
 
 /// How many requests may be under way at once. Each is a task of its own, so this bounds memory, not speed.
 const CONCURRENCY: usize = 4096;
@@ -73,11 +75,12 @@ pub async fn serve_between(
     .custom_method("workspace/textDocumentContent", backend::Backend::content)
     .finish();
     let Some(workspace) = workspace else { return 1 };
-    let ordered = Ordered::new(service, workspace.clone());
+    let written = Written::default();
+    let ordered = Ordered::new(service, workspace.clone(), written.clone());
     let translator = fences::Translator::default();
     let (inward, asked) = (translator.clone(), workspace.clone());
     let input = frames::sound(input, move |body| inward.incoming(body, || asked.snapshot().manner.encoding));
-    Server::new(input, outlet::Outlet::new(output, translator), socket)
+    Server::new(input, outlet::Outlet::new(output, translator, written), socket)
         .concurrency_level(CONCURRENCY)
         .serve(ordered)
         .await;

@@ -2,6 +2,7 @@
 
 use super::fences::Translator;
 use super::frames::{framed, whole_frame};
+use super::written::Written;
 use std::pin::Pin;
 use std::task::{Context, Poll, ready};
 use tokio::io::AsyncWrite;
@@ -10,16 +11,18 @@ use tokio::io::AsyncWrite;
 pub(super) struct Outlet<W> {
     output: W,
     translator: Translator,
+    written: Written,
     /// The part of a message that has come so far.
     taken: Vec<u8>,
-    /// What is to be written, from `written` on.
+    /// What is to be written, from `sent` on.
     waiting: Vec<u8>,
-    written: usize,
+    sent: usize,
 }
 
 impl<W> Outlet<W> {
-    pub(super) fn new(output: W, translator: Translator) -> Outlet<W> {
-        Outlet { output, translator, taken: Vec::new(), waiting: Vec::new(), written: 0 }
+    /// Long answers wait in `written` for their messages.
+    pub(super) fn new(output: W, translator: Translator, written: Written) -> Outlet<W> {
+        Outlet { output, translator, written, taken: Vec::new(), waiting: Vec::new(), sent: 0 }
     }
 
     fn take(&mut self, bytes: &[u8]) {
@@ -28,7 +31,7 @@ impl<W> Outlet<W> {
             let rest = self.taken.split_off(end);
             let body = self.taken.split_off(start);
             self.taken = rest;
-            for body in self.translator.outgoing(body) {
+            for body in self.translator.outgoing(self.written.redeem(body)) {
                 self.waiting.extend_from_slice(&framed(&body));
             }
         }
@@ -37,16 +40,17 @@ impl<W> Outlet<W> {
 
 impl<W: AsyncWrite + Unpin> Outlet<W> {
     fn poll_drain(&mut self, context: &mut Context<'_>) -> Poll<std::io::Result<()>> {
-        while self.written < self.waiting.len() {
-            let rest = &self.waiting[self.written..];
+        while self.sent < self.waiting.len() {
+            let rest = &self.waiting[self.sent..];
             let count = ready!(Pin::new(&mut self.output).poll_write(context, rest))?;
             if count == 0 {
                 return Poll::Ready(Err(std::io::ErrorKind::WriteZero.into()));
             }
-            self.written += count;
+            self.sent += count;
         }
-        self.waiting.clear();
-        self.written = 0;
+        // A long answer leaves no room behind.
+        self.waiting = Vec::new();
+        self.sent = 0;
         Poll::Ready(Ok(()))
     }
 }

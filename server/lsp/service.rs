@@ -5,6 +5,7 @@
 //! gets the snapshot of that moment and runs beside all others, so neither stale answers nor a slow neighbour occur.
 
 use super::workspace::{SNAPSHOT, Workspace};
+use super::written::Written;
 use std::future::Future;
 use std::pin::Pin;
 use std::sync::Arc;
@@ -17,13 +18,15 @@ use tower_lsp::jsonrpc::{Error, Request, Response};
 pub(super) struct Ordered<S> {
     inner: S,
     workspace: Arc<Workspace>,
+    written: Written,
 }
 
 type Answer = Pin<Box<dyn Future<Output = Result<Option<Response>, ExitedError>> + Send>>;
 
 impl<S> Ordered<S> {
-    pub(super) fn new(inner: S, workspace: Arc<Workspace>) -> Ordered<S> {
-        Ordered { inner, workspace }
+    /// What handlers write by themselves waits in `written`.
+    pub(super) fn new(inner: S, workspace: Arc<Workspace>, written: Written) -> Ordered<S> {
+        Ordered { inner, workspace, written }
     }
 }
 
@@ -57,7 +60,7 @@ where
             return Box::pin(answer);
         }
         let snapshot = self.workspace.snapshot();
-        let task = tokio::spawn(SNAPSHOT.scope(snapshot, answer));
+        let task = tokio::spawn(SNAPSHOT.scope(snapshot, self.written.clone().scope(answer)));
         Box::pin(async move {
             task.await.unwrap_or_else(|failure| {
                 tracing::error!("a request failed: {failure}");
@@ -69,7 +72,7 @@ where
 
 #[cfg(test)]
 mod tests {
-    use super::{Ordered, SNAPSHOT, Workspace};
+    use super::{Ordered, SNAPSHOT, Workspace, Written};
     use crate::lsp::backend::Backend;
     use crate::lsp::settings::Speech;
     use serde_json::json;
@@ -109,7 +112,7 @@ mod tests {
             workspace = Some(shared.clone());
             Backend::new(shared)
         });
-        let mut service = Ordered::new(Fragile, workspace.unwrap());
+        let mut service = Ordered::new(Fragile, workspace.unwrap(), Written::default());
         drop(service.call(Request::build("initialize").params(json!({"capabilities": {}})).finish()));
         service
     }

@@ -25,9 +25,8 @@ use super::to_proto::Place;
 use super::workspace::Open;
 use crate::document::Edit;
 use crate::ide::{self, Style};
-use crate::text::Message;
 use serde::Deserialize;
-use tower_lsp::jsonrpc::{Error, Result};
+use tower_lsp::jsonrpc::Result;
 use tower_lsp::ls_types::{Position, Range, TextEdit};
 
 /// Parameters of `rungwise/typed`.
@@ -49,11 +48,13 @@ pub(super) struct Lines {
 }
 
 /// Answers `rungwise/typed`.
-pub(super) fn edits(open: &Open, place: Place<'_>, params: &TypedParams, style: Style) -> Result<Vec<TextEdit>> {
-    if params.text_document.version.is_some_and(|version| version != open.version) {
-        let message = Message::new("edit.stale").render(place.language);
-        return Err(Error { message: message.into(), ..Error::content_modified() });
-    }
+pub(super) fn edits(
+    open: &Open,
+    place: Place<'_>,
+    params: &TypedParams,
+    style: Style,
+) -> Result<Vec<TextEdit>> {
+    params.text_document.refuse_other(open, place.language)?;
     let Lines { first, end, text } = &params.lines;
     let range = Range::new(Position::new(*first, 0), Position::new((*end).max(*first), 0));
     let mut document = place.document.clone();

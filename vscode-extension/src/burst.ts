@@ -34,6 +34,11 @@ export interface Keystroke extends PlainChange {
   readonly removed?: string | undefined;
 }
 
+/** The name that the server gives to an element of which the person is to choose one. */
+const PLACEHOLDER = '???';
+/** A row of wire from rail to rail, and the cells of it before those where its first contact goes. */
+const EMPTY_RUNG = /^[ \t]*[+├][-─]+[+┤]$/gm;
+const FIRST_CELLS = 4;
 /** More characters at once are no name. */
 const MOST_TYPED = 64;
 
@@ -48,6 +53,16 @@ export function areKeystrokes(parts: readonly PlainChange[]): boolean {
     const isShort = [...text].length <= 1 || text.length === count || (text.length <= MOST_TYPED && isWords(text));
     return start.line === end.line && isShort && !/[\r\n]/.test(text);
   });
+}
+
+/** Where to type on after Enter: over the cells of a name that is to be chosen, or behind a cell of a new rung. */
+interface Target {
+  /** The mark of the line end that Enter has typed. */
+  readonly enter: number;
+  /** The cells to type over. */
+  readonly over: readonly number[];
+  /** The cell behind which they are. */
+  readonly behind: number;
 }
 
 /** A part of a change that is in the editor's lines and is to be answered. */
@@ -69,6 +84,12 @@ export class Burst {
   /** The change with which it began is in the editor's lines already. */
   private isFirst = true;
   private lines: number;
+  /** Where the answer to Enter wants what is typed next. */
+  private target: Target | undefined;
+  /** Characters that were typed behind such an Enter: the marks that they have in the answered lines. */
+  private readonly moved = new Map<number, number>();
+  /** The mark behind which the cursor is, if such characters were typed last. */
+  private cursor: number | undefined;
 
   /**
    * @param first number of the first line in the document
@@ -118,6 +139,25 @@ export class Burst {
     this.waiting.shift();
   }
 
+  /**
+   * The lines that change as one edit, and what is to be selected in its text; `undefined` if the cursor stays at what was
+   * typed.
+   */
+  placed(): { edit: PlainEdit; from: number; to: number } | undefined {
+    const { text, marks } = this.answered;
+    const behind = this.cursor ?? this.target?.behind;
+    const from = behind === undefined ? 0 : marks.indexOf(behind) + 1;
+    if (from <= 0) {
+      return undefined;
+    }
+    const to = from + (this.cursor === undefined ? (this.target?.over.length ?? 0) : 0);
+    const [start, end] = [0, this.editor.text.length].map((offset) => this.inDocument(this.editor.position(offset))) as [
+      PlainPosition,
+      PlainPosition,
+    ];
+    return { edit: { range: { start, end }, newText: text }, from, to };
+  }
+
   /** The edits of the document that make it what the answers say. */
   edits(): PlainEdit[] {
     const [old, wanted] = [this.editor, this.answered];
@@ -145,6 +185,8 @@ export class Burst {
 
   /** Says that the document has got the edits. */
   applied(): void {
+    [this.target, this.cursor] = [undefined, undefined];
+    this.moved.clear();
     this.editor.become(this.answered);
     this.lines = this.editor.text.split('\n').length;
   }
@@ -158,11 +200,12 @@ export class Burst {
     // An insertion takes the next character along, for at the cursor it would move that.
     const next = this.editor.text.slice(end, end + 1);
     const along = start === end && next !== '\n' ? next : '';
-    const at = (offset: number) => {
-      const { line, character } = this.editor.position(offset);
-      return { line: line + this.first, character };
-    };
+    const at = (offset: number) => this.inDocument(this.editor.position(offset));
     return { range: { start: at(start), end: at(end + along.length) }, newText: newText + along };
+  }
+
+  private inDocument({ line, character }: PlainPosition): PlainPosition {
+    return { line: line + this.first, character };
   }
 
   /** Ranges that count from its first line, which changes above may move. */
@@ -197,7 +240,9 @@ export class Burst {
     return parts;
   }
 
-  private async answer({ start, text, marks, count, width }: Part, ask: Ask): Promise<void> {
+  private async answer(part: Part, ask: Ask): Promise<void> {
+    const { start, text, marks: typed } = part;
+    const { marks, count, width } = this.redirected(part);
     let at = this.place(start);
     this.answered.replace(at, Math.min(at + count, this.answered.lineEnd(at)), '', []);
     let left = width;
@@ -216,8 +261,50 @@ export class Burst {
       // The answer to the one before may have moved it.
       at = this.place(start + taken);
       put(character);
+      const known = this.lastMark;
       await this.format(at, character, ask);
+      if (character === '\n') {
+        this.target = this.targetOf(typed[0] ?? -1, known);
+      }
     }
+  }
+
+  /**
+   * What is typed right behind an Enter whose answer has a place for it goes there. In the editor's lines it stands
+   * elsewhere, so it gets marks of its own.
+   */
+  private redirected(part: Part): Pick<Part, 'marks' | 'count' | 'width'> {
+    const { target } = this;
+    const before = this.editor.marks[part.start - 1] ?? -1;
+    const isFirst = target !== undefined && before === target.enter && part.text !== '' && part.count === 0;
+    if (part.text === '\n' || !(isFirst || this.moved.has(before))) {
+      [this.target, this.cursor] = [undefined, undefined];
+      return part;
+    }
+    const marks = this.newMarks(part.marks.length);
+    part.marks.forEach((mark, index) => this.moved.set(mark, marks[index]!));
+    this.target = undefined;
+    if (!isFirst) {
+      this.cursor = marks.at(-1) ?? this.moved.get(before);
+      return { ...part, marks };
+    }
+    this.cursor = marks.at(-1);
+    this.moved.set(target.enter, target.behind);
+    return { marks, count: target.over.length, width: target.over.length };
+  }
+
+  /** Where to type on after an Enter whose answer has put the marks beyond `known` in. */
+  private targetOf(enter: number, known: number): Target | undefined {
+    const { text, marks } = this.answered;
+    const isNew = (at: number) => (marks[at] ?? 0) > known;
+    for (let at = text.indexOf(PLACEHOLDER); at >= 0; at = text.indexOf(PLACEHOLDER, at + 1)) {
+      if (isNew(at)) {
+        return { enter, over: marks.slice(at, at + PLACEHOLDER.length), behind: marks[at - 1] ?? -1 };
+      }
+    }
+    const rung = [...text.matchAll(EMPTY_RUNG)].find(({ index }) => isNew(index));
+    const at = rung === undefined ? -1 : rung.index + rung[0].search(/\S/) + FIRST_CELLS;
+    return at < 0 ? undefined : { enter, over: [], behind: marks[at - 1] ?? -1 };
   }
 
   /** Puts as many cells in as a row has lost at a place. */
@@ -264,14 +351,17 @@ export class Burst {
     }
     const [from, to] = [start + head, end - tail];
     const middle = text.slice(head, text.length - tail);
-    const marks = middle.length === to - from ? this.answered.marks.slice(from, to) : this.newMarks(middle.length);
+    // Wire that is drawn over blanks is the same cells; a name is another one.
+    const isSame = middle.length === to - from && !/\w|\?/.test(middle);
+    const marks = isSame ? this.answered.marks.slice(from, to) : this.newMarks(middle.length);
     this.answered.replace(from, to, middle, marks);
   }
 
   /** Where a place of the editor's lines is in the answered ones: behind the nearest character before it that is in both. */
   private place(start: number): number {
     for (let before = start - 1; before >= 0; before--) {
-      const found = this.answered.marks.indexOf(this.editor.marks[before] ?? -1);
+      const mark = this.editor.marks[before] ?? -1;
+      const found = this.answered.marks.indexOf(this.moved.get(mark) ?? mark);
       if (found >= 0) {
         return found + 1;
       }

@@ -24,6 +24,8 @@ export class DrawingEditor implements vscode.Disposable {
   private queue: Promise<unknown> = Promise.resolve();
   /** The edits that this class is making in a document, to know its own change from one of the person's. */
   private readonly making = new Map<vscode.TextDocument, EditAnswer['edits']>();
+  /** The burst whose edits are being made. */
+  private applying: Burst | undefined;
   /** Keystrokes that are not yet answered, in the rungs in which they were typed. */
   private readonly bursts = new Map<vscode.TextDocument, Burst[]>();
   /** The lines of the cursors before a change, by number: a change does not tell what it replaced. */
@@ -69,7 +71,7 @@ export class DrawingEditor implements vscode.Disposable {
         const version = editor.document.version;
         const isCurrent = () => editor.document.version === version;
         const answer = await this.ask(editor.document, edit, editor.selection, operand).catch((error: unknown) => {
-          // The server refuses an edit of a text that has changed meanwhile; it is asked again.
+          // What was wrong with a text that has changed meanwhile may not be so any more.
           if (isCurrent()) {
             throw error;
           }
@@ -88,18 +90,17 @@ export class DrawingEditor implements vscode.Disposable {
   }
 
   private async ask(
-    { uri, version }: vscode.TextDocument,
+    document: vscode.TextDocument,
     edit: StructuralEdit,
     range: vscode.Range,
     operand?: string,
   ): Promise<EditAnswer> {
     const answer = parseEditAnswer(
-      await this.server.request(EDIT_REQUEST, {
-        textDocument: { uri: this.server.protocolUri(uri), version },
+      await this.current(EDIT_REQUEST, document, () => ({
         range: { start: plain(range.start), end: plain(range.end) },
         edit,
         ...(operand === undefined ? {} : { operand }),
-      }),
+      })),
     );
     if (answer === undefined) {
       throw new Error(vscode.l10n.t('the server gave no answer to the edit.'));
@@ -114,14 +115,14 @@ export class DrawingEditor implements vscode.Disposable {
   ): Promise<boolean> {
     const { document } = editor;
     this.making.set(document, answer.edits);
+    const shown = vscode.window.visibleTextEditors.find((other) => other.document === document);
     try {
       const done =
         answer.edits.length === 0 ||
-        (await editor.edit((builder) => {
-          for (const edit of answer.edits) {
-            builder.replace(toRange(edit.range), edit.newText);
-          }
-        }, undo));
+        // A person may have gone to another file in a hurry; then it is an undo step of its own.
+        (await (shown
+          ? shown.edit((builder) => answer.edits.forEach((edit) => builder.replace(toRange(edit.range), edit.newText)), undo)
+          : applied(document, answer.edits)));
       if (done && answer.selection !== undefined) {
         const { start, end } = toRange(answer.selection);
         editor.selection = new vscode.Selection(start, end);
@@ -147,8 +148,10 @@ export class DrawingEditor implements vscode.Disposable {
     }
     const follows = editor?.document === document && mendsWhileTyping(document);
     // What undo and redo bring back has been mended before.
-    if (reason !== undefined || !follows) {
+    if (reason !== undefined) {
       this.bursts.delete(document);
+    } else if (!follows) {
+      this.dropped(document, changes);
     } else if (changes.length <= MOST_CURSORS && areKeystrokes(changes)) {
       this.typed(editor, changes);
     } else {
@@ -162,7 +165,7 @@ export class DrawingEditor implements vscode.Disposable {
 
   /** The editor has made edits of ours: the lines of a burst are as it wanted them, or are no longer what it thinks. */
   private made(document: vscode.TextDocument, changes: readonly PlainChange[]): void {
-    const done = (this.bursts.get(document) ?? []).find((burst) => burst.isAnswered && isMadeBy(changes, burst.edits()));
+    const done = this.bursts.get(document)?.find((burst) => burst === this.applying);
     const more = changes.reduce((sum, change) => sum + addedLines(change), 0);
     if (done === undefined) {
       this.dropped(document, changes);
@@ -243,8 +246,7 @@ export class DrawingEditor implements vscode.Disposable {
       if (edits.length === 0) {
         return;
       }
-      const undo = { undoStopBefore: false, undoStopAfter: false };
-      if (!(await this.apply(editor, { edits, selection: undefined }, undo)) && burst.isAnswered) {
+      if (!(await this.applyBurst(editor, burst, edits)) && burst.isAnswered) {
         // The editor has a keystroke of which no event has come yet.
         await pause();
       }
@@ -254,22 +256,56 @@ export class DrawingEditor implements vscode.Disposable {
     }
   }
 
+  /** Makes the edits of a burst, as a part of the undo step of the last keystroke. */
+  private async applyBurst(editor: vscode.TextEditor, burst: Burst, edits: EditAnswer['edits']): Promise<boolean> {
+    const undo = { undoStopBefore: false, undoStopAfter: false };
+    this.applying = burst;
+    try {
+      const placed = burst.placed();
+      if (placed === undefined) {
+        return await this.apply(editor, { edits, selection: undefined }, undo);
+      }
+      // A snippet brings its cursor along; a key that came before a cursor set afterwards would go elsewhere.
+      const { edit, from, to } = placed;
+      const text = edit.newText;
+      const snippet = new vscode.SnippetString().appendText(text.slice(0, from));
+      snippet.appendPlaceholder(text.slice(from, to), 0).appendText(text.slice(to));
+      this.making.set(editor.document, [edit]);
+      return await editor.insertSnippet(snippet, toRange(edit.range), undo);
+    } finally {
+      this.making.delete(editor.document);
+      this.applying = undefined;
+    }
+  }
+
   /** What the server makes of a character typed into lines of a burst; line 0 is its first one. */
-  private async askTyped(document: vscode.TextDocument, burst: Burst, { text, position, character }: Typed): Promise<EditAnswer['edits']> {
-    for (let step = 0; ; step++) {
-      const { first, lineCount } = burst;
+  private async askTyped(
+    document: vscode.TextDocument,
+    burst: Burst,
+    { text, position, character }: Typed,
+  ): Promise<EditAnswer['edits']> {
+    let { first } = burst;
+    const answer = await this.current(TYPED_REQUEST, document, () => {
+      const { lineCount } = burst;
+      ({ first } = burst);
       const isLast = first + lineCount >= document.lineCount;
+      return {
+        lines: { first, end: first + lineCount, text: isLast ? text : `${text}\n` },
+        position: { line: first + position.line, character: position.character },
+        ch: character,
+      };
+    });
+    const edits = parseEditAnswer({ edits: answer ?? [] })?.edits ?? [];
+    return edits.map(({ range, newText }) => ({ range: lowered(range, first), newText }));
+  }
+
+  /** Sends a request about a document as it is now, again while the server has not got its last change yet. */
+  private async current(method: string, document: vscode.TextDocument, more: () => object): Promise<unknown> {
+    for (let step = 0; ; step++) {
+      const textDocument = { uri: this.server.protocolUri(document.uri), version: document.version };
       try {
-        const answer = await this.server.request(TYPED_REQUEST, {
-          textDocument: { uri: this.server.protocolUri(document.uri), version: document.version },
-          lines: { first, end: first + lineCount, text: isLast ? text : `${text}\n` },
-          position: { line: first + position.line, character: position.character },
-          ch: character,
-        });
-        const edits = parseEditAnswer({ edits: answer ?? [] })?.edits ?? [];
-        return edits.map(({ range, newText }) => ({ range: lowered(range, first), newText }));
+        return await this.server.request(method, { textDocument, ...more() });
       } catch (error) {
-        // The server has not got the last change yet.
         if ((error as { code?: unknown }).code !== CONTENT_MODIFIED || step >= MOST_STEPS) {
           throw error;
         }
@@ -379,6 +415,13 @@ function plain(position: vscode.Position): { line: number; character: number } {
   return { line: position.line, character: position.character };
 }
 
+/** Makes edits of a document that no editor shows. */
+function applied(document: vscode.TextDocument, edits: EditAnswer['edits']): Thenable<boolean> {
+  const all = new vscode.WorkspaceEdit();
+  edits.forEach((edit) => all.replace(document.uri, toRange(edit.range), edit.newText));
+  return vscode.workspace.applyEdit(all);
+}
+
 function lowered({ start, end }: PlainRange, by: number): PlainRange {
   return {
     start: { line: start.line - by, character: start.character },
@@ -395,7 +438,10 @@ function addedLines({ range, text }: PlainChange): number {
   return text.split(/\r\n|\r|\n/).length - 1 - (range.end.line - range.start.line);
 }
 
-/** The lines without a blank one around a line, and those that a change has added to it; no line of another burst. */
+/**
+ * The lines without a blank one around a line, those that a change has added to it, and the one below, where the answer to
+ * Enter may put others; no line of another burst.
+ */
 function rungLines(
   document: vscode.TextDocument,
   line: number,
@@ -411,7 +457,8 @@ function rungLines(
   while (last - first < MOST_LINES && isOpen(last + 1)) {
     last += 1;
   }
-  return { first, last };
+  const isFree = last + 1 < document.lineCount && !bursts.some((burst) => burst.has(last + 1));
+  return { first, last: isFree ? last + 1 : last };
 }
 
 function stretchOf({ first, lineCount }: Burst): Stretch {

@@ -30,15 +30,19 @@ function applied(lines: string[], edits: readonly PlainEdit[]): string[] {
   return text.split('\n');
 }
 
-const changedRows = (rows: string[], changes: readonly PlainChange[]) =>
-  applied(rows, [...changes].sort((a, b) => a.range.start.line - b.range.start.line || a.range.start.character - b.range.start.character)
-    .map(({ range, text }) => ({ range, newText: text })));
+function changedRows(rows: string[], changes: readonly PlainChange[]): string[] {
+  const order = ({ range: { start } }: PlainChange) => start.line * 1_000 + start.character;
+  const sorted = [...changes].sort((a, b) => order(a) - order(b));
+  return applied(rows, sorted.map(({ range, text }) => ({ range, newText: text })));
+}
 
-/**
- * Types changes, `ahead` of which are in the text before the first is answered, and gives the rows that come of it. The
- * burst has all rows.
- */
-async function typed(rows: string[], changes: (readonly Keystroke[])[], ahead: number, ask: Ask = squeezed): Promise<string[]> {
+/** Types changes, `ahead` of which are in the text before the first is answered, and gives the rows that come of it. */
+async function typed(
+  rows: string[],
+  changes: (readonly Keystroke[])[],
+  ahead: number,
+  ask: Ask = squeezed,
+): Promise<string[]> {
   let text = rows;
   for (let at = 0; at < changes.length; at += ahead) {
     const now = changes.slice(at, at + ahead);
@@ -77,7 +81,8 @@ const RUNG = ['|   X0      X1            Y0  |', '+---| |-----| |-----------( )-
 
 test('a burst is answered as the keystrokes one by one', async () => {
   for (const [line, column, text] of [
-    [0, 6, '17'], [0, 6, '<<Y17'], [0, 6, '123<<4'], [0, 4, '>>Y2'], [1, 17, '| |'], [1, 17, '| |<<<'], [1, 17, '>>>| |'], [1, 5, '>/'],
+    [0, 6, '17'], [0, 6, '<<Y17'], [0, 6, '123<<4'], [0, 4, '>>Y2'],
+    [1, 17, '| |'], [1, 17, '| |<<<'], [1, 17, '>>>| |'], [1, 5, '>/'],
   ] as const) {
     const slowly = await typed(RUNG, keys(line, column, text), 1);
     for (const ahead of [2, 3, 99]) {
@@ -113,7 +118,9 @@ test('ideographs fill two cells', async () => {
 test('several cursors type at the same time', async () => {
   const rows = ['|   X0      Y0   |', '+---| |-----( )--+', '|   Y0           |'];
   const changes = ['Y', '1', '2'].map((key, index) =>
-    index === 0 ? [change(0, 12, 14, key), change(2, 4, 6, key)] : [change(2, 4 + index, 4 + index, key), change(0, 12 + index, 12 + index, key)]);
+    index === 0
+      ? [change(0, 12, 14, key), change(2, 4, 6, key)]
+      : [change(2, 4 + index, 4 + index, key), change(0, 12 + index, 12 + index, key)]);
   for (const ahead of [1, 3]) {
     assert.deepEqual(await typed(rows, changes, ahead), ['|   X0      Y12  |', rows[1], '|   Y12          |']);
   }
@@ -134,10 +141,38 @@ test('Enter may be answered with lines, and what is typed behind it finds its pl
   assert.deepEqual(await typed(rows, [enter, [change(2, 4, 5, 'X')]], 2, branch), ['+---+---+', '|   X   |', '+---+   |']);
 });
 
+test('what is typed behind Enter goes where its answer wants it', async () => {
+  const branch: Ask = async ({ text, character }) =>
+    character === '\n'
+      ? [{ range: { start: { line: 0, character: 1 }, end: { line: 1, character: 0 } }, newText: '' },
+        { range: { start: { line: 1, character: 3 }, end: { line: 1, character: 3 } }, newText: '\n|   ???  |' }]
+      : squeezed({ text, position: { line: 1, character: text.split('\n')[1]!.search(/\w +\|$/) + 1 }, character });
+  const enter = [change(0, 1, 1, '\n')];
+  const end = async (...changes: PlainChange[]) => {
+    let text = changedRows(['+--+'], enter);
+    const burst = new Burst(0, text.join('\n'), [...enter]);
+    for (const next of changes) {
+      text = changedRows(text, [next]);
+      burst.add([next]);
+    }
+    while (!burst.isAnswered) {
+      await burst.answerNext(branch);
+    }
+    const { edit, from, to } = burst.placed()!;
+    const rows = applied(text, burst.edits());
+    assert.deepEqual(applied(text, [edit]), rows);
+    return [...rows, edit.newText.slice(0, from).split('\n').at(-1), edit.newText.slice(from, to)];
+  };
+  assert.deepEqual(await end(), ['+--+', '|   ???  |', '|   ', '???']);
+  assert.deepEqual(await end(change(1, 0, 0, 'X'), change(1, 1, 1, '9')), ['+--+', '|   X9   |', '|   X9', '']);
+  assert.deepEqual(await end(change(1, 0, 0, 'X'), change(1, 1, 1, '8'), change(1, 1, 2, ''), change(1, 1, 1, '9')), ['+--+', '|   X9   |', '|   X9', '']);
+});
+
 test('lines that are no drawing lose cells without others, and places outside are refused', async () => {
   await assert.rejects(typed(['(* ??? *)'], [[change(0, 3, 6, 'X')]], 1));
   await assert.rejects(typed(['(* ??? *)'], [[change(0, 3, 4, '')]], 1));
-  const outside: Ask = async () => [{ range: { start: { line: 5, character: 0 }, end: { line: 5, character: 0 } }, newText: 'x' }];
+  const below = { line: 5, character: 0 };
+  const outside: Ask = async () => [{ range: { start: below, end: below }, newText: 'x' }];
   await assert.rejects(typed(RUNG, keys(0, 6, '1'), 1, outside));
   const never: Ask = () => assert.fail('nothing stands behind');
   assert.deepEqual(await typed(['X1'], keys(0, 2, '2'), 1, never), ['X12']);
@@ -146,7 +181,8 @@ test('lines that are no drawing lose cells without others, and places outside ar
 test('an edit at the cursor takes the next character along', () => {
   const burst = new Burst(7, '|  X  |', [change(7, 4, 5, '')]);
   return burst.answerNext(squeezed).then(() => {
-    assert.deepEqual(burst.edits(), [{ range: { start: { line: 7, character: 5 }, end: { line: 7, character: 6 } }, newText: '  ' }]);
+    const range = { start: { line: 7, character: 5 }, end: { line: 7, character: 6 } };
+    assert.deepEqual(burst.edits(), [{ range, newText: '  ' }]);
   });
 });
 
@@ -160,12 +196,14 @@ test('lines belong to a burst as they are in the document', () => {
 });
 
 test('what is typed within a line, and Enter, are keystrokes; pieces of drawings and several lines are not', () => {
-  for (const one of [change(0, 4, 4, 'X'), change(0, 4, 7, ''), change(0, 4, 4, 'T0 K50'), change(0, 4, 4, '\r\n'), change(0, 4, 7, '| |'), change(0, 4, 4, '触')]) {
-    assert.ok(areKeystrokes([one]), one.text);
+  for (const text of ['X', 'T0 K50', '\r\n', '触']) {
+    assert.ok(areKeystrokes([change(0, 4, 4, text)]), text);
   }
-  for (const one of [change(0, 4, 4, '| |'), change(0, 4, 4, 'a\nb'), change(0, 4, 2, '', 1), change(0, 4, 6, '\n'), change(0, 4, 4, 'X'.repeat(65))]) {
-    assert.ok(!areKeystrokes([one]), one.text);
+  assert.ok(areKeystrokes([change(0, 4, 7, '')]) && areKeystrokes([change(0, 4, 7, '| |')]));
+  for (const text of ['| |', 'a\nb', 'X'.repeat(65)]) {
+    assert.ok(!areKeystrokes([change(0, 4, 4, text)]), text);
   }
+  assert.ok(!areKeystrokes([change(0, 4, 2, '', 1)]) && !areKeystrokes([change(0, 4, 6, '\n')]));
   assert.ok(!areKeystrokes([change(0, 4, 4, '\n'), change(2, 4, 4, '\n')]));
   assert.ok(isWords('触点_1.Q') && !isWords('a|b') && !isWords('──'));
 });

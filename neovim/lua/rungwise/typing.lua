@@ -66,6 +66,21 @@ local function format_enter(running, buffer)
   end, buffer)
 end
 
+--- Makes a line another one. Only what differs is replaced, for marks in the rest, as of a snippet, have to stay.
+local function rewrite(buffer, row, old, new)
+  local least = math.min(#old, #new)
+  local head, tail = 0, 0
+  while head < least and old:byte(head + 1) == new:byte(head + 1) do
+    head = head + 1
+  end
+  while tail < least - head and old:byte(#old - tail) == new:byte(#new - tail) do
+    tail = tail + 1
+  end
+  if old ~= new then
+    vim.api.nvim_buf_set_text(buffer, row, head, row, #old - tail, { new:sub(head + 1, #new - tail) })
+  end
+end
+
 --- Has the server answer characters that end at `place`. Answers whether it could; a row that is as it should be is left.
 local function format_typed(running, buffer, characters, place)
   local first, before, lines = answered(running, buffer, characters, place[1], place[2])
@@ -78,9 +93,7 @@ local function format_typed(running, buffer, characters, place)
       vim.cmd('silent! undojoin')
     end
     for index, text in ipairs(lines) do
-      if text ~= before[index] then
-        vim.api.nvim_buf_set_lines(buffer, first + index - 1, first + index, false, { text })
-      end
+      rewrite(buffer, first + index - 1, before[index], text)
     end
     vim.api.nvim_win_set_cursor(0, cursor)
   end)

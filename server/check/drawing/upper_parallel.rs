@@ -140,7 +140,7 @@ struct Lines(Vec<u32>);
 
 impl Lines {
     fn of(text: &str) -> Lines {
-        let ends = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at as u32 + 1);
+        let ends = memchr::memchr_iter(b'\n', text.as_bytes()).map(|at| at as u32 + 1);
         Lines(std::iter::once(0).chain(ends).collect())
     }
 

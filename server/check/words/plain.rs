@@ -2,6 +2,7 @@
 
 use crate::document::Operation;
 use crate::target::{Access, Constant, Device, DeviceKind, Form, Operand, OperandSpec, Target};
+use crate::text::Spanned;
 
 /// Whether no rule about words and operands has anything to say about `operation`: a form that the model has, with as
 /// many operands as it takes, each an ordinary device or number within its limits. What is right in a rarer way is not
@@ -18,15 +19,18 @@ pub(in crate::check) fn is_plain(operation: &Operation<'_>, target: &Target) -> 
         ([driven @ .., preset], _) if preset.optional => driven,
         (specs, _) => specs,
     };
-    let is_plain = |(place, spec): (usize, &OperandSpec)| match operands[place].value {
-        Operand::Device(device) => is_plain_device(device, form, spec, target),
-        Operand::Constant { value: Constant::Real(_), .. } => false,
-        Operand::Constant { value, index: None } => form.constant_fits(place, value, first.as_slice()),
-        _ => false,
+    let is_plain = |(place, (operand, spec)): (usize, (&Spanned<Operand>, &OperandSpec))| {
+        spec.accepts.on(target.model).takes(&operand.value)
+            && match operand.value {
+                Operand::Device(device) => is_plain_device(device, form, spec, target),
+                Operand::Constant { value: Constant::Real(_), .. } => false,
+                Operand::Constant { value, index: None } => {
+                    form.constant_fits(place, value, first.as_slice())
+                }
+                _ => false,
+            }
     };
-    let takes = |place: usize| form.takes(place, &operands[place].value, target.model);
-    operands.len() == specs.len()
-        && specs.iter().enumerate().all(|(place, spec)| takes(place) && is_plain((place, spec)))
+    operands.len() == specs.len() && operands.iter().zip(specs).enumerate().all(is_plain)
 }
 
 /// Whether all devices that an operand stands for lie in one range, and none has a part of its own: inputs and special

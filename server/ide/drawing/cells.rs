@@ -44,7 +44,7 @@ pub(super) fn is_upright(character: char) -> bool {
 
 /// Part of a name, a number or a mnemonic.
 pub(super) fn is_word(character: char) -> bool {
-    let signs = ['.', '%', '#', '$', '@', '?', '\'', '"', WIDE];
+    let signs = ['_', '.', '%', '#', '$', '@', '?', '\'', '"', WIDE];
     character.is_alphanumeric() || signs.contains(&character)
 }
 

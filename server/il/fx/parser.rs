@@ -21,7 +21,8 @@ pub fn parse(chunk: &str, target: &Target) -> FxTree {
     // The lexer stops at each character that it does not know; a run of them is one finding.
     let mut stray: Option<Span> = None;
     while let Some(token) = lexer.next() {
-        let span = Span::new(lexer.span().start, lexer.span().end);
+        let range = lexer.span();
+        let span = Span::new(range.start, range.end);
         if let Some(run) = stray {
             if token.is_err() && run.end == span.start {
                 stray = Some(run.to(span));

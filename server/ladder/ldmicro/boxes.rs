@@ -49,14 +49,15 @@ pub(in crate::ladder) fn find_boxes(
     let mut finder = Finder { grid, text, target, symbols, rows };
     for row in 0..finder.grid.height() {
         let mut column = 0;
-        while column < finder.grid.width(row) {
-            match finder.grid.at(row, column) {
-                '[' | '{' => finder.bracket(row, column),
-                '^' if finder.grid.at(row, column + 1) == ']' => finder.pull_up(row, column),
-                '+' => finder.open_circuit(row, column),
+        let opens = |character| matches!(character, '[' | '{' | '^' | '+');
+        while let Some(found) = finder.grid.find(row, column, opens) {
+            match finder.grid.at(row, found) {
+                '[' | '{' => finder.bracket(row, found),
+                '^' if finder.grid.at(row, found + 1) == ']' => finder.pull_up(row, found),
+                '+' => finder.open_circuit(row, found),
                 _ => {}
             }
-            column += 1;
+            column = found + 1;
         }
     }
     finder.rows.sort_by_key(|row| (row.row, row.start));
@@ -436,8 +437,8 @@ impl Finder<'_> {
         let at = |column: usize| self.grid.at(row, column);
         let end = column + 8;
         let shape = column > 0
-            && (column + 1..end - 1).all(|gap| at(gap) == ' ')
             && at(end - 1) == '+'
+            && (column + 1..end - 1).all(|gap| at(gap) == ' ')
             && [column - 1, end].into_iter().all(|side| self.grid.arms(row, side).is_horizontal());
         let free = |column: usize| {
             let above = row > 0 && self.grid.arms(row - 1, column).down();

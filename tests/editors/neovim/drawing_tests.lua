@@ -93,10 +93,9 @@ for _, script in ipairs(EDITS) do
   local name, keys, before, line, column, after = unpack(script)
   check('the edit ' .. name .. ' by ' .. keys, function()
     nvim:open('edited.lad', program(before), line, column)
-    local typed = keys:match('^(.-\\%a)(.+)<Esc>$')
-    if typed then
+    local command, operand = keys:match('^(.-\\%a)(.+)<Esc>$')
+    if command then
       -- The name is typed when the placeholder is there and selected.
-      local command, operand = keys:match('^(.-\\%a)(.+)<Esc>$')
       nvim:press(command)
       nvim:until_true('the placeholder', function()
         return nvim:request('nvim_get_mode').mode == 's'
@@ -107,7 +106,7 @@ for _, script in ipairs(EDITS) do
       nvim:press(keys)
     end
     same('the drawing after ' .. name, program(after))
-    if not typed then
+    if not command then
       nvim:press('u')
       same('one undo of ' .. name, program(before))
     end
@@ -265,7 +264,14 @@ check('a rung is typed from a snippet, name by name, and a branch by Enter', fun
   end)
   nvim:press('<Esc>')
   nvim:settle()
-  print(nvim:text())
+  nvim:press('/???<CR>cwX5<Esc>')
+  nvim:settle()
+  same('the rung with its branch', table.concat(join({
+    '|   X10      Stop                         Y107 |',
+    '+---| |---+---| |--------------------------( )-+',
+    '|   X5    |                                    |',
+    '+---| |---+                                    |',
+  }, '', END[2]), '\n'))
 end)
 
 check('deleting a character of a name keeps the columns, and is undone at once', function()

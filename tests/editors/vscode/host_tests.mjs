@@ -6,7 +6,7 @@ import { fileURLToPath } from 'node:url';
 import { openBrowser } from './browser.mjs';
 
 const HERE = dirname(fileURLToPath(import.meta.url));
-const TIMEOUT_MS = 600_000;
+const TIMEOUT_MS = 300_000;
 
 /** Starts the tests by opening a page, and reports what they write. */
 export async function runHostTests(server, workspace, home, report, artefacts) {

@@ -11,18 +11,20 @@ const TIMER = [
   '+---| |------------------------------------( )-+',
   '',
   '|   T1                                     Y11 |',
-  '+---| |------------------------------------( )-+',
+  '+---| |---+--------------------------------( )-+',
+  '|   X5    |                                    |',
+  '+---| |---+                                    |',
 ];
 const END = '+--[END]---------------------------------------+';
 
 export const DRAWING_TESTS = {
-  'a program is typed from nothing: snippets, names longer than their places, contacts in a wire': wholeProgram,
+  'a program is typed from nothing: snippets, names longer than their places, contacts in a wire, Enter for a branch': wholeProgram,
   'a contact, a branch and a coil are inserted by their keys and taken back': editsByKeys,
   'deleting cells keeps the columns, and is undone at once': deletion,
   'the context menu has the edits': contextMenu,
 };
 
-/** Types a snippet's word and takes it from the list, then its names, each left by Tab. */
+/** Types a snippet's word and takes it from the list, then its names in bursts, each left by Tab. */
 async function snippet(workbench, word, names) {
   const { keyboard } = workbench.page;
   await keyboard.type(word, { delay: 40 });
@@ -37,9 +39,7 @@ async function snippet(workbench, word, names) {
   });
   await keyboard.press('Tab');
   for (const name of names) {
-    await workbench.page.waitForTimeout(80);
-    await keyboard.type(name, { delay: 110 });
-    await workbench.page.waitForTimeout(250);
+    await keyboard.type(name);
     await keyboard.press('Tab');
   }
 }
@@ -71,6 +71,8 @@ async function wholeProgram(workbench) {
   await workbench.openFile('typed.lad');
   await workbench.focusEditor();
   await snippet(workbench, 'seal', ['X10', 'X11', 'Y10']);
+  // All is answered when the rails stand below each other.
+  await workbench.until('the rung', async () => new Set((await workbench.documentLines()).slice(0, 4).map((row) => row.length)).size === 1);
   await workbench.screenshot('11-typed-seal-in');
   await keyboard.press('Enter');
   await snippet(workbench, 'timer', ['Y10', 'T1', 'K30', 'Y11']);
@@ -80,11 +82,15 @@ async function wholeProgram(workbench) {
   await workbench.goTo(2, 19);
   await workbench.chord('c');
   await workbench.until('the name to type over', async () => (await workbench.documentLines())[0].includes('???'));
-  await keyboard.type('X2', { delay: 30 });
+  await keyboard.type('X2');
   await workbench.goTo(2, 28);
-  await keyboard.type('| |', { delay: 30 });
+  await keyboard.type('| |');
   await workbench.goTo(1, 28);
   await keyboard.type('X3', { delay: 30 });
+  // On a contact Enter opens a branch, whose name is typed next.
+  await workbench.goTo(10, 5);
+  await keyboard.press('Enter');
+  await keyboard.type('X5');
   await keyboard.press('Escape');
   await untilText(workbench, 'the whole program', [...SEAL_IN, '', ...TIMER, '', END, '']);
   await untilClean(workbench);

@@ -46,8 +46,10 @@ async function usage(workbench) {
   await workbench.focusEditor();
   await workbench.chord('u');
   await workbench.page.waitForSelector('.tab[data-resource-name="in_use.il.usage"]', { timeout: 15_000 });
-  const rows = async () =>
-    (await workbench.page.locator('.editor-instance').last().locator('.view-line').allInnerTexts()).map((row) => row.replaceAll('\u00a0', ' '));
+  const rows = async () => {
+    const lines = await workbench.page.locator('.editor-instance').last().locator('.view-line').allInnerTexts();
+    return lines.map((row) => row.replaceAll('\u00a0', ' '));
+  };
   await workbench.until('the devices', async () => (await rows()).some((row) => /^T0\s+ro\b/.test(row)));
   await workbench.screenshot('17-devices-in-use');
   // The keyboard is still in the program.
@@ -89,14 +91,14 @@ async function frameWith(workbench, words) {
 /** In a preview that is narrower than a drawing the rows are not folded. */
 async function wholeDrawings(workbench, page) {
   const size = workbench.page.viewportSize();
-  await workbench.page.setViewportSize({ ...size, width: 900 });
+  await workbench.page.setViewportSize({ ...size, width: 640 });
   const heights = () => page.locator('pre code').evaluateAll((blocks) => blocks.map((block) => {
     const rows = block.textContent.trimEnd().split('\n').length;
     return block.getBoundingClientRect().height / Number.parseFloat(getComputedStyle(block).lineHeight) - rows;
   }));
   try {
     await workbench.until('a preview that is narrower than its drawings', () =>
-      page.locator('pre').evaluateAll((blocks) => blocks.some((block) => [block, ...block.querySelectorAll('*')].some((part) => part.scrollWidth > part.clientWidth + 20))));
+      page.locator('pre, pre *').evaluateAll((parts) => parts.some((part) => part.scrollWidth > part.clientWidth + 20)));
     await workbench.until('rows that are not folded', async () => (await heights()).every((more) => more < 1));
     await workbench.screenshot('22-page-in-a-narrow-preview');
   } finally {
@@ -111,7 +113,8 @@ async function walkthrough(workbench) {
   await page.locator('text=Get started with Rungwise').first().waitFor({ timeout: 30_000 });
   await workbench.until('all steps', async () => {
     const text = await page.innerText();
-    return ['Open the example', 'Make a mistake', 'Edit the drawing', 'Check the program', 'Choose your PLC'].every((step) => text.includes(step));
+    const steps = ['Open the example', 'Make a mistake', 'Edit the drawing', 'Check the program', 'Choose your PLC'];
+    return steps.every((step) => text.includes(step));
   });
   await workbench.page.waitForTimeout(800); // The picture is drawn in a page of its own.
   await workbench.screenshot('20-walkthrough');

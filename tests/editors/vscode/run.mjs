@@ -13,6 +13,7 @@ import { CodeServer } from './code_server.mjs';
 import { runHostTests } from './host_tests.mjs';
 import { runPageTests } from './page_tests.mjs';
 import { runTrustTests } from './page_trust.mjs';
+import { runWebTests } from './page_web.mjs';
 
 const [cache, artefacts, binary] = process.argv.slice(2);
 const tests = join(dirname(fileURLToPath(import.meta.url)), '..');
@@ -39,6 +40,7 @@ mkdirSync(artefacts, { recursive: true });
 await withWorkspace('host', (workspace) => runHostTests(server, workspace, home, report, artefacts));
 await withWorkspace('page', (workspace) => runPageTests(server, workspace, home, report, artefacts));
 await withWorkspace('trust', (workspace) => runTrustTests(server, workspace, home, report, artefacts));
+await withWorkspace('web', (workspace) => runWebTests(server, workspace, home, report, artefacts));
 const code = report.finish();
 cpSync(server.log, join(artefacts, 'code-server.log'));
 if (code === 0) {
