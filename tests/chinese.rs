@@ -81,9 +81,12 @@ fn arguments_that_are_words_follow_the_language() {
         Message::new("operand-count.too-few").with("instruction", "MOV").with_messages("missing", missing);
     assert_eq!(message.render(Language::English), "MOV lacks S (source), D (destination)");
     assert_eq!(message.render(CHINESE), "MOV 缺少操作数：S（源）、D（目标）");
-    let message =
-        Message::new("syntax-error.expected-at-end").with_words("expected", ["operand", "`(`"], ", ");
-    assert_eq!(message.render(CHINESE), "此处应为 操作数、`(`");
+    let message = Message::new("syntax-error.expected-at-end")
+        .with_alternatives("expected", ["operand", "`:`", "type"]);
+    assert_eq!(message.render(CHINESE), "此处应为 操作数、`:` 或 类型");
+    assert_eq!(message.render(Language::English), "expected operand, `:` or type");
+    let message = Message::new("syntax-error.expected-at-end").with_alternatives("expected", ["label"]);
+    assert_eq!(message.render(Language::English), "expected label");
 }
 
 // The tables
@@ -137,7 +140,17 @@ fn the_words_of_the_grammar_are_translated() {
         }
     }
     assert!(words.len() > 5, "{words:?}");
-    words.extend(["end of line", "identifier", "constant", "%address", "comment", "pragma", "character"]);
+    words.extend([
+        "end of line",
+        "identifier",
+        "type",
+        "value",
+        "constant",
+        "%address",
+        "comment",
+        "pragma",
+        "character",
+    ]);
     let lacking: Vec<&&str> = words.iter().filter(|word| !has_phrase(word, CHINESE)).collect();
     assert!(lacking.is_empty(), "not in phrases.toml: {lacking:?}");
 }

@@ -324,3 +324,47 @@ fn version_help_and_language() {
     let output = rungwise(&files, &["check", "--lang", "fr"]);
     assert!(stderr(&output).contains("fr") && stderr(&output).contains("en"), "{}", stderr(&output));
 }
+
+#[test]
+fn a_rung_that_stays_as_it_was_drawn_is_told_with_its_reason() {
+    let bridge = "\
+|   X0                    X1                       Y0  |
++---| |---+---------------| |-----+----------------( )-+
+|         |   X2                  |                    |
+|         +---| |---+             |                    |
+|                   |             |                    |
+|   X3              |     X4      |                    |
++---| |-------------+-----| |-----+                    |
+";
+    let framed = "\
+┌──────────────────────────────────────────┐
+│   X0          X1                Y0       │
+│ ──┤ ├────┬────┤/├────────────────( )──── │
+│   X2     │                               │
+│ ──┤ ├────┘                               │
+└──────────────────────────────────────────┘
+";
+    let files = folder(&[
+        ("bridge.lad", &format!("|   X7      Y7  |\n+---| |-----( )-+\n\n{bridge}")),
+        ("framed.lad", framed),
+        ("comment.lad", "|   X0           Y0 |\n+---| |-(* c *)--( )-+\n"),
+        ("open.lad", "|   X0      Y0  |\n+---| |--   ( )-+\n"),
+        ("plain.lad", "|  X0     Y0  |\n+--| |----( )-+\n"),
+        ("note.md", &format!("# Notes\n\n```ladder\n{bridge}```\n")),
+    ]);
+    for (name, line, reason) in [
+        ("bridge.lad", 4, "it is neither series nor parallel"),
+        ("framed.lad", 2, "such as a frame"),
+        ("comment.lad", 1, "a comment stands in its midst"),
+        ("open.lad", 1, "`rungwise check` shows it"),
+        ("note.md", 4, "it is neither series nor parallel"),
+    ] {
+        let (_, err) = check(&files, &["fmt", "--stdout", name], 0);
+        assert!(
+            err.starts_with(&format!("{name}:{line}: this rung stays as it was drawn: ")),
+            "{name}: {err}"
+        );
+        assert!(err.contains(reason) && err.lines().count() == 1, "{name}: {err}");
+    }
+    assert_eq!(check(&files, &["fmt", "--stdout", "plain.lad"], 0).1, "");
+}

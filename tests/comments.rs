@@ -200,6 +200,18 @@ fn a_symbol_is_its_device_in_drawings() {
     assert_eq!(unknown, Vec::<String>::new());
 }
 
+#[test]
+fn a_file_that_is_not_read_to_its_end_says_where_reading_ended() {
+    let keys = |text: &str| -> Vec<(&'static str, usize)> {
+        let file = CommentsFile::read(Path::new("devices.csv"), text, fx2n());
+        let line = |offset: u32| text[..offset as usize].matches('\n').count();
+        file.diagnostics.iter().map(|found| (found.message.key(), line(found.span.start))).collect()
+    };
+    let rows = "\"\",,\n".repeat(200_000);
+    assert_eq!(keys(&format!("{rows}\n \n")), []);
+    assert_eq!(keys(&format!("{rows}\nX0,Start,\nX1,,\n")), [("device-comments.too-many", 200_001)]);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 

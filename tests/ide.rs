@@ -1409,8 +1409,8 @@ END_PROGRAM
         tank,
         "A",
         &expect![[r#"
-        refused: `A` does not fit into the drawing of line 2; redraw the rung with more room there first
-    "#]],
+            refused: with `A` in line 2 the drawing would be read otherwise: the name would stand over another element, or over two; redraw the rung with more room there first
+        "#]],
     );
 }
 
@@ -1541,8 +1541,8 @@ fn ladder_of_iec_variables() {
         tank,
         "Level_of_the_tank_is_low",
         &expect![[r#"
-        refused: `Level_of_the_tank_is_low` does not fit into the drawing of line 10; redraw the rung with more room there first
-    "#]],
+            refused: `Level_of_the_tank_is_low` does not fit into the drawing of line 10: it would run into `|`; redraw the rung with more room there first
+        "#]],
     );
     check_completions(
         &marked(TANK, "$0Pump\n+"),

@@ -187,7 +187,7 @@ fn a_symbol_is_renamed_everywhere_and_in_its_table() {
     for (new, key) in [
         ("M5", "device-comments.reads-as-device"),
         ("OUT", "device-comments.is-instruction"),
-        ("motor", "device-comments.symbol-twice"),
+        ("motor", "alias.taken"),
         ("two words", "device-comments.no-identifier"),
     ] {
         assert_eq!(ide::rename_symbol(&view, 4, new).unwrap().unwrap_err().key(), key, "{new}");
@@ -219,7 +219,7 @@ fn symbols_and_devices_are_exchanged() {
         results(document.text().find("X0").unwrap()),
         [
             "LD Start\nOR Start\nAND X0\nMOV K4X0 D0\nOUT Motor\n",
-            "LD Start\nOR Start\nAND Start\nMOV K4X0 D0\nOUT Motor\n"
+            "LD Start\nOR Start\nAND Start\nMOV K4Start D0\nOUT Motor\n"
         ]
     );
     assert_eq!(results(0), Vec::<String>::new());

@@ -61,11 +61,16 @@ const MOTOR: &str = "\
 +---| |---+                                      |
 ";
 
-fn motor(line: usize, column: usize) -> String {
-    let start: usize = MOTOR.split_inclusive('\n').take(line).map(str::len).sum();
-    let mut text = MOTOR.to_string();
+/// `drawing` with the mark of the cursor before a cell of a line, both from 0.
+pub fn with_cursor(drawing: &str, line: usize, column: usize) -> String {
+    let start: usize = drawing.split_inclusive('\n').take(line).map(str::len).sum();
+    let mut text = drawing.to_string();
     text.insert(start + column, '^');
     text
+}
+
+fn motor(line: usize, column: usize) -> String {
+    with_cursor(MOTOR, line, column)
 }
 
 #[test]
@@ -1303,4 +1308,49 @@ fn linked_names_are_those_whose_rows_have_nothing_behind_them() {
     assert!(places(&motor(3, 5), Notation::Ladder).is_empty());
     let open = "+--[X1]--+-----( )\n         |     Y^0\n         +-----( )\n               Y0\n";
     assert_eq!(places(open, Notation::Ladder).len(), 2);
+}
+
+/// The drawing after mending it at a line; nothing if that is refused.
+fn mended(text: &str, line: usize) -> Option<String> {
+    let start: usize = text.split_inclusive('\n').take(line).map(str::len).sum();
+    let answer = ide::edit(&ladder(text), Span::at(start + 1), EditKind::Mend, None, STYLE).ok()?;
+    Some(TextEdit::apply_all(&answer.edits, text))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
+
+    /// A drawing in order stays, and one that was mended is in order.
+    #[test]
+    fn mending_changes_nothing_twice(part in rung(10), seed in any::<u64>()) {
+        let part = normal(&part);
+        let Some(drawing) = drawn(&part, StyleKind::Iec) else { return Ok(()) };
+        let lines: Vec<&str> = drawing.text.lines().collect();
+        // The rung stands behind a rung and a comment, and before another rung.
+        let (first, end) = (3, lines.len() - 2);
+        for line in first..end {
+            let same = mended(&drawing.text, line);
+            prop_assert_eq!(same.as_deref(), Some(drawing.text.as_str()));
+        }
+        // A cell more or less somewhere in a row.
+        let line = first + seed as usize % (end - first);
+        let cells: Vec<char> = lines[line].chars().collect();
+        let at = (seed >> 16) as usize % cells.len();
+        let mut row = cells.clone();
+        if matches!(row[at], ' ' | '-') {
+            if seed >> 60 & 1 == 0 { row.insert(at, cells[at]) } else { _ = row.remove(at) }
+        }
+        let row: String = row.into_iter().collect();
+        let torn: String =
+            lines.iter().enumerate().map(|(n, own)| format!("{}\n", if n == line { &row } else { *own })).collect();
+        if let Some(once) = mended(&torn, line) {
+            let twice = mended(&once, line);
+            prop_assert_eq!(twice.as_deref(), Some(once.as_str()), "from\n{}", torn);
+            // What the other rows tell about the rail is enough for a row of names that lost or won a blank.
+            let is_names = !lines[line].contains(['-', '+']) && lines[line].contains(char::is_alphanumeric);
+            if is_names && cells[at] == ' ' && end - first > 2 {
+                prop_assert_eq!(&once, &drawing.text, "from\n{}", torn);
+            }
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use crate::ide_structure::marked;
+use crate::ide_structure::{marked, with_cursor};
 use expect_test::{Expect, expect};
 use rungwise::document::{Document, Edit, Notation, Tree};
 use rungwise::ide::{self, Style};
@@ -69,10 +69,7 @@ const MOTOR: &str = "\
 ";
 
 fn motor(line: usize, column: usize) -> String {
-    let start: usize = MOTOR.split_inclusive('\n').take(line).map(str::len).sum();
-    let mut text = MOTOR.to_string();
-    text.insert(start + column, '^');
-    text
+    with_cursor(MOTOR, line, column)
 }
 
 #[test]

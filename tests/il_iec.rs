@@ -689,7 +689,7 @@ fn mistakes_in_bodies() {
             ST c
             error 1:6 `b` syntax-error: expected end of line, found `b`
             error 2:1 `10` syntax-error: a label of Instruction List is a name, not a number
-            error 3:3 `:=` syntax-error: expected operand, `(`, end of line, found `:=`
+            error 3:3 `:=` syntax-error: expected operand, `(` or end of line, found `:=`
             error 4:1 `5` syntax-error: expected instruction, found `5`
             error 5:4 `(` syntax-error: LD takes no parenthesis
             error 7:4 `` syntax-error: expected label
@@ -767,14 +767,14 @@ fn mistakes_in_bodies() {
             call T3 by name [IN := a] [=5]
             call T4 in order [=5] [IN := a]
             LD x
-            error 2:8 `` syntax-error: expected `,`, `)`
+            error 2:8 `` syntax-error: expected `,` or `)`
             error 4:1 `)` syntax-error: expected parameter, found `)`
             hint 5:7 `(` lenient-form: the standard puts each named parameter and the closing parenthesis on a line of its own
-            error 5:14 `,` syntax-error: expected operand, `(`, found `,`
-            error 5:19 `=` syntax-error: expected `:=`, `=>`, found `=`
+            error 5:14 `,` syntax-error: expected operand or `(`, found `,`
+            error 5:19 `=` syntax-error: expected `:=` or `=>`, found `=`
             hint 6:7 `(` lenient-form: the standard puts each named parameter and the closing parenthesis on a line of its own
-            error 6:18 `)` syntax-error: expected `:=`, `=>`, found `)`
-            error 7:14 `:=` syntax-error: expected `,`, `)`, found `:=`
+            error 6:18 `)` syntax-error: expected `:=` or `=>`, found `)`
+            error 7:14 `:=` syntax-error: expected `,` or `)`, found `:=`
         "#]],
     );
     check(
@@ -826,9 +826,9 @@ fn mistakes_in_declarations() {
               x__y : ?
               f : Int
             error 2:11 `` syntax-error: expected `;`
-            error 4:5 `INT` syntax-error: expected `,`, `:`, `AT`, found `INT`
-            error 5:7 `;` syntax-error: expected identifier, `(`, `STRUCT`, `ARRAY`, `REF_TO`, `STRING`, `WSTRING`, found `;`
-            error 6:11 `=` syntax-error: expected `(`, `;`, `:=`, `.`, `R_EDGE`, `F_EDGE`, found `=`
+            error 4:5 `INT` syntax-error: expected `,`, `:` or `AT`, found `INT`
+            error 5:7 `;` syntax-error: expected type, found `;`
+            error 6:11 `=` syntax-error: expected `(`, `;`, `:=`, `.`, `R_EDGE` or `F_EDGE`, found `=`
             error 7:3 `x__y` syntax-error: `x__y` cannot be a name: it may not start with a digit, end in `_` or hold two `_` side by side
             error 7:9 `on` syntax-error: expected identifier, found `on`
             hint 9:8 `;` lenient-form: no `;` belongs here
@@ -868,8 +868,8 @@ fn mistakes_in_declarations() {
               s : struct{a : Int; d : Bool}
               t : ?
               u : Int
-            error 2:25 `c` syntax-error: expected `,`, `:`, `AT`, found `c`
-            error 3:16 `]` syntax-error: expected identifier, constant, found `]`
+            error 2:25 `c` syntax-error: expected `,`, `:` or `AT`, found `c`
+            error 3:16 `]` syntax-error: expected value, found `]`
         "#]],
     );
     check(
@@ -884,7 +884,7 @@ fn mistakes_in_declarations() {
             error 1:8 `` syntax-error: expected identifier
             hint 2:14 `;` lenient-form: no `;` belongs here
             error 3:10 `5` syntax-error: expected identifier, found `5`
-            error 4:13 `` syntax-error: expected identifier, `(`, `STRUCT`, `ARRAY`, `REF_TO`, `STRING`, `WSTRING`
+            error 4:13 `` syntax-error: expected type
             error 5:14 `x` syntax-error: expected end of line, found `x`
             error 6:9 `type` syntax-error: TYPE is a reserved word and cannot be a name
         "#]],
@@ -902,11 +902,11 @@ fn mistakes_in_declarations() {
             error 1:14 `` syntax-error: expected identifier
             error 2:1 `RESOURCE` syntax-error: RESOURCE lacks its END_RESOURCE
             error 2:11 `` syntax-error: expected `ON`
-            error 3:8 `PRIO` syntax-error: expected `SINGLE`, `INTERVAL`, `PRIORITY`, found `PRIO`
+            error 3:8 `PRIO` syntax-error: expected `SINGLE`, `INTERVAL` or `PRIORITY`, found `PRIO`
             error 3:33 `` syntax-error: expected `;`
             error 4:16 `:` syntax-error: expected identifier, found `:`
-            error 5:1 `LD` syntax-error: expected `VAR_GLOBAL`, `RESOURCE`, `TASK`, `PROGRAM`, `VAR_ACCESS`, `VAR_CONFIG`, `END_CONFIGURATION`, found `LD`
-            error 6:24 `` syntax-error: expected `(`, `;`, `.`
+            error 5:1 `LD` syntax-error: expected `VAR_GLOBAL`, `RESOURCE`, `TASK`, `PROGRAM`, `VAR_ACCESS`, `VAR_CONFIG` or `END_CONFIGURATION`, found `LD`
+            error 6:24 `` syntax-error: expected `(`, `;` or `.`
             error 7:1 `VAR_GLOBAL` syntax-error: VAR_GLOBAL lacks its END_VAR
         "#]],
     );

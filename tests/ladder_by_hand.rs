@@ -591,3 +591,96 @@ fn names_of_a_ladder_without_header_are_variables_by_use() {
     assert!(found.iter().any(|finding| finding.code == "undeclared-variable"));
     assert!(found.iter().all(|finding| finding.code != "similar-names"));
 }
+
+#[test]
+fn a_name_in_the_wire_before_the_right_rail_becomes_a_coil() {
+    let cases = [
+        ("|--X0--+--Y0--|\n|--X1--+      |\n", "|-[X0]-+-(Y0)-|\n|-[X1]-+      |\n"),
+        ("|--X0----M0---|\n", "|-[X0]--(M0)--|\n"),
+        ("|--X0----Y0|\n", "|-[X0]-(Y0)|\n"),
+        ("||--X0----Y0---||\n", "||-[X0]--(Y0)--||\n"),
+        // What nothing can drive is a contact wherever it stands, and so is what does not stand at the rail.
+        ("|--Y0----X0---|\n", "|-[Y0]--[X0]--|\n"),
+        ("|--Y0--+--Y1--|\n|--M0--+      |\n", "|-[Y0]-+-(Y1)-|\n|-[M0]-+      |\n"),
+        ("|--T0----D0---|\n", "|-[T0]--[D0]--|\n"),
+    ];
+    for (drawing, expected) in cases {
+        let found = parse(drawing, fx()).problems;
+        let mut edits: Vec<TextEdit> = Vec::new();
+        for problem in found.iter().filter(|problem| problem.code == "stray-operand") {
+            assert_eq!(problem.fixes.len(), 1, "{drawing}{problem:?}");
+            edits.extend(problem.fixes[0].edits.clone());
+        }
+        let redrawn = TextEdit::apply_all(&edits, drawing);
+        assert_eq!(redrawn, expected);
+        let again = parse(&redrawn, fx()).problems;
+        assert!(again.is_empty(), "{redrawn}{again:?}");
+    }
+    let titles: Vec<String> = parse("|--%QX0.0----%IX0.1---|\n|--a----b---|\n", Target::of(Model::Iec))
+        .problems
+        .iter()
+        .flat_map(|problem| &problem.fixes)
+        .map(|fix| fix.title.render(Language::English))
+        .collect();
+    let expected = ["contact `[%QX0.0]`", "contact `[%IX0.1]`", "contact `[a]`", "contact `[b]`"];
+    assert_eq!(titles, expected.map(|words| format!("Draw the {words}")));
+}
+
+#[test]
+fn a_bar_behind_names_is_the_right_rail_in_any_column() {
+    let straight = "|   X0          Y0      |\n+---| |---------( )-----+\n";
+    for names in ["|   X0          Y0 |", "|   X0         Y0 |", "|   X0          Y0             |"] {
+        let drawing = format!("{names}\n+---| |---------( )-----+\n");
+        assert_eq!(logic(&drawing), logic(straight), "{drawing}");
+        assert!(parse(&drawing, fx()).problems.is_empty(), "{drawing}");
+    }
+    // Between the elements it could be anything, were there no names before it.
+    let drawing = "\
+|   X0    Y0 |
++---| |---------( )-----+
+|   X1 |
++---| |---------(Y1)----+
+";
+    let bars = |drawing: &str| -> Vec<(&'static str, u32)> {
+        let found = parse(drawing, fx()).problems;
+        let bars = found.iter().filter(|found| found.span.of(drawing) == "|");
+        bars.map(|found| (found.message.key(), found.span.start)).collect()
+    };
+    assert_eq!(bars(drawing), [("ragged-drawing.right-rail", 13), ("ragged-drawing.right-rail", 48)]);
+    assert!(logic(drawing).contains("kind: Y, number: 0"), "{}", logic(drawing));
+    for finding in found(drawing).iter().filter(|finding| finding.code == "ragged-drawing") {
+        let redrawn = fixed(drawing, finding).pop().expect("a fix");
+        assert_eq!(logic(&redrawn), logic(drawing));
+    }
+    // Two bars, a bar before a name, no rail beside the names, or no names: these have no reading.
+    for drawing in [
+        "|   X0     |   |\n+---| |---------(Y0)----+\n",
+        "|   X0     |   Z\n+---| |---------(Y0)----+\n",
+        "|   X0     |\n+---| |---------(Y0)----\n",
+        "|          |\n+---[X0]--------(Y0)----+\n",
+    ] {
+        assert!(bars(drawing).iter().all(|(key, _)| *key != "ragged-drawing.right-rail"), "{drawing}");
+    }
+}
+
+#[test]
+fn the_vertical_wire_below_a_comparison_in_parallel_ends_no_rung() {
+    let drawing = "\
++--[<> K0 K0]------+---->>P10
+|                  |
++--[D0 = K0]-------+
+|                  |
++--[>= D1 K0]------+
+";
+    assert_eq!(split(drawing), [drawing.len()]);
+    let tree = parse(drawing, fx());
+    assert!(tree.problems.is_empty(), "{:?}", tree.problems);
+    assert_eq!(tree.rungs.len(), 1);
+    // Behind an instruction the corner is the rail.
+    let two = "\
++--[X0]--[MOV K0 D0]------+
+|                         |
++--[X1]--[MOV K0 D1]------+
+";
+    assert_eq!(split(two).len(), 2);
+}

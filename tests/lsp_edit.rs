@@ -91,6 +91,24 @@ fn edits_are_code_actions_where_they_make_sense() {
 }
 
 #[test]
+fn quick_fixes_come_only_to_who_wants_them() {
+    let mut client = started(json!({}), "en");
+    let uri = "file:///tmp/edit/main.il";
+    client.open(uri, "plc-il", "LD X0\nOUTT Y0\nEND\n");
+    let mut fixes = |context: Value| {
+        let params =
+            json!({"textDocument": {"uri": uri}, "range": range((1, 0), (1, 0)), "context": context});
+        let actions = client.request("textDocument/codeAction", params)["result"].clone();
+        let actions = actions.as_array().unwrap().clone();
+        actions.iter().filter(|action| action["kind"] == "quickfix").count()
+    };
+    let offered = fixes(json!({"diagnostics": []}));
+    assert!(offered > 0);
+    assert_eq!(fixes(json!({"diagnostics": [], "only": ["quickfix"]})), offered);
+    assert_eq!(fixes(json!({"diagnostics": [], "only": ["refactor"]})), 0);
+}
+
+#[test]
 fn a_client_that_resolves_edits_gets_them_when_it_asks() {
     let support = json!({"textDocument": {"codeAction": {"dataSupport": true,
         "resolveSupport": {"properties": ["edit"]}}}});
@@ -128,4 +146,39 @@ fn objects_ranges_and_typing_go_through_the_wire() {
     assert_eq!(edits["result"][0]["newText"], "", "one cell of wire goes: {edits}");
     let linked = json!({"textDocument": {"uri": URI}, "position": {"line": 2, "character": 5}});
     assert!(client.request("textDocument/linkedEditingRange", linked)["result"].is_null());
+}
+
+#[test]
+fn keystrokes_are_answered_in_a_text_that_the_server_does_not_have_yet() {
+    let mut client = started(json!({}), "en");
+    let mut typed = |text: &str, at: (u32, u32), character: &str, version: Value| {
+        let params = json!({
+            "textDocument": {"uri": URI, "version": version},
+            "lines": {"first": 0, "end": 2, "text": text},
+            "position": {"line": at.0, "character": at.1},
+            "ch": character,
+        });
+        client.request("rungwise/typed", params)
+    };
+    let rows: Vec<&str> = MOTOR.lines().collect();
+    let wider = format!("{}\n{}\n", rows[0].replace("X0 ", "X07 "), rows[1]);
+    let answer = typed(&wider, (0, 7), "7", Value::Null);
+    let edits = answer["result"].as_array().unwrap_or_else(|| panic!("{answer}"));
+    assert_eq!(edits.len(), 1, "{edits:?}");
+    assert_eq!((&edits[0]["newText"], &edits[0]["range"]["start"]["line"]), (&json!(""), &json!(0)));
+    // Nothing of that is kept: the same place in the document has no such character before it.
+    let plain = format!("{}\n{}\n", rows[0], rows[1]);
+    assert_eq!(typed(&plain, (0, 6), "7", Value::Null)["result"], json!([]));
+    let stale = typed(&wider, (0, 7), "7", json!(99));
+    assert_eq!(stale["error"]["code"], json!(-32801), "{stale}");
+    // Lines and places that are not there are no harm.
+    let mut beyond = |first: u32, end: u32| {
+        let lines = json!({"first": first, "end": end, "text": "| X |\n"});
+        let position = json!({"line": 4_000_000_000_u32, "character": 7});
+        let params = json!({"textDocument": {"uri": URI}, "lines": lines, "position": position, "ch": "\n"});
+        client.request("rungwise/typed", params)
+    };
+    for (first, end) in [(0, 0), (3, 1), (900, 2_000_000_000), (4_000_000_000, 4_294_967_295)] {
+        assert!(beyond(first, end)["result"].is_array());
+    }
 }

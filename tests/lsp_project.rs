@@ -156,6 +156,60 @@ fn place(name: &str, line: u64, character: u64) -> (String, u64, u64) {
 }
 
 #[test]
+fn a_file_that_is_not_open_is_read_in_its_encoding() {
+    let folder = iec();
+    let [globals, main] = [GLOBALS, MAIN].map(|text| text.replace("Level", "电机"));
+    let bytes = encoding_rs::GBK.encode(&globals).0.into_owned();
+    std::fs::write(folder.path("globals.il"), bytes).unwrap();
+    let mut client = Client::start();
+    client.open(&folder.uri("main.il"), "plc-il", &main);
+    awaits(&mut client, &folder.uri("main.il"), &[]);
+    let found = client.request("textDocument/definition", at(&folder.uri("main.il"), 14, 7));
+    assert_eq!(places(&found["result"]), [place("globals.il", 1, 4)]);
+}
+
+#[test]
+fn a_file_belongs_to_the_innermost_of_projects_in_each_other() {
+    let manifest = "target = \"fx2n\"\n";
+    let names: Vec<String> = (0..8).map(|depth| "in/".repeat(depth)).collect();
+    let folder = fx();
+    for name in &names[1..] {
+        folder.write(&format!("{name}rungwise.toml"), manifest);
+    }
+    let inner = names.last().unwrap();
+    let main = folder.uri(&format!("{inner}main.il"));
+    folder.write(&format!("{inner}main.il"), FX_MAIN);
+    folder.write(&format!("{inner}subs.lad"), FX_SUBS);
+    let mut client = Client::spawn();
+    let folders = json!([{"uri": folder.uri(""), "name": "plant"}]);
+    client.request("initialize", json!({"processId": null, "capabilities": {}, "workspaceFolders": folders}));
+    client.notify("initialized", json!({}));
+    client.open(&main, "plc-il", FX_MAIN);
+    published(&mut client, &main);
+    for _ in 0..100 {
+        let prepared = client.request("textDocument/prepareCallHierarchy", at(&main, 1, 6));
+        let item = prepared["result"][0].clone();
+        let incoming = client.request("callHierarchy/incomingCalls", json!({"item": item}));
+        if incoming["result"][0]["from"]["name"] == json!("main.il") {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    panic!("the file of the call is in no project");
+}
+
+/// A client that has the program and the block of `folder` open, both published.
+fn with_both_open(folder: &Folder) -> (Client, String, String) {
+    let (main, fill) = (folder.uri("main.il"), folder.uri("fill.lad"));
+    let mut client = Client::start();
+    client.open(&main, "plc-il", MAIN);
+    client.open(&fill, "ladder", FILL);
+    published(&mut client, &main);
+    published(&mut client, &fill);
+    (client, main, fill)
+}
+
+#[test]
 fn iec_files_know_what_the_others_declare() {
     let folder = iec();
     let (main, fill, globals) = (folder.uri("main.il"), folder.uri("fill.lad"), folder.uri("globals.il"));
@@ -184,12 +238,7 @@ fn iec_files_know_what_the_others_declare() {
 #[test]
 fn a_keystroke_costs_nothing_in_other_files() {
     let folder = iec();
-    let (main, fill) = (folder.uri("main.il"), folder.uri("fill.lad"));
-    let mut client = Client::start();
-    client.open(&main, "plc-il", MAIN);
-    client.open(&fill, "ladder", FILL);
-    published(&mut client, &main);
-    published(&mut client, &fill);
+    let (mut client, main, fill) = with_both_open(&folder);
     client.stays_silent(QUIET, |_| false);
     while client.take(is_about(&main)).is_some() {}
     client.change(&fill, 2, (11, 13), (11, 15), "-|");
@@ -364,12 +413,7 @@ fn renamed(edit: &Value, texts: &[(&str, &str)]) -> Vec<String> {
 #[test]
 fn rename_changes_all_files() {
     let folder = iec();
-    let (main, fill) = (folder.uri("main.il"), folder.uri("fill.lad"));
-    let mut client = Client::start();
-    client.open(&main, "plc-il", MAIN);
-    client.open(&fill, "ladder", FILL);
-    published(&mut client, &main);
-    published(&mut client, &fill);
+    let (mut client, main, _) = with_both_open(&folder);
     let mut rename = |uri: &str, line, character, new: &str| {
         let mut params = at(uri, line, character);
         params["newName"] = json!(new);
@@ -551,6 +595,61 @@ fn settings_are_asked_for() {
     client.wait_for("the status", |message| {
         message["method"] == json!("rungwise/status") && message["params"]["target"] == json!("fx1s")
     });
+}
+
+#[test]
+fn another_language_has_everything_asked_for_again() {
+    const TEXT: &str = "PROGRAM p\nLD a\nEND_PROGRAM\n";
+    let folder = Folder::new(&[("rungwise.toml", "target = \"iec\"\n"), ("main.il", TEXT)]);
+    let capabilities = json!({"workspace": {"diagnostics": {"refreshSupport": true},
+        "inlayHint": {"refreshSupport": true}}, "textDocument": {"diagnostic": {}}});
+    let mut client = Client::start_with(capabilities, json!({"diagnostics": {"mode": "pull"}}));
+    client.open(&folder.uri("main.il"), "plc-il", TEXT);
+    let ask = |client: &mut Client| {
+        let answer = client.request("workspace/diagnostic", json!({"previousResultIds": []}));
+        answer["result"]["items"].to_string()
+    };
+    // The project is read in the background, which is a reason to ask again as well.
+    let is_read = (0..200).any(|_| {
+        std::thread::sleep(Duration::from_millis(25));
+        ask(&mut client).contains("is not declared")
+    });
+    assert!(is_read);
+    client.stays_silent(Duration::from_millis(300), |_| false);
+    while client.take(|message| message["method"] == json!("workspace/diagnostic/refresh")).is_some() {}
+    while client.take(|message| message["method"] == json!("workspace/inlayHint/refresh")).is_some() {}
+    let settings = json!({"settings": {"rungwise": {"language": "zh-CN", "diagnostics": {"mode": "pull"}}}});
+    client.notify("workspace/didChangeConfiguration", settings);
+    let request = client.wait_for_method("workspace/diagnostic/refresh");
+    client.send(json!({"jsonrpc": "2.0", "id": request["id"], "result": null}));
+    client.wait_for_method("workspace/inlayHint/refresh");
+    let found = ask(&mut client);
+    assert!(found.contains("没有在 p 中声明") && !found.contains("is not declared"), "{found}");
+}
+
+#[test]
+fn symbols_are_known_in_files_that_are_not_open() {
+    let folder = iec();
+    folder.write("rungwise.toml", "target = \"fx2n\"\ncomments = \"devices.csv\"\n");
+    folder.write("devices.csv", "X0,Start,\nM0,Lamps,\n");
+    for name in ["main.il", "globals.il"] {
+        std::fs::remove_file(folder.path(name)).ok();
+    }
+    folder.write("one.il", "LD Start\nMOV K4Lamps D0\nOUT Nobody\nEND\n");
+    folder.write("two.lad", "|  Start    Lamps  |\n+--| |-------( )---+\n\n[END]\n");
+    let mut client = Client::start_with(json!({}), json!({"diagnostics": {"mode": "pull"}}));
+    client.open(&folder.uri("two.lad"), "ladder", "|  Start    Lamps  |\n+--| |-------( )---+\n\n[END]\n");
+    let mut found = String::new();
+    for _ in 0..200 {
+        let answer = client.request("workspace/diagnostic", json!({"previousResultIds": []}));
+        found = answer["result"]["items"].to_string();
+        if found.contains("Nobody") {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(25));
+    }
+    assert!(found.contains("`Nobody` is no device"), "{found}");
+    assert!(!found.contains("`Start`") && !found.contains("K4Lamps"), "{found}");
 }
 
 #[test]

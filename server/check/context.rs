@@ -1,8 +1,12 @@
 //! What a rule may look at.
 
-use crate::document::{Chunk, ChunkRef, Document, Notation, Pou, Scopes};
+use super::order::rung;
+use super::words::plain::is_plain;
+use crate::document::{Chunk, ChunkRef, Document, Notation, Operation, Pou, Scopes, Tree};
+use crate::il::fx::FxTree;
 use crate::target::{Model, Target};
 use crate::text::{Diagnostic, Span};
+use std::cell::OnceCell;
 
 /// A chunk and what it depends on. Offsets are those of the chunk.
 pub struct ChunkContext<'a> {
@@ -16,9 +20,34 @@ pub struct ChunkContext<'a> {
     pub scopes: &'a Scopes,
     /// The number of that POU in `scopes`; `None` outside of any.
     pub pou: Option<usize>,
+    /// Its FX instructions that are not right at one look, in the order of the text: what the rules about words judge.
+    pub doubtful: Vec<Operation<'a>>,
+    rung: OnceCell<Vec<rung::Finding>>,
 }
 
-impl ChunkContext<'_> {
+impl<'a> ChunkContext<'a> {
+    /// `chunk` of `document`; `pou` is the number of the POU in which it stands.
+    pub fn new(chunk: &'a Chunk, document: &'a Document, pou: Option<usize>) -> ChunkContext<'a> {
+        let target = document.target();
+        ChunkContext {
+            chunk,
+            notation: document.notation(),
+            target,
+            scopes: document.scopes(),
+            pou,
+            doubtful: chunk.operations().filter(|operation| !is_plain(operation, target)).collect(),
+            rung: OnceCell::new(),
+        }
+    }
+
+    /// What is out of order in a chunk of FX instruction list. One with something unreadable is not judged: the missing
+    /// words would be missed here once more.
+    pub(super) fn rung(&self) -> Option<(&'a FxTree, &[rung::Finding])> {
+        let Tree::Fx(tree) = self.chunk.tree() else { return None };
+        let found = || rung::findings(tree, self.target.limits);
+        tree.problems.is_empty().then(|| (tree, self.rung.get_or_init(found).as_slice()))
+    }
+
     /// The POU in which the chunk stands.
     pub fn pou(&self) -> Option<&Pou> {
         self.scopes.pous.get(self.pou?).map(|pou| &**pou)

@@ -1,7 +1,7 @@
 //! Runs the rules and puts their findings together.
 
 use super::{ChunkContext, ProgramContext, RULES, Rule, Run, program_around, programs};
-use crate::document::{Document, LIMIT_BYTES, Page, ProjectView};
+use crate::document::{Document, Found, LIMIT_BYTES, Page, ProjectView};
 use crate::text::{Diagnostic, Message, Severity, Span};
 use rustc_hash::{FxHashMap, FxHasher};
 use std::hash::{Hash, Hasher};
@@ -72,7 +72,7 @@ fn judged(document: &Document, severities: &Severities, with_mentions: bool) -> 
 }
 
 /// The findings in each page, from the page's start. Many pages are judged by several threads.
-fn judged_pages(document: &Document, with_mentions: bool) -> Vec<Arc<[Diagnostic]>> {
+fn judged_pages(document: &Document, with_mentions: bool) -> Vec<Found> {
     let scopes = document.scopes();
     let mut pou_number = 0;
     let mut tasks = Vec::with_capacity(document.pages().len());
@@ -151,6 +151,15 @@ pub fn sorted(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
     diagnostics
 }
 
+/// What the rules of the real-time tier do with a chunk, in the order of the catalogue.
+static CHUNK_JUDGES: LazyLock<Vec<fn(&ChunkContext<'_>, &mut Vec<Diagnostic>)>> = LazyLock::new(|| {
+    let judges = RULES.iter().filter_map(|rule| match rule.run {
+        Run::Chunk(judge) | Run::Both(judge, _) => Some(judge),
+        _ => None,
+    });
+    judges.collect()
+});
+
 /// The findings in a page whose first chunk comes after `pou_number` starts of a POU, from the page's start.
 fn judge_page(
     document: &Document,
@@ -165,23 +174,16 @@ fn judge_page(
         pou_number += chunk.pou_starts();
         let found = chunk.found(hash_of((scopes.key, pou_number)), with_mentions, |chunk| {
             let mut found = chunk.problems().to_vec();
-            let context = ChunkContext {
-                chunk,
-                notation: document.notation(),
-                target: document.target(),
-                scopes,
-                pou: pou_number.checked_sub(1),
-            };
-            for rule in RULES.iter() {
-                if let Rule { run: Run::Chunk(judge) | Run::Both(judge, _), .. } = rule {
-                    judge(&context, &mut found);
-                }
-            }
+            let context = ChunkContext::new(chunk, document, pou_number.checked_sub(1));
+            CHUNK_JUDGES.iter().for_each(|judge| judge(&context, &mut found));
             found
         });
         diagnostics.extend(found.iter().map(|diagnostic| diagnostic.shifted(start)));
         start += chunk.len();
     }
+    // What the whole program is judged and counted by, while the chunks are at hand.
+    page.milestones();
+    page.size();
     diagnostics
 }
 

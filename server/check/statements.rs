@@ -139,13 +139,7 @@ fn of_file(file: ProgramFile<'_>) -> impl Iterator<Item = Statement<'_>> {
     file.document.pages().iter().flat_map(move |page| {
         let page_start = end;
         end += page.bytes();
-        // Milestones come in order, so the way through the page's chunks is gone once.
-        let (mut number, mut start) = (0, page_start);
         page.milestones().iter().filter_map(move |milestone| {
-            while number < milestone.chunk() {
-                start += page.chunks().get(number)?.len();
-                number += 1;
-            }
             let first = milestone.first();
             Some(Statement {
                 kind: milestone.kind,
@@ -153,7 +147,10 @@ fn of_file(file: ProgramFile<'_>) -> impl Iterator<Item = Statement<'_>> {
                 word: milestone.word.shifted(page_start),
                 span: milestone.span.shifted(page_start),
                 first: first.map(|first| Spanned::new(first.value, first.span.shifted(page_start))),
-                at: ChunkRef { start, chunk: page.chunks().get(number)? },
+                at: ChunkRef {
+                    start: page_start + milestone.chunk_start(),
+                    chunk: page.chunks().get(milestone.chunk())?,
+                },
                 is_list,
             })
         })

@@ -1,6 +1,6 @@
 //! Checks the files of a project together, also where only some of them were asked for.
 
-use super::input::{Beside, Program, read_programs};
+use super::input::{Beside, Program, folder_of, read_programs};
 use crate::check;
 use crate::document::{Exports, Member, Outer, ProjectView};
 use crate::project::{MOST_PROJECT_BYTES, Project};
@@ -17,7 +17,7 @@ pub(super) fn checked(
 ) -> Vec<(Program, Vec<Diagnostic>)> {
     let mut groups: BTreeMap<PathBuf, Vec<usize>> = BTreeMap::new();
     for (number, program) in programs.iter().enumerate() {
-        if let Some(root) = root_of(&program.path) {
+        if let Some(root) = folder_of(&program.path) {
             groups.entry(root).or_default().push(number);
         }
     }
@@ -34,11 +34,6 @@ pub(super) fn checked(
             (program, found)
         })
         .collect()
-}
-
-/// The folder of the project to which a file belongs.
-fn root_of(path: &Path) -> Option<PathBuf> {
-    Project::folder_of(&path.canonicalize().ok()?)
 }
 
 /// A file of a project, and its number among the programs that were asked for.

@@ -1,9 +1,9 @@
 //! The device comments of projects, read once for each project however many of its files are asked for.
 
-use super::encoding::Encoding;
-use super::input::Program;
+use super::input::{Program, folder_of};
 use crate::document::{Comments, Document, Notation};
-use crate::project::{CommentsFile, Manifest, Project};
+use crate::project::encoding::Encoding;
+use crate::project::{CommentsFile, Manifest};
 use crate::target::{Model, Target};
 use crate::text::Diagnostic;
 use std::collections::{BTreeMap, BTreeSet};
@@ -20,8 +20,7 @@ pub(super) fn of(path: &Path, manifest: &Manifest) -> Arc<Comments> {
 
 fn file_of(path: &Path, manifest: &Manifest) -> Option<Arc<CommentsFile>> {
     let name = manifest.comments.as_ref()?;
-    let folder = Project::folder_of(&path.canonicalize().ok()?)?;
-    let path = folder.join(name);
+    let path = folder_of(path)?.join(name);
     let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
     let file = read.entry(path).or_insert_with_key(|path| {
         Arc::new(CommentsFile::open(path, manifest.target().unwrap_or(Target::of(Model::Fx2n))))
@@ -35,12 +34,7 @@ pub(super) fn findings(programs: &[Program]) -> Vec<(Program, Vec<Diagnostic>)> 
     let mut found = Vec::new();
     for program in programs {
         let Some(file) = file_of(&program.path, &program.manifest) else { continue };
-        let severities = program.manifest.severities();
-        let graded = file
-            .diagnostics
-            .iter()
-            .filter_map(|found| Some(Diagnostic { severity: severities.of(found.code)?, ..found.clone() }));
-        let graded: Vec<Diagnostic> = graded.collect();
+        let graded = file.graded(&program.manifest.severities());
         if graded.is_empty() || !seen.insert(file.path.clone()) {
             continue;
         }

@@ -2,12 +2,11 @@
 
 use super::colour::Colour;
 use super::diff;
-use super::encoding;
-use super::input::{Program, complain, programs, say, say_bytes};
+use super::input::{Program, complain, programs, remark, say, say_bytes};
 use super::{Outcome, paths_or_here};
 use crate::ide::{self, Style};
-use crate::project::FormatStyle;
-use crate::text::{Language, Message, TextEdit};
+use crate::project::{FormatStyle, encoding};
+use crate::text::{Language, Message, Span, TextEdit};
 use clap::ValueEnum;
 use std::path::PathBuf;
 
@@ -51,10 +50,13 @@ pub(super) fn run(arguments: &Arguments, colour: Colour, language: Language) -> 
 fn format_file(programs: &[Program], arguments: &Arguments, colour: Colour, language: Language) -> Outcome {
     let Some(program) = programs.first() else { return Outcome::Clean };
     let path = program.path.display();
+    let left = |code: &str, reason: &'static str, help: &'static str| {
+        let reason = Message::new(reason).with("path", program.path.display()).render(language);
+        complain(code, &reason, &Message::new(help).render(language), language);
+        Outcome::Unusable
+    };
     let Some(encoding) = program.encoding else {
-        let reason = Message::new("cli.not-utf-8-left").with("path", path).render(language);
-        complain("not-utf-8", &reason, &Message::new("cli.save-as-utf-8").render(language), language);
-        return Outcome::Unusable;
+        return left("not-utf-8", "cli.not-utf-8-left", "cli.save-as-utf-8");
     };
     let style = style_of(program, arguments.style);
     let (text, formatted) = match &program.fence {
@@ -70,11 +72,10 @@ fn format_file(programs: &[Program], arguments: &Arguments, colour: Colour, lang
             (fence.text.to_string(), text)
         }
     };
+    programs.iter().for_each(|program| tell_kept(program, style_of(program, arguments.style), language));
     // The canonical form has no characters that the program has not, but those of a style.
     let Some(bytes) = encoding::write(&formatted, encoding) else {
-        let reason = Message::new("cli.not-utf-8-left").with("path", path).render(language);
-        complain("not-utf-8", &reason, &Message::new("cli.save-as-utf-8").render(language), language);
-        return Outcome::Unusable;
+        return left("not-utf-8", "cli.not-utf-8-left", "cli.save-as-utf-8");
     };
     if arguments.stdout {
         say_bytes(&bytes);
@@ -89,9 +90,7 @@ fn format_file(programs: &[Program], arguments: &Arguments, colour: Colour, lang
     }
     // Renaming would replace a file that its owner locked.
     if std::fs::metadata(&program.path).is_ok_and(|file| file.permissions().readonly()) {
-        let reason = Message::new("cli.read-only").with("path", path).render(language);
-        complain("unwritable", &reason, &Message::new("cli.file-as-it-was").render(language), language);
-        return Outcome::Unusable;
+        return left("unwritable", "cli.read-only", "cli.file-as-it-was");
     }
     match write_whole(&program.path, &bytes) {
         Ok(()) => {
@@ -103,6 +102,23 @@ fn format_file(programs: &[Program], arguments: &Arguments, colour: Colour, lang
             complain("unwritable", &format!("{path}: {reason}"), &help, language);
             Outcome::Unusable
         }
+    }
+}
+
+/// Says which rungs of a program stay as they were drawn, and why.
+fn tell_kept(program: &Program, style: Style, language: Language) {
+    // Lines are counted from the start of the file, also those of a fence.
+    let above = program.fence.as_ref().map_or(0, |fence| {
+        let lines = |text: &str| text.matches('\n').count();
+        let own = lines(&program.document.slice(Span::new(0, fence.before)));
+        lines(fence.text.get(..fence.content.start).unwrap_or("")).saturating_sub(own) as u32
+    });
+    for (span, reason) in ide::kept_rungs(&program.document, style) {
+        let message = Message::new("cli.kept")
+            .with("path", program.path.display())
+            .with("line", program.document.line_of(span.start as usize) + 1 + above)
+            .with("reason", reason.render(language));
+        remark(&message.render(language));
     }
 }
 

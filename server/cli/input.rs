@@ -1,9 +1,8 @@
 //! Reading programs from files, folders and projects, and telling what cannot be read.
 
-use super::encoding;
 use crate::document::{Document, fences};
 use crate::project::{
-    MANIFEST_NAME, Manifest, Project, is_program_file, open_document, program_files, projects_in,
+    MANIFEST_NAME, Manifest, Project, encoding, is_program_file, open_document, program_files, projects_in,
 };
 use crate::target::Target;
 use crate::text::{Encoding, Language, LineColumn, Message, Related};
@@ -135,6 +134,11 @@ pub(super) fn complain(code: &str, reason: &str, help: &str, language: Language)
     let _ = writeln!(std::io::stderr(), "error[{code}]: {reason}\n  {help}");
 }
 
+/// A line on standard error that is no complaint.
+pub(super) fn remark(words: &str) {
+    let _ = writeln!(std::io::stderr(), "{words}");
+}
+
 /// A warning on standard error, of the same form; it changes no exit code.
 pub(super) fn caution(code: &str, reason: &str, help: &str, language: Language) {
     let help = Message::new("cli.help").with("help", help).render(language);
@@ -170,6 +174,11 @@ fn files_at(path: &Path, language: Language) -> Result<Vec<(PathBuf, Arc<Manifes
     }
     let files = program_files(path).map_err(|reason| format!("{}: {reason}", path.display()))?;
     files.into_iter().map(|file| manifest_for(&file, language).map(|manifest| (file, manifest))).collect()
+}
+
+/// The folder of the project to which a file belongs.
+pub(super) fn folder_of(path: &Path) -> Option<PathBuf> {
+    Project::folder_of(&path.canonicalize().ok()?)
 }
 
 fn manifest_for(path: &Path, language: Language) -> Result<Arc<Manifest>, String> {

@@ -6,7 +6,6 @@ mod colour;
 mod comments;
 mod completions;
 mod diff;
-mod encoding;
 mod explain;
 mod fmt;
 mod help;

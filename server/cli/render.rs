@@ -3,7 +3,9 @@
 use super::check::severity_word;
 use super::input::Program;
 use crate::document::{Document, Notation};
-use crate::text::{Diagnostic, Encoding, Language, LineColumn, Message, Severity, Span, cell_width};
+use crate::text::{
+    Diagnostic, Encoding, Language, LineColumn, Message, Severity, Span, cell_width, text_width,
+};
 
 /// Lines shown above and below the marked one in instruction list.
 const CONTEXT_LINES: u32 = 2;
@@ -106,7 +108,7 @@ fn marks(found: &Diagnostic) -> impl Iterator<Item = (Span, char)> {
 
 /// The lines of the rung in a drawing, a few lines around in instruction list.
 fn shown_lines(document: &Document, span: Span) -> (u32, u32) {
-    let line_of = |offset: usize| document.position(offset, Encoding::Utf8).line;
+    let line_of = |offset: usize| document.line_of(offset);
     let (first, last) = (line_of(span.start as usize), line_of(span.end as usize));
     let end = document.line_count().saturating_sub(1) as u32;
     let around =
@@ -153,7 +155,7 @@ fn cells(line: Span, content: &str, mark: Span) -> Option<(usize, usize)> {
     }
     let from = mark.start.max(line.start) - line.start;
     let to = mark.end.min(content_end) - line.start;
-    let width = |text: &str| visible(text).chars().map(cell_width).sum::<usize>();
+    let width = |text: &str| text_width(&visible(text));
     let before = width(content.get(..from as usize).unwrap_or(content));
     Some((before, width(content.get(from as usize..to as usize).unwrap_or("")).max(1)))
 }

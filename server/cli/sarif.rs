@@ -26,7 +26,7 @@ pub(super) fn log(checked: &[(Program, Vec<Diagnostic>)], language: Language) ->
                 "name": "rungwise",
                 "version": env!("CARGO_PKG_VERSION"),
                 "semanticVersion": env!("CARGO_PKG_VERSION"),
-                "language": if language == Language::English { "en" } else { "zh-CN" },
+                "language": language.tag(),
                 "rules": rules.iter().map(|rule| descriptor(rule, language)).collect::<Vec<_>>(),
             }},
             "columnKind": "unicodeCodePoints",

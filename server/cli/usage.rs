@@ -1,10 +1,9 @@
 //! `rungwise usage`
 
-use super::input::{Program, programs, say};
+use super::input::{Program, folder_of, programs, say};
 use super::{Outcome, paths_or_here};
 use crate::document::{Document, Member, ProjectView, Use};
 use crate::ide::{self, Usage, UsageAt, UsageRow};
-use crate::project::Project;
 use crate::text::Language;
 use clap::ValueEnum;
 use serde_json::{Value, json};
@@ -69,7 +68,7 @@ fn groups(programs: Vec<Program>) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for program in programs {
         let file = (program.path.display().to_string(), program.document);
-        let root = program.path.canonicalize().ok().and_then(|path| Project::folder_of(&path));
+        let root = folder_of(&program.path);
         let known = root.as_ref().and_then(|root| places.get(root)).copied();
         match known.and_then(|place| groups.get_mut(place)) {
             Some(group) => group.files.push(file),
@@ -90,16 +89,6 @@ impl Group {
     }
 }
 
-fn access_word(usage: Use) -> &'static str {
-    match usage {
-        Use::Read => "read",
-        Use::Write => "write",
-        Use::ReadWrite => "read-write",
-        Use::Declare => "define",
-        Use::Jump => "jump",
-    }
-}
-
 /// `{"target", "files", "devices": [{"device", "kind", "symbol", "comment", "latched", "preset", "read", "written",
 /// "uses": [{"path", "line", "column", "rung", "access", "coil", "count", "text"}]}]}`
 fn as_json(usage: &Usage, group: &Group) -> Value {
@@ -109,7 +98,7 @@ fn as_json(usage: &Usage, group: &Group) -> Value {
             "line": at.line + 1,
             "column": at.column + 1,
             "rung": at.rung,
-            "access": access_word(at.usage),
+            "access": at.access_word(),
             "coil": at.by_coil,
             "count": at.count,
             "text": at.text,
@@ -144,10 +133,8 @@ fn as_csv(usage: &Usage, group: &Group, with_header: bool) -> String {
     }
     for row in &usage.rows {
         let count = |is: fn(Use) -> bool| row.uses.iter().filter(|at| is(at.usage)).count().to_string();
-        let uses = row
-            .uses
-            .iter()
-            .map(|at| format!("{}:{}:{}", group.path(at.file), at.line + 1, access_word(at.usage)));
+        let uses =
+            row.uses.iter().map(|at| format!("{}:{}:{}", group.path(at.file), at.line + 1, at.access_word()));
         let fields = [
             row.full_name(),
             row.symbol.clone(),

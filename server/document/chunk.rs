@@ -5,9 +5,9 @@ use super::{Mention, Notation, Size, Token, exported, mention, tokens};
 use crate::il::{fx, iec};
 use crate::ladder::{self, LadderTree, NameHabit};
 use crate::target::Target;
-use crate::text::Diagnostic;
+use crate::text::{Diagnostic, Span};
 use std::ops::Deref;
-use std::sync::{Arc, LazyLock, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// A piece of a document that can be read by itself. Its offsets start at 0.
 ///
@@ -91,7 +91,19 @@ impl Deref for Reading<'_> {
 }
 
 /// Diagnostics and the key under which they hold.
-pub(super) type Kept = Mutex<Option<(u64, Arc<[Diagnostic]>)>>;
+pub(super) type Kept = Mutex<Option<(u64, Found)>>;
+
+/// Diagnostics that are shared. Most chunks have none, and threads that look at many of those share nothing.
+#[derive(Clone, Debug, Default)]
+pub struct Found(Option<Arc<[Diagnostic]>>);
+
+impl Deref for Found {
+    type Target = [Diagnostic];
+
+    fn deref(&self) -> &[Diagnostic] {
+        self.0.as_deref().unwrap_or_default()
+    }
+}
 
 /// What a chunk says.
 #[derive(Clone, PartialEq, Debug)]
@@ -104,8 +116,19 @@ pub enum Tree {
     Iec(iec::IecTree),
 }
 
+impl Tree {
+    /// The comments in the order of the text, with offsets into the chunk.
+    pub fn comments(&self) -> &[Span] {
+        match self {
+            Tree::Ladder(tree) => &tree.comments,
+            Tree::Fx(tree) => &tree.comments,
+            Tree::Iec(tree) => &tree.comments,
+        }
+    }
+}
+
 impl Chunk {
-    /// The chunk of `text`, which must be one of the pieces that [`split`] makes.
+    /// The chunk of `text`, which must be one of the pieces that [`split`](super::split::split) makes.
     /// `keeps_tree` says whether it stands in a document so small that all trees are kept.
     pub(super) fn new(text: &str, dialect: &Arc<Dialect>, keeps_tree: bool) -> Chunk {
         let kind = match dialect.notation {
@@ -245,7 +268,7 @@ impl Chunk {
         key: u64,
         with_mentions: bool,
         find: impl FnOnce(&Chunk) -> Vec<Diagnostic>,
-    ) -> Arc<[Diagnostic]> {
+    ) -> Found {
         kept(&self.known.found, key, || {
             let reading = self.reading();
             let found = find(&reading);
@@ -259,16 +282,14 @@ impl Chunk {
 }
 
 /// The value kept under `key`, or a new one. A panic elsewhere leaves the slot usable: it holds a whole value or none.
-pub(super) fn kept(slot: &Kept, key: u64, make: impl FnOnce() -> Vec<Diagnostic>) -> Arc<[Diagnostic]> {
+pub(super) fn kept(slot: &Kept, key: u64, make: impl FnOnce() -> Vec<Diagnostic>) -> Found {
     if let Some((kept_key, value)) = &*locked(slot)
         && *kept_key == key
     {
         return value.clone();
     }
-    let value: Arc<[Diagnostic]> = match make() {
-        found if found.is_empty() => NOTHING.clone(),
-        found => found.into(),
-    };
+    let made = make();
+    let value = Found((!made.is_empty()).then(|| made.into()));
     *locked(slot) = Some((key, value.clone()));
     value
 }
@@ -278,18 +299,6 @@ pub(super) fn is_kept(slot: &Kept, key: u64) -> bool {
     matches!(&*locked(slot), Some((kept_key, _)) if *kept_key == key)
 }
 
-fn locked(slot: &Kept) -> MutexGuard<'_, Option<(u64, Arc<[Diagnostic]>)>> {
+fn locked(slot: &Kept) -> MutexGuard<'_, Option<(u64, Found)>> {
     slot.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Most chunks have no diagnostics, and share that.
-static NOTHING: LazyLock<Arc<[Diagnostic]>> = LazyLock::new(|| Arc::new([]));
-
-/// Ends of the chunks of `text`, which starts at a chunk boundary.
-pub(super) fn split(text: &str, notation: Notation) -> Vec<usize> {
-    match notation {
-        Notation::Ladder => ladder::split(text),
-        Notation::FxIl => fx::split(text),
-        Notation::IecIl => iec::split(text),
-    }
 }

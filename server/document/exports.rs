@@ -2,7 +2,6 @@
 
 use super::scope::{DeclaredType, Pou, Variable};
 use super::{Document, Scopes};
-use crate::il::iec::SectionKind;
 use rustc_hash::FxHasher;
 use smol_str::SmolStr;
 use std::hash::{Hash, Hasher};
@@ -73,9 +72,7 @@ impl Outer {
 impl Pou {
     /// The same POU with its parameters alone.
     fn seen_from_outside(&self) -> Pou {
-        let is_parameter =
-            |kind| matches!(kind, SectionKind::Input | SectionKind::Output | SectionKind::InOut);
-        let variables = self.variables.iter().filter(|variable| is_parameter(variable.section));
+        let variables = self.variables.iter().filter(|variable| variable.section.is_parameter());
         Pou::new(self.name.clone(), self.kind, self.result.clone(), variables.cloned())
     }
 }

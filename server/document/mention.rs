@@ -4,7 +4,7 @@ use super::{Chunk, Operation, Tree};
 use crate::il::fx::LineKind;
 use crate::ladder::{Element, ElementKind, LadderTree};
 use crate::target::{Access, Device, DeviceKind, DirectAddress, Model, Operand};
-use crate::text::Span;
+use crate::text::{Span, folded};
 use smol_str::SmolStr;
 
 /// A name at a place.
@@ -75,20 +75,9 @@ impl Symbol {
     /// The label called `name`: a pointer of the PLC where it reads as one, as in FX programs, else an IEC label.
     pub fn label(name: &str) -> Symbol {
         match Operand::read(name, Model::Fx3u) {
-            Operand::Device(device) if matches!(device.kind, DeviceKind::P | DeviceKind::I) => {
-                Symbol::Device(device)
-            }
+            Operand::Device(device) if device.kind.is_pointer() => Symbol::Device(device),
             _ => Symbol::Label(folded(name)),
         }
-    }
-}
-
-/// A name without letter case.
-pub(super) fn folded(name: &str) -> SmolStr {
-    if name.is_ascii() {
-        SmolStr::from(name.to_ascii_lowercase())
-    } else {
-        SmolStr::from(name.to_lowercase())
     }
 }
 
@@ -194,7 +183,11 @@ fn device_spans(text: &str, operand: &Operand, span: Span) -> (Span, Span) {
     };
     let end = index.unwrap_or(word.len());
     let start = match operand {
-        Operand::Nibbles { .. } => word.find(['X', 'x', 'Y', 'y', 'M', 'm', 'S', 's']).unwrap_or(0).min(end),
+        // Behind `K4` stands a device or its symbol.
+        Operand::Nibbles { .. } => {
+            let digits = word.bytes().skip(1).take_while(u8::is_ascii_digit).count();
+            (1 + digits).min(end)
+        }
         _ => 0,
     };
     (at(start, end), at(end, word.len()))

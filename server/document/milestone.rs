@@ -7,7 +7,7 @@
 use super::{Chunk, Operation, Tree};
 use crate::il::fx::LineKind;
 use crate::ladder::ElementKind;
-use crate::target::{Device, DeviceKind, Flow, Model, Operand};
+use crate::target::{Device, Flow, Model, Operand};
 use crate::text::{Span, Spanned};
 use std::sync::Arc;
 
@@ -25,6 +25,8 @@ pub struct Milestone {
     pub span: Span,
     /// The number of its chunk in the page.
     chunk: u32,
+    /// Where its chunk starts in the page.
+    chunk_start: u32,
     /// The first operand of what has a part in the structure.
     first: Option<Box<Spanned<Operand>>>,
 }
@@ -51,18 +53,23 @@ impl Milestone {
         self.chunk as usize
     }
 
+    /// Where its chunk starts in the page.
+    pub fn chunk_start(&self) -> usize {
+        self.chunk_start as usize
+    }
+}
+
+impl MilestoneKind {
     /// Whether it has no part in the structure, so that of a run of such only the ends are of interest.
-    fn is_plain(&self) -> bool {
-        matches!(
-            self.kind,
-            MilestoneKind::Unknown | MilestoneKind::Instruction(Flow::Straight | Flow::Nothing)
-        )
+    fn is_plain(self) -> bool {
+        matches!(self, MilestoneKind::Unknown | MilestoneKind::Instruction(Flow::Straight | Flow::Nothing))
     }
 }
 
 /// Offsets are those of the chunk.
 pub(super) fn of_chunk(chunk: &Chunk) -> Vec<Milestone> {
-    let mut milestones = Vec::new();
+    // Most chunks have nothing but a first and a last instruction of interest.
+    let mut milestones = Vec::with_capacity(2);
     match chunk.tree() {
         Tree::Fx(tree) => {
             for line in &tree.lines {
@@ -114,11 +121,12 @@ fn add(
     span: Span,
     first: Option<&Spanned<Operand>>,
 ) {
-    let mut milestone = Milestone { kind, count: 1, word, span, chunk: 0, first: None };
-    if !milestone.is_plain() {
-        milestone.first = first.map(|first| Box::new(*first));
+    if let Some(last) = run_end(milestones, kind) {
+        (last.count, last.word, last.span) = (last.count + 1, word, span);
+        return;
     }
-    join(milestones, milestone);
+    let first = first.filter(|_| !kind.is_plain()).map(|first| Box::new(*first));
+    milestones.push(Milestone { kind, count: 1, word, span, chunk: 0, chunk_start: 0, first });
 }
 
 /// Offsets are those of the page.
@@ -130,30 +138,28 @@ pub(super) fn of_page(chunks: &[Arc<Chunk>]) -> Box<[Milestone]> {
             let first = milestone.first.as_deref();
             let shifted = first.map(|first| Box::new(Spanned::new(first.value, first.span.shifted(start))));
             let (word, span) = (milestone.word.shifted(start), milestone.span.shifted(start));
-            let moved = Milestone { word, span, chunk: number as u32, first: shifted, ..*milestone };
-            join(&mut milestones, moved);
+            let (chunk, chunk_start) = (number as u32, start as u32);
+            let moved = Milestone { word, span, chunk, chunk_start, first: shifted, ..*milestone };
+            match run_end(&mut milestones, moved.kind) {
+                Some(last) => *last = Milestone { count: last.count + moved.count, ..moved },
+                None => milestones.push(moved),
+            }
         }
         start += chunk.len();
     }
     milestones.into_boxed_slice()
 }
 
-/// Adds `milestone`; in a run of equal ones without a part in the structure it takes the place of the one before.
-fn join(milestones: &mut Vec<Milestone>, milestone: Milestone) {
-    if milestone.is_plain()
-        && let [.., first, last] = milestones.as_mut_slice()
-        && first.kind == milestone.kind
-        && last.kind == milestone.kind
-    {
-        let count = last.count + milestone.count;
-        *last = Milestone { count, ..milestone };
-        return;
+/// The end of a run of statements of `kind` that have no part in the structure: the next one takes its place.
+fn run_end(milestones: &mut [Milestone], kind: MilestoneKind) -> Option<&mut Milestone> {
+    match milestones {
+        [.., first, last] if kind.is_plain() && first.kind == kind && last.kind == kind => Some(last),
+        _ => None,
     }
-    milestones.push(milestone);
 }
 
 /// The pointer of the PLC that a label names.
 fn pointer(name: &str) -> Option<Device> {
     let device = Operand::read(name, Model::Fx3u).device()?;
-    matches!(device.kind, DeviceKind::P | DeviceKind::I).then_some(device)
+    device.kind.is_pointer().then_some(device)
 }

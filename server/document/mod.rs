@@ -10,8 +10,12 @@ pub use notation::{Notation, detect_ladder_target, detect_notation, dialect_comm
 mod snapshot;
 pub use snapshot::{ChunkRef, Document, Edit, LIMIT_BYTES};
 
+mod both;
+
+mod split;
+
 mod chunk;
-pub use chunk::{Chunk, Reading, Tree};
+pub use chunk::{Chunk, Found, Reading, Tree};
 
 mod exported;
 

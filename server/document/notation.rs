@@ -14,17 +14,24 @@ pub enum Notation {
     IecIl,
 }
 
+impl Notation {
+    /// The instruction list that `fx` or `iec`, in any letter case, asks for.
+    pub fn of_dialect(word: &str) -> Option<Notation> {
+        match word.to_ascii_lowercase().as_str() {
+            "fx" => Some(Notation::FxIl),
+            "iec" => Some(Notation::IecIl),
+            _ => None,
+        }
+    }
+}
+
 /// The dialect that a first-line comment asks for: `dialect: fx` or `dialect: iec` after any comment sign.
 pub fn dialect_comment(text: &str) -> Option<Notation> {
     let line = text.lines().next()?.trim_start_matches('\u{feff}').trim_start();
     let comment = ["//", "(*", ";"].iter().find_map(|sign| line.strip_prefix(sign))?;
     let (key, value) = comment.split_once(':')?;
     let value = value.trim_end_matches("*)").trim();
-    match (key.trim().eq_ignore_ascii_case("dialect"), value.to_ascii_lowercase().as_str()) {
-        (true, "fx") => Some(Notation::FxIl),
-        (true, "iec") => Some(Notation::IecIl),
-        _ => None,
-    }
+    Notation::of_dialect(value).filter(|_| key.trim().eq_ignore_ascii_case("dialect"))
 }
 
 /// The dialect of an `.il` text by its content: POU keywords and IEC-only operators speak for IEC, FX-only mnemonics

@@ -1,7 +1,7 @@
 //! The sequence of chunks: pages of some dozens each, so that a snapshot copies one pointer a page and an edit
 //! rebuilds one page.
 
-use super::{Chunk, Milestone, Names, Size, chunk, milestone};
+use super::{Chunk, Found, Milestone, Names, Size, chunk, milestone};
 use crate::ladder::NameHabit;
 use crate::text::Diagnostic;
 use std::sync::{Arc, Mutex, OnceLock};
@@ -89,7 +89,7 @@ impl Page {
     }
 
     /// The diagnostics of all its chunks, offsets from the page's start, kept under `key` as those of a chunk are.
-    pub fn found(&self, key: u64, find: impl FnOnce() -> Vec<Diagnostic>) -> Arc<[Diagnostic]> {
+    pub fn found(&self, key: u64, find: impl FnOnce() -> Vec<Diagnostic>) -> Found {
         chunk::kept(&self.found, key, find)
     }
 }
@@ -109,7 +109,11 @@ pub(super) struct Cursor {
 
 impl Pages {
     pub(super) fn new(chunks: Vec<Arc<Chunk>>) -> Pages {
-        Pages { pages: paginate(chunks) }
+        Pages::of(paginate(chunks))
+    }
+
+    pub(super) fn of(pages: Vec<Arc<Page>>) -> Pages {
+        Pages { pages }
     }
 
     pub(super) fn pages(&self) -> &[Arc<Page>] {
@@ -207,7 +211,8 @@ impl Pages {
     }
 }
 
-fn paginate(chunks: Vec<Arc<Chunk>>) -> Vec<Arc<Page>> {
+/// The pages of `chunks`, in order.
+pub(super) fn paginate(chunks: Vec<Arc<Chunk>>) -> Vec<Arc<Page>> {
     let mut pages = Vec::with_capacity(chunks.len() / (PAGE_LIMIT / 2) + 1);
     let mut rest = chunks.len();
     let mut chunks = chunks.into_iter();

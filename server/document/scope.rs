@@ -2,7 +2,7 @@
 //!
 //! It holds no place in the text, so it stays valid while other chunks move; places are found through the mentions.
 
-use super::mention::{folded, of_operand};
+use super::mention::of_operand;
 use super::{Chunk, Document, Mention, Symbol, Tree, Use};
 use crate::il::iec::{
     Direction, IecTree, ItemKind, MentionRole, OperandId, ParameterValue, PouKind, SectionKind, TypeId,
@@ -10,6 +10,7 @@ use crate::il::iec::{
 };
 use crate::target::iec::{ElementaryType, FunctionBlock, OperatorRole, ParameterType};
 use crate::target::{DirectAddress, Operand};
+use crate::text::folded;
 use rustc_hash::{FxHashMap, FxHasher};
 use smol_str::SmolStr;
 use std::collections::hash_map::Entry;
@@ -147,7 +148,7 @@ impl Scopes {
     pub(super) fn of(document: &Document) -> Scopes {
         let mut scopes = Scopes::default();
         let mut hasher = FxHasher::default();
-        for at in document.chunks().filter(|at| at.chunk.declares()) {
+        for (at, _) in document.iec_chunks().filter(|(at, _)| at.chunk.declares()) {
             at.chunk.text().hash(&mut hasher);
             if let Tree::Iec(tree) = at.chunk.tree() {
                 scopes.add(at.chunk.text(), tree);

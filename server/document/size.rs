@@ -1,7 +1,7 @@
 //! How much program a chunk is, counted once and summed up page by page.
 
 use super::{Chunk, Tree};
-use crate::il::fx;
+use crate::il::fx::{self, FxLine, LineKind};
 use crate::il::iec::ItemKind;
 use crate::target::Role;
 use std::iter::Sum;
@@ -20,9 +20,8 @@ impl Size {
     pub(super) fn of(chunk: &Chunk) -> Size {
         match chunk.tree() {
             Tree::Fx(tree) => {
-                let drives = |form: crate::target::Form| form.instruction.role == Role::Output;
-                let is_rung = chunk.operations().any(|operation| operation.form.is_some_and(drives));
-                Size { rungs: usize::from(is_rung), steps: fx::steps(tree) }
+                let drives = |line: &FxLine| matches!(line.kind, LineKind::Instruction(form) if form.instruction.role == Role::Output);
+                Size { rungs: usize::from(tree.lines.iter().any(drives)), steps: fx::steps(tree) }
             }
             Tree::Ladder(tree) => {
                 let steps = chunk.operations().filter_map(|operation| {

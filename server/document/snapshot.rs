@@ -1,7 +1,9 @@
 //! The document itself: text, chunks, and how an edit changes both.
 
-use super::chunk::{self, Dialect};
-use super::pages::{Cursor, Page, Pages};
+use super::both::both;
+use super::chunk::Dialect;
+use super::pages::{self, Cursor, Page, Pages};
+use super::split::split;
 use super::{Chunk, Comments, Notation, Outer, Scopes, Size};
 use crate::ladder::NameHabit;
 use crate::target::Target;
@@ -15,6 +17,9 @@ pub const LIMIT_BYTES: usize = 64 << 20;
 
 /// In documents up to this size, some five thousand lines, all trees are kept; larger ones would take too much memory.
 const KEPT_TREES_BYTES: usize = 256 << 10;
+
+/// The characters of such a text are counted beside the reading of it, by another thread.
+const LONG: usize = 1 << 20;
 
 /// So many chunks are worth the start of a thread that makes half of them.
 const WORTH_A_THREAD: usize = 1_000;
@@ -67,9 +72,10 @@ impl Document {
         let symbols = comments.symbols();
         let symbols = (!symbols.is_empty()).then(|| Arc::new(target.with_symbols(symbols.clone())));
         let dialect = Arc::new(Dialect { notation, target, symbols, names_below: false });
-        let mut document = Document { comments, dialect, ..Document::unread(text, notation, target) };
-        document.read_all(text, &[]);
-        document
+        let mut document = Document { comments, dialect, ..Document::unread("", notation, target) };
+        let ((), rope) =
+            both(text.len() >= LONG, || document.read_all(text, &[]), || Rope::from_str(text));
+        Document { rope, ..document }
     }
 
     /// Keeps `text` without reading it: the last resort after a failure of a reader.
@@ -138,12 +144,6 @@ impl Document {
     /// A chunk of this document's language that stands nowhere in it.
     pub fn chunk_of(&self, text: &str) -> Chunk {
         Chunk::new(text, &self.dialect, true)
-    }
-
-    /// The same text read as another language or for another target.
-    pub fn reread(&self, notation: Notation, target: &'static Target) -> Document {
-        let read = Document::with_comments(&self.text(), notation, target, self.comments.clone());
-        Document { outer: self.outer.clone(), ..read }
     }
 
     /// The same text with other comments; it is read anew only if the symbols differ.
@@ -319,8 +319,10 @@ impl Document {
     }
 
     fn read_all(&mut self, text: &str, old: &[Arc<Chunk>]) {
-        let chunks = if text.len() > LIMIT_BYTES { Vec::new() } else { self.read_pieces(text, old) };
-        self.pages = Pages::new(chunks);
+        self.pages = match text.len() > LIMIT_BYTES {
+            true => Pages::default(),
+            false => Pages::of(self.read_pieces(text, old, text.len(), pages::paginate)),
+        };
         self.scopes = OnceLock::new();
         self.settle_names();
     }
@@ -336,13 +338,18 @@ impl Document {
         }
         let Dialect { notation, target, ref symbols, .. } = *self.dialect;
         self.dialect = Arc::new(Dialect { notation, target, symbols: symbols.clone(), names_below });
-        let keeps_trees = self.len() <= KEPT_TREES_BYTES;
+        let keeps_trees = self.keeps_trees(self.pages.pages().iter().map(|page| page.bytes()).sum());
         let settled = |chunk: &Arc<Chunk>| match chunk.habit().decided() {
             None if !chunk.is_iec() => Arc::new(Chunk::new(chunk.text(), &self.dialect, keeps_trees)),
             _ => Arc::clone(chunk),
         };
         self.pages =
             Pages::new(self.pages.pages().iter().flat_map(|page| page.chunks()).map(settled).collect());
+    }
+
+    /// Whether the trees of a document of so many bytes are kept.
+    fn keeps_trees(&self, bytes: usize) -> bool {
+        !self.is_frugal && bytes <= KEPT_TREES_BYTES
     }
 
     fn replace(&mut self, range: Range<usize>, text: &str) {
@@ -382,7 +389,7 @@ impl Document {
             let old_length: usize = old.iter().map(|chunk| chunk.len()).sum();
             let window_end = window_start + old_length + inserted - range.len();
             let text = self.slice(Span::new(window_start, window_end));
-            let ends = chunk::split(&text, self.notation());
+            let ends = split(&text, self.notation());
             let at_text_end = self.pages.next(last).is_none();
             let sentinel = old.last().map_or(0, |chunk| chunk.len());
             let head = old.first().map_or(0, |chunk| chunk.len());
@@ -390,7 +397,7 @@ impl Document {
             let start_holds =
                 window_start == 0 || (ends.first() == Some(&head) && window_start + head <= range.start);
             if end_holds && start_holds {
-                let new = self.read_pieces(&text, &old);
+                let new = self.read_pieces(&text, &old, self.len(), |chunks| chunks);
                 let declares = |chunks: &[Arc<Chunk>]| chunks.iter().any(|chunk| chunk.declares());
                 if declares(&old) || declares(&new) {
                     self.scopes = OnceLock::new();
@@ -415,31 +422,36 @@ impl Document {
         }
     }
 
-    /// Splits and reads `text`; pieces that stood among `old` are taken over with all that is known of them.
-    fn read_pieces(&self, text: &str, old: &[Arc<Chunk>]) -> Vec<Arc<Chunk>> {
+    /// Splits and reads `text` and makes `gather` of its chunks; pieces that stood among `old` are taken over with all
+    /// that is known of them. `whole` is the length of the document. Two threads share many pieces, so `gather` may see
+    /// the chunks in two portions.
+    fn read_pieces<T: Send>(
+        &self,
+        text: &str,
+        old: &[Arc<Chunk>],
+        whole: usize,
+        gather: impl Fn(Vec<Arc<Chunk>>) -> Vec<T> + Sync,
+    ) -> Vec<T> {
         let known: rustc_hash::FxHashMap<&str, &Arc<Chunk>> =
             old.iter().map(|chunk| (chunk.text(), chunk)).collect();
-        let ends = chunk::split(text, self.notation());
-        let keeps_trees = !self.is_frugal && self.len() <= KEPT_TREES_BYTES;
+        let ends = split(text, self.notation());
+        let keeps_trees = self.keeps_trees(whole);
         let starts = std::iter::once(0).chain(ends.iter().copied());
         let pieces: Vec<&str> = starts.zip(&ends).map(|(start, end)| &text[start..*end]).collect();
-        let read = |pieces: &[&str]| -> Vec<Arc<Chunk>> {
+        let read = |pieces: &[&str]| {
             let chunk = |piece: &&str| match known.get(piece) {
                 Some(chunk) => Arc::clone(chunk),
                 None => Arc::new(Chunk::new(piece, &self.dialect, keeps_trees)),
             };
-            pieces.iter().map(chunk).collect()
+            gather(pieces.iter().map(chunk).collect())
         };
         if pieces.len() < WORTH_A_THREAD {
             return read(&pieces);
         }
         let (first, second) = pieces.split_at(pieces.len() / 2);
-        std::thread::scope(|scope| {
-            let second = scope.spawn(|| read(second));
-            let mut chunks = read(first);
-            chunks.extend(second.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
-            chunks
-        })
+        let (mut gathered, second) = both(true, || read(first), || read(second));
+        gathered.extend(second);
+        gathered
     }
 }
 

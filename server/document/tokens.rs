@@ -5,7 +5,7 @@ use crate::il::fx::{FxTree, LineKind, WordKind};
 use crate::il::iec::{IecTree, ItemKind, MentionRole};
 use crate::ladder::{Element, ElementKind, LadderTree};
 use crate::target::iec::{ElementaryType, is_keyword};
-use crate::target::{Access, DeviceKind, Operand};
+use crate::target::{Access, Operand};
 use crate::text::{Span, Spanned};
 use rustc_hash::FxHashSet;
 
@@ -82,7 +82,7 @@ fn of_fx(tree: &FxTree, tokens: &mut Vec<Token>) {
 
 fn operand(operand: &Spanned<Operand>, modification: bool) -> Option<Token> {
     let kind = match operand.value {
-        Operand::Device(device) if matches!(device.kind, DeviceKind::P | DeviceKind::I) => TokenKind::Label,
+        Operand::Device(device) if device.kind.is_pointer() => TokenKind::Label,
         Operand::Device(_) | Operand::Indexed { .. } | Operand::Nibbles { .. } | Operand::WordBit { .. } => {
             TokenKind::Device
         }

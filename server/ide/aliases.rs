@@ -2,9 +2,9 @@
 
 use super::across;
 use super::names::{self, Thing};
-use super::rename::drawing;
+use super::rename::drawing::{self, Misfit, Place};
 use crate::document::{At, Comments, DeviceComment, Document, ProjectView, Symbol, Tree};
-use crate::target::{Device, Operand, SymbolProblem, Symbols};
+use crate::target::{Device, Operand, Symbols};
 use crate::text::{Message, Span, TextEdit};
 use std::sync::Arc;
 
@@ -66,15 +66,10 @@ fn renamed(
 ) -> Result<SymbolRename, Message> {
     let document = view.here();
     if let Some(problem) = Symbols::problem(new, document.target()) {
-        let message = match problem {
-            SymbolProblem::NoIdentifier => Message::new("device-comments.no-identifier"),
-            SymbolProblem::Device => Message::new("device-comments.reads-as-device"),
-            SymbolProblem::Instruction => Message::new("device-comments.is-instruction"),
-        };
-        return Err(message.with("symbol", new));
+        return Err(problem.message().with("symbol", new));
     }
-    if document.comments().symbols().device(new).is_some_and(|other| other != device) {
-        return Err(Message::new("device-comments.symbol-twice").with("symbol", new));
+    if let Some(other) = document.comments().symbols().device(new).filter(|other| *other != device) {
+        return Err(Message::new("alias.taken").with("symbol", new).with("device", other));
     }
     // Drawings are read again with the new name to see that they still say the same.
     let rows = document.comments().rows().iter().map(|other| match other.thing == row.thing {
@@ -102,27 +97,24 @@ fn exchanged(
     comments: &Arc<Comments>,
     wanted: impl Fn(Span) -> bool,
 ) -> Result<Vec<TextEdit>, Message> {
-    let mut places: Vec<(Span, bool)> = Vec::new();
+    let mut plain: Vec<Span> = Vec::new();
+    let mut drawn: Vec<Place> = Vec::new();
     names::visit(document, &Thing::Devices(device, 1), |place| {
         let is_own = matches!(place.thing, Thing::Devices(first, _) if first == device);
-        if is_own && wanted(place.span) {
-            places.push((place.span, matches!(place.chunk.tree(), Tree::Ladder(_))));
+        if !is_own || !wanted(place.span) {
+            return;
+        }
+        match place.chunk.tree() {
+            Tree::Ladder(_) => drawn.push(Place { span: place.span, text: new.to_string() }),
+            _ => plain.push(place.span),
         }
     });
-    places.sort_unstable();
-    places.dedup();
-    let drawn: Vec<Span> = places.iter().filter(|(_, is_drawn)| *is_drawn).map(|(span, _)| *span).collect();
-    let plain = places.iter().filter(|(_, is_drawn)| !is_drawn);
-    let mut edits: Vec<TextEdit> = plain.map(|(span, _)| TextEdit::new(*span, new)).collect();
-    let no_room = |span: Span| {
-        let line = document.line_of(span.start as usize) + 1;
-        Message::new("rename.drawing").with("name", new).with("line", line)
+    let misfit = |misfit: Misfit| {
+        let line = document.line_of(misfit.place().start as usize) + 1;
+        misfit.fill(Message::new(misfit.keys()[0])).with("name", new).with("line", line)
     };
-    edits.extend(drawing::edits(document, &drawn, new).map_err(no_room)?);
-    edits.sort_by_key(|edit| edit.span);
     let reader = Document::with_comments("", document.notation(), document.target(), comments.clone());
-    drawing::still_say_the_same(document, &reader, &edits, &drawn).map_err(no_room)?;
-    Ok(edits)
+    drawing::written(document, &reader, (plain, drawn), new).map_err(misfit)
 }
 
 /// The edit of the comments file that goes with the renaming of the device at `offset` to `new`.
@@ -163,10 +155,10 @@ pub(super) fn rewrites(document: &Document, offset: usize) -> Vec<Rewrite> {
         true => (device.to_string(), row.symbol.to_string()),
         false => (row.symbol.to_string(), device.to_string()),
     };
-    let same_way = |span: Span| written_at(document, span).is_some() == is_symbol && is_whole(document, span);
+    let says_the_same = |span: Span| says_the_same(document, span, &new);
+    let same_way = |span: Span| written_at(document, span).is_some() == is_symbol && says_the_same(span);
     let mut found = Vec::new();
-    let here =
-        exchanged(document, device, &new, comments, |span| span == named.span && is_whole(document, span));
+    let here = exchanged(document, device, &new, comments, |span| span == named.span && says_the_same(span));
     if let Some(edits) = here.ok().filter(|edits| !edits.is_empty()) {
         let title = Message::new("alias.here").with("new", &new).with("old", &old);
         found.push(Rewrite { title, edits });
@@ -179,12 +171,25 @@ pub(super) fn rewrites(document: &Document, offset: usize) -> Vec<Rewrite> {
     found
 }
 
-/// Whether the device's name is all of its operand: `M0` in `K4M0` and `D0` in `D0Z1` have no symbol form.
-fn is_whole(document: &Document, span: Span) -> bool {
+/// Whether the operand with the name at `span` reads as it does now when `new` stands there: `M0` in `K4M0` may have a
+/// symbol `Lamps`, unless the project calls something else `K4Lamps`.
+fn says_the_same(document: &Document, span: Span, new: &str) -> bool {
     let Some(at) = document.chunk_at(span.start as usize) else { return false };
-    let inside = (span.start as usize - at.start, span.end as usize - at.start);
+    let start = at.start as u32;
+    let (Some(first), Some(last)) = (span.start.checked_sub(start), span.end.checked_sub(start)) else {
+        return false;
+    };
     at.chunk.operations().flat_map(|operation| operation.operands).any(|operand| {
-        (operand.span.start as usize, operand.span.end as usize) == inside
-            && matches!(operand.value, Operand::Device(_))
+        let own = operand.span;
+        let word = own.of(at.chunk.text());
+        let inside = (first.checked_sub(own.start), own.end.checked_sub(last));
+        let (Some(before), Some(behind)) = inside else { return false };
+        let (Some(head), Some(tail)) = (
+            word.get(..before as usize),
+            word.len().checked_sub(behind as usize).and_then(|end| word.get(end..)),
+        ) else {
+            return false;
+        };
+        document.reader().read(&format!("{head}{new}{tail}")) == operand.value
     })
 }

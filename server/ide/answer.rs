@@ -1,5 +1,6 @@
 //! The answers, plain data with offsets into the document.
 
+use crate::il::iec::PouKind;
 use crate::text::{Span, TextEdit};
 
 /// What a hover shows.
@@ -98,6 +99,16 @@ pub enum SymbolKind {
     Variable,
     Type,
     Configuration,
+}
+
+impl From<PouKind> for SymbolKind {
+    fn from(kind: PouKind) -> SymbolKind {
+        match kind {
+            PouKind::Program => SymbolKind::Program,
+            PouKind::FunctionBlock => SymbolKind::FunctionBlock,
+            PouKind::Function => SymbolKind::Function,
+        }
+    }
 }
 
 /// Text shown behind `offset`.

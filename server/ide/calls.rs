@@ -5,8 +5,9 @@ use super::{SymbolKind, declared};
 use crate::check::program_around;
 use crate::document::{ChunkRef, DeclaredType, Document, Mention, ProjectView, Scopes, Symbol, Tree, Use};
 use crate::il::iec::PouKind;
-use crate::target::{DeviceKind, Flow};
+use crate::target::Flow;
 use crate::text::Span;
+use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
 /// A node of the hierarchy.
@@ -40,7 +41,7 @@ struct Body {
 }
 
 /// What a call or jump names.
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
 enum Callee {
     Pou(SmolStr),
     /// A pointer of the PLC, known in the whole program.
@@ -59,7 +60,7 @@ pub(super) fn prepare(view: &ProjectView<'_>, offset: usize) -> Option<CallItem>
     let bodies = bodies(view);
     let named = names::at(view.here(), offset).and_then(|named| callee_of(&named.thing, here, view.here()));
     if let Some(body) =
-        named.and_then(|callee| bodies.iter().find(|body| body.callee == Some(callee.clone())))
+        named.and_then(|callee| bodies.iter().find(|body| body.callee.as_ref() == Some(&callee)))
     {
         return Some(body.item.clone());
     }
@@ -93,13 +94,21 @@ pub(super) fn incoming(view: &ProjectView<'_>, item: &CallItem) -> Vec<(CallItem
 pub(super) fn outgoing(view: &ProjectView<'_>, item: &CallItem) -> Vec<(CallItem, Vec<Span>)> {
     let bodies = bodies(view);
     let Some(body) = bodies.iter().find(|body| body.item == *item) else { return Vec::new() };
-    let mut called: Vec<(CallItem, Vec<Span>)> = Vec::new();
-    for (callee, span) in &body.sites {
-        let Some(target) = bodies.iter().find(|body| body.callee.as_ref() == Some(callee)) else { continue };
-        match called.iter_mut().find(|(item, _)| *item == target.item) {
-            Some((_, spans)) => spans.push(*span),
-            None => called.push((target.item.clone(), vec![*span])),
+    let mut targets: FxHashMap<&Callee, &CallItem> = FxHashMap::default();
+    for body in &bodies {
+        if let Some(callee) = &body.callee {
+            targets.entry(callee).or_insert(&body.item);
         }
+    }
+    let mut called: Vec<(CallItem, Vec<Span>)> = Vec::new();
+    let mut places: FxHashMap<&Callee, usize> = FxHashMap::default();
+    for (callee, span) in &body.sites {
+        let Some(target) = targets.get(callee) else { continue };
+        let place = *places.entry(callee).or_insert_with(|| {
+            called.push(((*target).clone(), Vec::new()));
+            called.len() - 1
+        });
+        called[place].1.push(*span);
     }
     called
 }
@@ -111,7 +120,7 @@ fn callee_of(thing: &Thing, file: usize, document: &Document) -> Option<Callee> 
             DeclaredType::Named(block) => Some(Callee::Pou(block)),
             _ => None,
         },
-        Thing::Devices(device, _) if matches!(device.kind, DeviceKind::P | DeviceKind::I) => {
+        Thing::Devices(device, _) if device.kind.is_pointer() => {
             Some(Callee::Pointer(Symbol::Device(*device)))
         }
         Thing::Label { pou, name } => {
@@ -223,11 +232,7 @@ impl Walk {
                 let name_written = own.map_or(name.to_string(), |pou| pou.name.to_string());
                 let mut item = self.item(name_written, span);
                 item.detail = declared::pou_keyword(kind).to_string();
-                item.kind = match kind {
-                    PouKind::Program => SymbolKind::Program,
-                    PouKind::FunctionBlock => SymbolKind::FunctionBlock,
-                    PouKind::Function => SymbolKind::Function,
-                };
+                item.kind = kind.into();
                 let number = self.add(item);
                 self.bodies[number].callee = Some(Callee::Pou(name.clone()));
                 self.bodies[number].is_unit = true;
@@ -260,9 +265,7 @@ impl Walk {
 
     fn label_called(&self, symbol: &Symbol, pou: Option<usize>) -> Option<Callee> {
         match symbol {
-            Symbol::Device(device) => {
-                matches!(device.kind, DeviceKind::P | DeviceKind::I).then(|| Callee::Pointer(symbol.clone()))
-            }
+            Symbol::Device(device) => device.kind.is_pointer().then(|| Callee::Pointer(symbol.clone())),
             Symbol::Label(_) => Some(Callee::Label { file: self.file, pou, symbol: symbol.clone() }),
             _ => None,
         }
@@ -308,9 +311,7 @@ fn events(at: ChunkRef<'_>) -> Vec<(Span, Event<'_>)> {
     let counts = |mention: &&Mention| match (&mention.symbol, mention.usage) {
         (Symbol::Variable(_), Use::ReadWrite) => !is_drawn,
         (Symbol::Pou(_) | Symbol::Label(_), _) => true,
-        (Symbol::Device(device), Use::Declare | Use::Jump) => {
-            matches!(device.kind, DeviceKind::P | DeviceKind::I)
-        }
+        (Symbol::Device(device), Use::Declare | Use::Jump) => device.kind.is_pointer(),
         _ => false,
     };
     let mentions = at.chunk.mentions().iter().filter(counts);

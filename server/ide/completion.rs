@@ -163,11 +163,7 @@ fn escaped(text: &str) -> String {
 
 /// Whether `offset` lies inside of a comment; at the end of one that ends with its line too.
 fn in_comment(chunk: &Chunk, offset: usize) -> bool {
-    let comments = match chunk.tree() {
-        Tree::Fx(tree) => &tree.comments,
-        Tree::Ladder(tree) => &tree.comments,
-        Tree::Iec(tree) => &tree.comments,
-    };
+    let comments = chunk.tree().comments();
     let after = comments.partition_point(|comment| (comment.start as usize) < offset);
     let Some(comment) = after.checked_sub(1).and_then(|last| comments.get(last)) else { return false };
     let is_closed = comment.of(chunk.text()).ends_with("*)");

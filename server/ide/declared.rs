@@ -129,8 +129,3 @@ pub(super) fn type_name(declared: &DeclaredType, scopes: &Scopes) -> String {
         DeclaredType::Unknown => "?".to_string(),
     }
 }
-
-/// Whether callers see variables of this section.
-pub(super) fn is_parameter(kind: SectionKind) -> bool {
-    matches!(kind, SectionKind::Input | SectionKind::Output | SectionKind::InOut)
-}

@@ -117,7 +117,7 @@ pub(super) fn is_preset(operation: &crate::document::Operation<'_>) -> bool {
     let optional =
         operation.form.and_then(|form| form.instruction.operands.get(1)).is_some_and(|spec| spec.optional);
     let driven = operation.operands.first().map(|operand| operand.value);
-    let counts = |device: Device| matches!(device.kind, DeviceKind::T | DeviceKind::C);
+    let counts = |device: Device| device.kind.has_preset();
     optional && matches!(driven, Some(Operand::Device(device)) if counts(device))
 }
 

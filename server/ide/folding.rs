@@ -5,6 +5,7 @@ use crate::document::{ChunkRef, Document, Tree};
 use crate::il::fx::{FxTree, LineKind};
 use crate::il::iec::{IecTree, ItemKind};
 use crate::ladder::LadderTree;
+use crate::target::Flow;
 use crate::text::Span;
 
 pub(super) fn of(document: &Document) -> Vec<Fold> {
@@ -54,16 +55,18 @@ impl Folding<'_> {
             let LineKind::Instruction(form) = line.kind else { continue };
             let offset = at.start + line.span.start as usize;
             let nesting = || tree.operands(line).first().and_then(|operand| operand.value.device());
-            match form.instruction.mnemonic {
-                "STL" => {
+            match form.instruction.flow() {
+                Flow::Step => {
                     self.close_before(Opener::Step, offset);
                     self.open.push((Opener::Step, offset));
                 }
-                "RET" => self.close(Opener::Step, at.start + line.span.end as usize),
-                "MC" => self.open.push((Opener::MasterControl(nesting()), offset)),
-                "MCR" => self.close(Opener::MasterControl(nesting()), at.start + line.span.end as usize),
-                "FOR" => self.open.push((Opener::Loop, offset)),
-                "NEXT" => self.close(Opener::Loop, at.start + line.span.end as usize),
+                Flow::StepsEnd => self.close(Opener::Step, at.start + line.span.end as usize),
+                Flow::SectionBegin => self.open.push((Opener::MasterControl(nesting()), offset)),
+                Flow::SectionEnd => {
+                    self.close(Opener::MasterControl(nesting()), at.start + line.span.end as usize)
+                }
+                Flow::LoopBegin => self.open.push((Opener::Loop, offset)),
+                Flow::LoopEnd => self.close(Opener::Loop, at.start + line.span.end as usize),
                 _ => {}
             }
         }

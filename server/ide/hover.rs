@@ -1,7 +1,7 @@
 //! What stands under the pointer.
 
 use super::names::{self, Named, Thing};
-use super::{Hover, declared, devices, pages, uses};
+use super::{Hover, declared, devices, implicit, pages, uses};
 use crate::document::{Chunk, Document, Operation, ProjectView, Symbol, Tree};
 use crate::il::fx::{FxTree, LineKind};
 use crate::il::iec::{IecTree, ItemKind};
@@ -271,7 +271,7 @@ impl View<'_> {
             Thing::Connector { .. } => Message::new("hover.connector").with("name", &word).render(language),
             Thing::Variable { .. } => match declared::source(self.document, &named.thing) {
                 Some(source) => format!("```iec\n{source}\n```"),
-                None => Message::new("hover.undeclared").with("name", &word).render(language),
+                None => self.undeclared(&named.thing, &word),
             },
             Thing::Pou(name) => self.pou_page(name).unwrap_or_else(|| format!("**{word}**")),
             Thing::Type(_) => match declared::source(self.document, &named.thing) {
@@ -287,6 +287,15 @@ impl View<'_> {
         let style = uses::Style { view: self.around, language, link: self.link };
         let parts = [head, self.comment(&named.thing, &word), preset, uses.markdown(&named.thing, &style)];
         parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n\n")
+    }
+
+    fn undeclared(&self, thing: &Thing, word: &str) -> String {
+        let message = match implicit::type_of(self.document, thing) {
+            Some(Some(kind)) => Message::new("hover.implicit").with("kind", kind),
+            Some(None) => Message::new("hover.implicit-open"),
+            None => Message::new("hover.undeclared"),
+        };
+        message.with("name", word).render(self.language)
     }
 
     /// The project's comment on a device or address, also on that of a variable, and its symbol; `word` is what the
@@ -351,7 +360,7 @@ impl View<'_> {
             if let Some(result) = &pou.result {
                 text += &format!(" : {}", declared::type_name(result, scopes));
             }
-            for variable in pou.variables.iter().filter(|variable| declared::is_parameter(variable.section)) {
+            for variable in pou.variables.iter().filter(|variable| variable.section.is_parameter()) {
                 let kind = declared::type_name(&variable.declared, scopes);
                 let section = declared::section_keyword(variable.section);
                 text += &format!("\n{section} {} : {kind}", variable.name);

@@ -1,10 +1,10 @@
 //! What a preset or a hexadecimal constant amounts to, behind it; in a drawing behind its line, for a hint in the line
-//! would push the rest of the drawing out of its columns.
+//! would push the rest of the drawing out of its columns. There also the types of names that nothing declares.
 
-use super::{InlayHint, devices};
+use super::{InlayHint, devices, implicit};
 use crate::document::{Chunk, Comments, Document, Notation, Symbol};
 use crate::target::{Constant, Operand, Target};
-use crate::text::{Language, Message, Span};
+use crate::text::{Encoding, Language, LineColumn, Message, Span};
 
 /// `comments` adds what the project says about devices.
 pub(super) fn within(document: &Document, span: Span, language: Language, comments: bool) -> Vec<InlayHint> {
@@ -33,8 +33,36 @@ pub(super) fn within(document: &Document, span: Span, language: Language, commen
             start += chunk.len();
         }
     }
+    implicit_variables(document, (first, last), language, &mut hints);
     hints.retain(|hint| first <= hint.offset && hint.offset <= last);
     hints
+}
+
+/// Behind each line the types of the variables that a ladder without header declares by using them there first.
+fn implicit_variables(
+    document: &Document,
+    (first, last): (usize, usize),
+    language: Language,
+    hints: &mut Vec<InlayHint>,
+) {
+    let old = hints.len();
+    for (span, kind) in implicit::first_uses(document, first, last) {
+        let line = document.line_of(span.start as usize) as u32;
+        let offset = document.offset(LineColumn { line, column: u32::MAX }, Encoding::Utf8);
+        let name = document.slice(span);
+        // Names of one line and type share a hint.
+        match hints[old..].last_mut().filter(|hint| hint.offset == offset) {
+            Some(hint) if hint.label.ends_with(&format!(": {kind}")) => {
+                let names = hint.label.len() - kind.len() - 2;
+                hint.label.insert_str(names, &format!(", {name}"));
+            }
+            _ => {
+                let tooltip = Message::new("hint.implicit").render(language);
+                hints.push(InlayHint { offset, label: format!("{name}: {kind}"), tooltip });
+            }
+        }
+    }
+    hints.sort_by_key(|hint| hint.offset);
 }
 
 /// The end of the line in which `offset` stands, both counted as the chunk's `start` is.

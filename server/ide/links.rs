@@ -1,6 +1,6 @@
 //! Names of files in comments and in the manifest.
 
-use crate::document::{Document, Tree};
+use crate::document::Document;
 use crate::text::Span;
 
 /// How the files end to which links go.
@@ -14,13 +14,8 @@ pub(super) fn of(document: &Document) -> Vec<(Span, String)> {
             continue;
         }
         let reading = at.chunk.reading();
-        let (comments, text) = match reading.tree() {
-            Tree::Fx(tree) => (&tree.comments, at.chunk.text()),
-            Tree::Ladder(tree) => (&tree.comments, at.chunk.text()),
-            Tree::Iec(tree) => (&tree.comments, at.chunk.text()),
-        };
-        for comment in comments {
-            let found = in_text(comment.of(text)).into_iter();
+        for comment in reading.tree().comments() {
+            let found = in_text(comment.of(at.chunk.text())).into_iter();
             let start = at.start + comment.start as usize;
             links.extend(found.map(|(span, name)| (span.shifted(start), name)));
         }

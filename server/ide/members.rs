@@ -6,7 +6,7 @@ use crate::il::iec::{Direction, IecTree, ItemKind, OperandId, ParameterValue, Ru
 use crate::ladder::{ElementKind, LadderTree};
 use crate::target::Operand;
 use crate::target::iec::OperatorRole;
-use crate::text::Span;
+use crate::text::{Span, folded};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
@@ -145,7 +145,7 @@ impl Search<'_> {
     fn add(&mut self, pou: usize, span: Span, usage: Use) {
         let name = span.of(self.text);
         if let Some(variable) = self.scopes.variable(Some(pou), name) {
-            let name = SmolStr::from(variable.name.to_lowercase());
+            let name = folded(&variable.name);
             self.found.push(Member { span, pou, name, usage });
         }
     }

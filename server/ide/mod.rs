@@ -22,6 +22,8 @@ mod devices;
 
 mod declared;
 
+mod implicit;
+
 mod uses;
 
 mod bookkeeping;
@@ -63,6 +65,8 @@ mod folding;
 
 mod inlay_hints;
 
+mod changes;
+
 mod format;
 pub use format::Style;
 
@@ -75,7 +79,7 @@ mod summary;
 pub use summary::Summary;
 
 mod drawing;
-pub use drawing::{EditKind, Edited, Object, ObjectKind};
+pub use drawing::{EditKind, Edited, Object, ObjectKind, applicable_edits, edit};
 
 mod selection_range;
 
@@ -289,28 +293,14 @@ pub fn format(document: &Document, style: Style) -> Vec<TextEdit> {
     format::edits(document, style)
 }
 
+/// The rungs that [`format()`] leaves as they were drawn, each with the reason.
+pub fn kept_rungs(document: &Document, style: Style) -> Vec<(Span, Message)> {
+    format::kept(document, style)
+}
+
 /// The edits that make the rungs and lines canonical that `spans` touch.
 pub fn format_ranges(document: &Document, style: Style, spans: &[Span]) -> Vec<TextEdit> {
     format::edits_within(document, style, spans)
-}
-
-/// The structural edit `kind` of the rung at the cursor or selection `span`; `operand` names what is inserted.
-///
-/// # Errors
-/// Why it is not possible there, or that it would change more than was meant.
-pub fn edit(
-    document: &Document,
-    span: Span,
-    kind: EditKind,
-    operand: Option<&str>,
-    style: Style,
-) -> Result<Edited, Message> {
-    drawing::edit(document, span, kind, operand, style)
-}
-
-/// The structural edits that make sense at the cursor or selection `span`; cheap, and so without drawing the results.
-pub fn applicable_edits(document: &Document, span: Span) -> Vec<EditKind> {
-    drawing::applicable(document, span)
 }
 
 /// The edits that keep the text whole after `typed`, one character or a line end, with the cursor now at `offset`.
@@ -320,7 +310,7 @@ pub fn typed(document: &Document, offset: usize, typed: &str, style: Style) -> V
 
 /// The element, branch, rung or network at `offset` of a ladder document, `around` it with what belongs to it.
 pub fn object(document: &Document, offset: usize, kind: ObjectKind, around: bool) -> Option<Object> {
-    drawing::object(document, offset, kind, around)
+    drawing::object::at(document, offset, kind, around)
 }
 
 /// What grows around `offset`, smallest first, each range inside the next.

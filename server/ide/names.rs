@@ -1,10 +1,10 @@
 //! What a name stands for, and every place where it stands: the ground of hover, definition, references and rename.
 
-use super::{declared, members};
+use super::members;
 use crate::document::{Chunk, Document, Mention, Names, Scopes, Symbol, Use};
-use crate::il::iec::{PouKind, SectionKind};
+use crate::il::iec::PouKind;
 use crate::target::iec::FunctionBlock;
-use crate::target::{Device, DeviceKind, DirectAddress};
+use crate::target::{Device, DirectAddress};
 use crate::text::Span;
 use smol_str::SmolStr;
 use std::sync::Arc;
@@ -55,9 +55,8 @@ impl Thing {
             }
             Symbol::Type(name) => Thing::Type(name.clone()),
             Symbol::Variable(name) => {
-                let is_global = |section| matches!(section, SectionKind::Global | SectionKind::External);
                 let pou = match scopes.variable(pou, name) {
-                    Some(variable) if is_global(variable.section) => None,
+                    Some(variable) if variable.section.is_global() => None,
                     Some(_) => pou,
                     // The result of a function has the function's name.
                     None if is_pou(name) => return Thing::Pou(name.clone()),
@@ -117,13 +116,13 @@ impl Thing {
         let Thing::Variable { pou: Some(unit), name } = self else { return None };
         let section = scopes.variable(Some(*unit), name)?.section;
         let has_callers = scopes.pous.get(*unit).is_some_and(|pou| pou.kind != PouKind::Program);
-        (has_callers && declared::is_parameter(section)).then_some((*unit, name))
+        (has_callers && section.is_parameter()).then_some((*unit, name))
     }
 
     /// Whether it is a place in the program: a pointer or a label.
     pub(super) fn is_label(&self) -> bool {
         match self {
-            Thing::Devices(device, _) => matches!(device.kind, DeviceKind::P | DeviceKind::I),
+            Thing::Devices(device, _) => device.kind.is_pointer(),
             Thing::Label { .. } => true,
             _ => false,
         }

@@ -7,7 +7,8 @@ use super::names::{self, Named, Thing};
 use crate::document::{At, Document, Mention, ProjectView, Symbol, Tree};
 use crate::target::iec::{is_identifier, is_keyword};
 use crate::target::{Device, DeviceKind, DirectAddress, Operand, Target};
-use crate::text::{Encoding, Message, Span, TextEdit};
+use crate::text::{Message, Span, TextEdit, folded};
+use drawing::{Misfit, Place};
 use smol_str::SmolStr;
 
 pub(super) mod drawing;
@@ -78,34 +79,33 @@ struct Change<'v, 'a> {
 impl<'a> Change<'_, 'a> {
     /// The edits that write the new name in one file.
     fn edits(&self, file: &InFile<'a>, written: &str) -> Result<Vec<TextEdit>, Message> {
-        let mut places: Vec<(Span, bool)> = Vec::new();
+        let mut plain: Vec<Span> = Vec::new();
+        let mut drawn: Result<Vec<Place>, Misfit> = Ok(Vec::new());
         names::visit(file.document, &file.thing, |place| {
             // A symbol stays: the comments file gives it the new device.
             if aliases::written_at(file.document, place.span).is_some() {
                 return;
             }
-            let is_drawn = matches!(place.chunk.tree(), Tree::Ladder(_));
-            places.push((place.span, is_drawn));
+            match (place.chunk.tree(), &mut drawn) {
+                (Tree::Ladder(_), Ok(places)) => match drawing::place(&place, written) {
+                    Ok(found) => places.push(found),
+                    Err(misfit) => drawn = Err(misfit),
+                },
+                (Tree::Ladder(_), Err(_)) => {}
+                _ => plain.push(place.span),
+            }
         });
-        places.sort_unstable();
-        places.dedup();
-        let drawn: Vec<Span> =
-            places.iter().filter(|(_, is_drawn)| *is_drawn).map(|(span, _)| *span).collect();
-        let plain = places.iter().filter(|(_, is_drawn)| !is_drawn);
-        let mut edits: Vec<TextEdit> = plain.map(|(span, _)| TextEdit::new(*span, written)).collect();
-        let no_room = |span: Span| {
-            let message = self.placed(["rename.drawing", "rename.drawing-elsewhere"], file, span);
-            message.with("name", written)
+        let misfit = |misfit: Misfit| {
+            let message = self.placed(misfit.keys(), file, misfit.place());
+            misfit.fill(message).with("name", written)
         };
-        edits.extend(drawing::edits(file.document, &drawn, written).map_err(no_room)?);
-        edits.sort_by_key(|edit| edit.span);
-        drawing::still_say_the_same(file.document, file.document, &edits, &drawn).map_err(no_room)?;
-        Ok(edits)
+        let places = (plain, drawn.map_err(misfit)?);
+        drawing::written(file.document, file.document, places, written).map_err(misfit)
     }
 
     /// The first of two messages for a place in the file that is looked at, the second for another file.
     fn placed(&self, [here, elsewhere]: [&'static str; 2], file: &InFile<'a>, span: Span) -> Message {
-        let line = line_of(file.document, span);
+        let line = file.document.line_of(span.start as usize) + 1;
         if file.file == self.view.here_number() {
             return Message::new(here).with("line", line);
         }
@@ -191,8 +191,7 @@ impl<'a> Change<'_, 'a> {
         if is_keyword(new) {
             return Err(Message::new("rename.keyword").with("name", new));
         }
-        let folded =
-            SmolStr::from(if new.is_ascii() { new.to_ascii_lowercase() } else { new.to_lowercase() });
+        let folded = folded(new);
         let is_same = match thing {
             Thing::Variable { name, .. }
             | Thing::Label { name, .. }
@@ -266,8 +265,4 @@ fn first_place(document: &Document, thing: &Thing) -> Option<Span> {
         first.get_or_insert(place.span);
     });
     first
-}
-
-fn line_of(document: &Document, span: Span) -> u32 {
-    document.position(span.start as usize, Encoding::Utf8).line + 1
 }

@@ -3,7 +3,6 @@
 use super::SymbolKind;
 use super::names::PouWalk;
 use crate::document::{ChunkRef, Document, Mention, ProjectView, Scopes, Symbol, Tree, Use};
-use crate::il::iec::PouKind;
 use crate::text::Span;
 
 /// No editor shows more of them.
@@ -111,11 +110,7 @@ fn has_network(text: &str) -> bool {
 
 fn kind_of(mention: &Mention, scopes: &Scopes) -> Option<SymbolKind> {
     Some(match &mention.symbol {
-        Symbol::Pou(name) => match scopes.pou_named(name).map(|pou| pou.kind) {
-            Some(PouKind::FunctionBlock) => SymbolKind::FunctionBlock,
-            Some(PouKind::Function) => SymbolKind::Function,
-            Some(PouKind::Program) | None => SymbolKind::Program,
-        },
+        Symbol::Pou(name) => scopes.pou_named(name).map_or(SymbolKind::Program, |pou| pou.kind.into()),
         Symbol::Variable(_) => SymbolKind::Variable,
         Symbol::Type(_) => SymbolKind::Type,
         Symbol::Label(_) | Symbol::Device(_) => SymbolKind::Label,

@@ -10,7 +10,7 @@ pub(super) fn around(document: &Document, offset: usize) -> Vec<Span> {
     let offset = offset.min(document.len());
     let mut ranges = match document.chunk_at(offset) {
         Some(at) => match at.chunk.tree() {
-            Tree::Ladder(_) => drawing::ranges(document, offset),
+            Tree::Ladder(_) => drawing::ranges::around(document, offset),
             Tree::Fx(_) | Tree::Iec(_) => in_list(at.chunk.text(), at.chunk.tree(), at.start, offset),
         },
         None => Vec::new(),

@@ -4,7 +4,7 @@ use super::{declared, names, pages};
 use crate::document::{DeclaredType, Document, Notation, Tree};
 use crate::il::iec::{PouKind, SectionKind};
 use crate::target::iec::{Function, FunctionBlock, Operator, Parameter};
-use crate::target::{Accepts, Access, DeviceKind, Form, Opcode, Operand};
+use crate::target::{Accepts, Access, Form, Opcode, Operand};
 use crate::text::{Language, Message, Span, phrase};
 
 /// The shape of an instruction or a call.
@@ -48,11 +48,7 @@ fn head_of(document: &Document, offset: usize) -> Option<String> {
     let (_, start, mut line) = document.line_at(offset);
     line.truncate(offset - start);
     let found = document.chunk_at(offset)?;
-    let comments = match found.chunk.tree() {
-        Tree::Fx(tree) => &tree.comments,
-        Tree::Ladder(tree) => &tree.comments,
-        Tree::Iec(tree) => &tree.comments,
-    };
+    let comments = found.chunk.tree().comments();
     let inside = (offset - found.start) as u32;
     let in_comment = comments.iter().any(|comment| comment.start < inside && inside <= comment.end);
     (!in_comment).then_some(line)
@@ -70,7 +66,7 @@ fn instruction(document: &Document, offset: usize, language: Language) -> Option
     let skipped = words.first().filter(is_number).is_some() as usize;
     let is_label = |word: &&&str| {
         let read = Operand::read(word.trim_end_matches(':'), document.target().model);
-        matches!(read, Operand::Device(device) if matches!(device.kind, DeviceKind::P | DeviceKind::I))
+        matches!(read, Operand::Device(device) if device.kind.is_pointer())
     };
     let skipped = skipped + words.get(skipped).filter(is_label).is_some() as usize;
     let (mnemonic, operands) = words.get(skipped..)?.split_first()?;
@@ -94,7 +90,7 @@ fn drawn(document: &Document, offset: usize, language: Language) -> Option<Signa
         return of_form(document, form, operands, language);
     }
     let device = document.reader().read(first).device()?;
-    let counts = matches!(device.kind, DeviceKind::T | DeviceKind::C);
+    let counts = device.kind.has_preset();
     if head[start..].starts_with('(') && counts {
         return of_form(document, Form::named("OUT")?, &words, language);
     }
@@ -107,7 +103,7 @@ fn of_form(document: &Document, form: Form, operands: &[&str], language: Languag
     // Whoever writes a contact or a coil needs no reminder that it has a device.
     let is_applied = matches!(form.instruction.opcode, Opcode::Function(_));
     let driven = operands.first().and_then(|word| document.reader().read(word).device());
-    let counts = driven.is_some_and(|device| matches!(device.kind, DeviceKind::T | DeviceKind::C));
+    let counts = driven.is_some_and(|device| device.kind.has_preset());
     let with_preset = specs.iter().any(|spec| spec.optional) && counts && operands.len() > 1;
     let is_told = is_applied || with_preset || specs.len() > 1 && !specs.iter().any(|spec| spec.optional);
     if specs.is_empty() || operands.is_empty() || !is_told {
@@ -291,8 +287,7 @@ fn formals(document: &Document, chunk_start: usize, callee: &str) -> Option<Call
         is_output,
     };
     if let Some(declared_unit) = scopes.pou_named(&unit) {
-        let parameters =
-            declared_unit.variables.iter().filter(|variable| declared::is_parameter(variable.section));
+        let parameters = declared_unit.variables.iter().filter(|variable| variable.section.is_parameter());
         let formals = parameters.map(|variable| Formal {
             name: variable.name.to_string(),
             kind: declared::type_name(&variable.declared, scopes),

@@ -3,9 +3,9 @@
 use super::{SymbolKind, SymbolNode, declared};
 use crate::document::{Chunk, Document, Operation, Tree};
 use crate::il::fx::{FxTree, LineKind};
-use crate::il::iec::{IecTree, ItemKind, PouKind, Run};
+use crate::il::iec::{IecTree, ItemKind, Run};
 use crate::ladder::LadderTree;
-use crate::target::Role;
+use crate::target::{Flow, Role};
 use crate::text::{Language, Message, Span};
 
 /// The longest comment that becomes a part of a rung's name, in characters.
@@ -75,19 +75,21 @@ impl Outline {
                     };
                     self.begin(node(name, SymbolKind::Label, Span { start: span.start, end }, span));
                 }
-                LineKind::Instruction(form) => match form.instruction.mnemonic {
-                    "STL" => {
+                LineKind::Instruction(form) => match form.instruction.flow() {
+                    Flow::Step => {
                         let state = tree.operands(line).first().map_or("", |operand| operand.span.of(text));
                         let name = Message::new("outline.step").with("name", state.to_ascii_uppercase());
                         let name = name.render(self.language);
                         self.begin(node(name, SymbolKind::Step, Span { start: span.start, end }, span));
                     }
-                    "RET" => self.close(level(SymbolKind::Step)),
-                    "FEND" => {
+                    Flow::StepsEnd => self.close(level(SymbolKind::Step)),
+                    Flow::MainEnd => {
                         self.close(level(SymbolKind::Label));
                         self.subroutines = true;
                     }
-                    "SRET" | "IRET" | "END" => self.close(level(SymbolKind::Label)),
+                    Flow::SubroutineEnd | Flow::InterruptEnd | Flow::ProgramEnd => {
+                        self.close(level(SymbolKind::Label));
+                    }
                     _ => {}
                 },
                 LineKind::Unknown => {}
@@ -136,7 +138,7 @@ impl Outline {
             match item.kind {
                 ItemKind::Pou { kind, name, result } => {
                     let (name, selection) = named(name);
-                    let mut unit = node(name.to_string(), pou_kind(kind), span, selection);
+                    let mut unit = node(name.to_string(), kind.into(), span, selection);
                     unit.detail = result.map_or_else(
                         || declared::pou_keyword(kind).to_string(),
                         |id| tree.type_spec(id).span.of(text).to_string(),
@@ -238,14 +240,6 @@ fn node(name: String, kind: SymbolKind, span: Span, selection: Span) -> SymbolNo
     // Clients refuse nodes without a name.
     let name = if name.is_empty() { "?".to_string() } else { name };
     SymbolNode { name, detail: String::new(), kind, span, selection, children: Vec::new() }
-}
-
-fn pou_kind(kind: PouKind) -> SymbolKind {
-    match kind {
-        PouKind::Program => SymbolKind::Program,
-        PouKind::FunctionBlock => SymbolKind::FunctionBlock,
-        PouKind::Function => SymbolKind::Function,
-    }
 }
 
 fn variables(at: Here<'_>, tree: &IecTree, declarations: Run, kind: SymbolKind) -> Vec<SymbolNode> {

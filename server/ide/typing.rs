@@ -1,6 +1,6 @@
 //! On-type formatting: drawings stay whole while one types in them, and an instruction list that is aligned stays so.
 
-use super::{Style, drawing};
+use super::{Style, changes, drawing};
 use crate::document::{Document, Notation, Tree};
 use crate::il::{fx, iec};
 use crate::text::{Span, TextEdit};
@@ -9,9 +9,11 @@ use crate::text::{Span, TextEdit};
 pub(super) fn after(document: &Document, offset: usize, typed: &str, style: Style) -> Vec<TextEdit> {
     let mut characters = typed.chars();
     match (characters.next(), characters.next(), document.notation()) {
-        (Some('\n' | '\r'), _, Notation::Ladder) => drawing::after_enter(document, offset, style),
+        (Some('\n' | '\r'), _, Notation::Ladder) => drawing::typing::after_enter(document, offset, style),
         (Some('\n' | '\r'), ..) => line_left(document, offset),
-        (Some(character), None, Notation::Ladder) => drawing::after_character(document, offset, character),
+        (Some(character), None, Notation::Ladder) => {
+            drawing::typing::after_character(document, offset, character)
+        }
         _ => Vec::new(),
     }
 }
@@ -29,7 +31,7 @@ fn line_left(document: &Document, offset: usize) -> Vec<TextEdit> {
             fx::format_chunks(&[(text, tree)])
         }
         Tree::Iec(tree) => {
-            super::format::line_edits(text, &iec::format_chunk(text, tree, &iec::FormatOptions::default()))
+            changes::by_lines(text, &iec::format_chunk(text, tree, &iec::FormatOptions::default()))
         }
         _ => Vec::new(),
     };

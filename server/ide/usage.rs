@@ -3,7 +3,7 @@
 use super::names::PouWalk;
 use super::{devices, uses};
 use crate::document::{Chunk, ChunkRef, Mention, ProjectView, Symbol, Use};
-use crate::target::{Device, DeviceKind, Opcode, Operand, Role};
+use crate::target::{Device, Opcode, Operand, Role};
 use crate::text::{Encoding, Language, Message};
 use rustc_hash::FxHashSet;
 use std::collections::BTreeMap;
@@ -66,6 +66,19 @@ pub struct UsageAt {
     pub count: u16,
     /// The instruction, or the drawn rung in a line.
     pub text: String,
+}
+
+impl UsageAt {
+    /// What is done, in the tables that programs read: `read`, `write`, `read-write`, `define`, `jump`.
+    pub fn access_word(&self) -> &'static str {
+        match self.usage {
+            Use::Read => "read",
+            Use::Write => "write",
+            Use::ReadWrite => "read-write",
+            Use::Declare => "define",
+            Use::Jump => "jump",
+        }
+    }
 }
 
 impl UsageRow {
@@ -156,9 +169,8 @@ fn key_of(symbol: &Symbol, pou: Option<usize>, scopes: &crate::document::Scopes)
         Symbol::Device(device) => Some(UsageKey::Device(*device)),
         Symbol::Direct(address) => Some(UsageKey::Direct(*address)),
         Symbol::Variable(name) => {
-            use crate::il::iec::SectionKind::{External, Global};
             let declared = scopes.variable(pou, name);
-            let is_global = declared.is_some_and(|variable| matches!(variable.section, Global | External));
+            let is_global = declared.is_some_and(|variable| variable.section.is_global());
             let unit = pou.filter(|_| !is_global).and_then(|number| scopes.pous.get(number));
             Some(UsageKey::Variable(
                 unit.map(|unit| unit.name.to_string()).unwrap_or_default(),
@@ -198,7 +210,7 @@ fn new_row(
 
 /// `K50 = 5 s`
 fn preset(document: &crate::document::Document, chunk: &Chunk, device: Device) -> String {
-    if !matches!(device.kind, DeviceKind::T | DeviceKind::C) {
+    if !device.kind.has_preset() {
         return String::new();
     }
     let Some(found) = devices::preset_of(chunk, device) else { return String::new() };

@@ -4,7 +4,7 @@ use super::names::{self, Named, Thing};
 use super::{across, devices};
 use crate::document::{Chunk, ChunkRef, Document, Names, ProjectView, Symbol, Tree, Use};
 use crate::ladder::{CoilKind, ContactKind, ElementKind, Rung};
-use crate::target::{DeviceKind, Operand};
+use crate::target::Operand;
 use crate::text::{Language, Message};
 
 /// The longest line that is shown, in characters.
@@ -141,7 +141,7 @@ impl Group {
 
 fn preset_at(thing: &Thing, place: &Named<'_>) -> Option<(Operand, String)> {
     let Thing::Devices(device, 1) = thing else { return None };
-    if !place.usage.writes() || !matches!(device.kind, DeviceKind::T | DeviceKind::C) {
+    if !place.usage.writes() || !device.kind.has_preset() {
         return None;
     }
     let found = devices::preset_of(place.chunk, *device)?;
@@ -224,6 +224,15 @@ fn drawn(rung: &Rung, text: &str) -> String {
     format!("{} → {}", conditions.join(" "), outputs.join(", ")).trim().to_string()
 }
 
+/// `rung 3, line 12`; `line` counts from 0.
+pub(super) fn place_words(rung: Option<usize>, line: u32, language: Language) -> String {
+    let message = match rung {
+        Some(rung) => Message::new("uses.rung-line").with("rung", rung),
+        None => Message::new("uses.line"),
+    };
+    message.with("line", line + 1).render(language)
+}
+
 /// How places are named and linked.
 pub(super) struct Style<'a> {
     pub view: &'a ProjectView<'a>,
@@ -273,11 +282,7 @@ impl Style<'_> {
 
     /// `rung 3, line 12`, with the name of the file if it is another one.
     pub(super) fn words(&self, place: &Place) -> String {
-        let message = match place.rung {
-            Some(rung) => Message::new("uses.rung-line").with("rung", rung),
-            None => Message::new("uses.line"),
-        };
-        let words = message.with("line", place.line + 1).render(self.language);
+        let words = place_words(place.rung, place.line, self.language);
         match self.view.members().get(place.file) {
             Some(member) if place.file != self.view.here_number() => format!("{}, {words}", member.name),
             _ => words,

@@ -1,6 +1,6 @@
 //! Cuts a document into chunks, so that an edit re-reads only what it touched.
 
-use super::glyph::Arms;
+use super::glyph::{Arms, is_operator};
 use super::ldmicro::is_row;
 use super::lines::{LDMICRO_DRAWING, Line, LineKind, Lines, has_word, is_blank};
 use crate::text::Span;
@@ -248,7 +248,9 @@ fn ends_in_condition(line: &Line, text: &str) -> bool {
     match content.chars().next_back() {
         Some(']') => {
             let inside = content[..content.len() - 1].rsplit(['[', ']']).next().unwrap_or("");
+            // A comparison has operands, and is a condition nevertheless.
             inside.split_whitespace().count() < 2
+                || inside.split_whitespace().any(|word| word.ends_with(is_operator))
         }
         Some('[' | '!' | '|' | '│' | '┃' | '├') => true,
         _ => false,

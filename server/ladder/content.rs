@@ -3,7 +3,7 @@
 use super::glyph::is_operator;
 use super::grid::Grid;
 use super::{CoilKind, CompareOperator, ContactKind, ElementKind};
-use crate::target::{Constant, DeviceKind, Flow, Form, Operand, Target};
+use crate::target::{Constant, Flow, Form, Operand, Target};
 use crate::text::{Span, Spanned};
 
 /// A word or an operator inside a symbol.
@@ -312,9 +312,7 @@ fn read_operands(pieces: &[Piece], target: &Target) -> Vec<Spanned<Operand>> {
 
 /// Whether `second` can be the preset of the timer or counter `first`.
 pub(super) fn is_preset(first: &Operand, second: &Operand) -> bool {
-    let counts = |device: &Operand| {
-        device.device().is_some_and(|device| matches!(device.kind, DeviceKind::T | DeviceKind::C))
-    };
+    let counts = |device: &Operand| device.device().is_some_and(|device| device.kind.has_preset());
     let number =
         matches!(second, Operand::Constant { value: Constant::Decimal(_) | Constant::Hexadecimal(_), .. });
     counts(first) && (number || second.device().is_some_and(|device| device.kind.is_word()))

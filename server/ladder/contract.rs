@@ -4,7 +4,7 @@
 //! elements. An edge is an element, or one of the few wires that cannot be contracted, because they run beside
 //! another path (a short circuit) or across (a bridge). Two drawings of the same logic contract to the same nodes.
 
-use super::{ArcId, ElementId, ElementKind, Graph, PinWire, VertexId, VertexKind};
+use super::{ArcId, ElementId, Graph, VertexId, VertexKind};
 use rustc_hash::FxHashMap;
 
 /// Electrical nodes and the edges between them.
@@ -77,24 +77,6 @@ impl Nodes {
     pub fn sides_of(&self, element: ElementId) -> impl Iterator<Item = &Side> {
         let start = self.sides.partition_point(|side| side.element < element);
         self.sides[start..].iter().take_while(move |side| side.element == element)
-    }
-}
-
-/// Whether power starts at this element without a wire to it.
-fn is_source(kind: &ElementKind) -> bool {
-    match kind {
-        ElementKind::ConnectorIn(_) => true,
-        ElementKind::Block(block) => block.inputs.iter().all(|pin| pin.wire != PinWire::Power),
-        _ => false,
-    }
-}
-
-/// Whether power may end at this element without a wire from it.
-fn is_sink(kind: &ElementKind) -> bool {
-    match kind {
-        ElementKind::Jump(_) | ElementKind::Return | ElementKind::ConnectorOut(_) => true,
-        ElementKind::Block(block) => block.outputs.iter().all(|pin| pin.wire != PinWire::Power),
-        _ => false,
     }
 }
 
@@ -184,11 +166,11 @@ impl Raw {
             pins.sort_unstable();
             pins.dedup();
         }
-        let tail = match input_pins.is_empty() && is_source(kind) {
+        let tail = match input_pins.is_empty() && kind.is_source() {
             true => Nodes::LEFT,
             false => self.node(Vec::new(), false),
         };
-        let head = match output_pins.is_empty() && is_sink(kind) {
+        let head = match output_pins.is_empty() && kind.is_sink() {
             true => Nodes::RIGHT,
             false => self.node(Vec::new(), false),
         };

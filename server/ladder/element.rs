@@ -154,6 +154,38 @@ pub enum ContactKind {
     Falling,
 }
 
+impl ElementKind {
+    /// Whether power starts at this element without a wire to it.
+    pub fn is_source(&self) -> bool {
+        match self {
+            ElementKind::ConnectorIn(_) => true,
+            ElementKind::Block(block) => block.inputs.iter().all(|pin| pin.wire != PinWire::Power),
+            _ => false,
+        }
+    }
+
+    /// Whether power may end at this element without a wire from it.
+    pub fn is_sink(&self) -> bool {
+        match self {
+            ElementKind::Jump(_) | ElementKind::Return | ElementKind::ConnectorOut(_) => true,
+            ElementKind::Block(block) => block.outputs.iter().all(|pin| pin.wire != PinWire::Power),
+            _ => false,
+        }
+    }
+}
+
+impl ContactKind {
+    /// The character that tells it in a drawing; a blank for a normally open one.
+    pub fn mark(self) -> char {
+        match self {
+            ContactKind::NormallyOpen => ' ',
+            ContactKind::NormallyClosed => '/',
+            ContactKind::Rising => 'P',
+            ContactKind::Falling => 'N',
+        }
+    }
+}
+
 /// Kinds of coil.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum CoilKind {
@@ -173,6 +205,21 @@ pub enum CoilKind {
     Toggle,
 }
 
+impl CoilKind {
+    /// The character that tells it in a drawing; a blank for a plain one.
+    pub fn mark(self) -> char {
+        match self {
+            CoilKind::Plain => ' ',
+            CoilKind::Negated => '/',
+            CoilKind::Set => 'S',
+            CoilKind::Reset => 'R',
+            CoilKind::Rising => 'P',
+            CoilKind::Falling => 'N',
+            CoilKind::Toggle => 'T',
+        }
+    }
+}
+
 /// Comparison operators; `wide` is the 32-bit form (`[D>= D0 K10]`).
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[allow(missing_docs, reason = "the names say it")]
@@ -183,6 +230,32 @@ pub enum CompareOperator {
     Less { wide: bool },
     GreaterOrEqual { wide: bool },
     LessOrEqual { wide: bool },
+}
+
+impl CompareOperator {
+    /// What it compares for, as the LD>= family of instructions spells it; the 32-bit form has a D before it.
+    pub fn sign(self) -> &'static str {
+        match self {
+            CompareOperator::Equal { .. } => "=",
+            CompareOperator::NotEqual { .. } => "<>",
+            CompareOperator::Greater { .. } => ">",
+            CompareOperator::Less { .. } => "<",
+            CompareOperator::GreaterOrEqual { .. } => ">=",
+            CompareOperator::LessOrEqual { .. } => "<=",
+        }
+    }
+
+    /// Whether it compares 32 bits.
+    pub fn is_wide(self) -> bool {
+        use CompareOperator::*;
+        let (Equal { wide }
+        | NotEqual { wide }
+        | Greater { wide }
+        | Less { wide }
+        | GreaterOrEqual { wide }
+        | LessOrEqual { wide }) = self;
+        wide
+    }
 }
 
 /// A function block or function drawn as a box.

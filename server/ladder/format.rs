@@ -6,14 +6,12 @@
 //! only if the logic is the same.
 
 use super::ragged::TWO_READINGS;
-use super::reduce::reduce;
-use super::symbol::width;
+use super::reduce::{NotSeriesParallel, reduce};
 use super::{
-    Drawing, Element, ElementKind, LadderTree, NameHabit, OperandPlace, Rung, Style, StyleKind, parse,
-    parse_with, split,
+    Drawing, Element, ElementKind, LadderTree, NameHabit, Rung, Style, StyleKind, parse, parse_with, split,
 };
 use crate::target::Target;
-use crate::text::{Diagnostic, Span, TextEdit};
+use crate::text::{BYTE_ORDER_MARK, Diagnostic, Span, text_width};
 
 /// Whether redrawing mends a problem. Every other one means that the rung may not say what its author meant.
 fn is_mended(problem: &Diagnostic) -> bool {
@@ -47,9 +45,9 @@ impl Page {
             let lines = Lines::of(chunk);
             for rung in &tree.rungs {
                 if let Some(number) = rung.number {
-                    page.margin = page.margin.max(width(number.span.of(chunk)) as u32 + 1);
+                    page.margin = page.margin.max(text_width(number.span.of(chunk)) as u32 + 1);
                 }
-                if let Some(drawing) = drawing(chunk, tree, rung, &lines, style.kind) {
+                if let Ok(drawing) = drawing(chunk, tree, rung, &lines, style.kind) {
                     page.rail = page.rail.max(drawing.rail_column_min());
                 }
             }
@@ -90,30 +88,67 @@ pub fn format(text: &str, target: &Target, style: &Style) -> String {
 /// The chunk in canonical form, or nothing if it is already.
 pub fn format_chunk(chunk: &str, tree: &LadderTree, target: &Target, page: &Page) -> Option<String> {
     let lines = Lines::of(chunk);
-    let mut drawn: Vec<Option<Vec<String>>> = tree
-        .rungs
-        .iter()
-        .map(|rung| {
-            let drawing = drawing(chunk, tree, rung, &lines, page.kind)?;
-            let mut text = drawing.paint(page.rail)?;
-            for (row, comment) in line_comments(chunk, tree, rung, &lines)? {
-                let line = text.get_mut(line_of(rung, &drawing, row))?;
-                line.push_str("  ");
-                line.push_str(comment);
-            }
-            Some(text)
-        })
-        .collect();
+    let drawn: Vec<Option<Vec<String>>> =
+        drawn_rungs(chunk, tree, &lines, target, page).into_iter().map(Result::ok).collect();
+    let formatted = lines.with_rungs(tree, &drawn, page);
+    (formatted != chunk).then_some(formatted)
+}
+
+/// Why a rung stays as it was drawn.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Kept {
+    /// Something of it could not be read, or is connected with nothing.
+    Mistake,
+    /// A comment stands in its midst, where a new drawing has no place for it.
+    Comment,
+    /// A word in it, or one of it elsewhere, would be lost.
+    Words,
+    /// It is neither series nor parallel.
+    Bridge,
+    /// Its outputs would come to be evaluated in another order.
+    Order,
+    /// With what stands around it, such as a frame, the new drawing would be read otherwise.
+    Surroundings,
+}
+
+/// The rungs that [`format_chunk`] leaves as they were drawn, with the reasons.
+pub fn kept_rungs(chunk: &str, tree: &LadderTree, target: &Target, page: &Page) -> Vec<(Span, Kept)> {
+    let drawn = drawn_rungs(chunk, tree, &Lines::of(chunk), target, page);
+    let kept = drawn.into_iter().map(Result::err).zip(&tree.rungs);
+    kept.filter_map(|(kept, rung)| Some((rung.span, kept?))).collect()
+}
+
+/// The rungs of a chunk in canonical form, where they may be put into it.
+fn drawn_rungs(
+    chunk: &str,
+    tree: &LadderTree,
+    lines: &Lines<'_>,
+    target: &Target,
+    page: &Page,
+) -> Vec<Result<Vec<String>, Kept>> {
+    let paint = |rung: &Rung| {
+        let drawing = drawing(chunk, tree, rung, lines, page.kind)?;
+        let mut text = drawing.paint(page.rail).ok_or(Kept::Surroundings)?;
+        for (row, comment) in line_comments(chunk, tree, rung, lines).ok_or(Kept::Comment)? {
+            let line = text.get_mut(line_of(rung, &drawing, row)).ok_or(Kept::Comment)?;
+            line.push_str("  ");
+            line.push_str(comment);
+        }
+        Ok(text)
+    };
+    let mut drawn: Vec<Result<Vec<String>, Kept>> = tree.rungs.iter().map(paint).collect();
     leave_entangled_rungs(&tree.rungs, &mut drawn);
     // Where the reader would take a drawing for another, the search halves, so that it does not keep the rest.
     let mut taken = vec![None; drawn.len()];
     let mut waiting = vec![(0, drawn.len())];
     while let Some((first, end)) = waiting.pop() {
-        if drawn[first..end].iter().all(Option::is_none) {
+        if drawn[first..end].iter().all(Result::is_err) {
             continue;
         }
         let before = taken.clone();
-        taken[first..end].clone_from_slice(&drawn[first..end]);
+        for (taken, drawn) in taken[first..end].iter_mut().zip(&drawn[first..end]) {
+            *taken = drawn.as_ref().ok().cloned();
+        }
         if !same(chunk, tree, &lines.with_rungs(tree, &taken, page), target) {
             taken = before;
             let middle = first.midpoint(end);
@@ -122,46 +157,12 @@ pub fn format_chunk(chunk: &str, tree: &LadderTree, target: &Target, page: &Page
             }
         }
     }
-    let formatted = lines.with_rungs(tree, &taken, page);
-    (formatted != chunk).then_some(formatted)
-}
-
-/// The edit that draws the rung with `offset` in it as it was read, and leaves the rest of the chunk as it is.
-/// `tree` may be one of several readings of the chunk. Nothing if the rung cannot be drawn, or is drawn so already.
-pub fn redraw(chunk: &str, tree: &LadderTree, offset: u32, target: &Target) -> Option<TextEdit> {
-    let number = tree.rungs.iter().position(|rung| rung.span.start <= offset && offset < rung.span.end)?;
-    let rung = &tree.rungs[number];
-    let lines = Lines::of(chunk);
-    let is_box_drawing = |c: char| ('\u{2500}'..='\u{257F}').contains(&c);
-    let inside = rung.graph.elements.iter().filter(|element| element.place == OperandPlace::Inside);
-    let kind = match inside.count() * 2 > rung.graph.elements.len() {
-        true => StyleKind::Brackets,
-        false if rung.span.of(chunk).contains(is_box_drawing) => StyleKind::Unicode,
-        false => StyleKind::Iec,
-    };
-    // Other rungs of the chunk that have their rail further right keep it there, and so does this one.
-    let usual = tree.rungs.iter().flat_map(|rung| &rung.right_rail).map(|rail| rail.value + 1).max();
-    let style = Style { kind, width: usual.unwrap_or(0).max(Style::default().width) };
-    let page = Page::of([(chunk, tree)], &style);
-    let text = drawing(chunk, tree, rung, &lines, kind)?.paint(page.rail)?;
-    let mut drawn = vec![None; tree.rungs.len()];
-    drawn[number] = Some(text);
-    let formatted = lines.with_rungs(tree, &drawn, &page);
-    if formatted == chunk || !same(chunk, tree, &formatted, target) {
-        return None;
-    }
-    // The lines that stay are no part of the edit.
-    let (old, new) = (Lines::of(chunk), Lines::of(&formatted));
-    let common = old.lines.iter().zip(&new.lines).take_while(|(a, b)| a == b).count();
-    let (old_rest, new_rest) = (&old.lines[common..], &new.lines[common..]);
-    let tail = old_rest.iter().rev().zip(new_rest.iter().rev()).take_while(|(a, b)| a == b).count();
-    let (start, end) = (old.starts[common], old.starts[old.lines.len() - tail]);
-    let new_end = new.starts[new.lines.len() - tail];
-    Some(TextEdit::new(Span::new(start, end), formatted.get(new.starts[common]..new_end)?))
+    let pairs = taken.into_iter().zip(drawn);
+    pairs.map(|(taken, drawn)| drawn.and_then(|_| taken.ok_or(Kept::Surroundings))).collect()
 }
 
 /// Whether `formatted` reads as the same rungs with the same notes, with no further problem and all comments.
-fn same(chunk: &str, tree: &LadderTree, formatted: &str, target: &Target) -> bool {
+pub(super) fn same(chunk: &str, tree: &LadderTree, formatted: &str, target: &Target) -> bool {
     let again = parse(formatted, target);
     again.rungs.len() == tree.rungs.len()
         && again.problems.len() <= tree.problems.len()
@@ -193,11 +194,11 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
 }
 
 /// Rungs that share lines with others cannot be replaced by lines of their own.
-fn leave_entangled_rungs(rungs: &[Rung], drawn: &mut [Option<Vec<String>>]) {
+fn leave_entangled_rungs(rungs: &[Rung], drawn: &mut [Result<Vec<String>, Kept>]) {
     for number in 1..rungs.len() {
         if rungs[number].lines.0 < rungs[number - 1].lines.1 {
-            drawn[number] = None;
-            drawn[number - 1] = None;
+            drawn[number] = Err(Kept::Surroundings);
+            drawn[number - 1] = Err(Kept::Surroundings);
         }
     }
 }
@@ -232,26 +233,39 @@ fn line_of(rung: &Rung, drawing: &Drawing, row: u32) -> usize {
 }
 
 /// The drawing of a rung that may be redrawn.
-fn drawing(
+pub(super) fn drawing(
     chunk: &str,
     tree: &LadderTree,
     rung: &Rung,
     lines: &Lines<'_>,
     kind: StyleKind,
-) -> Option<Drawing> {
+) -> Result<Drawing, Kept> {
+    may_be_redrawn(chunk, tree, rung, lines)?;
+    let shape = reduce(&rung.graph).map_err(|reason| match reason {
+        NotSeriesParallel::Bridge(_) | NotSeriesParallel::SharedPin(_) => Kept::Bridge,
+        _ => Kept::Mistake,
+    })?;
+    let drawing = Drawing::new(&shape, &rung.graph, chunk, kind).ok_or(Kept::Mistake)?;
+    if keeps_order(rung, &drawing) { Ok(drawing) } else { Err(Kept::Order) }
+}
+
+/// Whether a rung says what its author meant, as far as one can see, and a new drawing of it would lose no word.
+pub(super) fn may_be_redrawn(
+    chunk: &str,
+    tree: &LadderTree,
+    rung: &Rung,
+    lines: &Lines<'_>,
+) -> Result<(), Kept> {
     let (start, end) = lines.bytes(rung.lines);
     // An empty span marks the place between two cells.
     let inside = |span: Span| (span.start as usize) < end && (span.end.max(span.start + 1) as usize) > start;
     let doubtful = tree.problems.iter().any(|problem| !is_mended(problem) && inside(problem.span));
-    if doubtful || line_comments(chunk, tree, rung, lines).is_none() {
-        return None;
+    match () {
+        () if doubtful => Err(Kept::Mistake),
+        () if line_comments(chunk, tree, rung, lines).is_none() => Err(Kept::Comment),
+        () if !keeps_words(chunk, tree, rung, (start, end)) => Err(Kept::Words),
+        () => Ok(()),
     }
-    if !keeps_words(chunk, tree, rung, (start, end)) {
-        return None;
-    }
-    let shape = reduce(&rung.graph).ok()?;
-    let drawing = Drawing::new(&shape, &rung.graph, chunk, kind)?;
-    keeps_order(rung, &drawing).then_some(drawing)
 }
 
 /// Whether the lines of a rung, at these bytes, hold all its words and no letter that is not drawn again.
@@ -319,15 +333,15 @@ fn keeps_order(rung: &Rung, drawing: &Drawing) -> bool {
 }
 
 /// The lines of a chunk.
-struct Lines<'t> {
+pub(super) struct Lines<'t> {
     text: &'t str,
-    lines: Vec<&'t str>,
+    pub(super) lines: Vec<&'t str>,
     /// Offset of each line and of the end.
-    starts: Vec<usize>,
+    pub(super) starts: Vec<usize>,
 }
 
 impl<'t> Lines<'t> {
-    fn of(chunk: &'t str) -> Lines<'t> {
+    pub(super) fn of(chunk: &'t str) -> Lines<'t> {
         let lines: Vec<&str> = chunk.split_inclusive('\n').collect();
         let mut starts = vec![0];
         let mut offset = 0;
@@ -345,7 +359,7 @@ impl<'t> Lines<'t> {
     }
 
     /// The chunk with the lines of rungs replaced by their drawings, where there are any.
-    fn with_rungs(&self, tree: &LadderTree, drawn: &[Option<Vec<String>>], page: &Page) -> String {
+    pub(super) fn with_rungs(&self, tree: &LadderTree, drawn: &[Option<Vec<String>>], page: &Page) -> String {
         let mut text = String::new();
         let mut line = 0;
         // Between rungs that stay as drawn, rails stay where those rungs have theirs.
@@ -400,8 +414,6 @@ impl<'t> Lines<'t> {
         }
     }
 }
-
-const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// A line that belongs to no rung: kept but for blanks at its end; rails without anything between follow the page
 /// if there is one.

@@ -74,5 +74,11 @@ mod canvas;
 mod printer;
 pub use printer::{Drawing, Style, StyleKind, print};
 
+mod paths;
+pub use paths::drawn_apart;
+
 mod format;
-pub use format::{Page, format, format_chunk, redraw};
+pub use format::{Kept, Page, format, format_chunk, kept_rungs};
+
+mod redraw;
+pub use redraw::{redraw, redraw_as};

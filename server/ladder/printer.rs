@@ -2,8 +2,9 @@
 
 use super::layout::{BlockPlace, Layout, Place, lay_out};
 use super::reduce::Shape;
-use super::symbol::{Figure, FigurePin, Setting, Symbol, width};
+use super::symbol::{Figure, FigurePin, Setting, Symbol};
 use super::{Graph, canvas::Canvas};
+use crate::text::text_width;
 use std::collections::HashSet;
 
 /// The characters that a drawing is made of.
@@ -186,7 +187,7 @@ impl Drawing {
             let lead = if self.is_named(symbol) { 3 } else { 2 };
             // A name may touch the rail, but not what stands to its left.
             let name = symbol.name_width();
-            rail = rail.max(start + lead + width(&symbol.body) + 1).max(start + 1 + name);
+            rail = rail.max(start + lead + text_width(&symbol.body) + 1).max(start + 1 + name);
         }
         self.rail_min = rail;
     }
@@ -225,7 +226,7 @@ impl Drawing {
 fn lead_and_rest(symbol: &Symbol, kind: StyleKind) -> (usize, usize) {
     let aligned = matches!(symbol.setting, Setting::Aligned | Setting::Coil) && kind != StyleKind::Brackets;
     let (lead, trail) = if aligned { (3, 2) } else { (2, 1) };
-    let (name, body) = (symbol.name_width(), width(&symbol.body));
+    let (name, body) = (symbol.name_width(), text_width(&symbol.body));
     let left = (name / 2).saturating_sub(body.saturating_sub(1) / 2);
     let right = name.saturating_sub(body + left);
     // One blank at least separates a name from what stands to its left.
@@ -338,7 +339,7 @@ impl Painter<'_> {
             false => lead_and_rest(symbol, self.drawing.kind).0,
         };
         let start = column.start + lead;
-        let end = start + width(&symbol.body);
+        let end = start + text_width(&symbol.body);
         if symbol.setting != Setting::Source {
             self.wire(place.line, column.start, start);
         }
@@ -350,7 +351,7 @@ impl Painter<'_> {
     /// examples of the notation.
     fn end(&mut self, place: &Place) -> Option<()> {
         let symbol = self.drawing.symbol(place);
-        let body = width(&symbol.body);
+        let body = text_width(&symbol.body);
         let line_end = self.drawing.after_slot(place.column);
         let start = match symbol.setting {
             Setting::Boxed { .. } => line_end + 2,
@@ -368,13 +369,13 @@ impl Painter<'_> {
     fn words(&mut self, symbol: &Symbol, line: i32, start: usize) -> Option<()> {
         let row = self.row(line);
         self.canvas.text(row, start, &symbol.body)?;
-        self.above(symbol, line, start, width(&symbol.body))
+        self.above(symbol, line, start, text_width(&symbol.body))
     }
 
     /// The lines above a symbol, centred over it but not over the right rail.
     fn above(&mut self, symbol: &Symbol, line: i32, start: usize, body: usize) -> Option<()> {
         for (number, words) in symbol.above.iter().rev().enumerate() {
-            let cells = width(words);
+            let cells = text_width(words);
             let centred = start.checked_add_signed(name_start(cells, body))?;
             let row = self.row(line - 1 - number as i32);
             self.canvas.text(row, centred.min(self.rail.checked_sub(cells)?), words)?;
@@ -392,7 +393,7 @@ impl Painter<'_> {
         let (first_row, last_row) = (self.row(first), self.row(last));
         self.canvas.frame((first_row, left), (last_row, right));
         self.above(symbol, first, left, right - left + 1)?;
-        let type_start = left + 1 + (figure.inner_width() - width(&figure.type_name)) / 2;
+        let type_start = left + 1 + (figure.inner_width() - text_width(&figure.type_name)) / 2;
         self.canvas.text(first_row + 1, type_start, &figure.type_name)?;
         for (pin, line) in figure.inputs.iter().zip(&block.inputs) {
             let row = self.row(*line);
@@ -405,13 +406,13 @@ impl Painter<'_> {
                 self.wire(*line, column.start, edge);
             } else if !pin.operand.is_empty() {
                 let wire = edge - 2;
-                self.canvas.text(row, wire - width(&pin.operand), &pin.operand)?;
+                self.canvas.text(row, wire - text_width(&pin.operand), &pin.operand)?;
                 self.wire(*line, wire, edge);
             }
         }
         for (pin, line) in figure.outputs.iter().zip(&block.outputs) {
             let row = self.row(*line);
-            self.canvas.text(row, right - width(&pin.name), &pin.name)?;
+            self.canvas.text(row, right - text_width(&pin.name), &pin.name)?;
             let edge = right + 1 + usize::from(pin.negated);
             if pin.negated {
                 self.canvas.text(row, right + 1, "O")?;

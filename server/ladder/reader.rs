@@ -17,6 +17,7 @@ use super::wires::Tracer;
 use super::{LadderTree, NameHabit, NetworkHeader};
 use crate::target::Target;
 use crate::text::{Diagnostic, Message, Span, Spanned, TextEdit};
+use std::cell::OnceCell;
 
 /// Reads one chunk as [`split`](super::split) cuts it. Never fails: what cannot be read is in
 /// [`LadderTree::problems`], all spans are offsets into `chunk`. Declarations have no rungs.
@@ -100,7 +101,8 @@ fn read_drawing(
     find_boxes(&mut grid, text, target, &mut symbols, &mut blocks);
     let inline = take_inline(&mut grid);
     let problems = &mut tree.problems;
-    let scanner = Scanner { grid: &grid, text, target, left, symbols, problems };
+    let right = OnceCell::new();
+    let scanner = Scanner { grid: &grid, text, target, left, right, symbols, problems };
     let mut tokens = scanner.scan(&blocks);
     give_inline(&inline, &mut tokens, target, text);
     let wired = |what| matches!(what, What::Wire | What::Symbol(_));

@@ -4,9 +4,11 @@ use super::blocks::BlockRow;
 use super::content::{Reading, Wants, pieces, read_braces, read_brackets, read_parentheses};
 use super::glyph::{Arms, contact_mark, continues_word, is_operator, starts_word};
 use super::grid::{Grid, TAKEN, WIDE};
+use super::ragged::ASIDE;
 use super::{Element, ElementKind, OperandPlace};
-use crate::target::Target;
+use crate::target::{DeviceKind, Location, Operand, OperandProblem, Target, Width};
 use crate::text::{Diagnostic, Message, Span, TextEdit};
+use std::cell::OnceCell;
 
 /// A piece of a row.
 #[derive(Clone, Copy, Debug)]
@@ -93,6 +95,8 @@ pub(super) struct Scanner<'a> {
     pub(super) target: &'a Target,
     /// The leftmost column in which a line is drawn.
     pub(super) left: usize,
+    /// The rightmost column in which a row ends with a bar or a corner, once this is asked for.
+    pub(super) right: OnceCell<usize>,
     pub(super) symbols: Vec<Symbol>,
     pub(super) problems: &'a mut Vec<Diagnostic>,
 }
@@ -178,24 +182,43 @@ impl Scanner<'_> {
     }
 
     /// A word. In the middle of a wire it stands where an element belongs; the wire goes on behind it, so that it is
-    /// one finding.
+    /// one finding. Right before the right rail it can only be an output.
     fn word(&mut self, row: usize, start: usize, end: usize) -> Token {
         let wire = |column: usize| self.grid.arms(row, column).is_horizontal();
-        if start == 0 || !wire(start - 1) || !wire(end) {
+        let after_wire = start > 0 && wire(start - 1);
+        let last = after_wire && self.is_last(row, end);
+        if !after_wire || !(wire(end) || last) {
             return Token { start, end, what: What::Word };
         }
         let span = self.grid.span(row, start, end);
         let word = span.of(self.text);
-        // Where the wire is long enough, the brackets take a cell of it on each side.
-        let cell = |fits: bool| usize::from(fits);
-        let from = start - cell(start > 1 && wire(start - 2));
-        let to = end + cell(wire(end + 1));
-        let edit = TextEdit::new(self.grid.span(row, from, to), format!("[{word}]"));
+        let coil = last && can_be_driven(&self.target.read(word));
+        let (title, open, close) = match coil {
+            true => (Message::new("stray-operand.draw-coil"), '(', ')'),
+            false => (Message::new("stray-operand.contact"), '[', ']'),
+        };
+        // Where the wire is long enough, the brackets take a cell of it on each side, else both on the left.
+        let to = end + usize::from(wire(end) && wire(end + 1));
+        let most = 2 - (to - end);
+        let before = (1..=most + 1).take_while(|cells| *cells <= start && wire(start - cells)).count();
+        let from = start - before.saturating_sub(1);
+        let edit = TextEdit::new(self.grid.span(row, from, to), format!("{open}{word}{close}"));
         let problem =
             Diagnostic::new("stray-operand", span, Message::new("stray-operand.in-wire").with("text", word))
-                .fix(Message::new("stray-operand.contact").with("text", word), vec![edit]);
+                .fix(title.with("text", word), vec![edit]);
         self.problems.push(problem);
         Token { start, end, what: What::Wire }
+    }
+
+    /// Whether nothing but wire stands between a column and the right rail of its row.
+    fn is_last(&self, row: usize, column: usize) -> bool {
+        let width = self.grid.width(row);
+        let end = (column..width).find(|at| !self.grid.arms(row, *at).is_horizontal());
+        let Some(end) = end.filter(|end| self.grid.arms(row, *end).is_upright()) else { return false };
+        // A rail may be drawn double.
+        let mut behind = end + 1..width;
+        behind.all(|at| self.grid.at(row, at) == ' ' || self.grid.arms(row, at).is_vertical())
+            && end + ASIDE >= *self.right.get_or_init(|| right_column(self.grid))
     }
 
     /// The end of the word that starts at a cell, if one does.
@@ -520,6 +543,27 @@ impl Scanner<'_> {
         element.operands = reading.operands;
         self.symbols.push(Symbol { row, start, end, element, wants: reading.wants, depth: 0 });
         Token { start, end, what: What::Symbol(self.symbols.len() - 1) }
+    }
+}
+
+/// The rightmost column in which a row ends with a bar or a corner.
+fn right_column(grid: &Grid) -> usize {
+    let last = |row: usize| (0..grid.width(row)).rev().find(|column| grid.at(row, *column) != ' ');
+    let end = |row: usize| last(row).filter(|column| grid.arms(row, *column).is_upright());
+    (0..grid.height()).filter_map(end).max().unwrap_or(0)
+}
+
+/// Whether a coil can drive what a word says. An unknown name is taken for something that it can drive.
+fn can_be_driven(operand: &Operand) -> bool {
+    use DeviceKind::{C, M, S, T, Y};
+    match operand {
+        Operand::Device(device) | Operand::Indexed { device, .. } => {
+            matches!(device.kind, Y | M | S | T | C)
+        }
+        Operand::Direct(address) => address.location != Location::Input && address.width == Width::Bit,
+        Operand::Variable | Operand::WordBit { .. } => true,
+        Operand::Invalid(problem) => *problem == OperandProblem::UnknownDevice,
+        _ => false,
     }
 }
 

@@ -1,8 +1,8 @@
 //! What is drawn for one element: its symbol on the wire row and the words above it.
 
 use super::printer::StyleKind;
-use super::{Block, CoilKind, CompareOperator, ContactKind, Element, ElementKind, Pin, PinWire};
-use crate::text::cell_width;
+use super::{Block, CoilKind, ContactKind, Element, ElementKind, Pin, PinWire};
+use crate::text::text_width;
 
 /// The drawing of one element, before it has a place.
 #[derive(Clone, Debug)]
@@ -51,11 +51,6 @@ pub(super) struct FigurePin {
     pub operand: String,
 }
 
-/// Displayed cells of a text.
-pub(super) fn width(text: &str) -> usize {
-    if text.is_ascii() { text.len() } else { text.chars().map(cell_width).sum() }
-}
-
 impl Symbol {
     /// The symbol of `element`, whose words stand in `source`. Nothing if a word is missing that it must have.
     pub fn of(element: &Element, source: &str, style: StyleKind) -> Option<Symbol> {
@@ -71,7 +66,8 @@ impl Symbol {
             ElementKind::Coil(kind) => coil(*kind, &words, style)?,
             ElementKind::Compare(operator) => {
                 let [left, right] = words.as_slice() else { return None };
-                boxed(format!("[{} {left} {right}]", compare_sign(*operator)), false)
+                let wide = if operator.is_wide() { "D" } else { "" };
+                boxed(format!("[{wide}{} {left} {right}]", operator.sign()), false)
             }
             ElementKind::Invert => boxed("[INV]".to_string(), false),
             ElementKind::Instruction { mnemonic, .. } => {
@@ -91,7 +87,7 @@ impl Symbol {
 
     /// Displayed cells of the widest line above.
     pub fn name_width(&self) -> usize {
-        self.above.iter().map(|line| width(line)).max().unwrap_or(0)
+        self.above.iter().map(|line| text_width(line)).max().unwrap_or(0)
     }
 }
 
@@ -116,12 +112,7 @@ fn add_notes(symbol: &mut Symbol, element: &Element, source: &str) {
 
 fn contact(kind: ContactKind, words: &[String], style: StyleKind) -> Option<Symbol> {
     let [name] = words else { return None };
-    let mark = match kind {
-        ContactKind::NormallyOpen => ' ',
-        ContactKind::NormallyClosed => '/',
-        ContactKind::Rising => 'P',
-        ContactKind::Falling => 'N',
-    };
+    let mark = kind.mark();
     let body = match (style, mark) {
         (StyleKind::Iec, _) => format!("|{mark}|"),
         (StyleKind::Unicode, _) => format!("┤{mark}├"),
@@ -137,39 +128,13 @@ fn coil(kind: CoilKind, words: &[String], style: StyleKind) -> Option<Symbol> {
         return None;
     }
     let name = words.join(" ");
-    let mark = match kind {
-        CoilKind::Plain => ' ',
-        CoilKind::Negated => '/',
-        CoilKind::Set => 'S',
-        CoilKind::Reset => 'R',
-        CoilKind::Rising => 'P',
-        CoilKind::Falling => 'N',
-        CoilKind::Toggle => 'T',
-    };
+    let mark = kind.mark();
     Some(match (style, mark) {
         (StyleKind::Brackets, ' ') => set(Setting::Coil, format!("({name})")),
         (StyleKind::Brackets, '/') => set(Setting::Coil, format!("(/{name})")),
         (StyleKind::Brackets, _) => set(Setting::Coil, format!("({mark} {name})")),
         _ => Symbol { above: vec![name], ..set(Setting::Coil, format!("({mark})")) },
     })
-}
-
-/// The operator as the LD>= family of instructions spells it.
-fn compare_sign(operator: CompareOperator) -> &'static str {
-    match operator {
-        CompareOperator::Equal { wide: false } => "=",
-        CompareOperator::Equal { wide: true } => "D=",
-        CompareOperator::NotEqual { wide: false } => "<>",
-        CompareOperator::NotEqual { wide: true } => "D<>",
-        CompareOperator::Greater { wide: false } => ">",
-        CompareOperator::Greater { wide: true } => "D>",
-        CompareOperator::Less { wide: false } => "<",
-        CompareOperator::Less { wide: true } => "D<",
-        CompareOperator::GreaterOrEqual { wide: false } => ">=",
-        CompareOperator::GreaterOrEqual { wide: true } => "D>=",
-        CompareOperator::LessOrEqual { wide: false } => "<=",
-        CompareOperator::LessOrEqual { wide: true } => "D<=",
-    }
 }
 
 fn figure(block: &Block, words: &[String], element: &Element, source: &str) -> Option<Symbol> {
@@ -208,13 +173,13 @@ impl Figure {
 
     /// Cells between the edges. The main pins face each other; other pins may, too, so any two names must fit.
     pub fn inner_width(&self) -> usize {
-        let widest = |pins: &[FigurePin]| pins.iter().map(|pin| width(&pin.name)).max().unwrap_or(0);
-        (widest(&self.inputs) + widest(&self.outputs) + 2).max(width(&self.type_name) + 2)
+        let widest = |pins: &[FigurePin]| pins.iter().map(|pin| text_width(&pin.name)).max().unwrap_or(0);
+        (widest(&self.inputs) + widest(&self.outputs) + 2).max(text_width(&self.type_name) + 2)
     }
 
     /// Cells that a side needs outside its edge for operands, circles and the wires to them.
     pub fn outer_width(pins: &[FigurePin]) -> usize {
-        let one = |pin: &FigurePin| match (width(&pin.operand), pin.negated) {
+        let one = |pin: &FigurePin| match (text_width(&pin.operand), pin.negated) {
             (0, negated) => usize::from(negated),
             (operand, negated) => operand + 2 + usize::from(negated),
         };

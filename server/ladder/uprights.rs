@@ -85,8 +85,58 @@ impl Uprights {
             }
             upright.role = role_of(upright, tokens, left, right);
         }
+        found.take_right_rails(grid, tokens, problems);
         report_left_rail(&found, grid, tokens, problems);
         found
+    }
+
+    /// Rows of names carry no power, so the one bar behind the names is a piece of the right rail in whatever column
+    /// it stands, if the rows of elements beside it have a rail and no corner that could seek the bar.
+    fn take_right_rails(&mut self, grid: &Grid, tokens: &Tokens, problems: &mut Vec<Diagnostic>) {
+        for number in 0..self.all.len() {
+            let upright = &self.all[number];
+            if upright.role != Role::Stray || upright.cells.is_empty() || !self.ends_names(upright, tokens) {
+                continue;
+            }
+            for cell in &upright.cells {
+                let token = tokens.rows[cell.row][cell.token];
+                let span = grid.span(cell.row, token.start, token.end);
+                let message = Message::new("ragged-drawing.right-rail");
+                problems.push(Diagnostic::new("ragged-drawing", span, message));
+            }
+            self.all[number].role = Role::RightRail;
+        }
+    }
+
+    /// Whether each cell of a bar ends a row of names, beside rows of elements that end at the right rail.
+    fn ends_names(&self, upright: &Upright, tokens: &Tokens) -> bool {
+        let has_role = |row: usize, number: usize, role: Role| {
+            self.of(row, number).is_some_and(|(_, upright, _)| upright.role == role)
+        };
+        let ends_row = |cell: &Cell| {
+            let line = &tokens.rows[cell.row];
+            let is_other = |number: usize| {
+                let token = &line[number];
+                number != cell.token && token.is_drawn() && !has_role(cell.row, number, Role::LeftRail)
+            };
+            let named = line.iter().any(|token| token.what == What::Word);
+            named && cell.token + 1 == line.len() && !(0..line.len()).any(is_other)
+        };
+        let is_railed = |row: &usize| {
+            let uprights = || {
+                let line = tokens.rows[*row].iter().enumerate();
+                line.filter(|(_, token)| matches!(token.what, What::Upright(_))).map(|(number, _)| number)
+            };
+            let joined = |number: usize| self.of(*row, number).is_some_and(|(.., cell)| cell.left);
+            uprights().any(|number| has_role(*row, number, Role::RightRail) && joined(number))
+                && uprights().all(|number| {
+                    [Role::LeftRail, Role::RightRail].iter().any(|role| has_role(*row, number, *role))
+                })
+        };
+        let (first, last) = (upright.cells[0].row, upright.cells[upright.cells.len() - 1].row);
+        let beside = [first.checked_sub(1), Some(last + 1)].into_iter().flatten();
+        let wired: Vec<usize> = beside.filter(|row| tokens.extent(*row).wires.is_some()).collect();
+        !wired.is_empty() && upright.cells.iter().all(ends_row) && wired.iter().all(is_railed)
     }
 
     /// Joins the upright `lower` to the end of `upper`.

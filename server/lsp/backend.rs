@@ -1,19 +1,19 @@
 //! The handlers: a few lines each, from the snapshot of the request to the answer of `ide`.
 
 use super::across;
+use super::answering::{aside, beside, refused, settings, snapshot, whole, with_around, with_open};
 use super::editing;
 use super::progress::Progress;
-use super::projects::Around;
 use super::pulled::{self, PartialReport, PartialReportParams};
-use super::to_proto::{self, Place};
+use super::to_proto;
 use super::tokens;
-use super::workspace::{Open, SNAPSHOT, Snapshot, Workspace};
+use super::typed;
+use super::workspace::{SNAPSHOT, Snapshot, Workspace};
 use super::written::{given, write};
 use super::{capabilities, features};
 use crate::ide;
-use crate::text::{Language, Message};
+use crate::text::Message;
 use serde_json::{Value, json};
-use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use tower_lsp::LanguageServer;
@@ -41,7 +41,7 @@ impl LanguageServer for Backend {
         Ok(capabilities::offered(
             &params.capabilities,
             manner.encoding,
-            settings.pulls(),
+            settings.pulls,
             self.workspace.requests(),
         ))
     }
@@ -117,11 +117,10 @@ impl LanguageServer for Backend {
     async fn rename(&self, params: RenameParams) -> Result<Option<WorkspaceEdit>> {
         let at = params.text_document_position;
         let uri = at.text_document.uri;
-        let unknown = SNAPSHOT.with(|snapshot| snapshot.is_incomplete(snapshot.open(&uri)?));
-        if let Some(reason) = unknown {
+        let snapshot = snapshot();
+        if let Some(reason) = snapshot.open(&uri).and_then(|open| snapshot.is_incomplete(open)) {
             return Err(refused(reason));
         }
-        let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
         let renamed = whole(uri.clone(), move |around, place| {
             across::rename(&snapshot, around, place, at.position, &params.new_name)
         });
@@ -141,7 +140,7 @@ impl LanguageServer for Backend {
     }
 
     async fn symbol(&self, params: WorkspaceSymbolParams) -> Result<Option<WorkspaceSymbolResponse>> {
-        let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
+        let snapshot = snapshot();
         let found = beside(move |cancelled| {
             let everything = snapshot.everything()?.cancellable(cancelled);
             Some(WorkspaceSymbolResponse::Nested(across::symbols(
@@ -183,7 +182,7 @@ impl LanguageServer for Backend {
     }
 
     async fn document_link(&self, params: DocumentLinkParams) -> Result<Option<Vec<DocumentLink>>> {
-        let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
+        let snapshot = snapshot();
         beside(move |_| across::links(&snapshot, &params.text_document.uri)).await
     }
 
@@ -232,12 +231,12 @@ impl LanguageServer for Backend {
     }
 
     async fn inlay_hint(&self, params: InlayHintParams) -> Result<Option<Vec<InlayHint>>> {
-        if !SNAPSHOT.with(|snapshot| snapshot.settings.inlay_hints) {
+        let settings = settings();
+        if !settings.inlay_hints {
             return Ok(None);
         }
-        let with_comments = SNAPSHOT.with(|snapshot| snapshot.settings.comment_hints);
         whole(params.text_document.uri, move |_, place| {
-            let hints = if with_comments { ide::inlay_hints } else { ide::value_hints };
+            let hints = if settings.comment_hints { ide::inlay_hints } else { ide::value_hints };
             let hints = hints(place.document, place.span(params.range), place.language);
             let hints = hints.into_iter().map(|hint| to_proto::inlay_hint(place, hint));
             write(&hints.collect::<Vec<_>>())
@@ -247,7 +246,7 @@ impl LanguageServer for Backend {
     }
 
     async fn formatting(&self, params: DocumentFormattingParams) -> Result<Option<Vec<TextEdit>>> {
-        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let settings = settings();
         let uri = params.text_document.uri;
         let edits = whole(uri.clone(), move |around, place| {
             place.edits(&ide::format(place.document, settings.style(&around.here().manifest)))
@@ -256,7 +255,7 @@ impl LanguageServer for Backend {
     }
 
     async fn range_formatting(&self, params: DocumentRangeFormattingParams) -> Result<Option<Vec<TextEdit>>> {
-        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let settings = settings();
         whole(params.text_document.uri, move |around, place| {
             let style = settings.style(&around.here().manifest);
             place.edits(&ide::format_ranges(place.document, style, &[place.span(params.range)]))
@@ -284,7 +283,7 @@ impl LanguageServer for Backend {
     }
 
     async fn code_lens(&self, params: CodeLensParams) -> Result<Option<Vec<CodeLens>>> {
-        let wanted = SNAPSHOT.with(|snapshot| snapshot.settings.lenses);
+        let wanted = settings().lenses;
         whole(params.text_document.uri, move |around, place| {
             write(&features::lenses(around.here(), place, wanted))
         })
@@ -293,17 +292,23 @@ impl LanguageServer for Backend {
     }
 
     async fn code_lens_resolve(&self, lens: CodeLens) -> Result<CodeLens> {
-        let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
+        let snapshot = snapshot();
         Ok(features::resolved(&snapshot, lens))
     }
 
     async fn code_action(&self, params: CodeActionParams) -> Result<Option<CodeActionResponse>> {
-        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let settings = settings();
         let resolves = self.resolves_actions.load(Ordering::Relaxed);
         whole(params.text_document.uri.clone(), move |around, place| {
-            let (open, found) = (around.here(), around.findings());
+            let open = around.here();
+            let only = params.context.only.as_deref();
+            // To find what could be mended, all rules run.
+            let found = match editing::is_wanted(&CodeActionKind::QUICKFIX, only) {
+                true => around.findings(),
+                false => Vec::new(),
+            };
             let fixes = ide::fixes(&found, place.span(params.range)).into_iter();
-            let fixes = fixes.map(|fix| quick_fix(around, place, &fix));
+            let fixes = fixes.map(|fix| features::quick_fix(around, place, &fix));
             let edits = editing::actions(open, place, &params, settings.style(&open.manifest), resolves);
             let rewrites = features::rewrites(around.here(), place, &params);
             fixes
@@ -319,7 +324,7 @@ impl LanguageServer for Backend {
         &self,
         params: DocumentOnTypeFormattingParams,
     ) -> Result<Option<Vec<TextEdit>>> {
-        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let settings = settings();
         let at = params.text_document_position;
         Ok(with_open(&at.text_document.uri, |open, place| {
             let style = settings.style(&open.manifest);
@@ -349,7 +354,7 @@ impl LanguageServer for Backend {
 
     async fn code_action_resolve(&self, action: CodeAction) -> Result<CodeAction> {
         let Some(asked) = editing::asked_by(&action) else { return Ok(action) };
-        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let settings = settings();
         let edit = with_open(&asked.text_document.uri, |open, place| {
             let result = editing::edit(open, place, &asked, settings.style(&open.manifest));
             Some(result.map(|result| editing::changes(open, result.edits)))
@@ -358,7 +363,7 @@ impl LanguageServer for Backend {
     }
 
     async fn diagnostic(&self, params: DocumentDiagnosticParams) -> Result<DocumentDiagnosticReportResult> {
-        let manner = SNAPSHOT.with(|snapshot| snapshot.manner);
+        let manner = snapshot().manner;
         let uri = params.text_document.uri;
         let items = whole(uri, move |around, _| to_proto::diagnostics(around, around.findings(), manner));
         let items = items.await?.unwrap_or_default();
@@ -369,7 +374,7 @@ impl LanguageServer for Backend {
         &self,
         params: WorkspaceDiagnosticParams,
     ) -> Result<WorkspaceDiagnosticReportResult> {
-        let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
+        let snapshot = snapshot();
         let client = self.workspace.client.clone();
         let title = Message::new("project.checking").render(snapshot.manner.language);
         let progress = Progress::of_request(&client, params.work_done_progress_params.work_done_token, title);
@@ -402,7 +407,9 @@ impl LanguageServer for Backend {
             return Err(refused(Message::new("request.no-document").with("command", params.command)));
         };
         match params.command.as_str() {
-            "rungwise.check" => whole(uri, |around, place| check_summary(around, place.language)).await,
+            "rungwise.check" => {
+                whole(uri, |around, place| features::check_summary(around, place.language)).await
+            }
             "rungwise.format" => self.format(uri).await,
             "rungwise.usage" => {
                 whole(uri, |around, place| features::usage_json(around, place.language)).await
@@ -418,7 +425,7 @@ impl Backend {
         &self,
         params: features::RangesParams,
     ) -> Result<Option<Vec<TextEdit>>> {
-        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let settings = settings();
         whole(params.text_document.uri, move |around, place| {
             let style = settings.style(&around.here().manifest);
             let spans: Vec<_> = params.ranges.iter().map(|range| place.span(*range)).collect();
@@ -447,23 +454,36 @@ impl Backend {
         let Some(edit) = edit else {
             return Err(refused(Message::new("request.no-edit").with("command", capabilities::APPLY)));
         };
+        self.have_applied(edit);
+        Ok(None)
+    }
+
+    /// Asks the client to apply an edit. It may answer late or never; no handler waits for it.
+    fn have_applied(&self, edit: WorkspaceEdit) {
         let client = self.workspace.client.clone();
-        // The client may answer late or never; no handler waits for it.
         tokio::spawn(async move {
             if let Err(reason) = client.apply_edit(edit).await {
                 tracing::warn!("the client did not apply the edits: {reason}");
             }
         });
-        Ok(None)
     }
 
     /// `rungwise/edit`
     pub(super) async fn edit(&self, params: editing::EditParams) -> Result<Option<editing::EditResult>> {
-        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let settings = settings();
         let edited = with_open(&params.text_document.uri, |open, place| {
             Some(editing::edit(open, place, &params, settings.style(&open.manifest)))
         });
         edited.transpose()
+    }
+
+    /// `rungwise/typed`
+    pub(super) async fn typed(&self, params: typed::TypedParams) -> Result<Option<Vec<TextEdit>>> {
+        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let edits = with_open(&params.text_document.uri, |open, place| {
+            Some(typed::edits(open, place, &params, settings.style(&open.manifest)))
+        });
+        edits.transpose()
     }
 
     /// `rungwise/object`
@@ -476,120 +496,14 @@ impl Backend {
 
     /// Computes the edits and asks the client to apply them; the answer says how many there are.
     async fn format(&self, uri: Uri) -> Result<Option<LSPAny>> {
-        let settings = SNAPSHOT.with(|snapshot| snapshot.settings.clone());
+        let settings = settings();
         let edit = whole(uri, move |around, place| {
             let open = around.here();
             let edits = ide::format(place.document, settings.style(&open.manifest));
             (edits.len(), across::workspace_edit([(open.clone(), edits)], place.manner()))
         });
         let Some((count, edit)) = edit.await? else { return Ok(None) };
-        let client = self.workspace.client.clone();
-        // The client may answer late or never; no handler waits for it.
-        tokio::spawn(async move {
-            if let Err(reason) = client.apply_edit(edit).await {
-                tracing::warn!("the client did not apply the edits: {reason}");
-            }
-        });
+        self.have_applied(edit);
         Ok(Some(json!({"edits": count})))
     }
-}
-
-/// The answer about an open document; nothing for one that is not open.
-fn with_open<T>(uri: &Uri, answer: impl FnOnce(&Open, Place<'_>) -> Option<T>) -> Option<T> {
-    let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
-    let open = snapshot.open(uri)?;
-    answer(open, Place::new(&open.document, snapshot.manner))
-}
-
-/// The same with the files of its project.
-fn with_around<T>(uri: &Uri, answer: impl FnOnce(&Around, Place<'_>) -> Option<T>) -> Option<T> {
-    let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
-    let around = snapshot.around(snapshot.open(uri)?);
-    answer(&around, Place::new(&around.here().document, snapshot.manner))
-}
-
-/// The same for answers that walk the whole document or other files: they run on a thread of their own, and the trees
-/// that they read go away with them.
-async fn whole<T: Send + 'static>(
-    uri: Uri,
-    answer: impl FnOnce(&Around, Place<'_>) -> T + Send + 'static,
-) -> Result<Option<T>> {
-    aside(uri, move |around, place| answer(around, Place { document: &place.document.lean(), ..place })).await
-}
-
-/// The same on a thread of its own, for answers that look at much of a document but read no trees.
-async fn aside<T: Send + 'static>(
-    uri: Uri,
-    answer: impl FnOnce(&Around, Place<'_>) -> T + Send + 'static,
-) -> Result<Option<T>> {
-    let snapshot: Snapshot = SNAPSHOT.with(Clone::clone);
-    beside(move |cancelled| {
-        // What was named by an answer of before, such as a call in a file that is not open, is a file of a project.
-        let around = match snapshot.open(&uri) {
-            Some(open) => snapshot.around(open),
-            None => snapshot.around_closed(&uri)?,
-        };
-        let around = around.cancellable(cancelled);
-        Some(answer(&around, Place::new(&around.here().document, snapshot.manner)))
-    })
-    .await
-}
-
-/// Sets its flag when the handler that has it is dropped: the request was cancelled.
-struct Waiting(Arc<AtomicBool>);
-
-impl Drop for Waiting {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-}
-
-/// Work on a thread of its own, with the flag that tells it that nobody waits any more.
-async fn beside<T: Send + 'static>(
-    work: impl FnOnce(&Arc<AtomicBool>) -> Option<T> + Send + 'static,
-) -> Result<Option<T>> {
-    let waiting = Waiting(Arc::default());
-    let cancelled = waiting.0.clone();
-    let done = tokio::task::spawn_blocking(move || {
-        // Cancelled while all threads were busy.
-        if cancelled.load(Ordering::Relaxed) { None } else { work(&cancelled) }
-    });
-    done.await.map_err(|failure| {
-        tracing::error!("a request failed: {failure}");
-        Error::internal_error()
-    })
-}
-
-fn quick_fix(around: &Around, place: Place<'_>, fix: &ide::FixOf<'_>) -> CodeAction {
-    // Plain changes reach every client, also one that knows no versioned edits.
-    let changes = HashMap::from([(around.here().uri.clone(), place.edits(&fix.fix.edits))]);
-    CodeAction {
-        title: fix.fix.title.render(place.language),
-        kind: Some(CodeActionKind::QUICKFIX),
-        diagnostics: Some(vec![to_proto::diagnostic(around, fix.diagnostic, place.manner())]),
-        edit: Some(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }),
-        is_preferred: Some(fix.is_preferred),
-        ..CodeAction::default()
-    }
-}
-
-/// `{"errors", "warnings", "hints", "rungs", "steps", "capacity", "message"}`
-fn check_summary(around: &Around, language: Language) -> Value {
-    let mut summary = ide::Summary::default();
-    summary.add(&around.here().document, &around.findings());
-    json!({
-        "errors": summary.errors,
-        "warnings": summary.warnings,
-        "hints": summary.hints,
-        "rungs": summary.rungs,
-        "steps": summary.steps,
-        "capacity": summary.capacity,
-        "message": summary.sentence().render(language),
-    })
-}
-
-/// A refusal that the editor shows to the user.
-fn refused(message: Message) -> Error {
-    let language = SNAPSHOT.with(|snapshot| snapshot.manner.language);
-    Error::invalid_params(message.render(language))
 }

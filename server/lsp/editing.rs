@@ -145,7 +145,7 @@ fn action_kind(kind: EditKind) -> CodeActionKind {
 }
 
 /// Whether a client that asks for these kinds only would take an action of that kind.
-fn is_wanted(kind: &CodeActionKind, only: Option<&[CodeActionKind]>) -> bool {
+pub(super) fn is_wanted(kind: &CodeActionKind, only: Option<&[CodeActionKind]>) -> bool {
     let within = |outer: &CodeActionKind| {
         let rest = kind.as_str().strip_prefix(outer.as_str());
         outer.as_str().is_empty() || rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))

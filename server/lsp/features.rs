@@ -10,11 +10,12 @@
 //! The page alone is also the content of the virtual document `rungwise-usage:` + the path of the document, which
 //! clients of LSP 3.18 ask for with `workspace/textDocumentContent` (`{"uri"}` → `{"text"}`).
 
+use super::editing;
 use super::projects::Around;
 use super::sheets;
-use super::to_proto::Place;
+use super::to_proto::{self, Place};
 use super::workspace::{Open, Snapshot};
-use crate::document::{Document, Use};
+use crate::document::Document;
 use crate::ide::{self, HighlightKind, LensKind, LensSettings};
 use crate::target::{Device, Operand};
 use crate::text::{Encoding, Language, column_of_offset};
@@ -151,19 +152,14 @@ pub(super) fn table(snapshot: &Snapshot, around: &Around) -> Option<Arc<Open>> {
 
 /// The actions that write a symbol for the device at the cursor, or the device for a symbol.
 pub(super) fn rewrites(open: &Open, place: Place<'_>, params: &CodeActionParams) -> Vec<CodeAction> {
-    // A kind stands for all kinds below it.
-    let takes = |kind: &CodeActionKind| CodeActionKind::REFACTOR_REWRITE.as_str().starts_with(kind.as_str());
-    if params.context.only.as_ref().is_some_and(|only| !only.iter().any(takes)) {
+    if !editing::is_wanted(&CodeActionKind::REFACTOR_REWRITE, params.context.only.as_deref()) {
         return Vec::new();
     }
     let rewrites = ide::rewrites(place.document, place.offset(params.range.start)).into_iter();
     let action = |rewrite: ide::Rewrite| CodeAction {
         title: rewrite.title.render(place.language),
         kind: Some(CodeActionKind::REFACTOR_REWRITE),
-        edit: Some(WorkspaceEdit {
-            changes: Some([(open.uri.clone(), place.edits(&rewrite.edits))].into_iter().collect()),
-            ..WorkspaceEdit::default()
-        }),
+        edit: Some(editing::changes(open, place.edits(&rewrite.edits))),
         ..CodeAction::default()
     };
     rewrites.map(action).collect()
@@ -199,7 +195,7 @@ fn row_json<'a>(
             "line": at.line + 1,
             "column": at.column + 1,
             "rung": at.rung,
-            "access": access_word(at.usage),
+            "access": at.access_word(),
             "coil": at.by_coil,
             "count": at.count,
             "text": at.text,
@@ -218,12 +214,29 @@ fn row_json<'a>(
     })
 }
 
-fn access_word(usage: Use) -> &'static str {
-    match usage {
-        Use::Read => "read",
-        Use::Write => "write",
-        Use::ReadWrite => "read-write",
-        Use::Declare => "define",
-        Use::Jump => "jump",
+/// A fix as a code action.
+pub(super) fn quick_fix(around: &Around, place: Place<'_>, fix: &ide::FixOf<'_>) -> CodeAction {
+    CodeAction {
+        title: fix.fix.title.render(place.language),
+        kind: Some(CodeActionKind::QUICKFIX),
+        diagnostics: Some(vec![to_proto::diagnostic(around, fix.diagnostic, place.manner())]),
+        edit: Some(editing::changes(around.here(), place.edits(&fix.fix.edits))),
+        is_preferred: Some(fix.is_preferred),
+        ..CodeAction::default()
     }
+}
+
+/// `{"errors", "warnings", "hints", "rungs", "steps", "capacity", "message"}`
+pub(super) fn check_summary(around: &Around, language: Language) -> Value {
+    let mut summary = ide::Summary::default();
+    summary.add(&around.here().document, &around.findings());
+    json!({
+        "errors": summary.errors,
+        "warnings": summary.warnings,
+        "hints": summary.hints,
+        "rungs": summary.rungs,
+        "steps": summary.steps,
+        "capacity": summary.capacity,
+        "message": summary.sentence().render(language),
+    })
 }

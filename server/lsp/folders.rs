@@ -101,6 +101,8 @@ impl Workspace {
             state.snapshot.settings = Arc::new(settings);
         }
         self.reread_projects();
+        // The language, and what is shown at all, are not in the text that a client may have asked about.
+        self.refresh();
     }
 }
 

@@ -122,10 +122,7 @@ pub(super) fn sound(
                 continue;
             }
             for body in translate(body) {
-                let header = format!("Content-Length: {}\r\n\r\n", body.len());
-                if writer.write_all(header.as_bytes()).await.is_err()
-                    || writer.write_all(&body).await.is_err()
-                {
+                if writer.write_all(&framed(&body)).await.is_err() {
                     return;
                 }
             }
@@ -153,6 +150,11 @@ async fn next_length(input: &mut (impl AsyncBufReadExt + Unpin)) -> Option<usize
     }
 }
 
+/// A body behind its header.
+pub(super) fn framed(body: &[u8]) -> Vec<u8> {
+    [format!("Content-Length: {}\r\n\r\n", body.len()).as_bytes(), body].concat()
+}
+
 /// Start and end of the body of the first frame in `bytes`, if it is there as a whole.
 pub(super) fn whole_frame(bytes: &[u8]) -> Option<(usize, usize)> {
     let head = bytes.windows(4).position(|part| part == b"\r\n\r\n")?;
@@ -171,11 +173,11 @@ fn content_length(line: &str) -> Option<usize> {
 
 fn is_message(body: &[u8]) -> bool {
     let Ok(shape) = serde_json::from_slice::<Shape>(body) else { return false };
-    let parameters = shape.params.is_none_or(|params| params.allowed);
-    let answers = || {
-        shape.result.is_some() || shape.error.is_some() || body.windows(8).any(|part| part == b"\"result\"")
-    };
-    if shape.method.is_some() { parameters } else { answers() }
+    if shape.method.is_some() {
+        return shape.params.is_none_or(|params| params.allowed);
+    }
+    // A result may be `null`, which reads like none.
+    shape.result.is_some() || shape.error.is_some() || body.windows(8).any(|part| part == b"\"result\"")
 }
 
 #[cfg(test)]

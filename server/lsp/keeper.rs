@@ -236,7 +236,7 @@ impl Task {
     /// Publishes what is found in the files of a project that are not open.
     async fn publish_closed(&mut self, workspace: &Arc<Workspace>, key: &Arc<Path>) {
         let snapshot = workspace.snapshot();
-        let wanted = !snapshot.settings.pulls() && snapshot.settings.whole_project;
+        let wanted = !snapshot.settings.pulls && snapshot.settings.whole_project;
         let found = match wanted {
             true => {
                 let (snapshot, key) = (snapshot.clone(), key.clone());
@@ -247,7 +247,7 @@ impl Task {
             false => Vec::new(),
         };
         let sheet = snapshot.projects.get(key).and_then(|loaded| sheets::findings(&snapshot, loaded));
-        let sheet = sheet.filter(|_| !snapshot.settings.pulls());
+        let sheet = sheet.filter(|_| !snapshot.settings.pulls);
         let found = found.into_iter().chain(sheet);
         let of_project = |entry: &(&Uri, &(Arc<Path>, Option<u64>))| entry.1.0 == *key;
         let mut gone: FxHashSet<Uri> =

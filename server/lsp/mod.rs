@@ -6,6 +6,7 @@
 
 mod abilities;
 mod across;
+mod answering;
 mod backend;
 mod capabilities;
 mod editing;
@@ -28,6 +29,7 @@ mod sheets;
 mod status;
 mod to_proto;
 mod tokens;
+mod typed;
 mod workspace;
 mod written;
 
@@ -68,6 +70,7 @@ pub async fn serve_between(
     })
     .custom_method("rungwise/edit", backend::Backend::edit)
     .custom_method("rungwise/object", backend::Backend::object)
+    .custom_method("rungwise/typed", backend::Backend::typed)
     .custom_method("textDocument/rangesFormatting", backend::Backend::ranges_formatting)
     .custom_method("workspace/textDocumentContent", backend::Backend::content)
     .finish();

@@ -1,6 +1,7 @@
 //! The way out: whole messages of the server pass the translator before they are written.
 
 use super::fences::Translator;
+use super::frames::{framed, whole_frame};
 use super::written::Written;
 use std::pin::Pin;
 use std::task::{Context, Poll, ready};
@@ -26,13 +27,12 @@ impl<W> Outlet<W> {
 
     fn take(&mut self, bytes: &[u8]) {
         self.taken.extend_from_slice(bytes);
-        while let Some((start, end)) = super::frames::whole_frame(&self.taken) {
+        while let Some((start, end)) = whole_frame(&self.taken) {
             let rest = self.taken.split_off(end);
             let body = self.taken.split_off(start);
             self.taken = rest;
             for body in self.translator.outgoing(self.written.redeem(body)) {
-                self.waiting.extend_from_slice(format!("Content-Length: {}\r\n\r\n", body.len()).as_bytes());
-                self.waiting.extend_from_slice(&body);
+                self.waiting.extend_from_slice(&framed(&body));
             }
         }
     }

@@ -157,7 +157,9 @@ impl Snapshot {
     /// The project around a file of it that is not open.
     pub(super) fn around_closed(&self, uri: &Uri) -> Option<Around> {
         let path = canonical(&file_path(uri)?);
-        let (key, _) = self.projects.iter().find(|(key, _)| path.starts_with(key))?;
+        // Folders of projects may lie in each other; a file belongs to the innermost.
+        let around = self.projects.keys().filter(|key| path.starts_with(key));
+        let key = around.max_by_key(|key| key.components().count())?;
         let around = self.project(key)?;
         let here = around.files.iter().position(|file| file.path.as_ref() == Some(&path))?;
         around.from(here)

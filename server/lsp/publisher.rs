@@ -121,7 +121,7 @@ impl Publisher {
             client: client.clone(),
             reopened: reopened.clone(),
             manner: snapshot.manner,
-            pushes: !snapshot.settings.pulls(),
+            pushes: !snapshot.settings.pulls,
             batch: None,
             batch_took: Duration::ZERO,
             status: None,

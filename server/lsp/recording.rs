@@ -1,7 +1,7 @@
 //! Recordings of what a client sends, for bug reports: one line of JSON a message, `{"ms": 12, "message": {…}}`, with
 //! the milliseconds since the start of the server.
 
-use super::frames::whole_frame;
+use super::frames::{framed, whole_frame};
 use super::serve_between;
 use crate::text::Language;
 use serde::{Deserialize, Serialize};
@@ -67,7 +67,7 @@ pub async fn replay(
             if method.as_deref() == Some("exit") {
                 break;
             }
-            if client.write_all(frame(&message).as_bytes()).await.is_err() {
+            if client.write_all(&framed(message.as_bytes())).await.is_err() {
                 return;
             }
             // A client waits for the answer, and the server refuses what comes before it.
@@ -77,7 +77,7 @@ pub async fn replay(
         }
         // What is under way is answered and published before the server ends.
         tokio::time::sleep(SETTLING).await;
-        let _ = client.write_all(frame(exit).as_bytes()).await;
+        let _ = client.write_all(&framed(exit.as_bytes())).await;
         let _ = client.shutdown().await;
     });
     Ok(serve_between(input, output, asked, otherwise).await)
@@ -112,10 +112,6 @@ impl<W: AsyncWrite + Unpin> AsyncWrite for Tap<W> {
     fn poll_shutdown(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<std::io::Result<()>> {
         Pin::new(&mut self.output).poll_shutdown(context)
     }
-}
-
-fn frame(message: &str) -> String {
-    format!("Content-Length: {}\r\n\r\n{message}", message.len())
 }
 
 fn method_of(message: &str) -> Option<String> {

@@ -11,9 +11,9 @@ use serde_json::Value;
 #[derive(Clone, Debug)]
 pub(super) struct Settings {
     /// `target`: `fx2n` …; anything else leaves it to the project and the content.
-    target: Option<&'static Target>,
+    pub target: Option<&'static Target>,
     /// `dialect`: `fx`, `iec`; anything else leaves it to the project and the content.
-    notation: Option<Notation>,
+    pub notation: Option<Notation>,
     /// `format.style`: `iec`, `brackets`, `unicode`; anything else leaves it to the project.
     style: Option<FormatStyle>,
     /// `format.width`, in cells; else the project's.
@@ -29,7 +29,7 @@ pub(super) struct Settings {
     /// `diagnostics.scope` is `project` and not `open`: files of a project that are not open are reported, too.
     pub whole_project: bool,
     /// `diagnostics.mode` is `pull` and not `push`. A client that shows both kinds would show everything twice.
-    pulls: bool,
+    pub pulls: bool,
 }
 
 /// What is known of the user's language apart from the settings.
@@ -69,11 +69,7 @@ impl Settings {
         let own = value.get("rungwise").unwrap_or(value).as_object()?;
         let part = |section: &str, name: &str| own.get(section).and_then(|section| section.get(name));
         let word = |value: Option<&Value>| value.and_then(Value::as_str).map(str::to_ascii_lowercase);
-        let notation = match word(own.get("dialect")).as_deref() {
-            Some("fx") => Some(Notation::FxIl),
-            Some("iec") => Some(Notation::IecIl),
-            _ => None,
-        };
+        let notation = word(own.get("dialect")).and_then(|word| Notation::of_dialect(&word));
         let style = match word(part("format", "style")).as_deref() {
             Some("iec") => Some(FormatStyle::Iec),
             Some("brackets") => Some(FormatStyle::Brackets),
@@ -105,14 +101,6 @@ impl Settings {
         })
     }
 
-    pub(super) fn target(&self) -> Option<&'static Target> {
-        self.target
-    }
-
-    pub(super) fn notation(&self) -> Option<Notation> {
-        self.notation
-    }
-
     pub(super) fn style(&self, manifest: &Manifest) -> Style {
         let width = self.width.unwrap_or(manifest.format.width);
         Style { kind: self.style.unwrap_or(manifest.format.style), width }
@@ -127,9 +115,5 @@ impl Settings {
     pub(super) fn reads_like(&self, other: &Settings) -> bool {
         let name = |settings: &Settings| settings.target.map(|target| target.name);
         (name(self), self.notation) == (name(other), other.notation)
-    }
-
-    pub(super) fn pulls(&self) -> bool {
-        self.pulls
     }
 }

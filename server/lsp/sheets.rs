@@ -6,7 +6,6 @@ use super::workspace::{Open, Snapshot, Workspace, edit_of, spliced};
 use crate::document::{Document, Notation};
 use crate::project::{CommentsFile, Manifest, Project};
 use crate::target::{Model, Target};
-use crate::text::Diagnostic;
 use rustc_hash::FxHashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -113,14 +112,10 @@ pub(super) fn comments_file(root: &Path, manifest: &Manifest, sheets: &Sheets) -
 /// What is wrong in the comments file of a project, for publishing.
 pub(super) fn findings(snapshot: &Snapshot, loaded: &Loaded) -> Option<(Uri, Vec<lsp::Diagnostic>)> {
     let file = loaded.comments_file.as_ref()?;
-    let severities = loaded.manifest.severities();
-    let graded = file
-        .diagnostics
-        .iter()
-        .filter_map(|found| Some(Diagnostic { severity: severities.of(found.code)?, ..found.clone() }));
+    let graded = file.graded(&loaded.manifest.severities());
     let around = around(snapshot, file)?;
     let uri = around.here().uri.clone();
-    Some((uri, to_proto::diagnostics(&around, graded.collect(), snapshot.manner)))
+    Some((uri, to_proto::diagnostics(&around, graded, snapshot.manner)))
 }
 
 /// The comments file as a document, with the address that the editor gave it if it is open.

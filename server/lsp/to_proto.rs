@@ -232,7 +232,7 @@ pub(super) fn symbol(place: Place<'_>, node: ide::SymbolNode) -> lsp::DocumentSy
     let children: Vec<_> = node.children.into_iter().map(|child| symbol(place, child)).collect();
     #[allow(deprecated, reason = "the protocol's struct still has the field")]
     lsp::DocumentSymbol {
-        name: if node.name.is_empty() { "?".to_string() } else { node.name },
+        name: node.name,
         detail: (!node.detail.is_empty()).then_some(node.detail),
         kind: symbol_kind(node.kind),
         tags: None,

@@ -370,7 +370,7 @@ impl Workspace {
     /// Has the client ask again for what other files have a part in. Nobody waits for it.
     pub(super) fn refresh(&self) {
         let state = self.state();
-        let (requests, pulls) = (state.requests, state.snapshot.settings.pulls());
+        let (requests, pulls) = (state.requests, state.snapshot.settings.pulls);
         let client = self.client.clone();
         tokio::spawn(async move {
             if requests.refresh_diagnostics && pulls {
@@ -481,8 +481,8 @@ pub(super) fn decided(
     is_ladder: bool,
 ) -> (Notation, &'static Target) {
     let name = uri.path().as_str();
-    let notation = if is_ladder { Some(Notation::Ladder) } else { settings.notation() };
-    guarded(|| decide(name, text, manifest, settings.target(), notation))
+    let notation = if is_ladder { Some(Notation::Ladder) } else { settings.notation };
+    guarded(|| decide(name, text, manifest, settings.target, notation))
         .unwrap_or((Notation::FxIl, Target::of(Model::Fx2n)))
 }
 

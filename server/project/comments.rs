@@ -9,9 +9,10 @@ pub use decode::decode;
 
 mod fields;
 
+use crate::check::Severities;
 use crate::document::{Comments, DeviceComment, Symbol};
-use crate::target::{Model, Operand, SymbolProblem, Symbols, Target};
-use crate::text::{Diagnostic, Encoding, LineColumn, Message, Span, column_of_offset};
+use crate::target::{Model, Operand, Symbols, Target};
+use crate::text::{Diagnostic, Encoding, LineColumn, Message, Span, position_of};
 use fields::{Field, Record};
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
@@ -58,12 +59,8 @@ impl CommentsFile {
             let message = Message::new("device-comments.encoding");
             reader.diagnostics.push(Diagnostic::new(CODE, Span::new(place, place + 3), message));
         }
-        let records = fields::records(text, separator, |quote| {
-            let message = Message::new("device-comments.open-quote");
-            Diagnostic::new(CODE, quote, message)
-        });
-        let (records, open_quotes) = records;
-        reader.diagnostics.extend(open_quotes);
+        let (records, problems) = fields::records(text, separator);
+        reader.diagnostics.extend(problems);
         reader.read(&records);
         let mut diagnostics = reader.diagnostics;
         diagnostics.sort_by_key(|diagnostic| diagnostic.span);
@@ -77,6 +74,13 @@ impl CommentsFile {
         }
     }
 
+    /// What is wrong in it, as the rules of a project are graded.
+    pub fn graded(&self, severities: &Severities) -> Vec<Diagnostic> {
+        let grade =
+            |found: &Diagnostic| Some(Diagnostic { severity: severities.of(found.code)?, ..found.clone() });
+        self.diagnostics.iter().filter_map(grade).collect()
+    }
+
     /// The text of which the spans count the bytes.
     pub fn text(&self) -> &str {
         &self.text
@@ -84,18 +88,8 @@ impl CommentsFile {
 
     /// The position of byte `offset`.
     pub fn position(&self, offset: u32, encoding: Encoding) -> LineColumn {
-        position(&self.text, offset as usize, encoding)
+        position_of(&self.text, offset as usize, encoding)
     }
-}
-
-/// The line and column of `offset` in `text`; lines end with LF, CR LF or CR.
-fn position(text: &str, offset: usize, encoding: Encoding) -> LineColumn {
-    let before = text.get(..offset).unwrap_or(text);
-    let start = before.rfind(['\n', '\r']).map_or(0, |end| end + 1);
-    // A carriage return before a line feed is a part of that line end.
-    let ends = before.bytes().zip(before.bytes().skip(1).chain([0]));
-    let line = ends.filter(|pair| pair.0 == b'\n' || pair.0 == b'\r' && pair.1 != b'\n').count();
-    LineColumn { line: line as u32, column: column_of_offset(&before[start..], usize::MAX, encoding) }
 }
 
 /// Which field of a record is what.
@@ -188,12 +182,7 @@ impl Reader<'_> {
         let comment = field(self.columns.comment).unwrap_or(&empty);
         let problem = if symbol.text.is_empty() { None } else { Symbols::problem(&symbol.text, self.target) };
         if let Some(problem) = problem {
-            let message = match problem {
-                SymbolProblem::NoIdentifier => Message::new("device-comments.no-identifier"),
-                SymbolProblem::Device => Message::new("device-comments.reads-as-device"),
-                SymbolProblem::Instruction => Message::new("device-comments.is-instruction"),
-            };
-            let message = message.with("symbol", &symbol.text);
+            let message = problem.message().with("symbol", &symbol.text);
             self.diagnostics.push(Diagnostic::new(CODE, symbol.span, message));
         }
         let usable = if problem.is_some() { "" } else { symbol.text.as_str() };

@@ -1,5 +1,6 @@
 //! Program files on the disk.
 
+use super::encoding;
 use std::path::Path;
 use std::time::{Duration, UNIX_EPOCH};
 
@@ -21,11 +22,8 @@ impl Stamp {
     }
 }
 
-/// The text of a file, with a replacement for what is no UTF-8; nothing if it cannot be read.
+/// The text of a program file in whatever encoding it is written, with a replacement for what means nothing; nothing if
+/// it cannot be read.
 pub fn read_text(path: &Path) -> Option<String> {
-    let bytes = std::fs::read(path).ok()?;
-    Some(match String::from_utf8(bytes) {
-        Ok(text) => text,
-        Err(broken) => String::from_utf8_lossy(broken.as_bytes()).into_owned(),
-    })
+    Some(encoding::read(std::fs::read(path).ok()?).0)
 }

@@ -3,7 +3,7 @@
 use super::{CommentsFile, Manifest, ManifestError};
 use crate::document::{Document, Notation, Symbol, detect_ladder_target, detect_notation};
 use crate::target::{Model, Target};
-use crate::text::{Encoding, LineColumn, Message, Span, column_of_offset};
+use crate::text::{Encoding, LineColumn, Message, Span, position_of};
 use std::fs::DirEntry;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -55,10 +55,7 @@ impl Project {
 
     /// The position of byte `offset` in the manifest.
     pub fn position(&self, offset: u32, encoding: Encoding) -> LineColumn {
-        let before = self.source.get(..offset as usize).unwrap_or("");
-        let start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        let line = before.matches('\n').count() as u32;
-        LineColumn { line, column: column_of_offset(&before[start..], usize::MAX, encoding) }
+        position_of(&self.source, offset as usize, encoding)
     }
 
     /// The project to which `path` belongs: the nearest manifest in its folder or above.

@@ -12,5 +12,7 @@ pub use files::{
     open_document, program_files, projects_in,
 };
 
+pub mod encoding;
+
 mod disk;
 pub use disk::{Stamp, read_text};

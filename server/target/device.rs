@@ -62,8 +62,23 @@ impl DeviceKind {
 
     /// The kind with this letter, upper or lower case.
     pub fn of_letter(letter: char) -> Option<DeviceKind> {
-        let letter = letter.to_ascii_uppercase();
-        DeviceKind::ALL.into_iter().find(|kind| kind.letter() == letter)
+        use DeviceKind::*;
+        Some(match letter.to_ascii_uppercase() {
+            'X' => X,
+            'Y' => Y,
+            'M' => M,
+            'S' => S,
+            'T' => T,
+            'C' => C,
+            'D' => D,
+            'R' => R,
+            'V' => V,
+            'Z' => Z,
+            'P' => P,
+            'I' => I,
+            'N' => N,
+            _ => return None,
+        })
     }
 
     /// 8 for inputs and outputs, else 10.
@@ -81,6 +96,16 @@ impl DeviceKind {
     pub fn is_word(self) -> bool {
         use DeviceKind::*;
         matches!(self, T | C | D | R | V | Z)
+    }
+
+    /// Whether its coil counts up to a preset: timers and counters.
+    pub fn has_preset(self) -> bool {
+        matches!(self, DeviceKind::T | DeviceKind::C)
+    }
+
+    /// Whether it names a place in the program: the pointers of jumps, subroutines and interrupts.
+    pub fn is_pointer(self) -> bool {
+        matches!(self, DeviceKind::P | DeviceKind::I)
     }
 }
 

@@ -177,7 +177,7 @@ impl Form {
         instructions::spelling(self.instruction, self.wide, self.pulse)
     }
 
-    /// Program steps with these operands, missing ones counted as written.
+    /// Program steps with these operands, of which only the first makes a difference; missing ones count as written.
     pub fn steps(self, operands: &[Operand]) -> u32 {
         instructions::steps(self, operands)
     }
@@ -194,8 +194,8 @@ impl Form {
         spec.accepts.on(model).takes(operand) && (may_be_indexed || !indexed)
     }
 
-    /// The least and the greatest integer constant that operand number `place` takes; `operands` are all of the
-    /// instruction, since the preset of OUT depends on its device.
+    /// The least and the greatest integer constant that operand number `place` takes; of `operands` the first makes a
+    /// difference, since the preset of OUT depends on its device.
     pub fn constant_limits(self, place: usize, operands: &[Operand]) -> (i64, i64) {
         const WORD: (i64, i64) = (i16::MIN as i64, i16::MAX as i64);
         const DOUBLE: (i64, i64) = (i32::MIN as i64, i32::MAX as i64);

@@ -29,6 +29,8 @@ pub struct Target {
     pub title: &'static str,
     /// The ranges of each device kind, in reading order; empty for `iec`.
     pub devices: &'static [DeviceRange],
+    /// Where the ranges of each device kind begin among `devices`, and behind the last kind where they end.
+    pub(super) first_ranges: FirstRanges,
     /// The special relays and registers (M8000…, D8000…), sorted by device.
     pub special: &'static [SpecialDevice],
     /// The limits of programs.
@@ -86,8 +88,29 @@ impl Target {
 
     /// The ranges of `kind` on this target; empty if it has no such device.
     pub fn ranges(&self, kind: DeviceKind) -> impl Iterator<Item = &'static DeviceRange> {
-        self.devices.iter().filter(move |range| range.kind == kind)
+        let first = usize::from(self.first_ranges[kind as usize]);
+        let end = usize::from(self.first_ranges[kind as usize + 1]);
+        self.devices.get(first..end).unwrap_or_default().iter()
     }
+}
+
+/// A place among the ranges for each device kind, and one for the end.
+pub(super) type FirstRanges = [u8; DeviceKind::ALL.len() + 1];
+
+/// Where the ranges of each kind begin, as every operand of a program is looked up there. They are in reading order.
+pub(super) const fn first_ranges(devices: &[DeviceRange]) -> FirstRanges {
+    let mut first = [0; DeviceKind::ALL.len() + 1];
+    let mut place = 0;
+    while place < devices.len() {
+        let mut later = devices[place].kind as usize + 1;
+        assert!(place == 0 || later > devices[place - 1].kind as usize, "the ranges are in reading order");
+        place += 1;
+        while later < first.len() {
+            first[later] = place as u8;
+            later += 1;
+        }
+    }
+    first
 }
 
 /// IEC 61131-3: no maker's devices, and no limits but those of a screen.
@@ -96,6 +119,7 @@ static IEC: Target = Target {
     name: "iec",
     title: "IEC 61131-3",
     devices: &[],
+    first_ranges: first_ranges(&[]),
     special: &[],
     limits: Limits {
         steps: 0,

@@ -79,6 +79,10 @@ pub enum OperandProblem {
     Keyword,
     /// An IEC name that breaks the rules of identifiers, or a path with a broken member, subscript or bit.
     MalformedName,
+    /// The symbol of this device in a form that the device does not have, such as `K4Level` for a register.
+    SymbolForm(Device),
+    /// A word that can be put together of symbols in several ways.
+    SymbolTwice,
     /// Nothing of the above.
     Unreadable,
 }

@@ -1,6 +1,7 @@
 //! The symbols that a project gives to devices, and words read with them.
 
-use super::{Device, Form, Operand, Target};
+use super::{Device, Form, Operand, OperandProblem, Target};
+use crate::text::{Message, folded};
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 use std::sync::Arc;
@@ -20,6 +21,17 @@ pub enum SymbolProblem {
     Device,
     /// It is a mnemonic, or a mark of drawings such as the `S` of a set coil.
     Instruction,
+}
+
+impl SymbolProblem {
+    /// What people are told, with the place `symbol` for the name.
+    pub fn message(self) -> Message {
+        Message::new(match self {
+            SymbolProblem::NoIdentifier => "device-comments.no-identifier",
+            SymbolProblem::Device => "device-comments.reads-as-device",
+            SymbolProblem::Instruction => "device-comments.is-instruction",
+        })
+    }
 }
 
 /// Words that mean something in the brackets of a drawing.
@@ -69,20 +81,58 @@ impl Target {
         Target { symbols: Some(symbols), ..*self }
     }
 
-    /// Reads one operand word; one that means nothing by itself may be a symbol.
+    /// Reads one operand word; one that means nothing by itself may be a symbol. Around it may stand what may stand
+    /// around its device: `K4Lamps`, `LevelZ1`, `K2LampsZ0`, `Level.3`.
     pub fn read(&self, word: &str) -> Operand {
         let operand = Operand::read(word, self.model);
         match (&operand, &self.symbols) {
-            (Operand::Invalid(_), Some(symbols)) => symbols.device(word).map_or(operand, Operand::Device),
+            (Operand::Invalid(_), Some(symbols)) => {
+                let plain = symbols.device(word).map(Operand::Device);
+                plain.or_else(|| self.read_around(word, symbols)).unwrap_or(operand)
+            }
             _ => operand,
         }
     }
+
+    /// A symbol with a number of groups before it, a bit or an index register behind it, or both.
+    fn read_around(&self, word: &str, symbols: &Symbols) -> Option<Operand> {
+        if !self.is_fx() {
+            return None;
+        }
+        let (groups, suffix) = (groups_length(word), suffix_length(word));
+        let parts = [(groups, 0), (0, suffix), (groups, suffix)];
+        let mut found = None;
+        for (before, behind) in parts.into_iter().filter(|(before, behind)| before + behind > 0) {
+            let name = word.get(before..word.len() - behind).unwrap_or("");
+            let Some(device) = symbols.device(name) else { continue };
+            if found.is_some_and(|other| other != (device, before, behind)) {
+                return Some(Operand::Invalid(OperandProblem::SymbolTwice));
+            }
+            found = Some((device, before, behind));
+        }
+        let (device, before, behind) = found?;
+        let (prefix, suffix) = (word.get(..before)?, word.get(word.len() - behind..)?);
+        Some(match Operand::read(&format!("{prefix}{device}{suffix}"), self.model) {
+            Operand::Invalid(_) => Operand::Invalid(OperandProblem::SymbolForm(device)),
+            operand => operand,
+        })
+    }
 }
 
-fn folded(name: &str) -> SmolStr {
-    if name.is_ascii() {
-        SmolStr::from(name.to_ascii_lowercase())
-    } else {
-        SmolStr::from(name.to_lowercase())
+/// The length of the `K4` at the start of a word; 0 if there is none.
+fn groups_length(word: &str) -> usize {
+    let Some(rest) = word.strip_prefix(['K', 'k']) else { return 0 };
+    let digits = rest.bytes().take_while(u8::is_ascii_digit).count();
+    if digits == 0 { 0 } else { 1 + digits }
+}
+
+/// The length of the `Z1` or `.3` at the end of a word; 0 if there is none. An index register needs its number here,
+/// as `PumpV` is more likely a slip of the pen.
+fn suffix_length(word: &str) -> usize {
+    if let Some((_, bit)) = word.rsplit_once('.') {
+        return if bit.len() == 1 { 2 } else { 0 };
     }
+    let digits = word.bytes().rev().take_while(u8::is_ascii_digit).count();
+    let is_index = word[..word.len() - digits].ends_with(['V', 'v', 'Z', 'z']);
+    if digits > 0 && is_index { digits + 1 } else { 0 }
 }

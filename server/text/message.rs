@@ -53,6 +53,8 @@ enum Argument {
     Phrase(&'static str),
     /// English words of a table and pieces of program, with what stands between them.
     Words(Vec<String>, &'static str),
+    /// The same, of which one is meant.
+    Alternatives(Vec<String>),
     /// Messages, joined as a list.
     Messages(Vec<Message>),
 }
@@ -83,6 +85,16 @@ impl Message {
         separator: &'static str,
     ) -> Message {
         self.arguments.push((name, Argument::Words(words.into_iter().map(W::into).collect(), separator)));
+        self
+    }
+
+    /// With `{name}` standing for one of `words`: words of the tables and pieces of program, as a list with `or`.
+    pub fn with_alternatives<W: Into<String>>(
+        mut self,
+        name: &'static str,
+        words: impl IntoIterator<Item = W>,
+    ) -> Message {
+        self.arguments.push((name, Argument::Alternatives(words.into_iter().map(W::into).collect())));
         self
     }
 
@@ -135,6 +147,15 @@ impl Argument {
                 let words: Vec<&str> = words.iter().map(|word| phrase(word, language)).collect();
                 words.join(separator)
             }
+            Argument::Alternatives(words) => {
+                let words: Vec<&str> = words.iter().map(|word| phrase(word, language)).collect();
+                match words.split_last() {
+                    Some((last, others)) if !others.is_empty() => {
+                        format!("{}{}{last}", others.join(list_separator(language)), last_separator(language))
+                    }
+                    _ => words.concat(),
+                }
+            }
             Argument::Messages(messages) => {
                 let words: Vec<String> = messages.iter().map(|message| message.render(language)).collect();
                 words.join(list_separator(language))
@@ -148,6 +169,14 @@ pub fn list_separator(language: Language) -> &'static str {
     match language {
         Language::English => ", ",
         Language::SimplifiedChinese => "、",
+    }
+}
+
+/// What stands before the last of several possible words.
+fn last_separator(language: Language) -> &'static str {
+    match language {
+        Language::English => " or ",
+        Language::SimplifiedChinese => " 或 ",
     }
 }
 

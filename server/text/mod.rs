@@ -2,6 +2,9 @@
 //!
 //! Nothing here knows a protocol, a file or a PLC.
 
+mod case;
+pub use case::folded;
+
 mod span;
 pub use span::{Span, Spanned};
 
@@ -9,7 +12,10 @@ mod edit;
 pub use edit::TextEdit;
 
 mod position;
-pub use position::{Encoding, LineColumn, cell_width, column_of_offset, offset_of_column};
+pub use position::{
+    BYTE_ORDER_MARK, Encoding, LineColumn, cell_width, column_of_offset, offset_of_column, position_of,
+    text_width,
+};
 
 mod message;
 pub use message::{Language, Message, catalogue_keys, list_separator};

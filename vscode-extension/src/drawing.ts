@@ -1,34 +1,35 @@
 /** Editing a drawing in the editor: structural edits by command, answers to keystrokes, and mending after pastes. */
 
 import * as vscode from 'vscode';
-import { joinStretches, linesToMend, rungPlaces, type PlainChange, type Stretch } from './mending';
-import { burstEnd, isMadeBy, moved, oneCellLess, owedFor, type Owed } from './owed';
+import { areKeystrokes, Burst, isLineEnd, isMadeBy, type Typed } from './burst';
+import { joinStretches, linesToMend, MOST_LINES, rungPlaces, type PlainChange, type Stretch } from './mending';
 import type { ServerController } from './server';
-import { operandOf, parseEditAnswer, STRUCTURAL_EDITS, type EditAnswer, type StructuralEdit } from './structuralEdits';
+import { operandOf, parseEditAnswer, STRUCTURAL_EDITS, type EditAnswer, type PlainRange, type StructuralEdit } from './structuralEdits';
 
 const LANGUAGE = 'ladder';
 const EDIT_REQUEST = 'rungwise/edit';
-const TYPED_REQUEST = 'textDocument/onTypeFormatting';
-/** A person who types faster than the server answers has stopped after this many answers that came too late. */
+const TYPED_REQUEST = 'rungwise/typed';
+/** An answer that came too late is asked for again, this many times. */
 const MOST_ATTEMPTS = 8;
-/** Keystrokes of one burst that are still answered; what is more comes from no keyboard. */
-const MOST_OWED = 256;
+/** How long the text may be ahead of what the server or the editor knows, in steps of `STEP_MS`. */
+const MOST_STEPS = 100;
+const STEP_MS = 10;
 /** Cursors that type at the same time. */
 const MOST_CURSORS = 16;
-
-/** A note of what is owed, which stays the same one while it moves. */
-type Noted = Owed & { readonly id: number };
+/** Error code of the protocol for a request about a text that is not the current one. */
+const CONTENT_MODIFIED = -32801;
 
 export class DrawingEditor implements vscode.Disposable {
   /** Edits run one after another: each one must see the text that the one before it left. */
   private queue: Promise<unknown> = Promise.resolve();
   /** The edits that this class is making in a document, to know its own change from one of the person's. */
-  private readonly making = new Map<vscode.TextDocument, readonly PlainChange[]>();
-  /** Keystrokes that are not yet answered. */
-  private readonly owed = new Map<vscode.TextDocument, Noted[]>();
-  private lastNote = 0;
-  /** Versions to which the editor itself applies an answer to Enter. */
-  private readonly enters = new WeakMap<vscode.TextDocument, number>();
+  private readonly making = new Map<vscode.TextDocument, EditAnswer['edits']>();
+  /** The burst whose edits are being made. */
+  private applying: Burst | undefined;
+  /** Keystrokes that are not yet answered, in the rungs in which they were typed. */
+  private readonly bursts = new Map<vscode.TextDocument, Burst[]>();
+  /** The lines of the cursors before a change, by number: a change does not tell what it replaced. */
+  private before: { document: vscode.TextDocument; rows: Map<number, string> } | undefined;
   private readonly dirty = new Map<vscode.TextDocument, Stretch>();
   private readonly subscriptions: vscode.Disposable[];
 
@@ -36,15 +37,15 @@ export class DrawingEditor implements vscode.Disposable {
     private readonly server: ServerController,
     private readonly output: vscode.LogOutputChannel,
   ) {
-    server.typed = (document, character, next) => this.typed(document, character, next);
     this.subscriptions = [
       ...STRUCTURAL_EDITS.map((edit) =>
         vscode.commands.registerCommand(`rungwise.${edit}`, (args?: unknown) => this.command(edit, args)),
       ),
       vscode.workspace.onDidChangeTextDocument((event) => this.changed(event)),
+      vscode.window.onDidChangeTextEditorSelection(({ textEditor }) => this.remember(textEditor)),
       vscode.workspace.onDidCloseTextDocument((document) => {
         this.dirty.delete(document);
-        this.owed.delete(document);
+        this.bursts.delete(document);
       }),
     ];
   }
@@ -66,6 +67,7 @@ export class DrawingEditor implements vscode.Disposable {
   private async run(editor: vscode.TextEditor, edit: StructuralEdit, operand: string | undefined): Promise<boolean> {
     try {
       for (let attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
+        await this.settle(editor);
         const version = editor.document.version;
         const isCurrent = () => editor.document.version === version;
         const answer = await this.ask(editor.document, edit, editor.selection, operand).catch((error: unknown) => {
@@ -113,7 +115,7 @@ export class DrawingEditor implements vscode.Disposable {
     undo: { undoStopBefore: boolean; undoStopAfter: boolean },
   ): Promise<boolean> {
     const { document } = editor;
-    this.making.set(document, answer.edits.map((edit) => ({ range: edit.range, text: edit.newText })));
+    this.making.set(document, answer.edits);
     try {
       const done =
         answer.edits.length === 0 ||
@@ -137,92 +139,200 @@ export class DrawingEditor implements vscode.Disposable {
   private changed(event: vscode.TextDocumentChangeEvent): void {
     const { document, contentChanges, reason } = event;
     const editor = vscode.window.activeTextEditor;
-    if (document.languageId !== LANGUAGE || editor?.document !== document || contentChanges.length === 0) {
+    if (document.languageId !== LANGUAGE || contentChanges.length === 0) {
       return;
     }
     const changes = contentChanges.map(({ range, text }) => ({ range, text }));
-    const { notes, undone } = moved(this.owed.get(document) ?? [], changes);
-    const answered = this.enters.get(document) === document.version - 1;
-    this.owed.set(document, notes);
+    if (isMadeBy(changes, this.making.get(document) ?? [])) {
+      this.made(document, changes);
+      return;
+    }
+    const follows = editor?.document === document && mendsWhileTyping(document);
     // What undo and redo bring back has been mended before.
-    if (reason !== undefined || !mendsWhileTyping(document)) {
-      this.owed.delete(document);
-      return;
-    }
-    if (answered || isMadeBy(changes, this.making.get(document) ?? [])) {
-      return;
-    }
-    const rowAt = (line: number) => (line < document.lineCount ? document.lineAt(line).text : '');
-    const owed = changes.length <= MOST_CURSORS ? owedFor(changes, rowAt, undone) : undefined;
-    if (owed === undefined) {
-      const stretch = linesToMend(changes);
+    if (reason !== undefined || !follows) {
+      this.bursts.delete(document);
+    } else if (changes.length <= MOST_CURSORS && areKeystrokes(changes)) {
+      this.typed(editor, changes);
+    } else {
+      const unanswered = this.dropped(document, changes);
+      const stretch = linesToMend(changes) ?? unanswered;
       if (stretch !== undefined) {
-        this.mark(editor, stretch);
+        this.mark(editor, unanswered === undefined ? stretch : joinStretches(unanswered, stretch));
       }
-    } else if (notes.length + owed.length <= MOST_OWED) {
-      this.owed.set(document, [...notes, ...owed.map((note) => ({ ...note, id: ++this.lastNote }))]);
-      owed.forEach(() => void this.enqueue(() => this.answer(editor)));
     }
   }
 
-  /** Gives the drawing the first thing that is owed to it, as a part of the undo step of the keystroke. */
-  private async answer(editor: vscode.TextEditor): Promise<void> {
+  /** The editor has made edits of ours: the lines of a burst are as it wanted them, or are no longer what it thinks. */
+  private made(document: vscode.TextDocument, changes: readonly PlainChange[]): void {
+    const done = this.bursts.get(document)?.find((burst) => burst === this.applying);
+    const more = changes.reduce((sum, change) => sum + addedLines(change), 0);
+    if (done === undefined) {
+      this.dropped(document, changes);
+      return;
+    }
+    done.applied();
+    for (const burst of this.bursts.get(document) ?? []) {
+      burst.first += burst.first > done.first ? more : 0;
+    }
+  }
+
+  /** Notes keystrokes, each in the burst of its rung. */
+  private typed(editor: vscode.TextEditor, changes: readonly PlainChange[]): void {
     const { document } = editor;
-    try {
-      // A person may type on while the server thinks; what is owed has moved then, and the server is asked again.
-      for (let attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
-        const [first] = this.owed.get(document) ?? [];
-        if (first === undefined || document.isClosed) {
-          return;
-        }
-        const version = document.version;
-        const edits = first.kind === 'cells' ? [inserted(document, first)] : await this.answerTo(editor, first);
-        if (document.version !== version) {
-          continue;
-        }
-        const undo = { undoStopBefore: false, undoStopAfter: false };
-        if (edits.length === 0 || (await this.apply(editor, { edits, selection: undefined }, undo))) {
-          this.owed.set(document, (this.owed.get(document) ?? []).filter(({ id }) => id !== first.id));
-          return;
+    const bursts = this.bursts.get(document) ?? [];
+    this.bursts.set(document, bursts);
+    const keystrokes = changes.map((change) => ({ ...change, removed: this.replaced(document, change) }));
+    const added = keystrokes.reduce((sum, key) => sum + addedLines(key), 0);
+    const left = new Set(keystrokes);
+    const take = (burst: { has(line: number): boolean }) => {
+      const own = [...left].filter(({ range }) => burst.has(range.start.line));
+      own.forEach((key) => left.delete(key));
+      return own;
+    };
+    for (const burst of bursts) {
+      const own = take(burst);
+      if (own.length > 0) {
+        burst.add(own);
+      } else if (keystrokes[0]!.range.start.line < burst.first) {
+        burst.first += added;
+      }
+    }
+    for (const key of left) {
+      const { first, last } = rungLines(document, key.range.start.line, added, bursts);
+      const own = take({ has: (line) => first <= line && line <= last });
+      const text = Array.from({ length: last - first + 1 }, (_, index) => document.lineAt(first + index).text).join('\n');
+      bursts.push(new Burst(first, text, own));
+    }
+    void this.enqueue(() => this.settle(editor));
+  }
+
+  /** Answers all that was typed, as a part of the undo step of the last keystroke. */
+  private async settle(editor: vscode.TextEditor): Promise<void> {
+    const { document } = editor;
+    for (;;) {
+      const [burst] = this.bursts.get(document) ?? [];
+      if (burst === undefined) {
+        return;
+      }
+      const stands = () => this.bursts.get(document)?.includes(burst) === true;
+      try {
+        await this.settleBurst(editor, burst, stands);
+      } catch (error) {
+        // Its rung is mended as a whole instead.
+        this.output.debug(`typing: ${String(error)}`);
+        if (stands() && !document.isClosed) {
+          this.mark(editor, stretchOf(burst));
         }
       }
+      const others = (this.bursts.get(document) ?? []).filter((other) => other !== burst);
+      if (others.length > 0) {
+        this.bursts.set(document, others);
+      } else {
+        this.bursts.delete(document);
+      }
+    }
+  }
+
+  /** Answers what was typed in one rung, until nothing more comes. */
+  private async settleBurst(editor: vscode.TextEditor, burst: Burst, stands: () => boolean): Promise<void> {
+    const { document } = editor;
+    for (let step = 0; step < MOST_STEPS && stands(); step++) {
+      while (!burst.isAnswered && stands()) {
+        await burst.answerNext((typed) => this.askTyped(document, burst, typed));
+        step = 0;
+      }
+      const edits = stands() ? burst.edits() : [];
+      if (edits.length === 0) {
+        return;
+      }
+      if (!(await this.applyBurst(editor, burst, edits)) && burst.isAnswered) {
+        // The editor has a keystroke of which no event has come yet.
+        await pause();
+      }
+    }
+    if (stands()) {
       throw new Error('the text did not stand still');
-    } catch (error) {
-      // What is left is mended as a whole; it would be owed for ever otherwise.
-      this.output.debug(`answer: ${String(error)}`);
-      const places = (this.owed.get(document) ?? []).map(({ at }) => at);
-      this.owed.delete(document);
-      if (places.length > 0) {
-        const lines = places.map(({ line }) => line);
-        this.mark(editor, { first: Math.min(...lines), last: Math.max(...lines), places });
+    }
+  }
+
+  /** Makes the edits of a burst, as a part of the undo step of the last keystroke. */
+  private async applyBurst(editor: vscode.TextEditor, burst: Burst, edits: EditAnswer['edits']): Promise<boolean> {
+    const undo = { undoStopBefore: false, undoStopAfter: false };
+    this.applying = burst;
+    try {
+      const placed = burst.placed();
+      if (placed === undefined) {
+        return await this.apply(editor, { edits, selection: undefined }, undo);
+      }
+      // A snippet brings its cursor along; a key that came before a cursor set afterwards would go elsewhere.
+      const { edit, from, to } = placed;
+      const text = edit.newText;
+      const snippet = new vscode.SnippetString().appendText(text.slice(0, from));
+      snippet.appendPlaceholder(text.slice(from, to), 0).appendText(text.slice(to));
+      this.making.set(editor.document, [edit]);
+      return await editor.insertSnippet(snippet, toRange(edit.range), undo);
+    } finally {
+      this.making.delete(editor.document);
+      this.applying = undefined;
+    }
+  }
+
+  /** What the server makes of a character typed into lines of a burst; line 0 is its first one. */
+  private async askTyped(document: vscode.TextDocument, burst: Burst, { text, position, character }: Typed): Promise<EditAnswer['edits']> {
+    for (let step = 0; ; step++) {
+      const { first, lineCount } = burst;
+      const isLast = first + lineCount >= document.lineCount;
+      try {
+        const answer = await this.server.request(TYPED_REQUEST, {
+          textDocument: { uri: this.server.protocolUri(document.uri), version: document.version },
+          lines: { first, end: first + lineCount, text: isLast ? text : `${text}\n` },
+          position: { line: first + position.line, character: position.character },
+          ch: character,
+        });
+        const edits = parseEditAnswer({ edits: answer ?? [] })?.edits ?? [];
+        return edits.map(({ range, newText }) => ({ range: lowered(range, first), newText }));
+      } catch (error) {
+        // The server has not got the last change yet.
+        if ((error as { code?: unknown }).code !== CONTENT_MODIFIED || step >= MOST_STEPS) {
+          throw error;
+        }
+        await pause();
       }
     }
   }
 
-  /** The edits for a typed character. In a burst the cells behind it give way for all but the last one. */
-  private async answerTo(editor: vscode.TextEditor, first: Owed): Promise<EditAnswer['edits']> {
-    const { document } = editor;
-    const end = burstEnd(this.owed.get(document) ?? []);
-    if (end === undefined) {
-      return this.askTyped(document, first);
+  /** Forgets the bursts in whose lines something else has changed, and gives their lines; the others move. */
+  private dropped(document: vscode.TextDocument, changes: readonly PlainChange[]): Stretch | undefined {
+    let unanswered: Stretch | undefined;
+    const left: Burst[] = [];
+    for (const burst of this.bursts.get(document) ?? []) {
+      const end = burst.first + burst.lineCount;
+      if (changes.some(({ range }) => range.start.line < end && burst.first <= range.end.line)) {
+        unanswered = joinStretches(unanswered, stretchOf(burst));
+      } else {
+        const above = changes.filter(({ range }) => range.end.line < burst.first);
+        burst.first += above.reduce((sum, change) => sum + addedLines(change), 0);
+        left.push(burst);
+      }
     }
-    const less = oneCellLess(document.lineAt(end.line).text, end);
-    if (less === undefined) {
-      this.mark(editor, { first: end.line, last: end.line, places: [end] });
-      return [];
-    }
-    return [{ range: less.range, newText: less.text }];
+    this.bursts.set(document, left);
+    return unanswered;
   }
 
-  /** What the server makes of a typed character. */
-  private async askTyped({ uri }: vscode.TextDocument, { at, text }: Owed): Promise<EditAnswer['edits']> {
-    const answer = await this.server.request(TYPED_REQUEST, {
-      textDocument: { uri: this.server.protocolUri(uri) },
-      position: at,
-      ch: text,
-      options: { tabSize: 8, insertSpaces: true },
-    });
-    return parseEditAnswer({ edits: answer ?? [] })?.edits ?? [];
+  /** Keeps the lines of the cursors, for the next change. */
+  private remember({ document, selections }: vscode.TextEditor): void {
+    if (document.languageId === LANGUAGE && selections.length <= MOST_CURSORS) {
+      const lines = selections.map(({ active }) => active.line).filter((line) => line < document.lineCount);
+      this.before = { document, rows: new Map(lines.map((line) => [line, document.lineAt(line).text])) };
+    }
+  }
+
+  /** The text that a change in one line has replaced, if the line is known as it was. */
+  private replaced(document: vscode.TextDocument, { range: { start, end }, text }: PlainChange): string | undefined {
+    const row = this.before?.document === document ? this.before.rows.get(start.line) : undefined;
+    const now = isLineEnd(text) ? undefined : document.lineAt(start.line).text;
+    const isBefore = row !== undefined && row.slice(0, start.character) + text + row.slice(end.character) === now;
+    return isBefore ? row.slice(start.character, end.character) : undefined;
   }
 
   /** Marks lines that the server has to mend. */
@@ -240,6 +350,7 @@ export class DrawingEditor implements vscode.Disposable {
     const { document } = editor;
     try {
       for (let attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
+        await this.settle(editor);
         const lines = this.dirty.get(document);
         if (lines === undefined || document.isClosed) {
           return;
@@ -275,26 +386,6 @@ export class DrawingEditor implements vscode.Disposable {
     return (await Promise.all(asked)).flatMap((answer) => answer?.edits ?? []);
   }
 
-  /**
-   * Stands in for on-type formatting by the editor, which would answer some keystrokes only. Enter, which moves no cell
-   * sideways, is left to it.
-   */
-  private async typed(
-    document: vscode.TextDocument,
-    character: string,
-    next: () => vscode.ProviderResult<vscode.TextEdit[]>,
-  ): Promise<vscode.TextEdit[] | null | undefined> {
-    if (document.languageId === LANGUAGE && character !== '\n') {
-      return [];
-    }
-    const version = document.version;
-    const edits = await next();
-    if (edits?.length && document.version === version) {
-      this.enters.set(document, version);
-    }
-    return edits;
-  }
-
   private enqueue<T>(step: () => Promise<T>): Promise<T> {
     const result = this.queue.then(step);
     this.queue = result.catch(() => undefined);
@@ -311,10 +402,47 @@ function plain(position: vscode.Position): { line: number; character: number } {
   return { line: position.line, character: position.character };
 }
 
-/** The edit that puts cells in. It takes the next character along, for an insertion at the cursor would move that. */
-function inserted(document: vscode.TextDocument, { at, text }: Owed): EditAnswer['edits'][number] {
-  const [next = ''] = document.lineAt(at.line).text.slice(at.character);
-  return { range: { start: at, end: { line: at.line, character: at.character + next.length } }, newText: text + next };
+function lowered({ start, end }: PlainRange, by: number): PlainRange {
+  return {
+    start: { line: start.line - by, character: start.character },
+    end: { line: end.line - by, character: end.character },
+  };
+}
+
+function pause(): Promise<void> {
+  return new Promise((resolve) => setTimeout(resolve, STEP_MS));
+}
+
+/** How many lines a change adds. */
+function addedLines({ range, text }: PlainChange): number {
+  return text.split(/\r\n|\r|\n/).length - 1 - (range.end.line - range.start.line);
+}
+
+/**
+ * The lines without a blank one around a line, those that a change has added to it, and the one below, where the answer to
+ * Enter may put others; no line of another burst.
+ */
+function rungLines(
+  document: vscode.TextDocument,
+  line: number,
+  added: number,
+  bursts: readonly Burst[],
+): { first: number; last: number } {
+  let [first, last] = [line, line + added];
+  const isOpen = (at: number) =>
+    at >= 0 && at < document.lineCount && !document.lineAt(at).isEmptyOrWhitespace && !bursts.some((burst) => burst.has(at));
+  while (last - first < MOST_LINES && isOpen(first - 1)) {
+    first -= 1;
+  }
+  while (last - first < MOST_LINES && isOpen(last + 1)) {
+    last += 1;
+  }
+  const isFree = last + 1 < document.lineCount && !bursts.some((burst) => burst.has(last + 1));
+  return { first, last: isFree ? last + 1 : last };
+}
+
+function stretchOf({ first, lineCount }: Burst): Stretch {
+  return { first, last: first + lineCount - 1, places: [] };
 }
 
 function toRange({ start, end }: { start: { line: number; character: number }; end: { line: number; character: number } }): vscode.Range {

@@ -18,7 +18,7 @@ export interface Stretch {
 
 /** Beyond this it is a program that was replaced, not a drawing that is being edited. */
 const MOST_CHANGES = 16;
-const MOST_LINES = 400;
+export const MOST_LINES = 400;
 
 /**
  * What may have lost its columns, in the text after the change.

@@ -25,8 +25,6 @@ import { parseStatus } from './status';
 import type { ServerReport } from './statusPage';
 import type { StatusBar } from './statusBar';
 
-type NextTyped = () => vscode.ProviderResult<vscode.TextEdit[]>;
-
 const STOP_TIMEOUT_MS = 2_000;
 const DOCUMENTS = [
   { scheme: 'file', language: 'ladder' },
@@ -45,8 +43,6 @@ export class ServerController implements vscode.Disposable {
   /** Starts and stops run one after another; two restarts in a row must not leave two servers. */
   private queue: Promise<void> = Promise.resolve();
   private runningVersion: string | undefined;
-  /** Stands before on-type formatting; `next` asks the server for it. */
-  typed: ((document: vscode.TextDocument, character: string, next: NextTyped) => ReturnType<NextTyped>) | undefined;
 
   constructor(
     private readonly context: vscode.ExtensionContext,
@@ -197,10 +193,9 @@ export class ServerController implements vscode.Disposable {
       synchronize: { fileEvents: this.watcher },
       middleware: {
         handleDiagnostics: (uri, diagnostics, next) => next(uri, diagnostics.map(linkCode)),
-        provideOnTypeFormattingEdits: (document, position, character, format, token, next) => {
-          const ask = () => next(document, position, character, format, token);
-          return this.typed === undefined ? ask() : this.typed(document, character, ask);
-        },
+        // The editor would answer some keystrokes in a drawing only; `DrawingEditor` answers them all.
+        provideOnTypeFormattingEdits: (document, position, character, format, token, next) =>
+          document.languageId === 'ladder' ? [] : next(document, position, character, format, token),
       },
       errorHandler: {
         error: () => ({ action: ErrorAction.Continue, handled: true }),

@@ -73,7 +73,7 @@ test('devices, comparisons, addresses and literals are words', () => {
 test('all files that package.json names exist', () => {
   const { languages, grammars, snippets, walkthroughs, tomlValidation } = manifest.contributes;
   const files = [manifest.icon, ...[...languages, ...grammars, ...snippets].flatMap((c: any) => [c.configuration, c.path])];
-  files.push(manifest.main, manifest.browser, ...tomlValidation.map((c: any) => c.url));
+  files.push(manifest.main, manifest.browser, ...manifest.contributes['markdown.previewStyles'], ...tomlValidation.map((c: any) => c.url));
   for (const language of languages) {
     files.push(language.icon.light, language.icon.dark);
   }

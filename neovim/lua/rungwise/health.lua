@@ -64,7 +64,6 @@ end
 
 local function check_options(health)
   health.info(client.options().on_type == false and t('typing: not formatted (`on_type = false`)')
-    or vim.lsp.on_type_formatting and t("typing: formatted by Neovim's own on-type formatting")
     or t('typing: formatted by the plugin'))
   health.info(client.options().mappings == false and t('keys: none (`mappings = false`)')
     or t('keys: defaults, with <LocalLeader> %s', vim.inspect(vim.g.maplocalleader or '\\')))

@@ -1,7 +1,9 @@
 --- What happens while one types: on-type formatting, and mending after deletions and pastes.
 ---
---- Neovim 0.11 has no on-type formatting of its own, so it is asked for here; later ones have it, and theirs is used.
+--- Neovim 0.11 has no on-type formatting of its own. Later ones have it, but it drops the answer to a key when the next
+--- one comes first, so in drawings it is asked for here.
 local client = require('rungwise.client')
+local answered = require('rungwise.typed').answered
 local M = {}
 
 local TRIGGERS = 'textDocument/onTypeFormatting'
@@ -51,17 +53,51 @@ local function apply(buffer, tick, edits, encoding)
   end)
 end
 
---- Asks for on-type formatting of the character that was just typed.
-local function format_typed(running, buffer, character)
+--- Asks for on-type formatting of Enter.
+local function format_enter(running, buffer)
   local params = vim.lsp.util.make_formatting_params()
   params.position = vim.lsp.util.make_position_params(0, running.offset_encoding).position
-  params.ch = character
+  params.ch = '\n'
   local tick = vim.api.nvim_buf_get_changedtick(buffer)
   client.request(running, TRIGGERS, params, function(err, edits)
     if not err then
       apply(buffer, tick, edits, running.offset_encoding)
     end
   end, buffer)
+end
+
+--- Makes a line another one. Only what differs is replaced, for marks in the rest, as of a snippet, have to stay.
+local function rewrite(buffer, row, old, new)
+  local least = math.min(#old, #new)
+  local head, tail = 0, 0
+  while head < least and old:byte(head + 1) == new:byte(head + 1) do
+    head = head + 1
+  end
+  while tail < least - head and old:byte(#old - tail) == new:byte(#new - tail) do
+    tail = tail + 1
+  end
+  if old ~= new then
+    vim.api.nvim_buf_set_text(buffer, row, head, row, #old - tail, { new:sub(head + 1, #new - tail) })
+  end
+end
+
+--- Has the server answer characters that end at `place`. Answers whether it could; a row that is as it should be is left.
+local function format_typed(running, buffer, characters, place)
+  local first, before, lines = answered(running, buffer, characters, place[1], place[2])
+  if not first then
+    return false
+  end
+  local cursor = vim.api.nvim_win_get_cursor(0)
+  M.quietly(buffer, function()
+    if not vim.fn.mode():match('^[iR]') then
+      vim.cmd('silent! undojoin')
+    end
+    for index, text in ipairs(lines) do
+      rewrite(buffer, first + index - 1, before[index], text)
+    end
+    vim.api.nvim_win_set_cursor(0, cursor)
+  end)
+  return true
 end
 
 --- One place { line, column in bytes } in each block of lines without a blank one: a rung is mended as a whole, and a
@@ -132,21 +168,22 @@ local function fill(buffer, place, missing)
   return true
 end
 
---- Whether the server wants to hear of a typed character.
-local function triggers(running, character)
-  local offered = running.server_capabilities.documentOnTypeFormattingProvider
-  if type(offered) ~= 'table' then
-    return false
+--- The last characters of a text whose cells are more than those that went away for them.
+local function squeezed_in(typed, wider)
+  local characters = vim.fn.split(typed, '\\zs')
+  local from = #characters + 1
+  while from > 1 and wider > 0 do
+    from = from - 1
+    wider = wider - #characters[from]
   end
-  return offered.firstTriggerCharacter == character
-    or vim.list_contains(offered.moreTriggerCharacter or {}, character)
+  return vim.list_slice(characters, from)
 end
 
---- Something changed in Insert mode: one typed character is formatted, everything else is mended.
+--- Something changed in Insert mode: characters that were typed are formatted, everything else is mended.
 local function changed_in_insert(running, buffer, state)
-  -- What was typed over a selection is mended: on-type formatting takes every character for one squeezed in.
-  local over = state.removed and state.typed ~= nil
-  local typed, first, last = not over and state.typed or nil, state.first, state.last
+  -- Of characters that are not ASCII the bytes do not tell the cells, so what they replace is mended.
+  local is_plain = not (state.removed and state.typed and state.typed:match('[\128-\255]'))
+  local typed, first, last = is_plain and state.typed or nil, state.first, state.last
   local place, missing = state.place, state.missing or 0
   forget(state)
   local lines = vim.api.nvim_buf_line_count(buffer)
@@ -156,15 +193,19 @@ local function changed_in_insert(running, buffer, state)
   if not first or vim.fn.mode() == 'R' then
     return
   end
-  if added == 0 and first == last and missing > 0 and fill(buffer, place, missing) then
+  local in_line = added == 0 and first == last
+  if in_line and missing > 0 and fill(buffer, place, missing) then
+    return
+  elseif in_line and typed and missing <= 0 then
+    -- What was typed over a selection takes its cells first.
+    if format_typed(running, buffer, squeezed_in(typed, -missing), place) then
+      return
+    end
+  elseif not typed and added == 1 and last == first + 1 then
+    format_enter(running, buffer)
     return
   end
-  local character = typed or (added == 1 and last == first + 1 and '\n' or nil)
-  if character and vim.fn.strchars(character) == 1 then
-    if triggers(running, character) and not M.builtin() then
-      format_typed(running, buffer, character)
-    end
-  elseif added <= 0 or last - first <= MOST_LINES then
+  if added <= 0 or last - first <= MOST_LINES then
     mend(running, buffer, first, last, place)
   end
 end
@@ -200,11 +241,6 @@ local function note(state, start_row, start_col, old_row, old_col, new_row, new_
   state.removed = state.removed or old_row > 0 or old_col > 0
 end
 
---- Whether this Neovim formats on typing by itself.
-function M.builtin()
-  return vim.lsp.on_type_formatting ~= nil
-end
-
 --- Starts looking after a buffer; called when the server attaches to a ladder.
 function M.attach(buffer)
   if states[buffer] or client.options().on_type == false then
@@ -215,8 +251,10 @@ function M.attach(buffer)
     seq = vim.api.nvim_buf_call(buffer, vim.fn.undotree).seq_last,
   }
   states[buffer] = state
-  if M.builtin() then
-    vim.lsp.on_type_formatting.enable(true)
+  if vim.lsp.on_type_formatting then
+    for _, running in ipairs(client.clients(buffer)) do
+      vim.lsp.on_type_formatting.enable(false, { client_id = running.id })
+    end
   end
   vim.api.nvim_buf_attach(buffer, false, {
     on_bytes = function(_, _, _, row, column, _, old_row, old_col, _, new_row, new_col)
@@ -258,7 +296,6 @@ function M.autocommands(buffer, state)
   -- The changes of Insert mode were looked at one by one, but for those of a person who left it in a hurry; TextChanged
   -- does not see them again.
   on('InsertLeave', function(running)
-    state.typed = state.typed and state.typed .. ' '
     changed_in_insert(running, buffer, state)
     state.seq = vim.fn.undotree().seq_last
   end)

@@ -62,7 +62,6 @@ M.chinese = {
   ['attached to %s'] = '附着于 %s',
   ['no buffer'] = '没有缓冲区',
   ['typing: not formatted (`on_type = false`)'] = '输入：不格式化（`on_type = false`）',
-  ["typing: formatted by Neovim's own on-type formatting"] = '输入：由 Neovim 自带的输入时格式化处理',
   ['typing: formatted by the plugin'] = '输入：由插件格式化',
   ['keys: none (`mappings = false`)'] = '按键：无（`mappings = false`）',
   ['keys: defaults, with <LocalLeader> %s'] = '按键：默认，<LocalLeader> 为 %s',

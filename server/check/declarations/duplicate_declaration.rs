@@ -35,10 +35,10 @@
 //! END_PROGRAM
 //! ```
 
-use crate::check::iec::{View, folded, views_of};
+use crate::check::iec::{View, views_of};
 use crate::check::{ProgramContext, Rule, Run};
 use crate::il::iec::{ItemKind, Run as Records, SectionKind, TypeSpec};
-use crate::text::{Diagnostic, Message, Severity, Span};
+use crate::text::{Diagnostic, Message, Severity, Span, folded};
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 

@@ -1,9 +1,10 @@
 //! What an undeclared name would have to be declared as, by the ways in which it is used.
 
-use crate::check::iec::{View, folded, follow};
+use crate::check::iec::{View, follow};
 use crate::il::iec::ItemKind;
 use crate::target::Operand;
 use crate::target::iec::FunctionBlock;
+use crate::text::folded;
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 

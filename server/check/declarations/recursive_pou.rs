@@ -52,11 +52,11 @@
 //! END_FUNCTION_BLOCK
 //! ```
 
-use crate::check::iec::{View, folded, views_of};
+use crate::check::iec::{View, views_of};
 use crate::check::{ProgramContext, ProgramFile, Rule, Run};
 use crate::document::Pou;
 use crate::il::iec::{ItemKind, PouKind, SectionKind, TypeSpec};
-use crate::text::{Diagnostic, Message, Severity, Span};
+use crate::text::{Diagnostic, Message, Severity, Span, folded};
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 use std::sync::Arc;

@@ -38,12 +38,12 @@
 //! ```
 
 use super::guess::types_of;
-use crate::check::iec::{View, folded};
+use crate::check::iec::View;
 use crate::check::{ProgramContext, Rule, Run};
 use crate::document::{Chunk, ChunkRef, DeclaredType, Document, Mention, Pou, Scopes, Symbol, Use};
 use crate::il::iec::{IecTree, ItemKind, PouKind, SectionKind, TypeSpec};
 use crate::target::iec::{Function, FunctionBlock, nearest};
-use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
+use crate::text::{Diagnostic, Message, Severity, Span, TextEdit, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 

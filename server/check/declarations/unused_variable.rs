@@ -33,11 +33,10 @@
 //! END_PROGRAM
 //! ```
 
-use crate::check::iec::folded;
 use crate::check::{ProgramContext, Rule, Run};
 use crate::document::{ChunkRef, Document, Symbol, Use};
 use crate::il::iec::{Declaration, IecTree, ItemKind, SectionKind};
-use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
+use crate::text::{Diagnostic, Message, Severity, Span, TextEdit, folded};
 use rustc_hash::FxHashSet;
 
 pub(super) const RULE: Rule = Rule {

@@ -40,8 +40,13 @@ impl<'a> Drawn<'a> {
     /// The rungs whose graph says what was drawn: no loose end, no junction without a way in or out, and no cell
     /// that could not be read. Only these are judged further, for one mistake is one diagnostic.
     pub(super) fn sound_rungs(&self) -> impl Iterator<Item = &'a Rung> {
+        self.sound_numbered().map(|(_, rung)| rung)
+    }
+
+    /// The same with their numbers in the chunk.
+    pub(super) fn sound_numbered(&self) -> impl Iterator<Item = (usize, &'a Rung)> {
         let broken = self.breaking();
-        self.tree.rungs.iter().filter(move |rung| {
+        self.tree.rungs.iter().enumerate().filter(move |(_, rung)| {
             let first = broken.partition_point(|span| span.end <= rung.span.start);
             let readable = broken.get(first).is_none_or(|span| rung.span.end <= span.start);
             readable && is_wired(&rung.graph)

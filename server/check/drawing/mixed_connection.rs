@@ -7,6 +7,10 @@
 //! Instruction List has AND for series and OR for parallel and nothing for a bridge, so no PLC of this kind can run
 //! the rung; programming tools refuse it. Draw the paths apart: the contacts that they share are drawn twice.
 //!
+//! The fix does so where power goes through plain contacts and comparisons to the same outputs on at most twelve ways.
+//! It is offered only if power takes the same ways through the new drawing; with edges, inverters and function blocks,
+//! and where the ways lead to different outputs, the rung must be drawn by hand.
+//!
 //! ```lad
 //! |   X0                    X1                       Y0  |
 //! +---| |---+---------------| |-----+----------------( )-+
@@ -29,8 +33,8 @@
 
 use super::{Drawn, first_cell};
 use crate::check::{Rule, Run};
-use crate::ladder::reduce::{Bridge, NotSeriesParallel, may_be_mixed, reduce};
-use crate::ladder::{ElementId, Graph};
+use crate::ladder::reduce::{Bridge, NotSeriesParallel, Shape, may_be_mixed, reduce};
+use crate::ladder::{ElementId, Graph, drawn_apart, redraw_as};
 use crate::text::{Diagnostic, Message, Severity, Span};
 
 pub(super) const RULE: Rule = Rule {
@@ -41,7 +45,7 @@ pub(super) const RULE: Rule = Rule {
 };
 
 pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
-    for rung in drawn.sound_rungs().filter(|rung| may_be_mixed(&rung.graph)) {
+    for (number, rung) in drawn.sound_numbered().filter(|(_, rung)| may_be_mixed(&rung.graph)) {
         let graph = &rung.graph;
         let Err(NotSeriesParallel::Bridge(bridge)) = reduce(graph) else { continue };
         let names: Vec<String> = bridge.elements.iter().map(|id| drawn.name(graph.element(*id))).collect();
@@ -68,8 +72,27 @@ pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
         };
         relate(&bridge.elements, "across");
         relate(&bridge.beside, "beside");
+        if drawn.can_try()
+            && let Some(shape) = drawn_apart(graph)
+        {
+            let edit = redraw_as(drawn.text, drawn.tree, number, (graph, &shape), drawn.target);
+            let title = Message::new("mixed-connection.redraw").with("elements", twice(drawn, graph, &shape));
+            drawn.try_fix(&mut diagnostic, title, edit.map(|edit| vec![edit]));
+        }
         found.push(diagnostic);
     }
+}
+
+/// The names of the elements that a shape has more than once.
+fn twice(drawn: &Drawn<'_>, graph: &Graph, shape: &Shape) -> String {
+    let all = shape.elements();
+    let mut names: Vec<String> = Vec::new();
+    for (number, id) in all.iter().enumerate().filter(|(number, id)| all[..*number].contains(*id)) {
+        if !all[..number].iter().filter(|other| *other == id).nth(1).is_some() {
+            names.push(drawn.name(graph.element(*id)));
+        }
+    }
+    names.join(", ")
 }
 
 /// The middle cell of the bridge's vertical wire.

@@ -30,7 +30,7 @@
 //! ```
 
 use super::Drawn;
-use crate::check::order::rung::{Finding, findings};
+use crate::check::order::rung::Finding;
 use crate::check::{ChunkContext, Rule, Run};
 use crate::document::Tree;
 use crate::ladder::reduce::bypasses;
@@ -54,10 +54,10 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
 
 /// Contacts of an instruction list. The last of them is marked: an output is missing right behind it.
 fn of_list(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
-    let Some((tree, findings)) = findings(context) else { return };
+    let Some((tree, findings)) = context.rung() else { return };
     let text = context.chunk.text();
     for finding in findings {
-        let Finding::NoOutput { first, last, before } = finding else { continue };
+        let &Finding::NoOutput { first, last, before } = finding else { continue };
         let (first, last) = (tree.lines[first].span, tree.lines[last].span);
         let before = before.map_or(Span::at(0), |line| tree.lines[line].span);
         let key = if before.is_empty() { "rung-without-output.list" } else { "rung-without-output.before" };

@@ -13,7 +13,7 @@
 //! ```
 
 use crate::check::{ProgramContext, Rule, Run};
-use crate::document::{Document, Tree};
+use crate::document::{Document, Notation, Tree};
 use crate::ladder::column_after;
 use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
 
@@ -29,7 +29,8 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
 }
 
 fn check_file(document: &Document, found: &mut Vec<Diagnostic>) {
-    let Some(first) = first_tab(document) else { return };
+    let is_drawn = document.notation() == Notation::Ladder;
+    let Some(first) = is_drawn.then(|| first_tab(document)).flatten() else { return };
     let diagnostic = Diagnostic::new(RULE.code, first, Message::new("tab-in-drawing.found"));
     found.push(diagnostic.fix(Message::new("tab-in-drawing.expand"), expanded(document)));
 }

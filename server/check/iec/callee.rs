@@ -1,11 +1,12 @@
 //! What can be called, and which parameters it has.
 
-use super::{ValueType, View, folded};
+use super::{ValueType, View};
 use crate::document::{DeclaredType, Pou, Variable};
 use crate::il::iec::{PouKind, SectionKind};
 use crate::target::iec::{
     EN, ENO, ElementaryType, Function, FunctionBlock, GenericType, Parameter, ParameterType,
 };
+use crate::text::folded;
 
 /// A function or a function block.
 #[derive(Clone, Copy)]

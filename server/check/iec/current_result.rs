@@ -4,13 +4,13 @@
 //! The widening conversions of the third edition are allowed without a word, narrowing is not. Where the type of
 //! something is not known, nothing is said.
 
-use super::{Callee, Expected, Fit, Flow, ValueType, View, fit, folded};
+use super::{Callee, Expected, Fit, Flow, ValueType, View, fit};
 use crate::il::iec::{
     Condition, Item, ItemKind, ListForm, OperandId, Operation, ParameterValue, PouKind, Run,
 };
 use crate::target::Operand;
 use crate::target::iec::{ElementaryType, FunctionBlock, GenericType, Operator, OperatorRole};
-use crate::text::{Diagnostic, Message, Span, TextEdit};
+use crate::text::{Diagnostic, Message, Span, TextEdit, folded};
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 

@@ -1,11 +1,11 @@
 //! Initial values against the types of what they initialise.
 
-use super::{Expected, Fit, ValueType, View, fit, folded, out_of_range};
+use super::{Expected, Fit, ValueType, View, fit, out_of_range};
 use crate::document::DeclaredType;
 use crate::il::iec::{Declaration, ItemKind, TypeSpec, ValueKind};
 use crate::target::Operand;
 use crate::target::iec::LiteralValue;
-use crate::text::{Diagnostic, Message};
+use crate::text::{Diagnostic, Message, folded};
 
 /// Constants that do not fit the declared type: a part of `constant-out-of-range` and of `operand-kind`.
 pub fn initial_values(view: &View<'_>, found: &mut Vec<Diagnostic>) {

@@ -2,7 +2,7 @@
 //! walk that follows the current result.
 
 mod view;
-pub(super) use view::{Place, Root, ValueType, View, folded, views, views_of};
+pub(super) use view::{Place, Root, ValueType, View, views, views_of};
 
 mod callee;
 pub(super) use callee::{Callee, Expected, Flow, Pin};

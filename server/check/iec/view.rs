@@ -262,12 +262,3 @@ pub fn views_of(file: ProgramFile<'_>) -> impl Iterator<Item = (usize, View<'_>)
         Some((at.start + file.start, view))
     })
 }
-
-/// A name without letter case.
-pub fn folded(name: &str) -> SmolStr {
-    if name.is_ascii() {
-        SmolStr::from(name.to_ascii_lowercase())
-    } else {
-        SmolStr::from(name.to_lowercase())
-    }
-}

@@ -1,10 +1,10 @@
 //! What is written in an instruction: unknown words, numbers of operands, words that are no operand.
 
-use super::{Callee, View, folded, out_of_range};
+use super::{Callee, View, out_of_range};
 use crate::il::iec::{Item, ItemKind, ListForm, Parameter, PouKind};
 use crate::target::iec::{ElementaryType, FunctionBlock, LiteralProblem, OperatorRole, suggestions};
 use crate::target::{Operand, OperandProblem};
-use crate::text::{Diagnostic, Message, Span, TextEdit};
+use crate::text::{Diagnostic, Message, Span, TextEdit, folded};
 
 /// Words at the place of an instruction that are none: the IEC part of `unknown-instruction`.
 pub fn unknown_instructions(view: &View<'_>, found: &mut Vec<Diagnostic>) {

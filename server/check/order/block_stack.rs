@@ -32,7 +32,7 @@
 //! END
 //! ```
 
-use super::rung::{Finding, findings};
+use super::rung::Finding;
 use crate::check::statements::{line_before, removal};
 use crate::check::{ChunkContext, Rule, Run};
 use crate::il::fx::{FxLine, FxTree, LineKind};
@@ -47,11 +47,11 @@ pub(super) const RULE: Rule = Rule {
 };
 
 fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
-    let Some((tree, findings)) = findings(context) else { return };
+    let Some((tree, findings)) = context.rung() else { return };
     let text = context.chunk.text();
     for finding in findings {
         match finding {
-            Finding::TooFewBlocks { line, blocks } => {
+            &Finding::TooFewBlocks { line, blocks } => {
                 let line = &tree.lines[line];
                 let word = line.mnemonic.of(text);
                 let message = Message::new("block-stack.too-few").with("word", word).with("blocks", blocks);
@@ -59,7 +59,7 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
                 let diagnostic = Diagnostic::new(RULE.code, line.mnemonic, message);
                 found.push(diagnostic.fix(title, vec![removal(text, line.span)]));
             }
-            Finding::OpenBlocks { begun, output } => found.push(open_blocks(text, tree, &begun, output)),
+            Finding::OpenBlocks { begun, output } => found.push(open_blocks(text, tree, begun, *output)),
             _ => {}
         }
     }

@@ -36,7 +36,7 @@
 //! END
 //! ```
 
-use super::rung::{Finding, findings};
+use super::rung::Finding;
 use crate::check::statements::removal;
 use crate::check::{ChunkContext, Rule, Run};
 use crate::text::{Diagnostic, Message, Severity, TextEdit};
@@ -49,16 +49,16 @@ pub(super) const RULE: Rule = Rule {
 };
 
 fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
-    let Some((tree, findings)) = findings(context) else { return };
+    let Some((tree, findings)) = context.rung() else { return };
     let text = context.chunk.text();
     for finding in findings {
         match finding {
-            Finding::NoBranch { line } => {
+            &Finding::NoBranch { line } => {
                 let line = &tree.lines[line];
                 let message = Message::new("branch-stack.nothing").with("word", line.mnemonic.of(text));
                 found.push(Diagnostic::new(RULE.code, line.mnemonic, message));
             }
-            Finding::OpenBranch { line, last_read } => {
+            &Finding::OpenBranch { line, last_read } => {
                 let word = tree.lines[line].mnemonic;
                 let message = Message::new("branch-stack.open");
                 let diagnostic = Diagnostic::new(RULE.code, word, message);

@@ -46,7 +46,7 @@
 //! END
 //! ```
 
-use super::rung::{Finding, findings};
+use super::rung::Finding;
 use crate::check::statements::StatementKind;
 use crate::check::{ChunkContext, ProgramContext, Rule, Run};
 use crate::target::{Device, Flow};
@@ -62,12 +62,12 @@ pub(super) const RULE: Rule = Rule {
 
 fn check_rung(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     crate::check::drawing::nesting::find(RULE.code, context, found);
-    let Some((tree, findings)) = findings(context) else { return };
+    let Some((tree, findings)) = context.rung() else { return };
     let limits = &context.target.limits;
     for finding in findings {
         let (line, key, limit) = match finding {
-            Finding::TooManyBlocks { line } => (line, "nesting-too-deep.blocks", limits.blocks),
-            Finding::TooManyBranches { line } => (line, "nesting-too-deep.branches", limits.branches),
+            &Finding::TooManyBlocks { line } => (line, "nesting-too-deep.blocks", limits.blocks),
+            &Finding::TooManyBranches { line } => (line, "nesting-too-deep.branches", limits.branches),
             _ => continue,
         };
         let message = Message::new(key).with("limit", limit);

@@ -96,7 +96,7 @@
 //! END_PROGRAM
 //! ```
 
-use super::rung::{After, Finding, findings};
+use super::rung::{After, Finding};
 use crate::check::iec::{View, follow};
 use crate::check::statements::line_before;
 use crate::check::{ChunkContext, Rule, Run};
@@ -116,9 +116,9 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
         // One walk finds what four rules report: the type of the current result is known where it exists.
         return found.extend(follow(view).0);
     }
-    let Some((tree, findings)) = findings(context) else { return };
+    let Some((tree, findings)) = context.rung() else { return };
     for finding in findings {
-        if let Finding::NoResult { line, after } = finding {
+        if let &Finding::NoResult { line, after } = finding {
             found.push(diagnostic(context.chunk.text(), tree, &tree.lines[line], after));
         }
     }

@@ -1,8 +1,6 @@
 //! Walks the lines of an FX rung as the CPU would, with the current result, the stack of blocks and the stack of
 //! branches. Five rules read what it finds, so that one mistake is reported by one of them.
 
-use crate::check::ChunkContext;
-use crate::document::Tree;
 use crate::il::fx::{FxTree, LineKind};
 use crate::target::{Flow, Form, Limits, Role};
 
@@ -38,14 +36,9 @@ pub(in crate::check) enum After {
     Step(usize),
 }
 
-/// What is out of order in the rungs of a chunk of instruction list. A chunk with something unreadable is not judged:
-/// the missing words would be missed here once more.
-pub(in crate::check) fn findings<'a>(context: &ChunkContext<'a>) -> Option<(&'a FxTree, Vec<Finding>)> {
-    let Tree::Fx(tree) = context.chunk.tree() else { return None };
-    if !tree.problems.is_empty() {
-        return None;
-    }
-    let mut walk = Walk::new(context.target.limits);
+/// What is out of order in the rungs of a chunk, in the order of its lines.
+pub(in crate::check) fn findings(tree: &FxTree, limits: Limits) -> Vec<Finding> {
+    let mut walk = Walk::new(limits);
     for (line, record) in tree.lines.iter().enumerate() {
         match record.kind {
             LineKind::Label(_) => walk.restart(line, State::Empty(After::Start)),
@@ -54,7 +47,7 @@ pub(in crate::check) fn findings<'a>(context: &ChunkContext<'a>) -> Option<(&'a 
         }
     }
     walk.finish(tree.lines.len(), None);
-    Some((tree, walk.found))
+    walk.found
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]

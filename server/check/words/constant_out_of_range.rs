@@ -75,16 +75,18 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     if !context.target.is_fx() {
         return;
     }
-    for operation in context.chunk.operations() {
+    for operation in &context.doubtful {
         let Some(form) = operation.form else { continue };
-        let operands: Vec<Operand> = operation.operands.iter().map(|operand| operand.value).collect();
+        // The others make no difference to the limits.
+        let first = operation.operands.first().map(|operand| operand.value);
+        let operands = first.as_slice();
         for (place, operand) in operation.operands.iter().enumerate() {
             let Operand::Constant { value, .. } = operand.value else { continue };
             let takes = form.takes(place, &operand.value, context.target.model);
-            if !takes || fits(form, place, value, &operands) {
+            if !takes || fits(form, place, value, operands) {
                 continue;
             }
-            let (least, greatest) = form.constant_limits(place, &operands);
+            let (least, greatest) = form.constant_limits(place, operands);
             let spec = &form.instruction.operands[place];
             let key = match (value, spec.optional) {
                 (Constant::Real(_), _) => "constant-out-of-range.real",
@@ -102,7 +104,7 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
                 .with("least", least)
                 .with("greatest", greatest);
             let diagnostic = Diagnostic::new(RULE.code, operand.span, message);
-            found.push(match fitting_form(form, place, value, &operands).filter(|_| operation.is_word) {
+            found.push(match fitting_form(form, place, value, operands).filter(|_| operation.is_word) {
                 Some(wide) => {
                     let title = Message::new("constant-out-of-range.use-wide").with("instruction", &wide);
                     diagnostic.fix(title, vec![TextEdit::new(operation.symbol, wide)])

@@ -42,7 +42,7 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     if !target.is_fx() {
         return;
     }
-    for operation in context.chunk.operations() {
+    for operation in &context.doubtful {
         for (place, operand) in operation.operands.iter().enumerate() {
             let run = run_of(operation.form, place, &operand.value);
             found.extend(run.and_then(|(first, last)| outside(first, last, operand.span, target)));

@@ -38,7 +38,7 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     if !context.target.is_fx() {
         return;
     }
-    for operation in context.chunk.operations() {
+    for operation in &context.doubtful {
         let Some(form) = operation.form.filter(|form| !form.is_on(context.target.model)) else { continue };
         let models: Vec<&str> =
             form.instruction.models.iter().map(|&model| Target::of(model).title).collect();

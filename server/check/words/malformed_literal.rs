@@ -80,7 +80,7 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     if let Some(view) = View::of(context) {
         return unreadable_operands(&view, found);
     }
-    for operand in context.chunk.operations().flat_map(|operation| operation.operands) {
+    for operand in context.doubtful.iter().flat_map(|operation| operation.operands) {
         if operand.value == Operand::Invalid(OperandProblem::MalformedConstant) {
             found.push(fx_constant(operand.span, operand.span.of(context.chunk.text())));
         }

@@ -43,7 +43,7 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     if !context.target.is_fx() {
         return;
     }
-    for operation in context.chunk.operations() {
+    for operation in &context.doubtful {
         let specs = operation.form.map_or(&[][..], |form| form.instruction.operands);
         let [operand] = operation.operands else { continue };
         if !specs.get(1).is_some_and(|spec| spec.optional) {

@@ -2,6 +2,8 @@
 
 use super::Rule;
 
+pub(super) mod plain;
+
 mod unknown_instruction;
 
 mod instruction_not_on_target;

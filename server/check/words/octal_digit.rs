@@ -38,7 +38,7 @@ pub(super) const RULE: Rule = Rule {
 };
 
 fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
-    let operands = context.chunk.operations().flat_map(|operation| operation.operands);
+    let operands = context.doubtful.iter().flat_map(|operation| operation.operands);
     for operand in operands.filter(|operand| operand.value == Operand::Invalid(OperandProblem::OctalDigit)) {
         let word = operand.span.of(context.chunk.text());
         let message = Message::new("octal-digit.found").with("word", word);

@@ -76,7 +76,7 @@
 use crate::check::iec::{View, operand_counts};
 use crate::check::{ChunkContext, Rule, Run};
 use crate::document::{Operation, Tree};
-use crate::target::{DeviceKind, Form, Operand, OperandSpec};
+use crate::target::{Form, Operand, OperandSpec};
 use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
 
 pub(super) const RULE: Rule = Rule {
@@ -94,7 +94,7 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     let is_drawn = matches!(context.chunk.tree(), Tree::Ladder(_));
     let mut problems: Vec<u32> = context.chunk.problems().iter().map(|problem| problem.span.start).collect();
     problems.sort_unstable();
-    for operation in context.chunk.operations().filter(|operation| operation.is_word || !is_drawn) {
+    for operation in context.doubtful.iter().filter(|operation| operation.is_word || !is_drawn) {
         let Some(form) = operation.form else { continue };
         let (least, most) = places(form, operation.operands.first().map(|operand| &operand.value));
         let count = operation.operands.len();
@@ -111,7 +111,7 @@ fn places(form: Form, first: Option<&Operand>) -> (usize, usize) {
     let specs = form.instruction.operands;
     let least = specs.iter().filter(|spec| !spec.optional).count();
     let device = first.and_then(Operand::device);
-    let has_preset = device.is_none_or(|device| matches!(device.kind, DeviceKind::T | DeviceKind::C));
+    let has_preset = device.is_none_or(|device| device.kind.has_preset());
     (least, if has_preset { specs.len() } else { least })
 }
 

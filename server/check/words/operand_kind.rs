@@ -104,7 +104,7 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     if !context.target.is_fx() {
         return;
     }
-    for operation in context.chunk.operations() {
+    for operation in &context.doubtful {
         let Some(form) = operation.form.filter(|form| form.is_on(context.target.model)) else { continue };
         for (place, operand) in operation.operands.iter().enumerate() {
             if place >= expected(form, &operation)
@@ -122,7 +122,7 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
 fn expected(form: Form, operation: &Operation<'_>) -> usize {
     let specs = form.instruction.operands;
     let driven = operation.operands.first().and_then(|operand| operand.value.device());
-    let has_preset = driven.is_none_or(|device| matches!(device.kind, DeviceKind::T | DeviceKind::C));
+    let has_preset = driven.is_none_or(|device| device.kind.has_preset());
     specs.iter().filter(|spec| has_preset || !spec.optional).count()
 }
 

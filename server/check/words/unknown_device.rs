@@ -4,6 +4,11 @@
 //! The PLC cannot run the rung, and a typing mistake in a device name is the most common cause of a rung that does
 //! nothing.
 //!
+//! A symbol of the device comments file stands for its device, also inside an operand: `K4Lamps` is `K4M0` if `Lamps`
+//! is M0, `LevelZ1` is `D0Z1` and `Level.3` is `D0.3` if `Level` is D0. The index register has its number there. A
+//! form that the device does not have, such as `K4Level`, is reported here, and so is a word that can be put together
+//! of two symbols in two ways.
+//!
 //! ```fx
 //! LD Q0
 //!    ^^
@@ -39,12 +44,16 @@ pub(super) const RULE: Rule = Rule {
 
 fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     // What stands behind an unknown word may be anything; the word itself is reported.
-    let known = context.chunk.operations().filter(|operation| operation.form.is_some());
+    let known = context.doubtful.iter().filter(|operation| operation.form.is_some());
     for operand in known.flat_map(|operation| operation.operands) {
+        let word = operand.span.of(context.chunk.text());
+        if let Some(message) = symbol_problem(&operand.value, word) {
+            found.push(Diagnostic::new(RULE.code, operand.span, message.with("word", word)));
+            continue;
+        }
         if !is_unknown(&operand.value, context.target) {
             continue;
         }
-        let word = operand.span.of(context.chunk.text());
         let message =
             Message::new("unknown-device.found").with("word", word).with("target", context.target.title);
         let mut diagnostic = Diagnostic::new(RULE.code, operand.span, message);
@@ -54,6 +63,26 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
         }
         found.push(diagnostic);
     }
+}
+
+/// What is wrong with a symbol of the project that stands in a form such as `K4Level`.
+fn symbol_problem(operand: &Operand, word: &str) -> Option<Message> {
+    let message = match operand {
+        Operand::Invalid(OperandProblem::SymbolForm(device)) => {
+            let is_group = word
+                .strip_prefix(['K', 'k'])
+                .is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
+            let key = match () {
+                () if word.contains('.') => "unknown-device.symbol-bit",
+                () if is_group => "unknown-device.symbol-group",
+                () => "unknown-device.symbol-index",
+            };
+            Message::new(key).with("device", device)
+        }
+        Operand::Invalid(OperandProblem::SymbolTwice) => Message::new("unknown-device.symbol-twice"),
+        _ => return None,
+    };
+    Some(message)
 }
 
 fn is_unknown(operand: &Operand, target: &Target) -> bool {

@@ -67,7 +67,7 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     if !context.target.is_fx() {
         return;
     }
-    for operation in context.chunk.operations().filter(|operation| operation.form.is_none()) {
+    for operation in context.doubtful.iter().filter(|operation| operation.form.is_none()) {
         let word = operation.symbol.of(context.chunk.text());
         let near = suggestions(word, context.target.model);
         let key = if near.is_empty() { "unknown-instruction.found" } else { "unknown-instruction.near" };

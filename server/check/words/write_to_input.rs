@@ -53,8 +53,8 @@
 //! ```
 
 use crate::check::{ChunkContext, Rule, Run};
-use crate::document::Symbol;
-use crate::target::{Device, DeviceKind, Location};
+use crate::document::{Operation, Symbol, Tree};
+use crate::target::{Access, Device, DeviceKind, Location, Operand};
 use crate::text::{Diagnostic, Message, Severity, TextEdit};
 
 pub(super) const RULE: Rule = Rule {
@@ -65,6 +65,9 @@ pub(super) const RULE: Rule = Rule {
 };
 
 fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
+    if matches!(context.chunk.tree(), Tree::Fx(_)) && !context.doubtful.iter().any(writes_input) {
+        return;
+    }
     for mention in context.chunk.mentions().iter().filter(|mention| mention.usage.writes()) {
         let word = mention.span.of(context.chunk.text());
         let diagnostic = |key| Diagnostic::new(RULE.code, mention.span, Message::new(key).with("word", word));
@@ -89,6 +92,14 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
             _ => {}
         }
     }
+}
+
+/// Whether an instruction of a list writes to an input, told without its mentions.
+fn writes_input(operation: &Operation<'_>) -> bool {
+    let specs = operation.form.map_or(&[][..], |form| form.instruction.operands);
+    let is_input = |operand: &Operand| operand.device().is_some_and(|device| device.kind == DeviceKind::X);
+    let mut written = specs.iter().zip(operation.operands).filter(|(spec, _)| spec.access != Access::Read);
+    written.any(|(_, operand)| is_input(&operand.value))
 }
 
 /// Adds the output of the same number, index register and all.

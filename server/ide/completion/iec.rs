@@ -328,7 +328,7 @@ fn pins(place: &Place<'_>, block: &str) -> Vec<(String, String, bool)> {
         message.with("kind", kind).render(place.language)
     };
     if let Some(pou) = scopes.pou_named(block) {
-        let pins = pou.variables.iter().filter(|variable| declared::is_parameter(variable.section));
+        let pins = pou.variables.iter().filter(|variable| variable.section.is_parameter());
         let pins = pins.map(|pin| {
             let output = pin.section == SectionKind::Output;
             (pin.name.to_string(), words(output, declared::type_name(&pin.declared, scopes)), output)

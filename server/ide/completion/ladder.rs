@@ -2,7 +2,7 @@
 
 use super::{Place, Proposal, iec, instructions, operands};
 use crate::ide::CompletionKind;
-use crate::target::{Accepts, Access, DeviceKind, Form, Operand};
+use crate::target::{Accepts, Access, Form, Operand};
 use crate::text::{Message, Span};
 
 pub(super) fn complete(place: &mut Place<'_>) {
@@ -60,7 +60,7 @@ fn inside(place: &mut Place<'_>, bracket: char, content: &str) {
             let is_letter =
                 matches!(word, "S" | "R" | "P" | "N" | "L" | "U" | "/" | "SET" | "RST" | "PLS" | "PLF");
             match device.device().map(|device| device.kind) {
-                Some(DeviceKind::T | DeviceKind::C) if given.is_empty() => {
+                Some(kind) if kind.has_preset() && given.is_empty() => {
                     if let Some(form) = Form::named("OUT") {
                         operands::propose(place, typed, form, &[device]);
                     }

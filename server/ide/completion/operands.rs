@@ -5,7 +5,7 @@ use crate::document::{Symbol, Use};
 use crate::ide::bookkeeping::Book;
 use crate::ide::names::Thing;
 use crate::ide::{CompletionKind, devices, uses};
-use crate::target::{Accepts, Access, Device, DeviceKind, DeviceRange, Form, Operand};
+use crate::target::{Accepts, Access, Device, DeviceKind, DeviceRange, Flow, Form, Operand};
 use crate::text::{Message, phrase};
 
 /// More devices in use are not proposed; typing narrows the choice.
@@ -31,21 +31,20 @@ const HIGH_SPEED: u32 = 235;
 pub(super) fn propose(place: &mut Place<'_>, typed: &str, form: Form, given: &[Operand]) {
     let Some(spec) = form.instruction.operands.get(given.len()) else { return };
     let driven = given.first().and_then(Operand::device);
-    let counts = driven.is_some_and(|device| matches!(device.kind, DeviceKind::T | DeviceKind::C));
+    let counts = driven.is_some_and(|device| device.kind.has_preset());
     if spec.optional && !counts {
         return;
     }
     let accepts = spec.accepts.on(place.document.target().model);
     let wide = form.wide && accepts.contains(Accepts::D);
     let count = if wide { 2 } else { u32::from(spec.count.max(1)) };
-    // What is written for the first time wants a new device; a reset is for one that something else sets.
-    let is_fresh = spec.access == Access::Write
-        && !accepts.contains(Accepts::D)
-        && !matches!(form.instruction.mnemonic, "RST" | "ZRST");
+    // What is written for the first time wants a new device; a reset, which takes registers as well, is for one that
+    // something else sets.
+    let is_fresh = spec.access == Access::Write && !accepts.contains(Accepts::D);
     let wanted = Wanted { accepts, access: spec.access, count, is_fresh };
     propose_devices(place, typed, &wanted);
     if accepts.contains(Accepts::P) {
-        propose_labels(place, typed, form.instruction.mnemonic == "CALL");
+        propose_labels(place, typed, form.instruction.flow() == Flow::Call);
     }
     propose_constants(
         place,
@@ -70,7 +69,7 @@ pub(super) struct Wanted {
 
 impl Wanted {
     fn takes(&self, kind: DeviceKind) -> bool {
-        let is_label = matches!(kind, DeviceKind::P | DeviceKind::I);
+        let is_label = kind.is_pointer();
         let is_written = self.access != Access::Read;
         self.accepts.contains(Accepts::of_kind(kind)) && !is_label && !(kind == DeviceKind::X && is_written)
     }

@@ -127,15 +127,13 @@ impl Assembly {
             Some(ElementKind::Block(block)) => Some((main_pin(&block.inputs), main_pin(&block.outputs))),
             _ => None,
         };
-        let (input, output) = block.unwrap_or((Some(0), Some(0)));
-        let starts = matches!(kind, Some(ElementKind::ConnectorIn(_))) || input.is_none();
-        let ends =
-            matches!(kind, Some(ElementKind::Jump(_) | ElementKind::Return | ElementKind::ConnectorOut(_)))
-                || output.is_none();
+        let (input, output) = block.unwrap_or((0, 0));
+        let starts = kind.is_some_and(ElementKind::is_source);
+        let ends = kind.is_some_and(ElementKind::is_sink);
         if !starts {
-            self.graph.add_arc(from, (vertex, input.unwrap_or(0)), &[]);
+            self.graph.add_arc(from, (vertex, input), &[]);
         }
-        let own_end = (vertex, output.unwrap_or(0));
+        let own_end = (vertex, output);
         match to {
             Some(to) if ends => to,
             Some(to) => {
@@ -147,7 +145,7 @@ impl Assembly {
     }
 }
 
-/// The first wired pin of a side of a block.
-fn main_pin(pins: &[Pin]) -> Option<u16> {
-    pins.iter().position(|pin| pin.wire == PinWire::Power).map(|pin| pin as u16)
+/// The first wired pin of a side of a block; of one without such a pin no wire comes.
+fn main_pin(pins: &[Pin]) -> u16 {
+    pins.iter().position(|pin| pin.wire == PinWire::Power).map_or(0, |pin| pin as u16)
 }

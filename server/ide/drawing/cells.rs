@@ -52,7 +52,7 @@ fn at(row: &[char], column: usize) -> char {
     row.get(column).copied().unwrap_or(' ')
 }
 
-/// Where `count` cells can be put into a row at or near a column without tearing a word or an element.
+/// Where cells can be put into a row at or near a column without tearing a word or an element.
 fn seam(row: &[char], column: usize) -> usize {
     let (start, end) = piece_around(row, column);
     // What belongs to the left of the column stays there.

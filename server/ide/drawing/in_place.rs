@@ -3,7 +3,7 @@
 use super::cells::{self, Row, is_wire};
 use super::look::Look;
 use super::site::{Site, cells_of};
-use crate::ladder::{ArcId, CoilKind, ContactKind, Element, ElementId, ElementKind, OperandPlace, StyleKind};
+use crate::ladder::{ArcId, Element, ElementId, ElementKind, OperandPlace, StyleKind};
 use crate::text::Span;
 
 /// The rows of a rung while cells of them are changed.
@@ -75,15 +75,7 @@ impl Spelling {
 
     /// The body of a contact or coil.
     fn body(&self, element: &Element, name: &str) -> Option<String> {
-        let mark = match &element.kind {
-            ElementKind::Contact(ContactKind::NormallyOpen) | ElementKind::Coil(CoilKind::Plain) => ' ',
-            ElementKind::Contact(ContactKind::NormallyClosed) | ElementKind::Coil(CoilKind::Negated) => '/',
-            ElementKind::Contact(ContactKind::Rising) | ElementKind::Coil(CoilKind::Rising) => 'P',
-            ElementKind::Contact(ContactKind::Falling) | ElementKind::Coil(CoilKind::Falling) => 'N',
-            ElementKind::Coil(CoilKind::Set) => 'S',
-            ElementKind::Coil(CoilKind::Reset) => 'R',
-            _ => return None,
-        };
+        let mark = mark_of(&element.kind)?;
         let (open, close) = (self.open, self.close);
         Some(match (self.place == OperandPlace::Inside, mark) {
             (false, _) => format!("{open}{mark}{close}"),
@@ -91,6 +83,15 @@ impl Spelling {
             (true, '/') => format!("{open}/{name}{close}"),
             (true, _) => format!("{open}{mark} {name}{close}"),
         })
+    }
+}
+
+/// The mark of a contact or coil; nothing for what has none.
+fn mark_of(kind: &ElementKind) -> Option<char> {
+    match kind {
+        ElementKind::Contact(kind) => Some(kind.mark()),
+        ElementKind::Coil(kind) => Some(kind.mark()),
+        _ => None,
     }
 }
 
@@ -185,11 +186,7 @@ pub(super) fn with_kinds(site: &Site<'_>, changed: &[(ElementId, ElementKind)]) 
     for (id, kind) in changed {
         let old = site.element(*id);
         let (row, first, last) = sketch.place(old.span)?;
-        let mark = match kind {
-            ElementKind::Contact(ContactKind::NormallyOpen) | ElementKind::Coil(CoilKind::Plain) => ' ',
-            ElementKind::Contact(ContactKind::NormallyClosed) | ElementKind::Coil(CoilKind::Negated) => '/',
-            _ => return None,
-        };
+        let mark = mark_of(kind)?;
         if last - first == 3 && !cells::is_word(sketch.rows[row][first + 1]) {
             sketch.rows[row][first + 1] = mark;
             continue;

@@ -6,7 +6,7 @@ use crate::ladder::reduce::reduce;
 use crate::ladder::{
     Drawing, Element, ElementKind, OperandPlace, Rung, Strokes, Style, StyleKind, column_after,
 };
-use crate::text::{Message, cell_width};
+use crate::text::{BYTE_ORDER_MARK, Message, text_width};
 
 /// The look of one rung.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -41,7 +41,7 @@ impl Look {
         let number = site.rung.number.map(|number| {
             let start = site.line_start(site.line_of(number.span.start as usize));
             let head = site.text.get(start..number.span.end as usize).unwrap_or("");
-            let blanks = (left as usize).saturating_sub(head.chars().map(cell_width).sum());
+            let blanks = (left as usize).saturating_sub(text_width(head));
             format!("{head}{}", " ".repeat(blanks))
         });
         Look {
@@ -119,8 +119,7 @@ impl Look {
         self.add_margin(&mut lines);
         for (row, column, comment) in comments_behind(site)? {
             let line = lines.get_mut(line_of_row(plan, &drawing, row)).ok_or_else(cannot)?;
-            let width: usize = line.chars().map(cell_width).sum();
-            let blanks = (column as usize).saturating_sub(width).max(2);
+            let blanks = (column as usize).saturating_sub(text_width(line)).max(2);
             line.push_str(&" ".repeat(blanks));
             line.push_str(comment);
         }
@@ -228,7 +227,8 @@ fn rail_behind(lines: &[&str], left: u32) -> Option<u32> {
     (first > left && columns.all(|column| column == Some(first))).then_some(first)
 }
 
-fn most_common(mut values: Vec<u32>) -> Option<u32> {
+/// The value that comes most often; of several the greatest.
+pub(super) fn most_common<T: Ord + Copy>(mut values: Vec<T>) -> Option<T> {
     values.sort_unstable();
     values
         .chunk_by(|left, right| left == right)
@@ -262,8 +262,6 @@ fn line_of_row(plan: &Plan, drawing: &Drawing, row: u32) -> usize {
     let nearest = below.or(old().max_by_key(|(_, element)| element.row));
     nearest.and_then(|(id, _)| drawing.line_of(id)).unwrap_or(0)
 }
-
-const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// The row of elements that have not been drawn yet.
 pub(super) const NEW_ROW: u32 = u32::MAX;

@@ -7,12 +7,12 @@
 
 use super::assemble::Plan;
 use super::cells::{self, Row, is_upright, is_wire, is_word};
-use super::changes;
-use super::look::Look;
+use super::look::{Look, most_common};
 use super::proof::keeps_words;
 use super::site::{Site, byte_of_column, line_start};
 use super::{Edited, prove};
 use crate::ide::Style;
+use crate::ide::changes;
 use crate::ladder::reduce::reduce;
 use crate::ladder::{LadderTree, Strokes, parse};
 use crate::text::{Message, Span, TextEdit};
@@ -25,12 +25,9 @@ const KEPT: usize = 12;
 
 /// Whether the rows of a rung end in different columns, or lines in it miss each other.
 pub(super) fn is_ragged(site: &Site<'_>) -> bool {
-    let lines = site.lines();
-    let inside = |span: Span| span.start < lines.end && lines.start <= span.end;
-    let aside = |code: &str| matches!(code, "ragged-drawing" | "ragged-rail");
-    let found = site.tree.problems.iter().any(|problem| aside(problem.code) && inside(problem.span));
+    let found = site.problems().any(|problem| matches!(problem.code, "ragged-drawing" | "ragged-rail"));
     let rows: Option<Vec<Row>> =
-        lines.of(site.text).lines().map(|line| cells::row(line.trim_end())).collect();
+        site.lines().of(site.text).lines().map(|line| cells::row(line.trim_end())).collect();
     let ends = rows.iter().flatten().filter_map(rail_of).collect::<Vec<_>>();
     found || ends.windows(2).any(|pair| pair[0] != pair[1])
 }
@@ -43,15 +40,14 @@ fn rail_of(row: &Row) -> Option<usize> {
 
 /// The block of lines around a byte of a chunk, as lines of the chunk: the rung, with rows that a break has parted
 /// from it.
-fn block(text: &str, tree: &LadderTree, line: u32) -> (u32, u32) {
+fn block(site: &Site<'_>, line: u32) -> (u32, u32) {
     let is_open = |number: u32| {
-        let (start, end) = (line_start(text, number), line_start(text, number + 1));
-        let content = text.get(start..end).unwrap_or("").trim();
+        let (start, end) = (site.line_start(number), site.line_start(number + 1));
         let covers = |span: &Span| (span.start as usize) < end && start < span.end as usize;
-        let header = tree.header.as_ref().is_some_and(|header| covers(&header.span));
-        !content.is_empty() && !header && !tree.comments.iter().any(covers)
+        let header = site.tree.header.as_ref().is_some_and(|header| covers(&header.span));
+        !site.line(number).trim().is_empty() && !header && !site.tree.comments.iter().any(covers)
     };
-    let count = text.lines().count() as u32;
+    let count = site.text.lines().count() as u32;
     let first = (0..line).rev().take_while(|number| is_open(*number)).last().unwrap_or(line);
     let end = (line..count).take_while(|number| is_open(*number)).last().map_or(line + 1, |last| last + 1);
     (first, end)
@@ -83,16 +79,14 @@ pub(super) fn mend(site: &Site<'_>, span: Span, style: Style) -> Result<Edited, 
 /// The rung drawn again as it reads.
 fn redrawn(site: &Site<'_>, span: Span, style: Style) -> Option<Edited> {
     let lines = site.lines();
-    let inside = |span: Span| span.start < lines.end && lines.start <= span.end;
     let two = |key: &str| key == "ragged-drawing.two";
     let aside = |code: &str| matches!(code, "ragged-drawing" | "ragged-rail" | "tab-in-drawing");
-    let mut problems = site.tree.problems.iter().filter(|problem| inside(problem.span));
-    if !problems.all(|problem| aside(problem.code) && !two(problem.message.key())) {
+    if !site.problems().all(|problem| aside(problem.code) && !two(problem.message.key())) {
         return None;
     }
     let shape = reduce(&site.rung.graph).ok()?;
     let plan = Plan { shape, elements: site.rung.graph.elements.clone() };
-    let drawn = Look::of(site, super::style_kind(style)).draw(&plan, site.text, site).ok()?;
+    let drawn = Look::of(site, style.ladder().kind).draw(&plan, site.text, site).ok()?;
     let proved = keeps_words(site, &[], &drawn)
         .then(|| prove(site, lines.shifted(site.start), &drawn, &site.rung.graph, site.text))??;
     let selection = super::same_place(site, &proved, span.start as usize);
@@ -101,7 +95,7 @@ fn redrawn(site: &Site<'_>, span: Span, style: Style) -> Option<Edited> {
 
 /// The edits, in bytes of the chunk, that align the rows around a line; nothing if none do, or differing ones.
 fn aligned(site: &Site<'_>, line: u32, column: u32) -> Option<Vec<TextEdit>> {
-    let (first, end) = block(site.text, site.tree, line);
+    let (first, end) = block(site, line);
     let cursor = Some((line - first, column));
     if (end - first) as usize > ROWS_MAX {
         return None;
@@ -137,7 +131,7 @@ fn aligned(site: &Site<'_>, line: u32, column: u32) -> Option<Vec<TextEdit>> {
     let target = site.document.target();
     let mut found: Option<(Vec<Row>, String, LadderTree)> = None;
     for (_, rows) in kept.into_iter().filter(|(cost, _)| *cost == best) {
-        let text = replaced(site.text, (first, end), &rows);
+        let text = replaced(site, (first, end), &rows);
         let tree = parse(&text, target);
         let healthy = tree.problems.is_empty() && tree.comments.len() == site.tree.comments.len();
         if !healthy {
@@ -166,25 +160,22 @@ fn same_logic((left_text, left): (&str, &LadderTree), (right_text, right): (&str
             .all(|(left, right)| left.graph.same_logic(left_text, &right.graph, right_text))
 }
 
-fn replaced(text: &str, (first, end): (u32, u32), rows: &[Row]) -> String {
-    let mut result = text.get(..line_start(text, first)).unwrap_or("").to_string();
+/// The chunk with other rows in the place of some lines.
+fn replaced(site: &Site<'_>, (first, end): (u32, u32), rows: &[Row]) -> String {
+    let text = site.text;
+    let mut result = text.get(..site.line_start(first)).unwrap_or("").to_string();
     for (row, number) in rows.iter().zip(first..) {
-        let line = text.get(line_start(text, number)..line_start(text, number + 1)).unwrap_or("");
+        let line = text.get(site.line_start(number)..site.line_start(number + 1)).unwrap_or("");
         result.push_str(&cells::text(row));
         result.push_str(&line[line.trim_end_matches(['\n', '\r']).len()..]);
     }
-    result.push_str(text.get(line_start(text, end)..).unwrap_or(""));
+    result.push_str(text.get(site.line_start(end)..).unwrap_or(""));
     result
 }
 
 /// The column in which most rows have their right rail; of several the rightmost, since cells are lost more often.
 fn common_rail(rows: &[Row]) -> Option<usize> {
-    let mut rails: Vec<usize> = rows.iter().filter_map(rail_of).collect();
-    rails.sort_unstable();
-    rails
-        .chunk_by(|left, right| left == right)
-        .max_by_key(|run| run.len())
-        .and_then(|run| run.first().copied())
+    most_common(rows.iter().filter_map(rail_of).collect())
 }
 
 /// The ways to bring a row's rail to a column, each with what speaks against it; the row as it is if it has none, or
@@ -197,7 +188,7 @@ fn fitted(row: &Row, rail: usize, cursor: Option<usize>) -> Vec<(usize, Row)> {
     while column < row.len() {
         let end = (column..row.len()).find(|at| row[*at] != row[column]).unwrap_or(row.len());
         let mut changed = row.clone();
-        let doubt = usize::from(!cursor.is_some_and(|cursor| (column..=end).contains(&cursor)));
+        let doubt = 2 * usize::from(!cursor.is_some_and(|cursor| (column..=end).contains(&cursor)));
         // What stands before the left rail can go altogether.
         let surplus = if column == 0 && row[0] == ' ' { end + 1 } else { end - column };
         if cells::is_within(row, column) {
@@ -224,13 +215,14 @@ fn misfit(above: &Row, below: &Row) -> usize {
         let (upper, lower) = (at(above, column), at(below, column));
         // A bar of a contact leads nowhere, and so costs the same wherever it stands.
         if Strokes::of(upper).down != Strokes::of(lower).up {
-            misfit += 4;
+            misfit += 8;
         }
     }
     misfit + beside(above, below)
 }
 
-/// Twice the cells by which the words of a row stand beside the middle of what is below them.
+/// Four times the cells by which the words of a row stand beside the middle of what is below them. A name that cannot
+/// stand over the very middle stands to its left where it is drawn anew, so the other side costs more than any doubt.
 fn beside(above: &Row, below: &Row) -> usize {
     let mut cost = 0;
     let mut column = 0;
@@ -240,16 +232,23 @@ fn beside(above: &Row, below: &Row) -> usize {
             continue;
         }
         let end = (column..above.len()).find(|at| !is_word(above[*at])).unwrap_or(above.len());
-        let is_body = |at: usize| {
-            below.get(at).is_some_and(|cell| is_upright(*cell) || matches!(cell, '(' | ')' | '[' | ']'))
-        };
         let middle = column + end - 1;
-        let near = (column.saturating_sub(2)..end + 2).filter(|at| is_body(*at)).collect::<Vec<_>>();
+        let near = (column.saturating_sub(2)..end + 2).filter(|at| is_body(below, *at)).collect::<Vec<_>>();
         cost += match (near.first(), near.last()) {
-            (Some(first), Some(last)) => middle.abs_diff(first + last),
-            _ => 6,
+            (Some(first), Some(last)) => {
+                2 * middle.abs_diff(first + last) + 3 * usize::from(middle > first + last)
+            }
+            _ => 12,
         };
         column = end;
     }
     cost
+}
+
+/// Whether a cell is an edge of an element: a bracket or a bar. Rails and junctions are none, however near.
+fn is_body(row: &Row, column: usize) -> bool {
+    let Some(cell) = row.get(column).copied() else { return false };
+    let Strokes { left, right, up, down } = Strokes::of(cell);
+    let is_bar = up && down && !(left && right) && column > 0 && column + 1 < row.len();
+    is_bar || matches!(cell, '(' | ')' | '[' | ']')
 }

@@ -5,23 +5,21 @@
 
 mod assemble;
 mod cells;
-mod changes;
 mod in_place;
 mod look;
 mod mend;
-mod object;
+pub(super) mod object;
 mod operation;
 mod parts;
 mod proof;
-mod ranges;
+pub(super) mod ranges;
 mod rungs;
 mod site;
-mod typing;
+pub(super) mod typing;
 
 use crate::document::{Document, Notation};
 use crate::ide::Style;
-use crate::ladder::{Element, Graph, StyleKind};
-use crate::project::FormatStyle;
+use crate::ladder::{Element, Graph};
 use crate::text::{Message, Span, TextEdit};
 use look::Look;
 pub use object::{Object, ObjectKind};
@@ -129,7 +127,7 @@ pub fn edit(
         return mend::mend(&site, span, style);
     }
     let intended = operation::intended(&site, span, kind, operand);
-    let look = Look::of(&site, style_kind(style));
+    let look = Look::of(&site, style.ladder().kind);
     let ask = Ask { site, span, kind, operand, look };
     // A drawing that is not in the canonical form was laid out by its author, and stays as far as it can.
     let is_canonical = ask.look.redraws(&ask.site);
@@ -216,29 +214,9 @@ fn prove(site: &Site<'_>, old: Span, lines: &str, wanted: &Graph, source: &str) 
     window.prove(window.with(old, lines), number, wanted, source, false)
 }
 
-/// The text object of a kind at a byte of a ladder document.
-pub fn object(document: &Document, offset: usize, kind: ObjectKind, around: bool) -> Option<Object> {
-    object::at(document, offset, kind, around)
-}
-
-/// The selection ranges around a byte of a drawing, smallest first.
-pub(super) fn ranges(document: &Document, offset: usize) -> Vec<Span> {
-    ranges::around(document, offset)
-}
-
-/// The edits after a character was typed in a drawing, so that it ends at byte `offset`.
-pub(super) fn after_character(document: &Document, offset: usize, typed: char) -> Vec<TextEdit> {
-    typing::after_character(document, offset, typed)
-}
-
-/// The edits after Enter in a drawing, with the cursor at byte `offset` of the new line.
-pub(super) fn after_enter(document: &Document, offset: usize, style: Style) -> Vec<TextEdit> {
-    typing::after_enter(document, offset, style)
-}
-
-/// The edits that make sense at the cursor or selection `span`. Whether the result can be drawn is known only when it
-/// is asked for.
-pub fn applicable(document: &Document, span: Span) -> Vec<EditKind> {
+/// The structural edits that make sense at the cursor or selection `span`. Whether the result can be drawn is known
+/// only when it is asked for, so this is cheap.
+pub fn applicable_edits(document: &Document, span: Span) -> Vec<EditKind> {
     if document.notation() != Notation::Ladder {
         return Vec::new();
     }
@@ -277,13 +255,4 @@ fn same_place(site: &Site<'_>, proved: &Proved, offset: usize) -> Span {
     let at = first + rest.split_inclusive('\n').take(line).map(str::len).sum::<usize>();
     let text = new.get(at..rung.end as usize - start).and_then(|rest| rest.lines().next()).unwrap_or("");
     Span::at(start + at + site::byte_of_column(text, column))
-}
-
-/// The characters that the settings ask for.
-fn style_kind(style: Style) -> StyleKind {
-    match style.kind {
-        FormatStyle::Iec => StyleKind::Iec,
-        FormatStyle::Brackets => StyleKind::Brackets,
-        FormatStyle::Unicode => StyleKind::Unicode,
-    }
 }

@@ -1,11 +1,11 @@
 //! Text objects: the element, branch, rung or network at the cursor.
 
-use super::operation::innermost_branch;
-use super::parts::{part_at, split_wire};
+use super::operation::{innermost_branch, marked};
+use super::parts::part_at;
 use super::site::{Site, Spot, byte_of_column, cells_of, line_of, line_start};
 use crate::document::{ChunkRef, Document, Tree};
 use crate::ladder::reduce::{Shape, reduce};
-use crate::ladder::{Element, ElementId, ElementKind, Strokes, VertexKind, column_after};
+use crate::ladder::{Element, ElementId, Strokes, VertexKind, column_after};
 use crate::text::Span;
 
 /// What a text object is.
@@ -38,7 +38,12 @@ struct Rectangle {
 }
 
 /// The text object at a byte of the document.
-pub(super) fn at(document: &Document, offset: usize, kind: ObjectKind, around: bool) -> Option<Object> {
+pub(in crate::ide) fn at(
+    document: &Document,
+    offset: usize,
+    kind: ObjectKind,
+    around: bool,
+) -> Option<Object> {
     match kind {
         ObjectKind::Element => {
             let site = Site::at(document, offset)?;
@@ -84,19 +89,12 @@ pub(super) fn element_at(site: &Site<'_>, offset: usize) -> Option<ElementId> {
 /// The elements of the innermost branch at the cursor.
 pub(super) fn branch_at(site: &Site<'_>, offset: usize) -> Option<Vec<ElementId>> {
     let mut graph = site.rung.graph.clone();
-    let (id, mark) = match site.spot(offset)? {
-        Spot::Element(id) => (id, None),
-        Spot::Wire(wire) => {
-            let mark = Element::new(ElementKind::Invert, Span::default(), 0, (0, 0));
-            let id = split_wire(&mut graph, wire, mark);
-            (id, Some(id))
-        }
-    };
+    let (id, is_mark) = marked(site, &mut graph, offset)?;
     let shape = reduce(&graph).ok()?;
     let (mut path, branch) = innermost_branch(&shape, id)?;
     path.push(branch);
     let mut elements = part_at(&shape, &path).map(Shape::elements)?;
-    elements.retain(|element| Some(*element) != mark);
+    elements.retain(|element| !(is_mark && *element == id));
     (!elements.is_empty()).then_some(elements)
 }
 

@@ -170,17 +170,10 @@ impl Work<'_, '_> {
         self.finish(shape, Some(id), Vec::new())
     }
 
-    /// A shape in which the place of the cursor is an element, and that element.
+    /// A shape in which the place of the cursor is an element, that element, and whether it is only a mark.
     fn marked(&mut self, span: Span) -> Result<(Shape, ElementId, bool), Message> {
-        let spot = self.site.spot(span.start as usize).ok_or_else(|| Message::new("edit.no-place"))?;
-        let (id, is_mark) = match spot {
-            Spot::Element(id) => (id, false),
-            Spot::Wire(wire) => {
-                let mut mark = Element::new(ElementKind::Invert, Span::default(), NEW_ROW, (0, 0));
-                mark.row = NEW_ROW;
-                (parts::split_wire(&mut self.graph, wire, mark), true)
-            }
-        };
+        let marked = marked(self.site, &mut self.graph, span.start as usize);
+        let (id, is_mark) = marked.ok_or_else(|| Message::new("edit.no-place"))?;
         Ok((self.shape()?, id, is_mark))
     }
 
@@ -197,7 +190,13 @@ impl Work<'_, '_> {
         branches.swap(branch, other);
         let focus = branches[other].elements().first().copied().filter(|first| !(is_mark && *first == id));
         let focus = if is_mark { focus } else { Some(id) };
-        let shape = if is_mark { unmarked(&shape, id) } else { shape };
+        // A mark is taken out of its wire again.
+        if is_mark
+            && let Some(path) = path_to(&shape, id)
+            && let Some(part) = part_at_mut(&mut shape, &path)
+        {
+            *part = Shape::Wire;
+        }
         self.finish(shape, focus, Vec::new())
     }
 
@@ -280,6 +279,17 @@ pub(super) fn wire_at(site: &Site<'_>, span: Span) -> Result<ArcId, Message> {
             beside.or_else(|| site.wire_beside(id, !before)).ok_or_else(nothing)
         }
     }
+}
+
+/// The element at a byte of the document; where a wire is, an element put into it as a mark, and `true`.
+pub(super) fn marked(site: &Site<'_>, graph: &mut Graph, offset: usize) -> Option<(ElementId, bool)> {
+    Some(match site.spot(offset)? {
+        Spot::Element(id) => (id, false),
+        Spot::Wire(wire) => {
+            let mark = Element::new(ElementKind::Invert, Span::default(), NEW_ROW, (0, 0));
+            (parts::split_wire(graph, wire, mark), true)
+        }
+    })
 }
 
 /// The graph of a rung with an element in one of its wires, where only its shape stands in the way of every other
@@ -365,23 +375,4 @@ pub(super) fn innermost_branch(shape: &Shape, id: ElementId) -> Option<(Vec<usiz
     let depth =
         (0..path.len()).rfind(|depth| matches!(part_at(shape, &path[..*depth]), Some(Shape::Parallel(_))))?;
     Some((path[..depth].to_vec(), path[depth]))
-}
-
-/// The shape with a mark taken out of its wire again.
-fn unmarked(shape: &Shape, mark: ElementId) -> Shape {
-    match shape {
-        Shape::Element(id) if *id == mark => Shape::Wire,
-        Shape::Series(parts) => Shape::Series(parts.iter().map(|part| unmarked(part, mark)).collect()),
-        Shape::Parallel(branches) => {
-            Shape::Parallel(branches.iter().map(|part| unmarked(part, mark)).collect())
-        }
-        Shape::Block(block) => {
-            let mut block = block.clone();
-            for (_, side) in block.inputs.iter_mut().chain(&mut block.outputs) {
-                *side = unmarked(side, mark);
-            }
-            Shape::Block(block)
-        }
-        shape => shape.clone(),
-    }
 }

@@ -31,24 +31,11 @@ pub(super) fn element(new: New, operand: &str, target: &Target) -> Result<(Eleme
     let (wire, blanks) = ("-".repeat(length), " ".repeat(length));
     let drawing = match new {
         New::Contact(kind) => {
-            let mark = match kind {
-                ContactKind::NormallyOpen => ' ',
-                ContactKind::NormallyClosed => '/',
-                ContactKind::Rising => 'P',
-                ContactKind::Falling => 'N',
-            };
+            let mark = kind.mark();
             format!("|     {operand}{blanks}|\n+----|{mark}|{wire}+\n")
         }
         New::Coil(kind) => {
-            let mark = match kind {
-                CoilKind::Plain => ' ',
-                CoilKind::Negated => '/',
-                CoilKind::Set => 'S',
-                CoilKind::Reset => 'R',
-                CoilKind::Rising => 'P',
-                CoilKind::Falling => 'N',
-                CoilKind::Toggle => 'T',
-            };
+            let mark = kind.mark();
             format!("|     {operand}{blanks}|\n+----({mark}){wire}+\n")
         }
         New::Box => match function_block(operand, target) {

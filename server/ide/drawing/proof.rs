@@ -2,9 +2,9 @@
 //! everywhere around.
 
 use super::assemble::Plan;
-use super::changes;
 use super::site::Site;
 use crate::document::{ChunkRef, Document, Tree};
+use crate::ide::changes;
 use crate::ladder::reduce::reduce;
 use crate::ladder::{Element, Graph, LadderTree, Rung, parse, split};
 use crate::text::{Span, TextEdit};

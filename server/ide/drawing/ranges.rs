@@ -6,7 +6,7 @@ use crate::document::Document;
 use crate::text::Span;
 
 /// The ranges around a byte of a drawing, smallest first; not yet nested in each other.
-pub(super) fn around(document: &Document, offset: usize) -> Vec<Span> {
+pub(in crate::ide) fn around(document: &Document, offset: usize) -> Vec<Span> {
     let mut ranges = Vec::new();
     if let Some(site) = Site::at(document, offset) {
         let inside = offset.saturating_sub(site.start);

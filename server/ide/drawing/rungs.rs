@@ -9,7 +9,7 @@ use crate::document::{Document, Tree};
 use crate::ide::Style;
 use crate::ladder::Element;
 use crate::ladder::reduce::Shape;
-use crate::text::{Message, Span, TextEdit};
+use crate::text::{BYTE_ORDER_MARK, Message, Span, TextEdit};
 
 /// A new rung, a wire from rail to rail, below or above the rung at a byte of the document, or at the blank line there.
 pub(super) fn insert(
@@ -20,7 +20,7 @@ pub(super) fn insert(
 ) -> Result<Edited, Message> {
     let site = Site::at(document, offset);
     let near = site.clone().or_else(|| nearest(document, offset));
-    let fallback = super::style_kind(style);
+    let fallback = style.ladder().kind;
     let look = near.map_or_else(|| Look::plain(fallback, style.width), |site| Look::of(&site, fallback));
     let place = match site {
         Some(site) => beside(&site, above),
@@ -57,8 +57,10 @@ fn beside(site: &Site<'_>, above: bool) -> usize {
     if site.number > 0 {
         return site.start + site.lines().start as usize;
     }
-    let blank = site.text.len() - site.text.trim_start_matches(['\n', '\r', ' ', '\t', '\u{feff}']).len();
-    site.start + site.line_start(site.line_of(blank)).max(site.text.find('\u{feff}').map_or(0, |_| 3))
+    let blank =
+        site.text.len() - site.text.trim_start_matches(['\n', '\r', ' ', '\t', BYTE_ORDER_MARK]).len();
+    let mark = site.text.find(BYTE_ORDER_MARK).map_or(0, |_| BYTE_ORDER_MARK.len_utf8());
+    site.start + site.line_start(site.line_of(blank)).max(mark)
 }
 
 /// The start of a line between rungs: that of the byte if it is blank, else behind the chunk.
@@ -123,7 +125,7 @@ pub(super) fn after_end(
     if site.line_of(inside) != last || !complete || follows {
         return Vec::new();
     }
-    let look = Look::of(site, super::style_kind(style));
+    let look = Look::of(site, style.ladder().kind);
     let rung = look.empty_rung();
     vec![TextEdit::new(
         Span::at(offset),

@@ -2,7 +2,7 @@
 
 use crate::document::{Document, Tree};
 use crate::ladder::{ArcId, Element, ElementId, LadderTree, Rung, VertexKind, column_after};
-use crate::text::Span;
+use crate::text::{Diagnostic, Span};
 
 /// A rung with its surroundings.
 #[derive(Clone, Debug)]
@@ -60,6 +60,13 @@ impl<'d> Site<'d> {
     pub fn lines(&self) -> Span {
         let start = self.line_start(self.rung.lines.0);
         Span::new(start, self.line_start(self.rung.lines.1).max(start))
+    }
+
+    /// What was reported about the rung's lines.
+    pub fn problems(&self) -> impl Iterator<Item = &'d Diagnostic> + use<'d> {
+        let lines = self.lines();
+        let inside = move |span: Span| span.start < lines.end && lines.start <= span.end;
+        self.tree.problems.iter().filter(move |problem| inside(problem.span))
     }
 
     /// What a byte of the document is at; what is nearest where it is at nothing.

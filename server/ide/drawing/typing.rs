@@ -2,18 +2,18 @@
 //! aside is pulled back.
 
 use super::cells::{self, Row, is_upright, is_wire, is_word};
-use super::changes;
 use super::object::element_at;
 use super::rungs;
 use super::site::{Site, line_of, line_start};
 use super::{EditKind, edit};
 use crate::document::{Document, Tree};
 use crate::ide::Style;
+use crate::ide::changes;
 use crate::ladder::{Rung, Strokes, parse};
 use crate::text::{Span, TextEdit, cell_width};
 
 /// The edits after `typed` was typed, so that it ends at byte `offset`.
-pub(super) fn after_character(document: &Document, offset: usize, typed: char) -> Vec<TextEdit> {
+pub(in crate::ide) fn after_character(document: &Document, offset: usize, typed: char) -> Vec<TextEdit> {
     let Some(start) = offset.checked_sub(typed.len_utf8()) else { return Vec::new() };
     let Some(at) = document.chunk_at(start) else { return Vec::new() };
     let Tree::Ladder(tree) = at.chunk.tree() else { return Vec::new() };
@@ -28,12 +28,13 @@ pub(super) fn after_character(document: &Document, offset: usize, typed: char) -
         return Vec::new();
     }
     let Some(rows) = keystroke.answered() else { return Vec::new() };
+    let first = line_start(text, keystroke.first);
     let mut edits = Vec::new();
-    for (number, row) in rows.iter().enumerate() {
-        let line = keystroke.first + number as u32;
-        let from = line_start(text, line);
-        let old = line_at(text, line);
-        edits.extend(changes::smallest(old, &cells::text(row), at.start + from));
+    let mut start = at.start + first;
+    for (row, line) in rows.iter().zip(text.get(first..).unwrap_or("").split_inclusive('\n')) {
+        let old = line.lines().next().unwrap_or("");
+        edits.extend(changes::smallest(old, &cells::text(row), start));
+        start += line.len();
     }
     edits
 }
@@ -79,8 +80,8 @@ impl Keystroke {
         }
         let rung = tree.rungs.iter().find(|rung| rung.lines.0 <= line && line < rung.lines.1);
         let (first, end) = rung.map_or((line, line + 1), |rung: &Rung| rung.lines);
-        let rows: Vec<Row> =
-            (first..end).map(|line| cells::row(line_at(&before, line))).collect::<Option<_>>()?;
+        let lines = before.get(line_start(&before, first)..)?.lines().take((end - first) as usize);
+        let rows: Vec<Row> = lines.map(cells::row).collect::<Option<_>>()?;
         let row = (line - first) as usize;
         Some(Keystroke { typed, width: cell_width(typed), first, rows, row, column })
     }
@@ -118,8 +119,7 @@ impl Keystroke {
     }
 
     fn put(&self, row: &mut Row) {
-        let mut typed = [self.typed; 1].to_vec();
-        typed.extend(cells::row(&self.typed.to_string()).unwrap_or_default().into_iter().skip(1));
+        let typed = cells::row(self.typed.encode_utf8(&mut [0; 4])).unwrap_or_else(|| vec![self.typed]);
         row.splice(self.column..self.column, typed);
     }
 
@@ -224,7 +224,7 @@ fn run_end(row: &[char], from: usize, is: impl Fn(char) -> bool) -> usize {
 
 /// The edits after Enter, where `offset` is the cursor in its new line: a branch where an element or junction stands,
 /// an empty rung behind the end of a rung, else nothing.
-pub(super) fn after_enter(document: &Document, offset: usize, style: Style) -> Vec<TextEdit> {
+pub(in crate::ide) fn after_enter(document: &Document, offset: usize, style: Style) -> Vec<TextEdit> {
     let (line, start, current) = document.line_at(offset);
     let Some(head_end) = start.checked_sub(1).filter(|_| line > 0) else { return Vec::new() };
     let indent = current.get(..offset - start).unwrap_or("");

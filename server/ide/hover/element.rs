@@ -1,6 +1,6 @@
 //! The symbols of ladder in words.
 
-use crate::ladder::{CoilKind, CompareOperator, ContactKind, Element, ElementKind};
+use crate::ladder::{CoilKind, ContactKind, Element, ElementKind};
 use crate::target::DeviceKind;
 use crate::text::{Language, Message};
 
@@ -15,7 +15,7 @@ pub fn describe(element: &Element, chunk: &str, language: Language) -> Option<St
         ElementKind::Contact(kind) => contact(*kind).with("name", operand(0)),
         ElementKind::Compare(operator) => Message::new("element.compare")
             .with("left", operand(0))
-            .with("operator", sign(*operator))
+            .with("operator", operator.sign())
             .with("right", operand(1)),
         ElementKind::Invert => Message::new("element.invert"),
         ElementKind::Coil(kind) => {
@@ -50,16 +50,5 @@ fn coil(kind: CoilKind, device: Option<DeviceKind>) -> Message {
         (CoilKind::Rising, _) => Message::new("element.coil-rising"),
         (CoilKind::Falling, _) => Message::new("element.coil-falling"),
         (CoilKind::Toggle, _) => Message::new("element.coil-toggle"),
-    }
-}
-
-fn sign(operator: CompareOperator) -> &'static str {
-    match operator {
-        CompareOperator::Equal { .. } => "=",
-        CompareOperator::NotEqual { .. } => "<>",
-        CompareOperator::Greater { .. } => ">",
-        CompareOperator::Less { .. } => "<",
-        CompareOperator::GreaterOrEqual { .. } => ">=",
-        CompareOperator::LessOrEqual { .. } => "<=",
     }
 }

@@ -2,9 +2,9 @@
 
 use super::{Usage, UsageKey, UsageRow, access_words};
 use crate::document::ProjectView;
-use crate::ide::devices;
+use crate::ide::{devices, uses};
 use crate::target::{Device, DeviceKind};
-use crate::text::{Language, Message, cell_width};
+use crate::text::{Language, Message, text_width};
 use rustc_hash::FxHashMap;
 use std::collections::BTreeSet;
 
@@ -100,16 +100,11 @@ fn listed(row: &UsageRow, view: &ProjectView<'_>, language: Language) -> String 
         _ => format!("{}{}", row.symbol, row.comment),
     };
     let name = row.full_name();
-    let width: usize = name.chars().map(cell_width).sum();
-    let blanks = " ".repeat(9usize.saturating_sub(width).max(1));
+    let blanks = " ".repeat(9usize.saturating_sub(text_width(&name)).max(1));
     let mut text = format!("{name}{blanks}{}", [said.as_str(), row.preset.as_str()].join("  ").trim());
     text.truncate(text.trim_end().len());
     for at in &row.uses {
-        let place = match at.rung {
-            Some(rung) => Message::new("uses.rung-line").with("rung", rung),
-            None => Message::new("uses.line"),
-        };
-        let place = place.with("line", at.line + 1).render(language);
+        let place = uses::place_words(at.rung, at.line, language);
         let file = view.members().get(at.file).map_or("", |member| member.name);
         let file = if file.is_empty() { String::new() } else { format!("{file}, ") };
         text += &format!("\n    {file}{place}: {} — {}", access_words(at.usage, language), at.text);

@@ -12,7 +12,7 @@
 
 use super::{FxLine, FxTree, LineKind, parse, split, steps};
 use crate::target::{Model, Operand, Target};
-use crate::text::{Span, TextEdit, cell_width};
+use crate::text::{Span, TextEdit, text_width};
 use std::ops::Range;
 
 /// How one chunk is printed; these depend on the program that it is part of.
@@ -231,7 +231,7 @@ impl Printer<'_> {
             .iter()
             .filter(|segment| segment.print == Print::Instruction && !segment.comments.is_empty())
             .filter_map(|segment| self.tree.lines[segment.lines.clone()].last());
-        commented.map(|line| width(&self.row(line, self.next_step)) + 1).max().unwrap_or(0)
+        commented.map(|line| text_width(&self.row(line, self.next_step)) + 1).max().unwrap_or(0)
     }
 
     /// Goes on by the steps of a segment.
@@ -250,7 +250,7 @@ impl Printer<'_> {
             step = step.map(|step| step.saturating_add(self.tree.steps_of(line)));
             printed.push_str(&row);
             if place + 1 == lines.len() && !segment.comments.is_empty() {
-                let gap = self.column.saturating_sub(width(&row)).max(1);
+                let gap = self.column.saturating_sub(text_width(&row)).max(1);
                 printed.extend(std::iter::repeat_n(' ', gap));
                 printed.push_str(&self.comments(segment));
             }
@@ -274,9 +274,7 @@ impl Printer<'_> {
             match operand.value {
                 Operand::Text => row.push_str(word),
                 // A symbol keeps the letters that the project gave it.
-                Operand::Device(_) if matches!(Operand::read(word, Model::Fx3u), Operand::Invalid(_)) => {
-                    row.push_str(word);
-                }
+                operand if operand != Operand::read(word, Model::Fx3u) => row.push_str(word),
                 _ => row.push_str(&word.to_ascii_uppercase()),
             }
         }
@@ -288,9 +286,4 @@ impl Printer<'_> {
         let texts: Vec<&str> = comments.iter().map(|comment| comment.of(self.chunk).trim_end()).collect();
         texts.join(" ")
     }
-}
-
-/// Cells that `text` fills.
-fn width(text: &str) -> usize {
-    text.chars().map(cell_width).sum()
 }

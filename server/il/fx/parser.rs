@@ -2,7 +2,7 @@
 
 use super::lexer::Token;
 use super::{FxLine, FxTree, LineKind};
-use crate::target::{Accepts, DeviceKind, Form, Model, Operand, OperandProblem, Target};
+use crate::target::{Accepts, Form, Model, Operand, OperandProblem, Target};
 use crate::text::{Diagnostic, Message, Span, Spanned, TextEdit};
 use logos::Logos;
 
@@ -17,15 +17,20 @@ const UNCLOSED_COMMENT: &str = "unclosed-comment";
 /// instruction, a colon after a label, blanks before the sign of a comparing contact.
 pub fn parse(chunk: &str, target: &Target) -> FxTree {
     let mut parser = Parser::new(chunk, target);
-    let mut tokens = Token::lexer(chunk).spanned().peekable();
-    while let Some((token, mut range)) = tokens.next() {
-        // The lexer stops at each character that it does not know; a run of them is one finding.
-        while let Some((_, next)) =
-            tokens.next_if(|(next, at)| next.is_err() && token.is_err() && at.start == range.end)
-        {
-            range.end = next.end;
-        }
+    let mut lexer = Token::lexer(chunk);
+    // The lexer stops at each character that it does not know; a run of them is one finding.
+    let mut stray: Option<Span> = None;
+    while let Some(token) = lexer.next() {
+        let range = lexer.span();
         let span = Span::new(range.start, range.end);
+        if let Some(run) = stray {
+            if token.is_err() && run.end == span.start {
+                stray = Some(run.to(span));
+                continue;
+            }
+            parser.stray(run);
+            stray = None;
+        }
         match token {
             Ok(Token::Newline) => parser.end_line(),
             Ok(Token::Comma) => parser.comma(span),
@@ -39,9 +44,10 @@ pub fn parse(chunk: &str, target: &Target) -> FxTree {
             }
             Ok(Token::LineComment) => parser.tree.comments.push(span),
             Ok(Token::BlockComment(closed)) => parser.block_comment(span, closed),
-            Err(()) => parser.stray(span),
+            Err(()) => stray = Some(span),
         }
     }
+    stray.into_iter().for_each(|run| parser.stray(run));
     parser.end_line();
     parser.tree
 }
@@ -300,8 +306,11 @@ impl Parser<'_> {
     /// A word with characters that no token contains: a symbol of the project, or unreadable.
     fn read_glued(&self, span: Span) -> Operand {
         match self.target.read(span.of(self.chunk)) {
-            Operand::Device(device) => Operand::Device(device),
-            _ => Operand::Invalid(OperandProblem::Unreadable),
+            Operand::Invalid(problem @ (OperandProblem::SymbolForm(_) | OperandProblem::SymbolTwice)) => {
+                Operand::Invalid(problem)
+            }
+            Operand::Invalid(_) => Operand::Invalid(OperandProblem::Unreadable),
+            operand => operand,
         }
     }
 
@@ -328,9 +337,7 @@ fn label(word: &str, model: Model) -> Option<LineKind> {
         return None;
     }
     match Operand::read(word, model) {
-        Operand::Device(device) if matches!(device.kind, DeviceKind::P | DeviceKind::I) => {
-            Some(LineKind::Label(device))
-        }
+        Operand::Device(device) if device.kind.is_pointer() => Some(LineKind::Label(device)),
         _ => None,
     }
 }

@@ -184,9 +184,9 @@ impl Lines<'_> {
     /// Passes blanks, block comments, and bytes that no word contains.
     fn skip_blanks(&mut self) {
         while self.position < self.bytes.len() {
-            match (CLASSES[self.byte(0) as usize], self.byte(1)) {
-                (Class::Blank, _) => self.position += 1,
-                (Class::Open, b'*') => self.skip_comment(),
+            match CLASSES[self.byte(0) as usize] {
+                Class::Blank => self.position += 1,
+                Class::Open if self.byte(1) == b'*' => self.skip_comment(),
                 _ => return,
             }
         }
@@ -231,18 +231,19 @@ impl Lines<'_> {
     /// Goes behind the end of the line.
     fn finish(&mut self) {
         while let Some(byte) = self.bytes.get(self.position) {
-            match (CLASSES[*byte as usize], self.byte(1)) {
-                (Class::LineFeed, _) => {
+            match CLASSES[*byte as usize] {
+                Class::LineFeed => {
                     self.position += 1;
                     return;
                 }
-                (Class::Return, next) => {
-                    self.position += if next == b'\n' { 2 } else { 1 };
+                Class::Return => {
+                    self.position += if self.byte(1) == b'\n' { 2 } else { 1 };
                     return;
                 }
-                (Class::Open, b'*') => self.skip_comment(),
-                (Class::Quote, _) => self.skip_text(*byte),
-                (Class::Semicolon, _) | (Class::Slash, b'/') => self.skip_to_line_end(),
+                Class::Open if self.byte(1) == b'*' => self.skip_comment(),
+                Class::Quote => self.skip_text(*byte),
+                Class::Semicolon => self.skip_to_line_end(),
+                Class::Slash if self.byte(1) == b'/' => self.skip_to_line_end(),
                 _ => self.position += 1,
             }
         }
@@ -320,10 +321,8 @@ impl Effects {
             let mnemonic: String = parts.concat().into_iter().map(char::from).collect();
             return Effect::of(&mnemonic);
         }
-        let mut key = 0;
-        for byte in parts.into_iter().flatten() {
-            key = key << 8 | u64::from(byte.to_ascii_uppercase());
-        }
+        let folded = |key: u64, byte: &u8| key << 8 | u64::from(byte.to_ascii_uppercase());
+        let key = parts.into_iter().fold(0, |key, part| part.iter().fold(key, folded));
         // The upper bits of a product with an odd constant mix all bits of the key.
         let slot = (key.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 58) as usize;
         if self.known[slot].0 != key {

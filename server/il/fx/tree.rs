@@ -69,8 +69,9 @@ impl FxTree {
             LineKind::Label(_) => Form { instruction: &LABEL, wide: false, pulse: false },
             LineKind::Unknown => return 0,
         };
-        let operands: Vec<Operand> = self.operands(line).iter().map(|operand| operand.value).collect();
-        form.steps(&operands)
+        // The others make no difference.
+        let first = self.operands(line).first().map(|operand| operand.value);
+        form.steps(first.as_slice())
     }
 
     /// The last line that begins at or before `offset`: the one in which a cursor stands, or is about to add to.

@@ -104,7 +104,7 @@ impl Lowering<'_, '_, '_> {
                 "PRIORITY" => task.priority = Some(source),
                 other => {
                     let message = Message::new("syntax-error.expected")
-                        .with("expected", "`SINGLE`, `INTERVAL`, `PRIORITY`")
+                        .with_alternatives("expected", ["`SINGLE`", "`INTERVAL`", "`PRIORITY`"])
                         .with("found", other);
                     self.reader.problem("syntax-error", word, message);
                 }

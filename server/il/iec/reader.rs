@@ -124,7 +124,7 @@ impl<'a> Reader<'a> {
             return self.expected_at_end(before, expected);
         };
         let message = Message::new("syntax-error.expected")
-            .with_words("expected", expected.split(", "), ", ")
+            .with_alternatives("expected", expected.split(", "))
             .with("found", shortened(self.word(found.span)));
         self.problem("syntax-error", found.span, message);
     }
@@ -162,7 +162,7 @@ impl<'a> Reader<'a> {
     /// Something is expected behind `before`, where a line or a text ends.
     pub fn expected_at_end(&mut self, before: Span, expected: &str) {
         let message =
-            Message::new("syntax-error.expected-at-end").with_words("expected", expected.split(", "), ", ");
+            Message::new("syntax-error.expected-at-end").with_alternatives("expected", expected.split(", "));
         self.problem("syntax-error", Span::at(before.end as usize), message);
     }
 
@@ -194,6 +194,13 @@ impl<'a> Reader<'a> {
     }
 }
 
+/// What begins with any of many words, so that a message names that and not each of them: the words by which it is
+/// known, and those which it takes along.
+const BEGINNINGS: &[(&str, &[&str], &[&str])] = &[
+    ("type", &["identifier", "`ARRAY`", "`STRING`"], &["`(`", "`STRUCT`", "`REF_TO`", "`WSTRING`"]),
+    ("value", &["identifier", "constant"], &["`(`", "`[`"]),
+];
+
 /// The names of kinds of tokens for a message, each once.
 pub fn list_of(kinds: impl IntoIterator<Item = TokenKind>) -> String {
     let mut names: Vec<String> = Vec::new();
@@ -202,6 +209,11 @@ pub fn list_of(kinds: impl IntoIterator<Item = TokenKind>) -> String {
         if !names.contains(&name) {
             names.push(name);
         }
+    }
+    let has = |name: &&str| names.iter().any(|own| own == name);
+    if let Some((whole, known, along)) = BEGINNINGS.iter().find(|(_, known, _)| known.iter().all(has)) {
+        names.retain(|name| ![known, along].iter().any(|words| words.contains(&name.as_str())));
+        names.push(whole.to_string());
     }
     names.join(", ")
 }

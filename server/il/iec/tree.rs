@@ -233,6 +233,18 @@ pub enum SectionKind {
     Config,
 }
 
+impl SectionKind {
+    /// Whether callers see its variables.
+    pub fn is_parameter(self) -> bool {
+        matches!(self, SectionKind::Input | SectionKind::Output | SectionKind::InOut)
+    }
+
+    /// Whether its variables are those of the whole program: declared for all, or taken from there.
+    pub fn is_global(self) -> bool {
+        matches!(self, SectionKind::Global | SectionKind::External)
+    }
+}
+
 /// An operator as written.
 #[derive(Clone, Copy)]
 pub struct Operation {

@@ -11,6 +11,8 @@ pub(super) struct Names {
     numbers: FxHashMap<String, usize>,
     /// Identifiers that are given away, without letter case.
     taken: FxHashSet<String>,
+    /// The number to try first behind an identifier; those that are numbered in any case begin with 1, not 2.
+    next: FxHashMap<(String, bool), usize>,
 }
 
 /// A name and its declaration.
@@ -65,17 +67,17 @@ impl Names {
 
     /// The identifier of the program itself, which no variable takes.
     pub fn instance_named(&mut self, wanted: &str) -> String {
-        let number = self.add("", wanted, "");
         let plain = identifier(wanted);
-        let name = &mut self.names[number];
-        self.taken.remove(&name.identifier.to_lowercase());
-        self.taken.insert(plain.to_lowercase());
-        name.identifier = plain.clone();
+        self.push("", plain.clone(), "");
         plain
     }
 
     fn add(&mut self, original: &str, wanted: &str, declared: &str) -> usize {
         let identifier = self.free(&identifier(wanted), original.is_empty());
+        self.push(original, identifier, declared)
+    }
+
+    fn push(&mut self, original: &str, identifier: String, declared: &str) -> usize {
         self.taken.insert(identifier.to_lowercase());
         let [original, declared] = [original, declared].map(str::to_string);
         self.names.push(Name { original, identifier, declared, kind: String::new(), pin: String::new() });
@@ -91,19 +93,16 @@ impl Names {
     }
 
     /// `wanted`, or with a number behind it if that is taken or `numbered`.
-    fn free(&self, wanted: &str, numbered: bool) -> String {
-        let is_free = |name: &str| !self.taken.contains(&name.to_lowercase());
-        if !numbered && is_free(wanted) {
+    fn free(&mut self, wanted: &str, numbered: bool) -> String {
+        let folded = wanted.to_lowercase();
+        if !numbered && !self.taken.contains(&folded) {
             return wanted.to_string();
         }
-        let mut number = if numbered { 1 } else { 2 };
-        loop {
-            let name = format!("{wanted}_{number}");
-            if is_free(&name) {
-                return name;
-            }
-            number += 1;
-        }
+        let first = self.next.entry((folded.clone(), numbered)).or_insert(if numbered { 1 } else { 2 });
+        let is_free = |number: &usize| !self.taken.contains(&format!("{folded}_{number}"));
+        let number = (*first..).find(is_free).unwrap_or(*first);
+        *first = number + 1;
+        format!("{wanted}_{number}")
     }
 }
 

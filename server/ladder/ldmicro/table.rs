@@ -1,6 +1,7 @@
 //! The tables behind the drawing: names with their types and pins.
 
 use crate::text::Span;
+use rustc_hash::FxHashSet;
 
 /// A row of the I/O table or the list of variables.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -49,6 +50,7 @@ impl NameKind {
 /// The rows of the tables in `chunk`: those of the I/O table, and names of the list of variables that it lacks.
 pub fn table_rows(chunk: &str) -> Vec<TableRow> {
     let mut rows: Vec<TableRow> = Vec::new();
+    let mut names: FxHashSet<&str> = FxHashSet::default();
     let mut in_table = false;
     let mut offset = 0;
     for line in chunk.split_inclusive(['\n', '\r']) {
@@ -59,11 +61,12 @@ pub fn table_rows(chunk: &str) -> Vec<TableRow> {
         } else if is_title(line.trim()) {
             in_table = false;
         } else if let Some(row) = variable(line, start) {
-            if rows.iter().all(|other| other.name.of(chunk) != row.name.of(chunk)) {
+            if names.insert(row.name.of(chunk)) {
                 rows.push(row);
             }
-        } else if in_table {
-            rows.extend(io_row(line, start));
+        } else if in_table && let Some(row) = io_row(line, start) {
+            names.insert(row.name.of(chunk));
+            rows.push(row);
         }
     }
     rows

@@ -1,6 +1,6 @@
 //! Fields of a table in text, with their places.
 
-use crate::text::{Diagnostic, Span};
+use crate::text::{Diagnostic, Message, Span};
 use csv_core::{ReadFieldResult, ReaderBuilder};
 
 /// One field without quotes and surrounding blanks, and the cells it covers, quotes included.
@@ -38,34 +38,55 @@ pub(super) fn separator_of(text: &str) -> u8 {
     counts.iter().position(|count| *count == most).map_or(b',', |number| SEPARATORS[number])
 }
 
-/// The records of `text`, and what `open_quote` makes of quotes that nothing closes.
-pub(super) fn records(
-    text: &str,
-    separator: u8,
-    open_quote: impl Fn(Span) -> Diagnostic,
-) -> (Vec<Record>, Vec<Diagnostic>) {
+/// The records of `text` and what was wrong on the way.
+pub(super) fn records(text: &str, separator: u8) -> (Vec<Record>, Vec<Diagnostic>) {
     let (mut records, mut problems) = (Vec::new(), Vec::new());
     let mark = if text.starts_with('\u{feff}') { 3 } else { 0 };
     let mut start = mark;
-    while let Some(quote) = read(text, start, separator, &mut records) {
-        let end = line_end(text, quote);
-        problems.push(open_quote(Span::new(quote, end)));
+    let problem = |span: Span, message: Message| Diagnostic::new(super::CODE, span, message);
+    loop {
+        match read(text, start, separator, &mut records) {
+            End::OfText => break,
+            End::OfPatience(at) => {
+                let message = Message::new("device-comments.too-many").with("limit", MOST_RECORDS);
+                problems.push(problem(Span::new(at, line_end(text, at)), message));
+                break;
+            }
+            End::InQuote(quote) => {
+                let end = line_end(text, quote);
+                problems.push(problem(Span::new(quote, end), Message::new("device-comments.open-quote")));
+                start = end;
+            }
+        }
         if problems.len() >= MOST_OPEN_QUOTES {
             break;
         }
-        start = end;
     }
     (records, problems)
 }
 
-/// Reads from `start` on; the place of a quote that is open at the end of the text, whose record is left out.
-fn read(text: &str, start: usize, separator: u8, records: &mut Vec<Record>) -> Option<usize> {
+/// Where reading ended.
+enum End {
+    OfText,
+    /// With the first place that was not read.
+    OfPatience(usize),
+    /// With the place of a quote that is open at the end of the text; its record is left out.
+    InQuote(usize),
+}
+
+/// Reads from `start` on.
+fn read(text: &str, start: usize, separator: u8, records: &mut Vec<Record>) -> End {
     let bytes = text.as_bytes();
     let mut reader = ReaderBuilder::new().delimiter(separator).build();
     let mut buffer = vec![0; 256];
     let mut record = Record::new();
     let mut at = start;
-    while records.len() < MOST_RECORDS {
+    loop {
+        if records.len() >= MOST_RECORDS {
+            let rest = text.get(at..).unwrap_or("");
+            let blank = rest.len() - rest.trim_start().len();
+            return if blank == rest.len() { End::OfText } else { End::OfPatience(at + blank) };
+        }
         let (mut field_start, mut length) = (at, 0);
         let result = loop {
             let (result, read, written) = reader.read_field(&bytes[at..], &mut buffer[length..]);
@@ -91,14 +112,14 @@ fn read(text: &str, start: usize, separator: u8, records: &mut Vec<Record>) -> O
         let inner =
             inner.strip_suffix(char::from(separator)).filter(|_| raw.len() == inner.len()).unwrap_or(inner);
         if at == bytes.len() && inner.starts_with('"') && !is_closed(inner) {
-            return Some(field_start);
+            return End::InQuote(field_start);
         }
         record.push(field(inner, field_start, &buffer[..length]));
         if matches!(result, ReadFieldResult::Field { record_end: true }) {
             records.push(std::mem::take(&mut record));
         }
     }
-    None
+    End::OfText
 }
 
 fn field(raw: &str, start: usize, content: &[u8]) -> Field {

@@ -1,6 +1,7 @@
 //! The models of the family.
 
 use super::{ranges, special};
+use crate::target::model::first_ranges;
 use crate::target::{Limits, Model, Target};
 
 /// FX1S: one compact unit, 30 inputs and outputs at most.
@@ -9,6 +10,7 @@ pub static FX1S: Target = Target {
     name: "fx1s",
     title: "FX1S",
     devices: ranges::FX1S,
+    first_ranges: first_ranges(ranges::FX1S),
     special: &special::FX1S,
     limits: Limits { steps: 2000, ..LIMITS },
     symbols: None,
@@ -20,6 +22,7 @@ pub static FX1N: Target = Target {
     name: "fx1n",
     title: "FX1N",
     devices: ranges::FX1N,
+    first_ranges: first_ranges(ranges::FX1N),
     special: &special::FX1N,
     limits: Limits { steps: 8000, ..LIMITS },
     symbols: None,
@@ -31,6 +34,7 @@ pub static FX2N: Target = Target {
     name: "fx2n",
     title: "FX2N",
     devices: ranges::FX2N,
+    first_ranges: first_ranges(ranges::FX2N),
     special: &special::FX2N,
     limits: Limits { steps: 8000, ..LIMITS },
     symbols: None,
@@ -42,6 +46,7 @@ pub static FX3U: Target = Target {
     name: "fx3u",
     title: "FX3U",
     devices: ranges::FX3U,
+    first_ranges: first_ranges(ranges::FX3U),
     special: &special::FX3U,
     limits: Limits { steps: 64_000, ..LIMITS },
     symbols: None,

@@ -100,11 +100,14 @@ pub fn forms_of(instruction: &'static Instruction) -> impl Iterator<Item = Form>
 }
 
 pub(super) fn form_named(mnemonic: &str) -> Option<Form> {
-    let mut folded = [0u8; 16];
-    let folded = folded.get_mut(..mnemonic.len())?;
-    folded.copy_from_slice(mnemonic.as_bytes());
-    folded.make_ascii_uppercase();
-    FORMS.get(&*folded).copied()
+    FORMS.get(&key(mnemonic)?).copied()
+}
+
+/// The letters of a mnemonic in upper case, one a byte; nothing for words that are longer than any. Every line of a
+/// program asks, and a number is quicker to look up than a text.
+fn key(mnemonic: &str) -> Option<u64> {
+    let folded = |key: u64, byte: u8| key << 8 | u64::from(byte.to_ascii_uppercase());
+    (mnemonic.len() <= size_of::<u64>()).then(|| mnemonic.bytes().fold(0, folded))
 }
 
 /// `D` goes before the name, but between `LD`, `AND`, `OR` and the comparison; `P` goes to the end.
@@ -123,14 +126,14 @@ pub(super) fn spelling(instruction: &Instruction, wide: bool, pulse: bool) -> St
 const WITHOUT_W: &[(&str, &str)] = &[("WAND", "DAND"), ("WOR", "DOR"), ("WXOR", "DXOR")];
 
 /// Written names and their forms. The regular names of the irregular forms, such as `DWAND`, are understood as well.
-static FORMS: LazyLock<FxHashMap<Box<[u8]>, Form>> = LazyLock::new(|| {
+static FORMS: LazyLock<FxHashMap<u64, Form>> = LazyLock::new(|| {
     let mut forms = FxHashMap::default();
     for form in all().flat_map(forms_of) {
-        forms.insert(form.mnemonic().into_bytes().into_boxed_slice(), form);
+        forms.extend(key(&form.mnemonic()).map(|key| (key, form)));
         if form.wide && WITHOUT_W.iter().any(|(name, _)| *name == form.instruction.mnemonic) {
             let pulse = if form.pulse { "P" } else { "" };
             let regular = format!("D{}{pulse}", form.instruction.mnemonic);
-            forms.insert(regular.into_bytes().into_boxed_slice(), form);
+            forms.extend(key(&regular).map(|key| (key, form)));
         }
     }
     forms

@@ -44,7 +44,9 @@ pub fn suggestions(word: &str, model: Model) -> Vec<String> {
     let mut near: Vec<(usize, Reverse<usize>, String)> = FORMS
         .iter()
         .filter(|(_, form)| form.is_on(model))
-        .filter_map(|(name, form)| {
+        .filter_map(|(key, form)| {
+            let letters = key.to_be_bytes();
+            let name = &letters[key.leading_zeros() as usize / 8..];
             let distance = distance(word.as_bytes(), name);
             let alike = word.bytes().zip(name.iter()).take_while(|(left, right)| left == *right).count();
             (distance <= allowed).then(|| (distance, Reverse(alike), form.mnemonic()))

@@ -93,10 +93,9 @@ for _, script in ipairs(EDITS) do
   local name, keys, before, line, column, after = unpack(script)
   check('the edit ' .. name .. ' by ' .. keys, function()
     nvim:open('edited.lad', program(before), line, column)
-    local typed = keys:match('^(.-\\%a)(.+)<Esc>$')
-    if typed then
+    local command, operand = keys:match('^(.-\\%a)(.+)<Esc>$')
+    if command then
       -- The name is typed when the placeholder is there and selected.
-      local command, operand = keys:match('^(.-\\%a)(.+)<Esc>$')
       nvim:press(command)
       nvim:until_true('the placeholder', function()
         return nvim:request('nvim_get_mode').mode == 's'
@@ -107,7 +106,7 @@ for _, script in ipairs(EDITS) do
       nvim:press(keys)
     end
     same('the drawing after ' .. name, program(after))
-    if not typed then
+    if not command then
       nvim:press('u')
       same('one undo of ' .. name, program(before))
     end
@@ -203,6 +202,76 @@ check('a program is typed from nothing', function()
   nvim:until_true('no diagnostics', function()
     return vim.deep_equal(nvim:codes(), {})
   end)
+end)
+
+--- Each: line and column from 0, keys in Insert mode, and the rows that change.
+local BURSTS = {
+  { 0, 6, 'X1234', { '|   X0X1234 X1                             Y0  |' } },
+  { 0, 27, 'X3', { '|   X0      X1             X3              Y0  |' } },
+  { 1, 27, '| |', { TWO[1], '+---| |-----| |------------| |-------------( )-+' } },
+  { 1, 24, '[MOV K1 D0]', { TWO[1], '+---| |-----| |---------[MOV K1 D0]--------( )-+' } },
+  { 1, 5, '/', { TWO[1], '+---|/|-----| |----------------------------( )-+' } },
+}
+
+for _, script in ipairs(BURSTS) do
+  local line, column, keys, rows = unpack(script)
+  local wanted = program(join(rows, vim.list_slice(TWO, #rows + 1)))
+  check(('"%s" is answered key by key, one at a time and all at once'):format(keys), function()
+    nvim:open('burst.lad', program(TWO), line, column)
+    nvim:press('i')
+    nvim:type(keys)
+    nvim:press('<Esc>')
+    nvim:settle()
+    same('the drawing after slow typing', wanted)
+    for _ = 1, 3 do
+      nvim:press('u')
+      same('one undo', program(TWO))
+      nvim:request('nvim_win_set_cursor', 0, { line + 1, column })
+      nvim:press('i' .. keys)
+      nvim:press('<Esc>')
+      nvim:settle()
+      same('the drawing after a burst', wanted)
+    end
+    nvim:press('ui' .. keys .. '<Esc>')
+    nvim:settle()
+    same('the drawing after a burst that leaves Insert mode', wanted)
+  end)
+end
+
+check('a rung is typed from a snippet, name by name, and a branch by Enter', function()
+  local file = vim.fs.joinpath(vim.env.RUNGWISE_TESTS, '../../vscode-extension/snippets/ladder.json')
+  local snippets = vim.json.decode(table.concat(vim.fn.readfile(file), '\n'))
+  local body
+  for _, snippet in pairs(snippets) do
+    body = snippet.prefix == 'series' and table.concat(snippet.body, '\n') or body
+  end
+  nvim:open('snippet.lad', '\n' .. table.concat(vim.list_slice(END, 2), '\n'), 0, 0)
+  nvim:press('i')
+  nvim:lua('vim.snippet.expand(...)', body)
+  for _, name in ipairs({ 'X10', 'Stop', 'Y107' }) do
+    nvim:press(name)
+    nvim:settle()
+    nvim:press('<Tab>')
+  end
+  nvim:press('<Esc>')
+  nvim:settle()
+  local rung = { '|   X10     Stop                           Y107|', '+---| |-----| |----------------------------( )-+' }
+  same('the rung', table.concat(join(rung, '', END[2]), '\n'))
+  nvim:request('nvim_win_set_cursor', 0, { 2, 4 })
+  nvim:press('i<CR>')
+  nvim:until_true('the branch', function()
+    return nvim:text():find('???', 1, true)
+  end)
+  nvim:press('<Esc>')
+  nvim:settle()
+  nvim:press('/???<CR>cwX5<Esc>')
+  nvim:settle()
+  same('the rung with its branch', table.concat(join({
+    '|   X10      Stop                         Y107 |',
+    '+---| |---+---| |--------------------------( )-+',
+    '|   X5    |                                    |',
+    '+---| |---+                                    |',
+  }, '', END[2]), '\n'))
 end)
 
 check('deleting a character of a name keeps the columns, and is undone at once', function()

@@ -1,16 +1,19 @@
 // Uses VS Code as a person does: opens files, types, points with the mouse, and looks at the page.
 
-import { readFileSync } from 'node:fs';
+import { copyFileSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { openBrowser } from './browser.mjs';
 import { DRAWING_TESTS } from './page_drawing.mjs';
-import { VIEW_TESTS } from './page_views.mjs';
+import { VIEW_FILES, VIEW_TESTS } from './page_views.mjs';
 import { Workbench } from './workbench.mjs';
 
 /** A keystroke that repairs has to be seen at once; this is what the page may take on a busy machine. */
 const REPAIR_LIMIT_MS = 3_000;
 
 export async function runPageTests(server, workspace, home, report, artefacts) {
+  for (const [name, fixture] of Object.entries(VIEW_FILES)) {
+    copyFileSync(join(workspace, fixture), join(workspace, name));
+  }
   await server.start(workspace);
   const browser = await openBrowser(home);
   try {

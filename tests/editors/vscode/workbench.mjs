@@ -120,6 +120,26 @@ export class Workbench {
     }
   }
 
+  /** Leaves nothing open, saving nothing: a check that begins with this does not depend on those before it. */
+  async clear() {
+    await this.calm();
+    await this.page.mouse.move(5, 5);
+    const tabs = this.page.locator('.editor-group-container .tab');
+    if ((await tabs.count()) > 0) {
+      await this.command('View: Close All Editors');
+      await this.until('no open editor', async () => {
+        const refused = this.page.locator('.monaco-dialog-box .monaco-button', { hasText: "Don't Save" }).first();
+        if (await refused.isVisible()) {
+          await refused.click();
+        }
+        return (await tabs.count()) === 0;
+      });
+    }
+    if (await this.page.locator('.part.panel').first().isVisible()) {
+      await this.command('View: Hide Panel');
+    }
+  }
+
   async screenshot(name) {
     await this.page.screenshot({ path: join(this.artefacts, `vscode-${name}.png`) });
   }

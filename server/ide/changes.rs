@@ -1,11 +1,11 @@
-//! The smallest edits that make one text of another: unchanged lines stay, and of changed lines only the middle goes.
+//! The edits that make one text of another: unchanged lines stay, and of changed ones all or only the middle goes.
 
 use crate::text::{Span, TextEdit};
 
 /// More pairs of lines than this are not compared one by one.
 const PAIRS_MAX: usize = 250_000;
 
-/// The edits from `old`, which starts at byte `start` of the document, to `new`; in order, none overlapping.
+/// The smallest edits from `old`, which starts at byte `start` of the document, to `new`; in order, none overlapping.
 pub(super) fn between(old: &str, new: &str, start: usize) -> Vec<TextEdit> {
     let old_lines: Vec<&str> = old.split_inclusive('\n').collect();
     let new_lines: Vec<&str> = new.split_inclusive('\n').collect();
@@ -33,12 +33,35 @@ pub(super) fn between(old: &str, new: &str, start: usize) -> Vec<TextEdit> {
     edits
 }
 
+/// The edits that turn `old` into `new`: common lines at both ends stay, and where the rest has as many lines, only
+/// those that differ are replaced, so that the editor keeps its cursor and marks.
+pub(super) fn by_lines(old: &str, new: &str) -> Vec<TextEdit> {
+    if old == new {
+        return Vec::new();
+    }
+    let old_lines: Vec<&str> = old.split_inclusive('\n').collect();
+    let new_lines: Vec<&str> = new.split_inclusive('\n').collect();
+    let (head, tail) = common_ends(&old_lines, &new_lines);
+    let (old_middle, new_middle) =
+        (&old_lines[head..old_lines.len() - tail], &new_lines[head..new_lines.len() - tail]);
+    let mut start: usize = old_lines[..head].iter().map(|line| line.len()).sum();
+    if old_middle.len() != new_middle.len() {
+        let length: usize = old_middle.iter().map(|line| line.len()).sum();
+        return vec![TextEdit::new(Span::new(start, start + length), new_middle.concat())];
+    }
+    let mut edits = Vec::new();
+    for (old_line, new_line) in old_middle.iter().zip(new_middle) {
+        if old_line != new_line {
+            edits.push(TextEdit::new(Span::new(start, start + old_line.len()), *new_line));
+        }
+        start += old_line.len();
+    }
+    edits
+}
+
 /// Numbers of lines that are the same in both texts: a longest common subsequence between what is common at both ends.
 fn kept_lines(old: &[&str], new: &[&str]) -> Vec<(usize, usize)> {
-    let same = |(left, right): &(&&str, &&str)| left == right;
-    let head = old.iter().zip(new).take_while(same).count();
-    let rest = old.len().min(new.len()) - head;
-    let tail = old.iter().rev().zip(new.iter().rev()).take(rest).take_while(same).count();
+    let (head, tail) = common_ends(old, new);
     let mut kept: Vec<(usize, usize)> = (0..head).map(|line| (line, line)).collect();
     let (old_middle, new_middle) = (&old[head..old.len() - tail], &new[head..new.len() - tail]);
     if old_middle.len().saturating_mul(new_middle.len()) <= PAIRS_MAX {
@@ -47,6 +70,14 @@ fn kept_lines(old: &[&str], new: &[&str]) -> Vec<(usize, usize)> {
     }
     kept.extend((0..tail).map(|line| (old.len() - tail + line, new.len() - tail + line)));
     kept
+}
+
+/// How many lines both have in common at their start, and behind these at their end.
+fn common_ends(old: &[&str], new: &[&str]) -> (usize, usize) {
+    let same = |(left, right): &(&&str, &&str)| left == right;
+    let head = old.iter().zip(new).take_while(same).count();
+    let (old, new) = (&old[head..], &new[head..]);
+    (head, old.iter().rev().zip(new.iter().rev()).take_while(same).count())
 }
 
 fn longest_common(old: &[&str], new: &[&str]) -> Vec<(usize, usize)> {

@@ -4,18 +4,21 @@ use encoding_rs::{GB18030, UTF_16BE, UTF_16LE};
 
 /// How a file is written.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Encoding {
+pub enum Encoding {
     /// UTF-8; a byte order mark is the first character of its text.
     Utf8,
-    /// UTF-16 with a byte order mark, low byte first if `little`.
-    Utf16 { little: bool },
+    /// UTF-16 with a byte order mark.
+    Utf16 {
+        /// Whether the low byte comes first.
+        little: bool,
+    },
     /// GBK, as Chinese Windows writes it, with what GB 18030 adds.
     Gbk,
 }
 
 /// The text in `bytes` and how it is written; `None` for text that cannot be written back as it was, in which what
 /// means nothing is replaced.
-pub(super) fn read(bytes: Vec<u8>) -> (String, Option<Encoding>) {
+pub fn read(bytes: Vec<u8>) -> (String, Option<Encoding>) {
     let marked = [(&[0xff, 0xfe][..], UTF_16LE, true), (&[0xfe, 0xff], UTF_16BE, false)];
     for (mark, encoding, little) in marked {
         if let Some(rest) = bytes.strip_prefix(mark) {
@@ -41,7 +44,7 @@ fn kept(text: String, encoding: Encoding, bytes: &[u8]) -> (String, Option<Encod
 }
 
 /// The bytes of `text`; nothing if it has a character that the encoding lacks.
-pub(super) fn write(text: &str, encoding: Encoding) -> Option<Vec<u8>> {
+pub fn write(text: &str, encoding: Encoding) -> Option<Vec<u8>> {
     match encoding {
         Encoding::Utf8 => Some(text.as_bytes().to_vec()),
         Encoding::Utf16 { little } => {
