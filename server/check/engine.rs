@@ -1,5 +1,6 @@
 //! Runs the rules and puts their findings together.
 
+use super::rule::ChunkJudge;
 use super::{ChunkContext, ProgramContext, RULES, Rule, Run, program_around, programs};
 use crate::document::{Document, Found, LIMIT_BYTES, Page, ProjectView};
 use crate::text::{Diagnostic, Message, Severity, Span};
@@ -152,7 +153,7 @@ pub fn sorted(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
 }
 
 /// What the rules of the real-time tier do with a chunk, in the order of the catalogue.
-static CHUNK_JUDGES: LazyLock<Vec<fn(&ChunkContext<'_>, &mut Vec<Diagnostic>)>> = LazyLock::new(|| {
+static CHUNK_JUDGES: LazyLock<Vec<ChunkJudge>> = LazyLock::new(|| {
     let judges = RULES.iter().filter_map(|rule| match rule.run {
         Run::Chunk(judge) | Run::Both(judge, _) => Some(judge),
         _ => None,

@@ -52,13 +52,13 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     let Some((tree, findings)) = context.rung() else { return };
     let text = context.chunk.text();
     for finding in findings {
-        match finding {
-            &Finding::NoBranch { line } => {
+        match *finding {
+            Finding::NoBranch { line } => {
                 let line = &tree.lines[line];
                 let message = Message::new("branch-stack.nothing").with("word", line.mnemonic.of(text));
                 found.push(Diagnostic::new(RULE.code, line.mnemonic, message));
             }
-            &Finding::OpenBranch { line, last_read } => {
+            Finding::OpenBranch { line, last_read } => {
                 let word = tree.lines[line].mnemonic;
                 let message = Message::new("branch-stack.open");
                 let diagnostic = Diagnostic::new(RULE.code, word, message);

@@ -65,9 +65,9 @@ fn check_rung(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     let Some((tree, findings)) = context.rung() else { return };
     let limits = &context.target.limits;
     for finding in findings {
-        let (line, key, limit) = match finding {
-            &Finding::TooManyBlocks { line } => (line, "nesting-too-deep.blocks", limits.blocks),
-            &Finding::TooManyBranches { line } => (line, "nesting-too-deep.branches", limits.branches),
+        let (line, key, limit) = match *finding {
+            Finding::TooManyBlocks { line } => (line, "nesting-too-deep.blocks", limits.blocks),
+            Finding::TooManyBranches { line } => (line, "nesting-too-deep.branches", limits.branches),
             _ => continue,
         };
         let message = Message::new(key).with("limit", limit);

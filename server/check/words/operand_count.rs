@@ -98,10 +98,10 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
         let Some(form) = operation.form else { continue };
         let (least, most) = places(form, operation.operands.first().map(|operand| &operand.value));
         let count = operation.operands.len();
-        if count < least && !has_problem_behind(context.chunk.text(), &problems, &operation) {
-            found.push(too_few(form, &operation));
+        if count < least && !has_problem_behind(context.chunk.text(), &problems, operation) {
+            found.push(too_few(form, operation));
         } else if count > most {
-            found.push(too_many(context, form, &operation, most));
+            found.push(too_many(context, form, operation, most));
         }
     }
 }

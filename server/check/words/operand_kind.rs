@@ -107,12 +107,12 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     for operation in &context.doubtful {
         let Some(form) = operation.form.filter(|form| form.is_on(context.target.model)) else { continue };
         for (place, operand) in operation.operands.iter().enumerate() {
-            if place >= expected(form, &operation)
+            if place >= expected(form, operation)
                 || is_other_rules_matter(form, place, operand, context.target)
             {
                 continue;
             }
-            let judged = Judged { context, form, operation: &operation, place, operand };
+            let judged = Judged { context, form, operation, place, operand };
             found.extend(judged.kind().or_else(|| judged.width()));
         }
     }
