@@ -1,5 +1,6 @@
 //! Runs the rules and puts their findings together.
 
+use super::rule::ChunkJudge;
 use super::{ChunkContext, ProgramContext, RULES, Rule, Run, program_around, programs};
 use crate::document::{Document, Found, LIMIT_BYTES, Page, ProjectView};
 use crate::text::{Diagnostic, Message, Severity, Span};

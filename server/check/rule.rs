@@ -15,6 +15,9 @@ pub struct Rule {
     pub(super) source: &'static str,
 }
 
+/// Finds what is wrong in a chunk.
+pub(super) type ChunkJudge = fn(&ChunkContext<'_>, &mut Vec<Diagnostic>);
+
 /// How and when a rule is judged.
 pub enum Run {
     /// By the reader of the text, which knows best what it could not read. Real-time tier.
