@@ -643,7 +643,8 @@ fn symbols_are_known_in_files_that_are_not_open() {
     for _ in 0..200 {
         let answer = client.request("workspace/diagnostic", json!({"previousResultIds": []}));
         found = answer["result"]["items"].to_string();
-        if found.contains("Nobody") {
+        // What the open file knows of the project comes a moment after the project is read.
+        if found.contains("Nobody") && !found.contains("`Start`") {
             break;
         }
         std::thread::sleep(Duration::from_millis(25));

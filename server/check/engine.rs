@@ -152,8 +152,6 @@ pub fn sorted(mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
     diagnostics
 }
 
-type ChunkJudge = fn(&ChunkContext<'_>, &mut Vec<Diagnostic>);
-
 /// What the rules of the real-time tier do with a chunk, in the order of the catalogue.
 static CHUNK_JUDGES: LazyLock<Vec<ChunkJudge>> = LazyLock::new(|| {
     let judges = RULES.iter().filter_map(|rule| match rule.run {
