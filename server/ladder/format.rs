@@ -257,15 +257,37 @@ pub(super) fn may_be_redrawn(
     lines: &Lines<'_>,
 ) -> Result<(), Kept> {
     let (start, end) = lines.bytes(rung.lines);
-    // An empty span marks the place between two cells.
-    let inside = |span: Span| (span.start as usize) < end && (span.end.max(span.start + 1) as usize) > start;
-    let doubtful = tree.problems.iter().any(|problem| !is_mended(problem) && inside(problem.span));
     match () {
-        () if doubtful => Err(Kept::Mistake),
+        () if is_doubtful(tree, rung, lines) => Err(Kept::Mistake),
         () if line_comments(chunk, tree, rung, lines).is_none() => Err(Kept::Comment),
         () if !keeps_words(chunk, tree, rung, (start, end)) => Err(Kept::Words),
         () => Ok(()),
     }
+}
+
+/// Whether there is a mistake in a rung, or in the lines that follow it or go before it without a blank one: what is
+/// stray there may have been meant for it.
+fn is_doubtful(tree: &LadderTree, rung: &Rung, lines: &Lines<'_>) -> bool {
+    let mut mistakes = tree.problems.iter().filter(|problem| !is_mended(problem)).peekable();
+    if mistakes.peek().is_none() {
+        return false;
+    }
+    let is_near = |line: u32| {
+        let of_another = tree.rungs.iter().any(|other| other.lines.0 <= line && line < other.lines.1);
+        !of_another && lines.lines.get(line as usize).is_some_and(|line| !line.trim().is_empty())
+    };
+    let (mut first, mut behind) = rung.lines;
+    while first > 0 && is_near(first - 1) {
+        first -= 1;
+    }
+    while is_near(behind) {
+        behind += 1;
+    }
+    let (start, end) = lines.bytes((first, behind));
+    // An empty span marks the place between two cells.
+    mistakes.any(|problem| {
+        (problem.span.start as usize) < end && problem.span.end.max(problem.span.start + 1) as usize > start
+    })
 }
 
 /// Whether the lines of a rung, at these bytes, hold all its words and no letter that is not drawn again.
