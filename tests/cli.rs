@@ -327,15 +327,7 @@ fn version_help_and_language() {
 
 #[test]
 fn a_rung_that_stays_as_it_was_drawn_is_told_with_its_reason() {
-    let bridge = "\
-|   X0                    X1                       Y0  |
-+---| |---+---------------| |-----+----------------( )-+
-|         |   X2                  |                    |
-|         +---| |---+             |                    |
-|                   |             |                    |
-|   X3              |     X4      |                    |
-+---| |-------------+-----| |-----+                    |
-";
+    let bridge = crate::drawing_redrawn::BRIDGES[0];
     let framed = "\
 ┌──────────────────────────────────────────┐
 │   X0          X1                Y0       │

@@ -3,7 +3,7 @@
 use super::input::{Program, folder_of, programs, say};
 use super::{Outcome, paths_or_here};
 use crate::document::{Document, Member, ProjectView, Use};
-use crate::ide::{self, Usage, UsageAt, UsageRow};
+use crate::ide::{self, Usage};
 use crate::text::Language;
 use clap::ValueEnum;
 use serde_json::{Value, json};
@@ -89,39 +89,16 @@ impl Group {
     }
 }
 
-/// `{"target", "files", "devices": [{"device", "kind", "symbol", "comment", "latched", "preset", "read", "written",
-/// "uses": [{"path", "line", "column", "rung", "access", "coil", "count", "text"}]}]}`
+/// `{"target", "files", "devices": […]}` with a row of [`UsageRow::json`] for each device, whose uses have a `path`.
+///
+/// [`UsageRow::json`]: crate::ide::UsageRow::json
 fn as_json(usage: &Usage, group: &Group) -> Value {
-    let one = |at: &UsageAt| {
-        json!({
-            "path": group.path(at.file),
-            "line": at.line + 1,
-            "column": at.column + 1,
-            "rung": at.rung,
-            "access": at.access_word(),
-            "coil": at.by_coil,
-            "count": at.count,
-            "text": at.text,
-        })
-    };
-    let row = |row: &UsageRow| {
-        json!({
-            "device": row.full_name(),
-            "kind": row.kind_word(),
-            "symbol": row.symbol,
-            "comment": row.comment,
-            "latched": row.is_latched,
-            "preset": row.preset,
-            "read": row.is_read(),
-            "written": row.is_written(),
-            "uses": row.uses.iter().map(one).collect::<Vec<_>>(),
-        })
-    };
+    let path = |file: usize| vec![("path", json!(group.path(file)))];
     let files: Vec<&str> = group.files.iter().map(|(path, _)| path.as_str()).collect();
     json!({
         "target": group.files.first().map(|(_, document)| document.target().name),
         "files": files,
-        "devices": usage.rows.iter().map(row).collect::<Vec<_>>(),
+        "devices": usage.rows.iter().map(|row| row.json(path)).collect::<Vec<_>>(),
     })
 }
 

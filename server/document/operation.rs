@@ -53,6 +53,13 @@ impl<'a> Operation<'a> {
         let (form, symbol, is_word) = form_of(element)?;
         Some(Operation { form, symbol, is_word, operands: &element.operands, element: Some(element) })
     }
+
+    /// The program steps that it takes; an unknown word takes none.
+    pub fn steps(&self) -> u32 {
+        // The other operands make no difference.
+        let first = self.operands.first().map(|operand| operand.value);
+        self.form.map_or(0, |form| form.steps(first.as_slice()))
+    }
 }
 
 /// The instruction of an element, its cells, and whether these are a word.

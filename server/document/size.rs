@@ -27,10 +27,7 @@ impl Size {
                 Size { rungs: usize::from(tree.lines.iter().any(drives)), steps: fx::steps(tree) }
             }
             Tree::Ladder(tree) => {
-                let steps = chunk.operations().filter_map(|operation| {
-                    let operands: Vec<_> = operation.operands.iter().map(|operand| operand.value).collect();
-                    Some(operation.form?.steps(&operands))
-                });
+                let steps = chunk.operations().map(|operation| operation.steps());
                 Size { rungs: tree.rungs.len(), steps: steps.fold(0, u32::saturating_add) }
             }
             Tree::Iec(tree) => {

@@ -13,13 +13,7 @@ pub(super) fn source(document: &Document, thing: &Thing) -> Option<String> {
     let mut found = None;
     names::visit(document, thing, |place| {
         if place.usage == Use::Declare && found.is_none() {
-            found = Some((
-                place.chunk,
-                Span::new(
-                    place.span.start as usize - place.chunk_start,
-                    place.span.end as usize - place.chunk_start,
-                ),
-            ));
+            found = Some((place.chunk, place.inside()));
         }
     });
     let (chunk, name) = found?;

@@ -105,7 +105,6 @@ fn in_fx(document: &Document, found: ChunkRef<'_>, inside: usize) -> Option<Vec<
     // Of an open group the words so far; groups of the same structure stand in a stack.
     let mut open: Vec<Vec<Span>> = Vec::new();
     let mut is_own_group = false;
-    let document = &document.lean();
     for at in document.chunks() {
         if !may_have(at.chunk, structure) {
             continue;

@@ -22,11 +22,7 @@ pub(super) fn type_of(document: &Document, thing: &Thing) -> Option<Option<Strin
     let mut found = None;
     names::visit(document, thing, |place| {
         if found.is_none() {
-            let span = Span {
-                start: place.span.start - place.chunk_start as u32,
-                end: place.span.end - place.chunk_start as u32,
-            };
-            found = type_at(place.chunk, span);
+            found = type_at(place.chunk, place.inside());
         }
     });
     Some(found)

@@ -54,7 +54,6 @@ pub(super) fn of(document: &Document, wanted: LensSettings) -> Vec<Lens> {
         lenses.push(Lens { span: Span::at(0), kind: LensKind::NextFree });
     }
     let head = lenses.len();
-    let document = &document.lean();
     for at in document.chunks() {
         for (span, outputs) in rungs(at.chunk) {
             let span = span.shifted(at.start);
@@ -139,11 +138,7 @@ fn steps(chunk: &Chunk, inside: usize) -> Option<u32> {
     let Tree::Ladder(tree) = chunk.tree() else { return Some(chunk.size().steps) };
     let rung: &Rung = tree.rungs.iter().find(|rung| rung.span.touches(inside))?;
     let operations = rung.graph.elements.iter().filter_map(Operation::of_element);
-    let steps = operations.filter_map(|operation| {
-        let operands: Vec<_> = operation.operands.iter().map(|operand| operand.value).collect();
-        Some(operation.form?.steps(&operands))
-    });
-    Some(steps.fold(0, u32::saturating_add))
+    Some(operations.map(|operation| operation.steps()).fold(0, u32::saturating_add))
 }
 
 /// The next free device of each kind that the program uses, in its first range with room.

@@ -40,6 +40,13 @@ pub(super) struct Named<'d> {
     pub chunk_start: usize,
 }
 
+impl Named<'_> {
+    /// Its place in its chunk.
+    pub(super) fn inside(&self) -> Span {
+        Span::new(self.span.start as usize - self.chunk_start, self.span.end as usize - self.chunk_start)
+    }
+}
+
 impl Thing {
     /// What `mention` means in POU number `pou`.
     pub(super) fn of(mention: &Mention, pou: Option<usize>, scopes: &Scopes) -> Thing {

@@ -6,6 +6,7 @@ use crate::document::{Chunk, ChunkRef, Mention, ProjectView, Symbol, Use};
 use crate::target::{Device, Opcode, Operand, Role};
 use crate::text::{Encoding, Language, Message};
 use rustc_hash::FxHashSet;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
 mod grid;
@@ -97,6 +98,39 @@ impl UsageRow {
             UsageKey::Direct(_) => "address".to_string(),
             UsageKey::Variable(..) => "variable".to_string(),
         }
+    }
+
+    /// The row for programs that read it, as the command line and the editors give it, lines and columns from 1:
+    /// `{"device", "kind", "symbol", "comment", "latched", "preset", "read", "written",
+    /// "uses": [{"line", "column", "rung", "access", "coil", "count", "text"}]}`.
+    /// `names` are more fields of each use that say which file it is in.
+    pub fn json(&self, names: impl Fn(usize) -> Vec<(&'static str, Value)>) -> Value {
+        let one = |at: &UsageAt| {
+            let mut fields = json!({
+                "line": at.line + 1,
+                "column": at.column + 1,
+                "rung": at.rung,
+                "access": at.access_word(),
+                "coil": at.by_coil,
+                "count": at.count,
+                "text": at.text,
+            });
+            for (name, value) in names(at.file) {
+                fields[name] = value;
+            }
+            fields
+        };
+        json!({
+            "device": self.full_name(),
+            "kind": self.kind_word(),
+            "symbol": self.symbol,
+            "comment": self.comment,
+            "latched": self.is_latched,
+            "preset": self.preset,
+            "read": self.is_read(),
+            "written": self.is_written(),
+            "uses": self.uses.iter().map(one).collect::<Vec<_>>(),
+        })
     }
 
     /// Whether the program reads it.

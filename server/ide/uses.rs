@@ -132,7 +132,7 @@ impl Group {
         if self.places.len() < most {
             self.shown += 1;
             let at = ChunkRef { start: named.chunk_start, chunk: named.chunk };
-            let inside = named.span.start as usize - named.chunk_start;
+            let inside = named.inside().start as usize;
             let rung = rung_number(document, at, inside);
             self.places.push(Place { file, line, rung, text: text_at(at, inside) });
         }

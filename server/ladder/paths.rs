@@ -2,7 +2,7 @@
 //! neither series nor parallel is drawn as one that is.
 
 use super::reduce::Shape;
-use super::{ContactKind, ElementId, ElementKind, Graph, LadderTree, VertexId, VertexKind};
+use super::{ContactKind, ElementId, ElementKind, Graph, VertexId, VertexKind};
 use std::collections::BTreeSet;
 
 /// A rung with more ways is not drawn apart: nobody could read it.
@@ -159,17 +159,4 @@ fn series(parts: impl IntoIterator<Item = Shape>) -> Shape {
         }
     }
     if row.len() == 1 { row.remove(0) } else { Shape::Series(row) }
-}
-
-/// Whether both trees have the same rungs, but for number `but`, and no further problem or lost comment.
-pub(super) fn rest_is_same(
-    (tree, text): (&LadderTree, &str),
-    (again, again_text): (&LadderTree, &str),
-    but: usize,
-) -> bool {
-    let pairs = tree.rungs.iter().zip(&again.rungs).enumerate().filter(|(number, _)| *number != but);
-    tree.rungs.len() == again.rungs.len()
-        && again.problems.len() <= tree.problems.len()
-        && tree.comments.len() == again.comments.len()
-        && pairs.into_iter().all(|(_, (old, new))| old.graph.same_logic(text, &new.graph, again_text))
 }

@@ -1,7 +1,7 @@
 //! One rung drawn anew, as it reads or as it is meant, and everything else of its chunk left alone.
 
-use super::format::{Lines, Page, drawing, may_be_redrawn, same};
-use super::paths::{rest_is_same, same_ways};
+use super::format::{Lines, Page, drawing, may_be_redrawn, same, same_but};
+use super::paths::same_ways;
 use super::reduce::Shape;
 use super::{Drawing, Graph, LadderTree, OperandPlace, Style, StyleKind, parse_with};
 use crate::target::Target;
@@ -33,10 +33,8 @@ pub fn redraw_as(
     may_be_redrawn(chunk, tree, rung, &lines).ok()?;
     let (formatted, edit) = redrawn(chunk, tree, number, |kind| Drawing::new(shape, plan, chunk, kind))?;
     let again = parse_with(&formatted, target, tree.names);
-    let other = again.rungs.get(number)?;
-    let is_meant = rest_is_same((tree, chunk), (&again, &formatted), number)
-        && other.number.map(|number| number.value) == rung.number.map(|number| number.value)
-        && same_ways((plan, chunk), (&other.graph, &formatted));
+    let is_meant = same_but((chunk, tree), (&formatted, &again), Some(number))
+        && same_ways((plan, chunk), (&again.rungs.get(number)?.graph, &formatted));
     is_meant.then_some(edit)
 }
 

@@ -176,42 +176,14 @@ pub(super) fn usage_json(around: &Around, language: Language) -> Value {
     let view = around.view();
     let usage = ide::usage(&view);
     let text = usage.text(&view, language);
-    let name = |number: usize| view.members().get(number).map_or("", |member| member.name);
-    let uri = |number: usize| around.file(number).map(|file| file.uri.to_string());
-    let devices: Vec<Value> = usage.rows.iter().map(|row| row_json(row, &name, &uri)).collect();
+    let place = |number: usize| {
+        let name = view.members().get(number).map_or("", |member| member.name);
+        let uri = around.file(number).map(|file| file.uri.to_string());
+        vec![("file", json!(name)), ("uri", json!(uri))]
+    };
+    let devices: Vec<Value> = usage.rows.iter().map(|row| row.json(place)).collect();
     let files: Vec<&str> = view.members().iter().map(|member| member.name).collect();
     json!({"text": text, "target": view.here().target().name, "files": files, "devices": devices})
-}
-
-fn row_json<'a>(
-    row: &ide::UsageRow,
-    name: &dyn Fn(usize) -> &'a str,
-    uri: &dyn Fn(usize) -> Option<String>,
-) -> Value {
-    let uses = row.uses.iter().map(|at| {
-        json!({
-            "file": name(at.file),
-            "uri": uri(at.file),
-            "line": at.line + 1,
-            "column": at.column + 1,
-            "rung": at.rung,
-            "access": at.access_word(),
-            "coil": at.by_coil,
-            "count": at.count,
-            "text": at.text,
-        })
-    });
-    json!({
-        "device": row.full_name(),
-        "kind": row.kind_word(),
-        "symbol": row.symbol,
-        "comment": row.comment,
-        "latched": row.is_latched,
-        "preset": row.preset,
-        "read": row.is_read(),
-        "written": row.is_written(),
-        "uses": uses.collect::<Vec<_>>(),
-    })
 }
 
 /// A fix as a code action.

@@ -62,8 +62,7 @@ impl Misfit {
 /// # Errors
 /// If the new name cannot be parted.
 pub(in crate::ide) fn place(named: &Named<'_>, new: &str) -> Result<Place, Misfit> {
-    let (span, start) = (named.span, named.chunk_start as u32);
-    let inside = Span { start: span.start - start, end: span.end - start };
+    let (span, inside) = (named.span, named.inside());
     let Some(lines) = name_lines(named.chunk, inside) else {
         return Ok(Place { span, text: new.to_string() });
     };
