@@ -7,7 +7,7 @@ local client = require('rungwise.client')
 local M = {}
 
 --- A server that takes longer is not waited for: the next keys are mended instead.
-local PATIENCE_MS = 200
+local PATIENCE_MS = 1000
 --- A rung of more lines is none.
 local MOST_LINES = 400
 

@@ -40,8 +40,12 @@ function M:press(keys)
   while left > 0 do
     left = left - self:request('nvim_input', keys:sub(#keys - left + 1))
   end
-  -- Neovim answers a blocked request only when it waits for keys again.
-  self:request('nvim_eval', '1')
+  -- Neovim answers a blocked request when it waits: for keys again, or in an autocommand for an answer of the server.
+  -- Keys that come in the latter case may be read together, and those that a mapping feeds, as a jump in a snippet does,
+  -- then stand behind them.
+  self:until_true('the keys to be taken', function()
+    return self:request('nvim_eval', "state('x')") == ''
+  end)
 end
 
 --- Types text key by key, as a person does, and lets the server answer after each.
@@ -52,19 +56,19 @@ function M:type(text)
   end
 end
 
---- Waits until no request is under way and the text stands still.
+--- Waits until no request is under way, no autocommand waits for one, and the text stands still.
 function M:settle()
   local last
   self:until_true('the answers of the server', function()
-    local tick, pending = unpack(self:lua([[
+    local tick, pending, idle = unpack(self:lua([[
       local count = 0
       for _, client in ipairs(vim.lsp.get_clients({ bufnr = 0 })) do
         count = count + vim.tbl_count(client.requests or {})
       end
-      return { vim.api.nvim_buf_get_changedtick(0), count }
+      return { vim.api.nvim_buf_get_changedtick(0), count, vim.fn.state('x') == '' }
     ]]))
-    local still = pending == 0 and tick == last
-    last = tick
+    local still = idle and pending == 0 and tick == last
+    last = idle and tick or nil
     return still
   end)
 end
