@@ -92,7 +92,7 @@ fn fmt_check_shows_a_diff_that_patch_applies() {
 }
 
 #[test]
-fn colours_follow_the_option_the_terminal_and_no_color() {
+fn colours_follow_the_option_and_a_pipe_has_none() {
     let files = folder(&[("a.il", "ld x8\nout y0\nend\n")]);
     for verb in [&["check", "a.il"][..], &["fmt", "--check", "a.il"]] {
         let with = |option: &str| check(&files, &[verb, &["--color", option]].concat(), 1).0;
@@ -102,6 +102,27 @@ fn colours_follow_the_option_the_terminal_and_no_color() {
         }
     }
     check(&files, &["check", "--color", "sometimes"], 2);
+}
+
+/// The tool `script` of Linux runs a command on a terminal.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_terminal_has_colours_unless_no_color_says_otherwise() {
+    let files = folder(&[("a.il", "ld x8\nout y0\nend\n")]);
+    let shown = |no_color: Option<&str>| {
+        let mut command = Command::new("script");
+        let line = format!("{} check a.il", env!("CARGO_BIN_EXE_rungwise"));
+        command.current_dir(files.path()).args(["-qec", &line, "/dev/null"]).stdin(Stdio::null());
+        command.env_remove("NO_COLOR").envs(no_color.map(|value| ("NO_COLOR", value)));
+        command.output().ok().map(|output| String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    for (no_color, coloured) in [(None, true), (Some(""), true), (Some("1"), false)] {
+        let Some(shown) = shown(no_color) else {
+            return crate::corpus::say_skipped("no tool `script`");
+        };
+        assert!(shown.contains("octal-digit"), "{shown}");
+        assert_eq!(shown.contains('\x1b'), coloured, "{no_color:?}: {shown}");
+    }
 }
 
 #[test]

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use rungwise::document::{Document, Notation, Tree};
 use rungwise::ide::{self, Style, SymbolNode};
 use rungwise::project::{FormatStyle, Manifest, open_document, program_files};
-use rungwise::target::{Form, Model, Target};
+use rungwise::target::{Form, Model, Operand, Target};
 use rungwise::text::{Encoding, Language, Span, TextEdit};
 use std::path::Path;
 
@@ -1421,19 +1421,19 @@ fn renaming_a_drawing_keeps_its_logic() {
         let offset = MOTOR.find(old).unwrap();
         let edits = ide::rename(&document, offset, new).unwrap();
         let renamed = ladder(&TextEdit::apply_all(&edits, MOTOR));
-        let shape = |document: &Document| -> Vec<Vec<String>> {
-            let mut lines = Vec::new();
+        let logic = |document: &Document| -> String {
+            let mut rungs = String::new();
             for at in document.chunks() {
                 let Tree::Ladder(tree) = at.chunk.tree() else { continue };
                 assert_eq!(tree.problems, [], "{}", document.text());
-                for element in tree.rungs.iter().flat_map(|rung| &rung.graph.elements) {
-                    let operands = element.operands.iter().map(|operand| operand.span.of(at.chunk.text()));
-                    lines.push(operands.map(|word| word.replace(new, old)).collect());
-                }
+                tree.rungs.iter().for_each(|rung| rungs += &rung.graph.logic_text(at.chunk.text()));
             }
-            lines
+            rungs
         };
-        assert_eq!(shape(&renamed), shape(&document), "{old} to {new}:\n{}", renamed.text());
+        let [from, to] = [old, new].map(|word| format!("{:?}", Operand::read(word, Model::Fx2n)));
+        assert!(logic(&document).contains(&from), "{}", logic(&document));
+        let expected = logic(&document).replace(&from, &to);
+        assert_eq!(logic(&renamed), expected, "{old} to {new}:\n{}", renamed.text());
     }
 }
 

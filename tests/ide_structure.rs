@@ -1074,6 +1074,7 @@ fn every_edit_at_every_element_of_every_small_rung() {
 
 #[test]
 fn deleting_what_was_inserted_and_moving_there_and_back_change_nothing() {
+    let mut moves = 0;
     for part in all_rungs(4).iter().map(normal) {
         let drawing = drawn(&part, StyleKind::Iec).unwrap();
         for cursor in &drawing.cursors {
@@ -1097,6 +1098,7 @@ fn deleting_what_was_inserted_and_moving_there_and_back_change_nothing() {
                 (EditKind::MoveBranchDown, EditKind::MoveBranchUp),
             ] {
                 if let Some((moved, behind)) = apply(&drawing.text, cursor, there) {
+                    moves += 1;
                     assert_ne!(moved, drawing.text);
                     let on = Span::at(behind.start as usize - 1);
                     assert_eq!(apply(&moved, on, back).unwrap().0, drawing.text, "{moved}");
@@ -1104,6 +1106,7 @@ fn deleting_what_was_inserted_and_moving_there_and_back_change_nothing() {
             }
         }
     }
+    assert!(moves > 50, "{moves}");
 }
 
 proptest! {
@@ -1112,7 +1115,10 @@ proptest! {
     #[test]
     fn every_edit_of_random_rungs_does_what_it_should_or_is_refused(part in rung(12)) {
         let part = normal(&part);
-        let Some(drawing) = drawn(&part, StyleKind::Iec) else { return Ok(()) };
+        let drawing = drawn(&part, StyleKind::Iec);
+        // Were none of them drawn, too many cases would be refused.
+        prop_assume!(drawing.is_some());
+        let drawing = drawing.unwrap();
         let (mut done, mut asked) = (0, 0);
         for number in 0..leaves(&part).len() {
             for edit in MODELLED {
@@ -1324,7 +1330,10 @@ proptest! {
     #[test]
     fn mending_changes_nothing_twice(part in rung(10), seed in any::<u64>()) {
         let part = normal(&part);
-        let Some(drawing) = drawn(&part, StyleKind::Iec) else { return Ok(()) };
+        let drawing = drawn(&part, StyleKind::Iec);
+        // Were none of them drawn, too many cases would be refused.
+        prop_assume!(drawing.is_some());
+        let drawing = drawing.unwrap();
         let lines: Vec<&str> = drawing.text.lines().collect();
         // The rung stands behind a rung and a comment, and before another rung.
         let (first, end) = (3, lines.len() - 2);

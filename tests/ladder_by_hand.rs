@@ -73,7 +73,6 @@ const STRAIGHT: &[&str] = &[
 struct Moved {
     what: String,
     drawing: String,
-    line: usize,
 }
 
 fn is_bar(c: char) -> bool {
@@ -124,7 +123,7 @@ fn moved(drawing: &str) -> Vec<Moved> {
         let Some(row) = row else { return };
         let mut grid = straight.clone();
         grid[line] = row;
-        all.push(Moved { what, drawing: text(&grid), line });
+        all.push(Moved { what, drawing: text(&grid) });
     };
     for (line, row) in straight.iter().enumerate() {
         let last = row.iter().rposition(|c| *c != ' ').unwrap_or(0);
@@ -160,31 +159,23 @@ fn moved(drawing: &str) -> Vec<Moved> {
 }
 
 #[test]
-fn what_is_off_by_two_columns_is_read_as_the_straight_drawing_or_in_two_ways() {
+fn what_is_off_by_two_columns_is_read_as_the_straight_drawing() {
     let mut failures = Vec::new();
-    let (mut same, mut asked) = (0, 0);
+    let mut count = 0;
     for straight in STRAIGHT.iter().map(|drawing| drawing.trim_start_matches('\n')) {
         let wanted = logic(straight);
         assert!(!wanted.contains("loose"), "{straight}{wanted}");
         assert!(parse(straight, fx()).problems.is_empty(), "{straight}");
         for moved in moved(straight) {
+            count += 1;
             let found = found(&moved.drawing);
-            let codes: Vec<String> =
-                found.iter().map(|f| format!("{} {}", f.code, f.message.key())).collect();
-            let two = found.iter().find(|finding| finding.message.key() == TWO_READINGS);
-            let ok = match two {
-                Some(two) => {
-                    asked += 1;
-                    let line = moved.drawing[..two.span.start as usize].matches('\n').count();
-                    two.related.len() >= 2 && line.abs_diff(moved.line) <= 1
-                }
-                None => {
-                    same += 1;
-                    let mild = |finding: &Diagnostic| finding.code.starts_with("ragged");
-                    logic(&moved.drawing) == wanted && found.iter().all(mild)
-                }
+            // Asking which of two readings is meant is for what leaves a reader in doubt, too.
+            let mild = |finding: &Diagnostic| {
+                finding.code.starts_with("ragged") && finding.message.key() != TWO_READINGS
             };
-            if !ok {
+            if logic(&moved.drawing) != wanted || !found.iter().all(mild) {
+                let codes: Vec<String> =
+                    found.iter().map(|f| format!("{} {}", f.code, f.message.key())).collect();
                 failures.push(format!(
                     "{}\n{}{}\n{codes:?}\n",
                     moved.what,
@@ -194,7 +185,8 @@ fn what_is_off_by_two_columns_is_read_as_the_straight_drawing_or_in_two_ways() {
             }
         }
     }
-    assert!(failures.is_empty(), "{} of {}\n{}", failures.len(), same + asked, failures.join("\n"));
+    assert!(failures.is_empty(), "{} of {count}\n{}", failures.len(), failures.join("\n"));
+    assert!(count > 500, "{count}");
 }
 
 /// The drawing of each fix of a finding.

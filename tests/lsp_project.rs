@@ -338,6 +338,12 @@ fn files_that_are_not_open_are_reported_unless_only_open_ones_are_wanted() {
     folder.write("a.il", "LD X0\nOUT Y10\nEND\n");
     folder.changed(&mut client, "a.il", 2);
     awaits(&mut client, &closed, &[]);
+    folder.write("a.il", "LD X0\nOUT X1\nEND\n");
+    folder.changed(&mut client, "a.il", 2);
+    awaits(&mut client, &closed, &["write-to-input"]);
+    std::fs::remove_file(folder.path("a.il")).unwrap();
+    folder.changed(&mut client, "a.il", 3);
+    awaits(&mut client, &closed, &[]);
     let mut client = Client::start_with(json!({}), json!({"diagnostics": {"scope": "open"}}));
     folder.write("a.il", "LD X0\nOUT X1\nEND\n");
     client.open(&open, "plc-il", "END\n");
@@ -727,6 +733,7 @@ fn a_client_that_knows_less_gets_less() {
     assert!(symbols["result"][0]["location"].is_object(), "a list: {symbols}");
     let proposals = client.request("textDocument/completion", at(uri, 3, 0));
     let items = proposals["result"].as_array().or(proposals["result"]["items"].as_array()).unwrap();
+    assert!(items.iter().any(|item| item["label"] == json!("MOV")), "{proposals}");
     assert!(items.iter().all(|item| item["insertTextFormat"] != json!(2)), "no places to fill in");
     let range = json!({"start": {"line": 0, "character": 0}, "end": {"line": 3, "character": 0}});
     let context = json!({"diagnostics": []});

@@ -178,12 +178,18 @@ fn a_flood_of_bad_manners_leaves_the_state_of_the_text() {
             client.open(uri, languages[number], &model.0);
         }
     }
-    let started = Instant::now();
     let mut fresh = Client::start();
     for number in 0..2 {
         fresh.open(uris[number], languages[number], &models[number].0);
-        let (old, new) = (knowledge(&mut client, uris[number]), knowledge(&mut fresh, uris[number]));
-        assert!(old.len() > 100);
+        let (old, caught_up) = timed(|| knowledge(&mut client, uris[number]));
+        let (new, usual) = timed(|| knowledge(&mut fresh, uris[number]));
+        // The machine may be slow, but it is as slow for both.
+        assert!(
+            caught_up < usual * 20 + Duration::from_secs(5),
+            "a stall: {caught_up:?} instead of {usual:?}"
+        );
+        let told = old.iter().filter(|answer| !answer.is_null()).count();
+        assert!(told > 40, "{told} of {}", old.len());
         for (old, new) in old.iter().zip(&new) {
             assert_eq!(old, new, "in the text\n{}", models[number].0);
         }
@@ -192,7 +198,12 @@ fn a_flood_of_bad_manners_leaves_the_state_of_the_text() {
         let new = last_word(&mut fresh, uris[number], 1);
         assert_eq!(codes(&last), codes(&new));
     }
-    assert!(started.elapsed() < Duration::from_secs(15), "no stall: {:?}", started.elapsed());
+}
+
+fn timed<T>(event: impl FnOnce() -> T) -> (T, Duration) {
+    let started = Instant::now();
+    let result = event();
+    (result, started.elapsed())
 }
 
 /// The diagnostics of a version after which no more of them come: those of the whole program may follow the others.

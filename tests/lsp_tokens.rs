@@ -152,7 +152,7 @@ fn differences_one_after_another_lead_to_the_tokens_of_the_whole() {
     let edit = || (0..1000u32, 0..12u32, 0..3u32, 0..PIECES.len());
     let samples = [("list.il", "plc-il", list(260)), ("drawing.lad", "ladder", ladder(260))];
     let client = RefCell::new(Client::start());
-    let number = Cell::new(0);
+    let (number, differences) = (Cell::new(0), Cell::new(0));
     let config = Config { cases: 24, failure_persistence: None, ..Config::default() };
     let edits = (0..samples.len(), prop::collection::vec(edit(), 1..8));
     let run = TestRunner::new(config).run(&edits, |(sample, edits)| {
@@ -169,7 +169,10 @@ fn differences_one_after_another_lead_to_the_tokens_of_the_whole() {
             client.change(&uri, version as i64 + 2, (line, column), to, PIECES[piece]);
             let result = delta(client, &uri, &id);
             data = match result.get("edits") {
-                Some(edits) => applied(data, edits),
+                Some(edits) => {
+                    differences.set(differences.get() + 1);
+                    applied(data, edits)
+                }
                 None => numbers(&result["data"]),
             };
             // All tokens by way of a range, which leaves what was sent for differences alone.
@@ -183,4 +186,5 @@ fn differences_one_after_another_lead_to_the_tokens_of_the_whole() {
         Ok(())
     });
     run.expect("differences that lead to the whole");
+    assert!(differences.get() > 20, "{}", differences.get());
 }

@@ -303,7 +303,7 @@ fn check_line(page: &str, line: &str, model: Model) {
 }
 
 #[test]
-fn examples_balance_blocks_and_drive_each_coil_once() {
+fn examples_have_a_contact_before_what_needs_one_and_drive_each_coil_once() {
     for row in rows() {
         let mut coils = BTreeSet::new();
         let mut driven = false;
