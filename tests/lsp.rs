@@ -428,6 +428,7 @@ fn the_status_bar_is_told() {
     let status = client.wait_for_method("rungwise/status")["params"].clone();
     assert_eq!((&status["target"], &status["dialect"]), (&json!("fx2n"), &json!("fx")), "{status}");
     assert_eq!((&status["steps"], &status["capacity"]), (&json!(9), &json!(8000)), "{status}");
+    assert_eq!((&status["rungs"], &status["uri"]), (&json!(2), &json!(URI)), "{status}");
 }
 
 #[test]
