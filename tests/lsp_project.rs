@@ -722,7 +722,8 @@ fn long_reading_is_shown_where_the_client_shows_it() {
 
 #[test]
 fn a_client_that_knows_less_gets_less() {
-    let poor = json!({"textDocument": {"hover": {}, "codeAction": {}, "documentSymbol": {}, "completion": {"completionItem": {}}}});
+    let poor = json!({"textDocument": {"hover": {}, "codeAction": {}, "documentSymbol": {}, "completion": {"completionItem": {}},
+        "publishDiagnostics": {}}});
     let mut client = Client::start_with(poor, Value::Null);
     let uri = "untitled:one";
     client.open(uri, "plc-il", "LD X0\nOUT Y0\nP1\nEND\n");
@@ -733,7 +734,9 @@ fn a_client_that_knows_less_gets_less() {
     assert!(symbols["result"][0]["location"].is_object(), "a list: {symbols}");
     let proposals = client.request("textDocument/completion", at(uri, 3, 0));
     let items = proposals["result"].as_array().or(proposals["result"]["items"].as_array()).unwrap();
-    assert!(items.iter().any(|item| item["label"] == json!("MOV")), "{proposals}");
+    let mov = items.iter().find(|item| item["label"] == json!("MOV")).unwrap();
+    assert_eq!(mov["documentation"]["kind"], json!("plaintext"), "{mov}");
+    assert!(mov["labelDetails"].is_null() && mov["detail"] == json!("move"), "{mov}");
     assert!(items.iter().all(|item| item["insertTextFormat"] != json!(2)), "no places to fill in");
     let range = json!({"start": {"line": 0, "character": 0}, "end": {"line": 3, "character": 0}});
     let context = json!({"diagnostics": []});
@@ -746,6 +749,47 @@ fn a_client_that_knows_less_gets_less() {
     let applied = client.wait_for_method("workspace/applyEdit");
     assert_eq!(applied["params"]["edit"], command["arguments"][0]);
     assert_eq!(client.initialised["capabilities"]["renameProvider"], json!(true), "no options");
+    let twice = "untitled:two";
+    client.open(twice, "plc-il", TWICE);
+    let found = awaits(&mut client, twice, &["duplicate-label"]);
+    assert!(found[0]["relatedInformation"].is_null(), "{found:?}");
+    let definition = client.request("textDocument/definition", at(twice, 1, 3));
+    assert!(definition["result"][0]["range"].is_object(), "a place: {definition}");
+}
+
+/// A program with a label that stands twice.
+const TWICE: &str = "LD X0\nCJ P1\nLD X1\nOUT Y0\nP1\nLD X2\nOUT Y1\nP1\nLD X3\nOUT Y2\nEND\n";
+
+#[test]
+fn a_client_that_knows_more_gets_more() {
+    let rich = json!({"textDocument": {"hover": {"contentFormat": ["markdown"]}, "definition": {"linkSupport": true},
+        "documentSymbol": {"hierarchicalDocumentSymbolSupport": true}, "publishDiagnostics": {"relatedInformation": true},
+        "rename": {"prepareSupport": true}, "completion": {"completionItem": {"documentationFormat": ["markdown"],
+        "snippetSupport": true, "labelDetailsSupport": true}}}});
+    let mut client = Client::start_with(rich, Value::Null);
+    let uri = "untitled:two";
+    client.open(uri, "plc-il", TWICE);
+    let found = awaits(&mut client, uri, &["duplicate-label"]);
+    assert_eq!(
+        found[0]["relatedInformation"][0]["location"]["range"]["start"]["line"],
+        json!(4),
+        "{found:?}"
+    );
+    let hover = client.request("textDocument/hover", at(uri, 0, 0));
+    assert_eq!(hover["result"]["contents"]["kind"], json!("markdown"));
+    let symbols = client.request("textDocument/documentSymbol", json!({"textDocument": {"uri": uri}}));
+    assert!(symbols["result"][0]["selectionRange"].is_object(), "a tree: {symbols}");
+    let proposals = client.request("textDocument/completion", at(uri, 3, 0));
+    let mov =
+        proposals["result"].as_array().unwrap().iter().find(|item| item["label"] == json!("MOV")).unwrap();
+    let told = [&mov["documentation"]["kind"], &mov["labelDetails"]["description"], &mov["insertTextFormat"]];
+    assert_eq!(told, [&json!("markdown"), &json!("move"), &json!(2)], "{mov}");
+    let definition = client.request("textDocument/definition", at(uri, 1, 3));
+    let link = &definition["result"][0];
+    let asked = json!({"start": {"line": 1, "character": 3}, "end": {"line": 1, "character": 5}});
+    assert_eq!((&link["originSelectionRange"], &link["targetUri"]), (&asked, &json!(uri)), "{definition}");
+    let options = &client.initialised["capabilities"]["renameProvider"];
+    assert_eq!(options["prepareProvider"], json!(true), "{options}");
 }
 
 #[test]
