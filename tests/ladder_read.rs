@@ -1113,6 +1113,7 @@ fn read_all(text: &str) {
             check_tree(&parse(chunk, target), chunk);
         }
     }
+    assert_eq!(start, text.len(), "chunks are all of the text");
     check_tree(&parse(text, fx()), text);
 }
 

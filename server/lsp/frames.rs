@@ -234,7 +234,8 @@ mod tests {
 
     #[test]
     fn a_frame_cut_off_by_the_end_is_no_message() {
-        check(b"Content-Length: 100\r\n\r\n{\"jsonrpc\"", &[]);
+        // What there is would be a message, were it not one byte short.
+        check(format!("Content-Length: {}\r\n\r\n{GOOD}", GOOD.len() + 1).as_bytes(), &[]);
         check(b"", &[]);
     }
 }
