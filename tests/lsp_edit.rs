@@ -73,7 +73,10 @@ fn an_edit_can_be_asked_for_lines_that_are_not_in_the_document() {
     assert_eq!(edits[0]["range"]["start"]["line"], 0);
     assert_eq!(edits[0]["newText"], "", "two blanks go away: {edits:?}");
     let added = edit(&mut client, "mend", (1, 8), lines(&format!("(* new *)\n{row}")));
-    assert_eq!(added["result"]["edits"][0]["range"]["start"]["line"], 1, "in the text with the lines: {added}");
+    assert_eq!(
+        added["result"]["edits"][0]["range"]["start"]["line"], 1,
+        "in the text with the lines: {added}"
+    );
     let none = edit(&mut client, "mend", (0, 8), json!({}));
     assert_eq!(none["result"]["edits"], json!([]), "nothing of it is kept: {none}");
 }
