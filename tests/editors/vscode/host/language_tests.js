@@ -44,6 +44,8 @@ module.exports = [
   ['a manifest is checked as it is typed, completed and explained', async () => {
     const file = vscode.Uri.joinPath(vscode.workspace.workspaceFolders[0].uri, 'manifest', 'rungwise.toml');
     await vscode.workspace.fs.writeFile(file, Buffer.from(''));
+    // The extension starts for a folder with a manifest or with a program; this one has become the former only now.
+    await open('ragged.lad');
     const document = await vscode.workspace.openTextDocument(file);
     await replace(document, 0, 0, 0, 'target = "fx9"');
     await until('the mistake', () => vscode.languages.getDiagnostics(file).some(({ message, range }) =>
