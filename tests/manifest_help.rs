@@ -260,6 +260,9 @@ fn a_manifest_is_no_program() {
         let answer = client.request(&format!("textDocument/{method}"), document.clone());
         assert_eq!(answer["result"], Value::Null, "{method}: {answer}");
     }
+    let at = json!({"textDocument": {"uri": uri}, "positions": [{"line": 0, "character": 0}]});
+    let answer = client.request("textDocument/selectionRange", at);
+    assert_eq!(answer["result"], Value::Null, "{answer}");
     let report = client.request("textDocument/diagnostic", document);
     assert_eq!(report["result"]["items"], json!([]), "they are pushed: {report}");
 }
