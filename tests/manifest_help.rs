@@ -1,13 +1,16 @@
 //! `rungwise.toml` in the editor, through the binary: diagnostics while it is typed, completion, hover.
 
 use crate::lsp_client::Client;
+use proptest::prelude::*;
 use rungwise::check::RULES;
+use rungwise::ide::{ManifestFiles, manifest_completions, manifest_hover};
+use rungwise::text::Language;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
 use std::sync::LazyLock;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Longer than every pause of the server.
 const QUIET: Duration = Duration::from_millis(500);
@@ -162,7 +165,7 @@ fn every_key_says_what_it_is_for_in_both_languages() {
     );
     let rule = RULES.iter().find(|rule| rule.code == "upper-parallel").unwrap();
     let said = hover("en", "[rules]\nupper-$0parallel = \"off\"").unwrap();
-    assert!(said.contains(&rule.summary(rungwise::text::Language::English)), "{said}");
+    assert!(said.contains(&rule.summary(Language::English)), "{said}");
     assert!(said.contains(&format!("Left out: `{}`", rule.severity.word())), "{said}");
     assert_eq!(hover("en", "col$0our = 1"), None);
     assert_eq!(hover("en", "# tar$0get"), None);
@@ -268,14 +271,48 @@ fn a_manifest_is_no_program() {
 }
 
 #[test]
-fn the_signs_of_manifests_open_no_list_in_programs() {
+fn the_sign_of_words_opens_no_list_in_programs() {
     let mut client = client("en");
     let uri = "file:///tmp/manifest-signs/a.il";
-    client.open(uri, "plc-il", "LD=");
-    let ask = |sign: Value| json!({"textDocument": {"uri": uri}, "position": {"line": 0, "character": 3}, "context": sign});
-    let typed =
-        client.request("textDocument/completion", ask(json!({"triggerKind": 2, "triggerCharacter": "="})));
-    assert_eq!(typed["result"], Value::Null);
-    let asked = client.request("textDocument/completion", ask(json!({"triggerKind": 1})));
-    assert!(!asked["result"].as_array().unwrap().is_empty(), "{asked}");
+    client.open(uri, "plc-il", "LD ");
+    let mut ask = |sign: Value| {
+        let position = json!({"line": 0, "character": 3});
+        let params = json!({"textDocument": {"uri": uri}, "position": position, "context": sign});
+        client.request("textDocument/completion", params)["result"].clone()
+    };
+    assert_eq!(ask(json!({"triggerKind": 2, "triggerCharacter": "\""})), Value::Null);
+    let asked = ask(json!({"triggerKind": 1}));
+    assert!(!asked.as_array().unwrap().is_empty(), "{asked}");
+}
+
+#[test]
+fn a_manifest_of_any_depth_is_read_in_bounded_time() {
+    let deep = [("x = ", "["), ("x = ", "{a="), ("", "a."), ("[", "a."), ("", "[")];
+    for (start, repeated) in deep {
+        let text = format!("{start}{}", repeated.repeat(200_000));
+        let begun = Instant::now();
+        let found = manifest_completions(&text, text.len(), &ManifestFiles::default(), Language::English);
+        assert!(
+            found.len() < 200 && begun.elapsed() < Duration::from_secs(5),
+            "{repeated}: {:?}",
+            begun.elapsed()
+        );
+    }
+}
+
+proptest! {
+    /// Whatever is typed, and wherever one asks: no panic, and what is replaced has the cursor in its line.
+    #[test]
+    fn help_in_any_text(text in "([\\[\\]{}=\"',.#\\\\é𠀀 \n\r]|rules|task|format|files|a|1){0,40}") {
+        for offset in (0..=text.len()).filter(|offset| text.is_char_boundary(*offset)) {
+            if let Some(hover) = manifest_hover(&text, offset, Language::English) {
+                prop_assert!(text.get(hover.span.range()).is_some());
+            }
+            for found in manifest_completions(&text, offset, &ManifestFiles::default(), Language::English) {
+                let replaced = text.get(found.edit.span.range());
+                prop_assert!(replaced.is_some_and(|text| !text.contains('\n')), "{text:?} {offset} {found:?}");
+                prop_assert!(found.edit.span.touches(offset), "{text:?} {offset} {found:?}");
+            }
+        }
+    }
 }

@@ -116,7 +116,7 @@ impl List<'_> {
             return;
         }
         let is_table = kind == CompletionKind::Type;
-        let rank = self.found.len() as u16 + if is_table { 1000 } else { 0 };
+        let rank = u16::try_from(self.found.len()).unwrap_or(u16::MAX);
         self.found.push(Completion {
             label: name.to_string(),
             // With the bracket typed it is a part of what is compared.
@@ -130,7 +130,7 @@ impl List<'_> {
             documentation,
             is_snippet: kind == CompletionKind::Keyword,
             edit: TextEdit::new(span, text),
-            rank,
+            rank: rank.saturating_add(if is_table { 1000 } else { 0 }),
         });
     }
 

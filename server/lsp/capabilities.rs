@@ -86,7 +86,7 @@ pub(super) fn offered(
         hover_provider: Some(HoverProviderCapability::Simple(true)),
         completion_provider: Some(CompletionOptions {
             trigger_characters: Some(
-                [".", "%", "[", "("].into_iter().chain(manifest_help::TRIGGERS).map(str::to_string).collect(),
+                [".", "%", "[", "(", manifest_help::TRIGGER].map(str::to_string).to_vec(),
             ),
             ..CompletionOptions::default()
         }),

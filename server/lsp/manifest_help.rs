@@ -10,8 +10,8 @@ use std::sync::Arc;
 use tower_lsp::jsonrpc::Result;
 use tower_lsp::ls_types::*;
 
-/// What only a manifest has between words; in programs it opens no list of proposals.
-pub(super) const TRIGGERS: [&str; 2] = ["\"", "="];
+/// A word of a manifest begins with it; in programs it opens no list of proposals.
+pub(super) const TRIGGER: &str = "\"";
 
 /// The open manifest that is asked about, if it is one.
 pub(super) fn asked(at: &TextDocumentPositionParams) -> Option<Arc<Open>> {
@@ -20,8 +20,7 @@ pub(super) fn asked(at: &TextDocumentPositionParams) -> Option<Arc<Open>> {
 
 /// Whether proposals are asked for because of a character that asks for none in a program.
 pub(super) fn is_for_manifests(context: Option<&CompletionContext>) -> bool {
-    let typed = context.and_then(|context| context.trigger_character.as_deref());
-    typed.is_some_and(|typed| TRIGGERS.contains(&typed))
+    context.and_then(|context| context.trigger_character.as_deref()) == Some(TRIGGER)
 }
 
 pub(super) fn hover(open: &Open, position: Position) -> Option<Hover> {

@@ -78,7 +78,9 @@ impl Manifests {
     /// The editor has a manifest: the disk has no say in it any more.
     pub(super) fn open(&mut self, client: &Client, manifest: &Uri, path: Option<&Arc<Path>>) {
         self.take_back(client, manifest);
-        self.open.insert(manifest.clone(), Typed { path: path.cloned(), is_told: false });
+        // One that is opened a second time was closed in the client's eyes; what is shown in it stays until it is read.
+        let is_told = self.open.get(manifest).is_some_and(|typed| typed.is_told);
+        self.open.insert(manifest.clone(), Typed { path: path.cloned(), is_told });
     }
 
     /// Tells the mistake in the text of an open manifest, or that there is none any more.

@@ -96,7 +96,8 @@ export class DrawingPaste {
       return true;
     }
     this.given = undefined;
-    return given.isMade && isMadeBy(changes, [given.plain]);
+    // One character may as well be typed.
+    return given.isMade && given.plain.newText.length > 1 && isMadeBy(changes, [given.plain]);
   }
 
   private async provide(

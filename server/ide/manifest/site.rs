@@ -18,6 +18,9 @@ pub(super) enum Site {
     Nowhere,
 }
 
+/// No manifest has names of more parts, or more lists and tables within each other.
+const MOST_DEPTH: usize = 16;
+
 /// A manifest, as far as the cursor and proposals need it.
 pub(super) struct Reading {
     pub site: Site,
@@ -50,6 +53,7 @@ impl Reading {
             entry: Vec::new(),
             state: State::Start,
             is_found: false,
+            is_line_start: true,
         };
         let tokens: Vec<Token> =
             Source::new(text).lex().filter(|token| token.kind() != TokenKind::Whitespace).collect();
@@ -109,6 +113,8 @@ struct Walk<'t> {
     entry: Vec<String>,
     state: State,
     is_found: bool,
+    /// Whether nothing stands in the line yet.
+    is_line_start: bool,
 }
 
 impl Walk<'_> {
@@ -132,6 +138,7 @@ impl Walk<'_> {
             }
             _ if is_string || token.kind() == TokenKind::Atom => self.word(token, rest),
             TokenKind::LeftSquareBracket => self.open_bracket(start, rest),
+            TokenKind::LeftCurlyBracket if self.nest.len() >= MOST_DEPTH => self.state = State::Done,
             TokenKind::RightSquareBracket => self.close_bracket(),
             TokenKind::LeftCurlyBracket if self.state == State::Value => {
                 let path = self.path();
@@ -164,6 +171,7 @@ impl Walk<'_> {
             }
             _ => {}
         }
+        self.is_line_start = token.kind() == TokenKind::Newline;
     }
 
     /// Whether the cursor was found in the key of the entry that is being read.
@@ -202,9 +210,7 @@ impl Walk<'_> {
     }
 
     fn open_bracket(&mut self, start: usize, rest: &[Token]) {
-        let line = self.text[..start].rfind('\n').map_or(0, |end| end + 1);
-        let starts_line = self.text[line..start].trim().is_empty();
-        if starts_line && !self.nest.is_empty() {
+        if self.is_line_start && !self.nest.is_empty() {
             self.give_up();
         }
         match self.state {
@@ -229,7 +235,7 @@ impl Walk<'_> {
                     self.found(Site::Header { path: Vec::new(), word: Span::at(self.offset), span });
                 }
             }
-            State::Value => self.nest.push(Nest::List),
+            State::Value if self.nest.len() < MOST_DEPTH => self.nest.push(Nest::List),
             _ => {}
         }
     }
@@ -296,7 +302,7 @@ impl Walk<'_> {
         let starts_line = self.state == State::Start;
         match self.state {
             State::Header(open) => {
-                self.table.push(name);
+                push(&mut self.table, name);
                 if is_here {
                     let brackets =
                         rest.iter().take_while(|token| token.kind() == TokenKind::RightSquareBracket);
@@ -310,7 +316,7 @@ impl Walk<'_> {
                     let (table, before) = (self.table.clone(), self.entry.clone());
                     self.found(Site::Key { table, before, word, has_value, starts_line });
                 }
-                self.entry.push(name);
+                push(&mut self.entry, name);
                 self.state = State::AfterKey;
             }
             State::Value => {
@@ -325,5 +331,12 @@ impl Walk<'_> {
             }
             State::AfterKey | State::Done => self.is_found |= is_here,
         }
+    }
+}
+
+/// What has more parts than any name of a manifest is none of them, however it goes on.
+fn push(names: &mut Vec<String>, name: String) {
+    if names.len() < MOST_DEPTH {
+        names.push(name);
     }
 }
