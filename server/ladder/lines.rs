@@ -63,11 +63,7 @@ impl Iterator for Lines<'_> {
             return None;
         }
         let end = memchr2(b'\n', b'\r', &bytes[start..]).map_or(bytes.len(), |length| start + length);
-        // A comment or pragma can only begin with one of these; most lines have none. All bytes are looked at, since
-        // a loop without a way out looks at many at a time.
-        let begins = |byte: &u8| matches!(byte, b'/' | b'{' | b';' | b'*');
-        let suspicious =
-            self.open.is_some() | bytes[start..end].iter().fold(false, |any, byte| any | begins(byte));
+        let suspicious = self.open.is_some() || may_begin_comment(&bytes[start..end]);
         let ending = if bytes[end..].starts_with(b"\r\n") { 2 } else { usize::from(end < bytes.len()) };
         self.offset = end + ending;
         let continues = self.open.is_some();
@@ -125,6 +121,13 @@ impl Lines<'_> {
             }
         }
     }
+}
+
+/// Whether a comment or a pragma may begin in `bytes`: one can only begin with one of four characters, and most lines
+/// have none of them. All bytes are looked at, since a loop without a way out looks at many at a time.
+pub(super) fn may_begin_comment(bytes: &[u8]) -> bool {
+    let begins = |byte: &u8| matches!(byte, b'/' | b'{' | b';' | b'*');
+    bytes.iter().fold(false, |any, byte| any | begins(byte))
 }
 
 /// The comment of a line such as ` 3 ||  ; text    ||`, which an LDmicro export draws between its double rails.
