@@ -53,6 +53,24 @@ impl<'t> Lines<'t> {
     }
 }
 
+/// The lines of a text with their ends, as [`Lines`] has them.
+pub(super) fn ended_lines(text: &str) -> impl Iterator<Item = &str> {
+    let mut rest = text;
+    std::iter::from_fn(move || {
+        let (line, behind) = rest.split_at(end_of_line(rest.as_bytes(), 0).1);
+        rest = behind;
+        (!line.is_empty()).then_some(line)
+    })
+}
+
+/// One past the last byte of the line that begins at `start`, and where the next one begins: behind a line feed, a
+/// carriage return, or both.
+fn end_of_line(bytes: &[u8], start: usize) -> (usize, usize) {
+    let end = memchr2(b'\n', b'\r', &bytes[start..]).map_or(bytes.len(), |length| start + length);
+    let ending = if bytes[end..].starts_with(b"\r\n") { 2 } else { usize::from(end < bytes.len()) };
+    (end, end + ending)
+}
+
 impl Iterator for Lines<'_> {
     type Item = Line;
 
@@ -62,10 +80,9 @@ impl Iterator for Lines<'_> {
         if start >= bytes.len() {
             return None;
         }
-        let end = memchr2(b'\n', b'\r', &bytes[start..]).map_or(bytes.len(), |length| start + length);
+        let (end, next) = end_of_line(bytes, start);
         let suspicious = self.open.is_some() || may_begin_comment(&bytes[start..end]);
-        let ending = if bytes[end..].starts_with(b"\r\n") { 2 } else { usize::from(end < bytes.len()) };
-        self.offset = end + ending;
+        self.offset = next;
         let continues = self.open.is_some();
         let railed = suspicious && !continues;
         let railed = railed.then(|| railed_comment(self.text.get(start..end)?, start)).flatten();

@@ -51,7 +51,7 @@ async function untilText(workbench, what, wanted) {
     await workbench.until(what, async () => {
       lines = (await workbench.documentLines());
       return JSON.stringify(lines) === JSON.stringify(wanted);
-    }, 6_000);
+    }, 45_000);
   } catch (error) {
     throw new Error(`${error.message}\nwanted:\n${wanted.join('\n')}\nfound:\n${lines.join('\n')}`);
   }
@@ -135,9 +135,9 @@ async function contextMenu(workbench) {
   await workbench.goTo(2, 15);
   await workbench.page.keyboard.press('Shift+F10');
   const entry = workbench.page.locator('.monaco-menu .action-label', { hasText: /^Rungwise$/ }).first();
-  await entry.waitFor({ timeout: 10_000 });
+  await entry.waitFor({ timeout: 45_000 });
   await entry.hover();
-  await workbench.page.locator('.monaco-menu .action-label', { hasText: 'Insert Contact' }).first().waitFor({ timeout: 10_000 });
+  await workbench.page.locator('.monaco-menu .action-label', { hasText: 'Insert Contact' }).first().waitFor({ timeout: 45_000 });
   await workbench.page.waitForTimeout(300);
   await workbench.screenshot('14-menu');
   await workbench.page.keyboard.press('Escape');
