@@ -14,7 +14,7 @@ const TYPED_REQUEST = 'rungwise/typed';
 /** An answer that came too late is asked for again, this many times. */
 const MOST_ATTEMPTS = 8;
 /** How long the text may be ahead of what the server or the editor knows, in steps of `STEP_MS`. */
-const MOST_STEPS = 100;
+const MOST_STEPS = 500;
 const STEP_MS = 10;
 /** Cursors that type at the same time. */
 const MOST_CURSORS = 16;
