@@ -113,7 +113,17 @@ fn table_phrases() -> BTreeSet<&'static str> {
         words.extend(target.special.iter().map(|special| special.meaning));
         words.extend(target.devices.iter().map(|range| range.purpose));
     }
+    add_descriptions(&crate::manifest_help::SCHEMA, &mut words);
     words
+}
+
+/// The descriptions of the keys of a table in the schema of the manifest. Those of rules are on their pages.
+fn add_descriptions(table: &'static Value, words: &mut BTreeSet<&'static str>) {
+    for (_, node) in table["properties"].as_object().into_iter().flatten() {
+        words.extend(node["description"].as_str().filter(|_| node["allOf"].is_null()));
+        add_descriptions(node, words);
+        add_descriptions(&node["items"], words);
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@ use expect_test::{Expect, expect};
 use proptest::prelude::*;
 use rungwise::document::{Document, Notation, Tree};
 use rungwise::ide::{self, Style, SymbolNode};
+use rungwise::ladder::{CoilKind, ContactKind, ElementKind, coil_words};
 use rungwise::project::{FormatStyle, Manifest, open_document, program_files};
 use rungwise::target::{Form, Model, Operand, Target};
 use rungwise::text::{Encoding, Language, Span, TextEdit};
@@ -675,15 +676,19 @@ fn completion_in_ladder() {
     check_completions(
         "|   X0\n+---| |--$0--------( )-+\n",
         ladder,
-        8,
+        12,
         &expect![[r#"
         | | | normally open contact | +---| |--| |-----( )-+
         |/| | normally closed contact | +---| |--|/|-----( )-+
         |P| | rising edge contact | +---| |--|P|-----( )-+
         |N| | falling edge contact | +---| |--|N|-----( )-+
         ( ) | coil | +---| |--( )-----( )-+
+        (/) | negated coil | +---| |--(/)-----( )-+
         (S) | set coil | +---| |--(S)-----( )-+
         (R) | reset coil | +---| |--(R)-----( )-+
+        (P) | rising edge coil | +---| |--(P)-----( )-+
+        (N) | falling edge coil | +---| |--(N)-----( )-+
+        (T) | toggling coil | +---| |--(T)-----( )-+
         MOV | move | +---| |--[MOV ${1:S} ${2:D}]--------( )-+
         …
     "#]],
@@ -719,6 +724,42 @@ fn completion_in_ladder() {
         …
     "#]],
     );
+}
+
+#[test]
+fn every_mark_that_a_drawing_may_have_is_offered_and_understood() {
+    let fx2n = Target::of(Model::Fx2n);
+    let proposed = |head: &str| -> Vec<String> {
+        let text = format!("|   X0                  Y0\n+---| |--{head}");
+        let document = Document::new(&text, Notation::Ladder, fx2n);
+        let found = ide::completions(&document, text.len(), Language::English);
+        found.into_iter().map(|proposal| proposal.edit.text).collect()
+    };
+    let symbols: Vec<String> = proposed("--").into_iter().filter(|text| text.len() == 3).collect();
+    // Each symbol is read as another kind, and all kinds that the reader has words for are there.
+    let mut read: Vec<ElementKind> = Vec::new();
+    for symbol in &symbols {
+        let text = format!("|   X0     M0\n+---| |----{symbol}----( )-+\n");
+        let tree = rungwise::ladder::parse(&text, fx2n);
+        let kind = tree.rungs[0].graph.elements[1].kind.clone();
+        assert!(!read.contains(&kind), "{symbol}");
+        read.push(kind);
+    }
+    for kind in
+        coil_words().map(|(_, kind)| ElementKind::Coil(kind)).chain([ElementKind::Coil(CoilKind::Plain)])
+    {
+        assert!(read.contains(&kind), "{kind:?} in {symbols:?}");
+    }
+    assert_eq!(
+        read.iter().filter(|kind| matches!(kind, ElementKind::Contact(_))).count(),
+        ContactKind::ALL.len()
+    );
+    // Behind each word the names follow that a coil can have.
+    let names = proposed("(S ");
+    assert!(names.iter().any(|name| name == "Y0"), "{names:?}");
+    for (word, _) in coil_words() {
+        assert_eq!(proposed(&format!("({word} ")), names, "({word}");
+    }
 }
 
 #[test]

@@ -302,6 +302,24 @@ fn lenses_tell_steps_references_and_free_devices() {
 }
 
 #[test]
+fn a_file_with_too_many_rungs_says_where_its_lenses_end() {
+    let all = LensSettings { steps: true, references: true, next_free: true };
+    let document = fx(&"LD X0\nOUT Y0\n".repeat(2000));
+    let lenses = ide::lenses(&document, all);
+    let (last, others) = lenses.split_last().unwrap();
+    assert_eq!(last.kind, LensKind::More);
+    assert!(others.len() > 2900 && lenses.len() <= 3000, "{}", lenses.len());
+    assert!(others.iter().all(|lens| lens.kind != LensKind::More && lens.span.start < last.span.start));
+    // Two lenses above each rung of two lines, and one above the first.
+    assert_eq!(document.line_of(last.span.start as usize) as usize, others.len() - 1);
+    let view = ProjectView::alone(&document);
+    let title = ide::lens_title(&view, last.span.start as usize, &last.kind, EN).unwrap();
+    assert_eq!(title, "no lenses from here on: a file has 3000 at most");
+    let few = fx(&"LD X0\nOUT Y0\n".repeat(1000));
+    assert!(ide::lenses(&few, all).iter().all(|lens| lens.kind != LensKind::More));
+}
+
+#[test]
 fn ranges_are_formatted_by_whole_rungs() {
     let style = Style { kind: FormatStyle::Iec, width: 48 };
     let text = "ld x0\nout y0\nld x1\nout y1\nld x2\nout y2\n";

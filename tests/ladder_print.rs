@@ -784,6 +784,9 @@ fn everything_but_rungs_is_kept() {
         +---| |------------------------------------( )-+"#]]
     .assert_eq(&formatted.replace('\r', "␍"));
     assert_eq!(format(&formatted, fx(), &Style::default()), formatted);
+    // A carriage return alone ends a line as well.
+    let returns = |text: &str| text.replace("\r\n", "\r");
+    assert_eq!(format(&returns(text), fx(), &Style::default()), returns(&formatted));
 }
 
 #[test]
@@ -930,7 +933,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 300, max_shrink_iters: 2000, ..ProptestConfig::default() })]
 
     #[test]
-    fn scribbles_are_formatted_without_harm(text in "([|+\\-X0Y1\\[\\]()/ │├┤┼─>名O;*\\n]|--| \\|--|--\\( \\)--|  X0 |\\(\\* |\\*\\)|\\r\\n|\\t){0,120}") {
+    fn scribbles_are_formatted_without_harm(text in "([|+\\-X0Y1\\[\\]()/ │├┤┼─>名O;*\\n]|--| \\|--|--\\( \\)--|  X0 |\\(\\* |\\*\\)|\\r\\n|\\r|\\t){0,120}") {
         for kind in STYLES {
             let once = format(&text, fx(), &style(kind));
             prop_assert_eq!(format(&once, fx(), &style(kind)), once.clone());

@@ -232,6 +232,36 @@ fn every_contact() {
     );
 }
 
+/// Its right rail may stand under anything of the rung above, also under a bar of a contact.
+#[test]
+fn narrower_rungs_directly_below_a_wider_one_are_rungs_of_their_own() {
+    let wide = "|   X0        X1                           Y0  |\n+---| |-------|/|--------------------------( )-+\n";
+    for cells in 6..38 {
+        let pad = |cell: &str| cell.repeat(cells - 6);
+        let narrow = |contact: &str, coil: &str| {
+            format!("|   {contact}  {}  {coil}  |\n+---| |---{}( )-+\n", pad(" "), pad("-"))
+        };
+        let text = format!("{wide}{}{}", narrow("X2", "Y1"), narrow("X3", "Y2"));
+        let tree = parse(&text, fx());
+        let errors: Vec<_> = tree.problems.iter().filter(|problem| problem.code != "ragged-rail").collect();
+        assert_eq!(errors, [] as [&Diagnostic; 0], "{text}");
+        let words: Vec<String> = tree
+            .rungs
+            .iter()
+            .map(|rung| {
+                let words = rung.graph.elements.iter().map(|element| element_words(element, &text));
+                words.collect::<Vec<_>>().join(" ")
+            })
+            .collect();
+        assert_eq!(words, ["X0 /X1 (Y0)", "X2 (Y1)", "X3 (Y2)"], "{text}");
+    }
+    // A branch whose line meets the contact is no rung: nobody can tell where it was meant to end.
+    let branch = "|   X0        X1                           Y0  |\n+---| |-------|/|--------------------------( )-+\n\
+        |   Y0        |\n+---| |-------+\n";
+    let tree = parse(branch, fx());
+    assert!(tree.problems.iter().any(|problem| problem.code != "ragged-rail"), "{branch}");
+}
+
 #[test]
 fn every_coil() {
     check_symbols(

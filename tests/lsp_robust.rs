@@ -181,13 +181,7 @@ fn a_flood_of_bad_manners_leaves_the_state_of_the_text() {
     let mut fresh = Client::start();
     for number in 0..2 {
         fresh.open(uris[number], languages[number], &models[number].0);
-        let (old, caught_up) = timed(|| knowledge(&mut client, uris[number]));
-        let (new, usual) = timed(|| knowledge(&mut fresh, uris[number]));
-        // The machine may be slow, but it is as slow for both.
-        assert!(
-            caught_up < usual * 20 + Duration::from_secs(5),
-            "a stall: {caught_up:?} instead of {usual:?}"
-        );
+        let (old, new) = (knowledge(&mut client, uris[number]), knowledge(&mut fresh, uris[number]));
         let told = old.iter().filter(|answer| !answer.is_null()).count();
         assert!(told > 40, "{told} of {}", old.len());
         for (old, new) in old.iter().zip(&new) {
@@ -198,12 +192,6 @@ fn a_flood_of_bad_manners_leaves_the_state_of_the_text() {
         let new = last_word(&mut fresh, uris[number], 1);
         assert_eq!(codes(&last), codes(&new));
     }
-}
-
-fn timed<T>(event: impl FnOnce() -> T) -> (T, Duration) {
-    let started = Instant::now();
-    let result = event();
-    (result, started.elapsed())
 }
 
 /// The diagnostics of a version after which no more of them come: those of the whole program may follow the others.

@@ -39,6 +39,7 @@ mod lsp_project;
 mod lsp_robust;
 mod lsp_tokens;
 mod lsp_within;
+mod manifest_help;
 mod manifest_schema;
 mod markdown;
 mod mistakes;

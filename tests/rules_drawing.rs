@@ -313,6 +313,34 @@ fn findings_name_devices_and_point_at_what_belongs_to_them() {
     assert_eq!(places(&fixed, &found(&fixed)), [""; 0], "{fixed}");
 }
 
+#[test]
+fn rungs_whose_rail_meets_a_corner_above_are_parted_by_a_blank_line() {
+    let text = "\
+|   X0              X1                       Y0  |
++---| |-----------+-|/|----------------------( )-+
+|   X2      Y1    |
++---| |-----( )---+
+|   X3      Y2    |
++---| |-----( )---+
+";
+    for text in [text.to_string(), text.replace('\n', "\r\n")] {
+        let findings = found(&text);
+        let finding = findings.iter().find(|finding| finding.code == "contact-after-coil").unwrap();
+        let [fix] = &finding.fixes[..] else { panic!("{:?}", finding.fixes) };
+        assert_eq!(
+            fix.title.render(Language::English),
+            "Put a blank line between, so that Y1 is in a rung of its own"
+        );
+        let fixed = TextEdit::apply_all(&fix.edits, &text);
+        assert_eq!(fixed.lines().position(str::is_empty), Some(2), "{fixed}");
+        assert_eq!(fixed.matches("\r\n").count(), if text.contains('\r') { 7 } else { 0 });
+        assert_eq!(places(&fixed, &found(&fixed)), [""; 0], "{fixed}");
+    }
+    // A contact that is really behind its output stays so, whatever is put between.
+    let behind = "|   X0        Y0        X1                     |\n+---| |-------( )-------| |--------------------+\n";
+    assert!(found(behind).iter().all(|finding| finding.fixes.is_empty()));
+}
+
 /// A rung of `rows` branches with `contacts` contacts each; in `open` ones the lower branches end a cell too early.
 fn large(rows: usize, contacts: usize, open: bool) -> String {
     let mut text = String::new();

@@ -6,7 +6,7 @@ use super::{Format, Outcome, paths_or_here, render, sarif};
 use crate::document::Document;
 use crate::ide::{self, Summary};
 use crate::target::Target;
-use crate::text::{Diagnostic, Encoding, Fix, Language, Message, Severity, Span};
+use crate::text::{Diagnostic, Encoding, Fix, Language, Message, Span};
 use clap::ValueEnum;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -135,20 +135,12 @@ fn diagnostic_json(program: &Program, diagnostic: &Diagnostic, language: Languag
     };
     json!({
         "code": diagnostic.code,
-        "severity": severity_word(diagnostic.severity),
+        "severity": diagnostic.severity.word(),
         "message": diagnostic.message.render(language),
         "range": range(diagnostic.span),
         "related": related.collect::<Vec<_>>(),
         "fixes": diagnostic.fixes.iter().map(fix).collect::<Vec<_>>(),
     })
-}
-
-pub(super) fn severity_word(severity: Severity) -> &'static str {
-    match severity {
-        Severity::Error => "error",
-        Severity::Warning => "warning",
-        Severity::Hint => "hint",
-    }
 }
 
 fn target_named(name: &str) -> Result<&'static Target, String> {

@@ -1,6 +1,5 @@
 //! Diagnostics for people: the rung as it is drawn, with carets under the cells.
 
-use super::check::severity_word;
 use super::input::Program;
 use crate::document::{Document, Notation};
 use crate::text::{
@@ -57,7 +56,7 @@ pub(super) fn headline(
     let LineColumn { line, column } = document.position(found.span.start as usize, Encoding::Utf32);
     let (colour, off) = (colours.of(found.severity), colours.off);
     let message = found.message.render(language);
-    let word = severity_word(found.severity);
+    let word = found.severity.word();
     format!("{path}:{}:{}: {colour}{word}[{}]{off}: {message}\n", line + 1, column + 1, found.code)
 }
 

@@ -88,8 +88,8 @@ struct DrawnForms {
 }
 
 static DRAWN: LazyLock<DrawnForms> = LazyLock::new(|| {
-    use {CoilKind as Coil, ContactKind as Contact};
-    let contacts = [Contact::NormallyOpen, Contact::NormallyClosed, Contact::Rising, Contact::Falling];
+    use CoilKind as Coil;
+    let contacts = ContactKind::ALL;
     let coils =
         [Coil::Plain, Coil::Negated, Coil::Set, Coil::Reset, Coil::Rising, Coil::Falling, Coil::Toggle];
     let mut forms = DrawnForms { contacts: [None; 4], coils: [None; 7] };

@@ -130,7 +130,7 @@ impl<'d> Place<'d> {
 }
 
 /// Whether the letters of `typed` occur in `word` in this order, the first one at its start; case aside.
-fn is_abbreviation(typed: &str, word: &str) -> bool {
+pub(super) fn is_abbreviation(typed: &str, word: &str) -> bool {
     let same = |left: char, right: char| left.eq_ignore_ascii_case(&right);
     let mut letters = word.chars();
     let mut typed = typed.chars();

@@ -8,7 +8,8 @@ use crate::ladder::Rung;
 use crate::target::{Device, DeviceKind};
 use crate::text::{Language, Message, Span};
 
-/// With more of them the list itself would slow the editor down; then only the head of the file has one.
+/// A client asks for all lenses of a file after each edit, and makes a line of its view of each rung with some: with
+/// more of them the list itself would slow the editor down. A last lens says so where they end.
 const MOST: usize = 3000;
 
 /// So many outputs of one rung have a lens.
@@ -46,6 +47,8 @@ pub enum LensKind {
     References(Device),
     /// The next free devices.
     NextFree,
+    /// The rungs from here on have none.
+    More,
 }
 
 pub(super) fn of(document: &Document, wanted: LensSettings) -> Vec<Lens> {
@@ -53,10 +56,16 @@ pub(super) fn of(document: &Document, wanted: LensSettings) -> Vec<Lens> {
     if wanted.next_free && document.target().is_fx() && !document.is_empty() {
         lenses.push(Lens { span: Span::at(0), kind: LensKind::NextFree });
     }
-    let head = lenses.len();
+    if !wanted.steps && !wanted.references {
+        return lenses;
+    }
     for at in document.chunks() {
         for (span, outputs) in rungs(at.chunk) {
             let span = span.shifted(at.start);
+            if lenses.len() + 1 + OUTPUTS > MOST {
+                lenses.push(Lens { span, kind: LensKind::More });
+                return lenses;
+            }
             if wanted.steps && document.target().is_fx() {
                 lenses.push(Lens { span, kind: LensKind::Steps });
             }
@@ -64,10 +73,6 @@ pub(super) fn of(document: &Document, wanted: LensSettings) -> Vec<Lens> {
                 let outputs = outputs.into_iter().take(OUTPUTS);
                 lenses.extend(outputs.map(|device| Lens { span, kind: LensKind::References(device) }));
             }
-        }
-        if lenses.len() > MOST {
-            lenses.truncate(head);
-            break;
         }
     }
     lenses
@@ -125,6 +130,7 @@ pub(super) fn title(
             let one = Message::new("lens.reference").with("name", &name);
             counted(one, Message::new("lens.references").with("name", &name), count)
         }
+        LensKind::More => Message::new("lens.more").with("count", MOST),
         LensKind::NextFree => {
             let devices = next_free(view);
             Message::new("lens.next-free").with("devices", devices.join(", "))

@@ -268,38 +268,44 @@ fn contact_mnemonic(word: &Piece) -> Option<ContactKind> {
     found.map(|(_, kind)| *kind)
 }
 
+/// The words that give a coil its kind, whatever follows them.
+const COIL_MARKS: [(&str, CoilKind); 13] = [
+    ("/", CoilKind::Negated),
+    ("S", CoilKind::Set),
+    ("L", CoilKind::Set),
+    ("R", CoilKind::Reset),
+    ("U", CoilKind::Reset),
+    ("P", CoilKind::Rising),
+    ("N", CoilKind::Falling),
+    ("T", CoilKind::Toggle),
+    ("↑", CoilKind::Rising),
+    ("↓", CoilKind::Falling),
+    // Output energise, latch, unlatch: the words of Allen-Bradley.
+    ("OTE", CoilKind::Plain),
+    ("OTL", CoilKind::Set),
+    ("OTU", CoilKind::Reset),
+];
+
+/// Mnemonics of the same meaning; alone they could be names.
+const COIL_MNEMONICS: [(&str, CoilKind); 5] = [
+    ("OUT", CoilKind::Plain),
+    ("SET", CoilKind::Set),
+    ("RST", CoilKind::Reset),
+    ("PLS", CoilKind::Rising),
+    ("PLF", CoilKind::Falling),
+];
+
+/// All words that may stand before the name in the parentheses of a coil, with the kind that each of them gives it.
+/// A coil without any is a plain one.
+pub fn coil_words() -> impl Iterator<Item = (&'static str, CoilKind)> {
+    COIL_MARKS.into_iter().chain(COIL_MNEMONICS)
+}
+
 /// The kind that the first word in parentheses gives a coil; `alone` if nothing follows it.
 fn coil_kind(word: &Piece, alone: bool) -> Option<CoilKind> {
-    const MARKS: [(&str, CoilKind); 13] = [
-        ("/", CoilKind::Negated),
-        ("S", CoilKind::Set),
-        ("L", CoilKind::Set),
-        ("R", CoilKind::Reset),
-        ("U", CoilKind::Reset),
-        ("P", CoilKind::Rising),
-        ("N", CoilKind::Falling),
-        ("T", CoilKind::Toggle),
-        ("↑", CoilKind::Rising),
-        ("↓", CoilKind::Falling),
-        // Output energise, latch, unlatch: the words of Allen-Bradley.
-        ("OTE", CoilKind::Plain),
-        ("OTL", CoilKind::Set),
-        ("OTU", CoilKind::Reset),
-    ];
-    // Mnemonics of the same meaning; alone they could be names.
-    const MNEMONICS: [(&str, CoilKind); 5] = [
-        ("OUT", CoilKind::Plain),
-        ("SET", CoilKind::Set),
-        ("RST", CoilKind::Reset),
-        ("PLS", CoilKind::Rising),
-        ("PLF", CoilKind::Falling),
-    ];
-    let mnemonics = if alone { &[][..] } else { &MNEMONICS[..] };
-    MARKS
-        .iter()
-        .chain(mnemonics)
-        .find(|(name, _)| name.eq_ignore_ascii_case(word.text))
-        .map(|(_, kind)| *kind)
+    let known = if alone { COIL_MARKS.len() } else { usize::MAX };
+    let mut words = coil_words().take(known);
+    words.find(|(name, _)| name.eq_ignore_ascii_case(word.text)).map(|(_, kind)| kind)
 }
 
 fn read_operand(piece: &Piece, target: &Target) -> Spanned<Operand> {

@@ -175,6 +175,10 @@ impl ElementKind {
 }
 
 impl ContactKind {
+    /// All of them, the commonest first.
+    pub const ALL: [ContactKind; 4] =
+        [ContactKind::NormallyOpen, ContactKind::NormallyClosed, ContactKind::Rising, ContactKind::Falling];
+
     /// The character that tells it in a drawing; a blank for a normally open one.
     pub fn mark(self) -> char {
         match self {

@@ -5,6 +5,7 @@
 //! off by a column or two are straightened where they have one reading. What was redrawn is read again, and taken
 //! only if the logic is the same.
 
+use super::lines::ended_lines;
 use super::ragged::TWO_READINGS;
 use super::reduce::{NotSeriesParallel, reduce};
 use super::{
@@ -375,7 +376,7 @@ pub(super) struct Lines<'t> {
 
 impl<'t> Lines<'t> {
     pub(super) fn of(chunk: &'t str) -> Lines<'t> {
-        let lines: Vec<&str> = chunk.split_inclusive('\n').collect();
+        let lines: Vec<&str> = ended_lines(chunk).collect();
         let mut starts = vec![0];
         let mut offset = 0;
         for line in &lines {
@@ -423,9 +424,10 @@ impl<'t> Lines<'t> {
         let line_end = match before.first() {
             Some(line) if line.ends_with("\r\n") => "\r\n",
             Some(line) if line.ends_with('\n') => "\n",
+            Some(line) if line.ends_with('\r') => "\r",
             _ => page.line_end,
         };
-        let ended = before.last().is_some_and(|line| line.ends_with('\n'));
+        let ended = before.last().is_some_and(|line| line.ends_with(['\n', '\r']));
         let margin = page.margin as usize;
         // As it was written: leading zeros are kept.
         let mut number = rung.number.map(|number| number.span.of(self.text));

@@ -53,6 +53,24 @@ impl<'t> Lines<'t> {
     }
 }
 
+/// The lines of a text with their ends, as [`Lines`] has them.
+pub(super) fn ended_lines(text: &str) -> impl Iterator<Item = &str> {
+    let mut rest = text;
+    std::iter::from_fn(move || {
+        let (line, behind) = rest.split_at(end_of_line(rest.as_bytes(), 0).1);
+        rest = behind;
+        (!line.is_empty()).then_some(line)
+    })
+}
+
+/// One past the last byte of the line that begins at `start`, and where the next one begins: behind a line feed, a
+/// carriage return, or both.
+fn end_of_line(bytes: &[u8], start: usize) -> (usize, usize) {
+    let end = memchr2(b'\n', b'\r', &bytes[start..]).map_or(bytes.len(), |length| start + length);
+    let ending = if bytes[end..].starts_with(b"\r\n") { 2 } else { usize::from(end < bytes.len()) };
+    (end, end + ending)
+}
+
 impl Iterator for Lines<'_> {
     type Item = Line;
 
@@ -62,14 +80,9 @@ impl Iterator for Lines<'_> {
         if start >= bytes.len() {
             return None;
         }
-        let end = memchr2(b'\n', b'\r', &bytes[start..]).map_or(bytes.len(), |length| start + length);
-        // A comment or pragma can only begin with one of these; most lines have none. All bytes are looked at, since
-        // a loop without a way out looks at many at a time.
-        let begins = |byte: &u8| matches!(byte, b'/' | b'{' | b';' | b'*');
-        let suspicious =
-            self.open.is_some() | bytes[start..end].iter().fold(false, |any, byte| any | begins(byte));
-        let ending = if bytes[end..].starts_with(b"\r\n") { 2 } else { usize::from(end < bytes.len()) };
-        self.offset = end + ending;
+        let (end, next) = end_of_line(bytes, start);
+        let suspicious = self.open.is_some() || may_begin_comment(&bytes[start..end]);
+        self.offset = next;
         let continues = self.open.is_some();
         let railed = suspicious && !continues;
         let railed = railed.then(|| railed_comment(self.text.get(start..end)?, start)).flatten();
@@ -125,6 +138,13 @@ impl Lines<'_> {
             }
         }
     }
+}
+
+/// Whether a comment or a pragma may begin in `bytes`: one can only begin with one of four characters, and most lines
+/// have none of them. All bytes are looked at, since a loop without a way out looks at many at a time.
+pub(super) fn may_begin_comment(bytes: &[u8]) -> bool {
+    let begins = |byte: &u8| matches!(byte, b'/' | b'{' | b';' | b'*');
+    bytes.iter().fold(false, |any, byte| any | begins(byte))
 }
 
 /// The comment of a line such as ` 3 ||  ; text    ||`, which an LDmicro export draws between its double rails.

@@ -32,6 +32,7 @@ pub use ldmicro::{BoxKind, Import, ImportError, NameKind, Note, TableRow, import
 mod scan;
 
 mod content;
+pub use content::coil_words;
 
 mod uprights;
 

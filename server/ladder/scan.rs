@@ -394,7 +394,47 @@ impl Scanner<'_> {
     /// Whether a vertical wire goes up or down from this cell.
     fn linked(&self, row: usize, column: usize) -> bool {
         let above = row > 0 && self.grid.arms(row - 1, column).down() && !self.in_contact(row - 1, column);
-        above || (self.grid.arms(row + 1, column).up() && !self.in_contact(row + 1, column))
+        let below = || {
+            self.grid.arms(row + 1, column).up()
+                && !self.in_contact(row + 1, column)
+                && !self.tops_rail(row + 1, column)
+        };
+        above || below()
+    }
+
+    /// Whether the bars from a cell down are the right rail of narrower rungs, which only touches what is above it:
+    /// their rows end there, and whatever wire reaches it comes from an output.
+    fn tops_rail(&self, row: usize, column: usize) -> bool {
+        let mut is_reached = false;
+        for row in row..self.grid.height() {
+            if !self.grid.arms(row, column).up() {
+                break;
+            }
+            let is_last = self.grid.find(row, column + 1, |character| character != ' ').is_none();
+            if !is_last || !self.grid.arms(row, self.left).is_upright() {
+                return false;
+            }
+            if self.leads(row, column - 1) {
+                if !self.ends_in_output(row, column) {
+                    return false;
+                }
+                is_reached = true;
+            }
+        }
+        is_reached
+    }
+
+    /// Whether the last thing in a row before a column, wires aside, is a coil or an instruction with operands.
+    fn ends_in_output(&self, row: usize, column: usize) -> bool {
+        let drawn = self.grid.span(row, 0, column).of(self.text);
+        let drawn = drawn.trim_end_matches(|character| Arms::of(character).is_horizontal());
+        match drawn.strip_suffix(']') {
+            Some(inside) => {
+                let inside = inside.rsplit(['[', ']']).next().unwrap_or("");
+                inside.split_whitespace().count() > 1 && !inside.contains(is_operator)
+            }
+            None => drawn.ends_with(')'),
+        }
     }
 
     fn linked_raw(&self, row: usize, column: usize) -> bool {

@@ -3,7 +3,7 @@
 use super::projects::Around;
 use super::settings::Settings;
 use super::to_proto::Place;
-use super::workspace::{Open, SNAPSHOT, Snapshot};
+use super::workspace::{Open, SNAPSHOT, Snapshot, is_manifest};
 use crate::text::Message;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -20,17 +20,17 @@ pub(super) fn settings() -> Arc<Settings> {
     SNAPSHOT.with(|snapshot| snapshot.settings.clone())
 }
 
-/// The answer about an open document; nothing for one that is not open.
+/// The answer about an open program; nothing for what is not open or is none.
 pub(super) fn with_open<T>(uri: &Uri, answer: impl FnOnce(&Open, Place<'_>) -> Option<T>) -> Option<T> {
     let snapshot = snapshot();
-    let open = snapshot.open(uri)?;
+    let open = snapshot.program(uri)?;
     answer(open, Place::new(&open.document, snapshot.manner))
 }
 
 /// The same with the files of its project.
 pub(super) fn with_around<T>(uri: &Uri, answer: impl FnOnce(&Around, Place<'_>) -> Option<T>) -> Option<T> {
     let snapshot = snapshot();
-    let around = snapshot.around(snapshot.open(uri)?);
+    let around = snapshot.around(snapshot.program(uri)?);
     answer(&around, Place::new(&around.here().document, snapshot.manner))
 }
 
@@ -52,6 +52,7 @@ pub(super) async fn aside<T: Send + 'static>(
     beside(move |cancelled| {
         // What was named by an answer of before, such as a call in a file that is not open, is a file of a project.
         let around = match snapshot.open(&uri) {
+            Some(open) if is_manifest(&open.uri) => return None,
             Some(open) => snapshot.around(open),
             None => snapshot.around_closed(&uri)?,
         };

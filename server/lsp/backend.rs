@@ -3,6 +3,7 @@
 use super::across;
 use super::answering::{aside, beside, refused, settings, snapshot, whole, with_around, with_open};
 use super::editing;
+use super::manifest_help;
 use super::progress::Progress;
 use super::pulled::{self, PartialReport, PartialReportParams};
 use super::to_proto;
@@ -70,6 +71,9 @@ impl LanguageServer for Backend {
 
     async fn hover(&self, params: HoverParams) -> Result<Option<Hover>> {
         let at = params.text_document_position_params;
+        if let Some(manifest) = manifest_help::asked(&at) {
+            return Ok(manifest_help::hover(&manifest, at.position));
+        }
         Ok(with_around(&at.text_document.uri, |around, place| {
             let link =
                 |file, line| features::link(around, file, line).filter(|_| place.abilities.markdown_hover);
@@ -80,6 +84,11 @@ impl LanguageServer for Backend {
 
     async fn completion(&self, params: CompletionParams) -> Result<Option<CompletionResponse>> {
         let at = params.text_document_position;
+        if let Some(manifest) = manifest_help::asked(&at) {
+            return manifest_help::completion(manifest, at.position).await;
+        } else if manifest_help::is_for_manifests(params.context.as_ref()) {
+            return Ok(None);
+        }
         Ok(with_around(&at.text_document.uri, |around, place| {
             let offset = place.offset(at.position);
             let proposals = ide::completions_in(&around.view(), offset, place.language);

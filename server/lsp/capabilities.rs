@@ -2,7 +2,7 @@
 
 use super::abilities::{Abilities, Requests};
 use super::features::USAGE_SCHEME;
-use super::{editing, to_proto};
+use super::{editing, manifest_help, to_proto};
 use crate::text::Encoding;
 use serde_json::json;
 use tower_lsp::ls_types::*;
@@ -85,7 +85,9 @@ pub(super) fn offered(
         })),
         hover_provider: Some(HoverProviderCapability::Simple(true)),
         completion_provider: Some(CompletionOptions {
-            trigger_characters: Some([".", "%", "[", "("].map(str::to_string).to_vec()),
+            trigger_characters: Some(
+                [".", "%", "[", "(", manifest_help::TRIGGER].map(str::to_string).to_vec(),
+            ),
             ..CompletionOptions::default()
         }),
         definition_provider: Some(OneOf::Left(true)),

@@ -111,6 +111,7 @@ pub(super) fn lenses(open: &Open, place: Place<'_>, wanted: LensSettings) -> Vec
         let kind = match lens.kind {
             LensKind::Steps => "steps".to_string(),
             LensKind::NextFree => "next-free".to_string(),
+            LensKind::More => "more".to_string(),
             LensKind::References(device) => device.to_string(),
         };
         let data = LensData { uri: open.uri.to_string(), offset: lens.span.start as usize, kind };
@@ -127,6 +128,7 @@ pub(super) fn resolved(snapshot: &Snapshot, mut lens: CodeLens) -> CodeLens {
         let kind = match data.kind.as_str() {
             "steps" => LensKind::Steps,
             "next-free" => LensKind::NextFree,
+            "more" => LensKind::More,
             name => LensKind::References(device_named(&around.here().document, name)?),
         };
         ide::lens_title(&around.view(), data.offset, &kind, snapshot.manner.language)

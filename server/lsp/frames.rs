@@ -9,8 +9,14 @@ use serde::{Deserialize, Deserializer};
 use std::fmt;
 use tokio::io::{AsyncBufReadExt, AsyncRead, AsyncReadExt, AsyncWriteExt, BufReader, DuplexStream};
 
-/// Bytes under way between here and the library.
-const PIPE_BYTES: usize = 1 << 16;
+/// Bytes that are read at once.
+const READ_BYTES: usize = 1 << 16;
+
+/// Bytes under way between here and the library: a long text should not take hundreds of steps.
+const PIPE_BYTES: usize = 1 << 18;
+
+/// So much room is made for a message before its bytes have come; a header may promise anything.
+const MOST_ROOM: usize = 16 << 20;
 
 /// No honest message is longer; a length beyond it is a broken header.
 const MESSAGE_LIMIT: usize = 256 << 20;
@@ -110,9 +116,9 @@ pub(super) fn sound(
 ) -> DuplexStream {
     let (mut writer, reader) = tokio::io::duplex(PIPE_BYTES);
     tokio::spawn(async move {
-        let mut input = BufReader::with_capacity(PIPE_BYTES, input);
+        let mut input = BufReader::with_capacity(READ_BYTES, input);
         while let Some(length) = next_length(&mut input).await {
-            let mut body = Vec::new();
+            let mut body = Vec::with_capacity(length.min(MOST_ROOM));
             let read = (&mut input).take(length as u64).read_to_end(&mut body).await;
             if read.is_err() || body.len() < length {
                 return;
@@ -122,7 +128,10 @@ pub(super) fn sound(
                 continue;
             }
             for body in translate(body) {
-                if writer.write_all(&framed(&body)).await.is_err() {
+                let header = header_of(&body);
+                if writer.write_all(header.as_bytes()).await.is_err()
+                    || writer.write_all(&body).await.is_err()
+                {
                     return;
                 }
             }
@@ -152,7 +161,11 @@ async fn next_length(input: &mut (impl AsyncBufReadExt + Unpin)) -> Option<usize
 
 /// A body behind its header.
 pub(super) fn framed(body: &[u8]) -> Vec<u8> {
-    [format!("Content-Length: {}\r\n\r\n", body.len()).as_bytes(), body].concat()
+    [header_of(body).as_bytes(), body].concat()
+}
+
+fn header_of(body: &[u8]) -> String {
+    format!("Content-Length: {}\r\n\r\n", body.len())
 }
 
 /// Start and end of the body of the first frame in `bytes`, if it is there as a whole.

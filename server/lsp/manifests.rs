@@ -1,9 +1,13 @@
 //! Tells the user what is wrong with the manifests of open documents: a message, and a diagnostic in the manifest.
 
-use super::to_proto::Manner;
-use crate::project::{MANIFEST_NAME, Project};
+use super::projects::canonical;
+use super::to_proto::{Manner, Place};
+use super::workspace::Open;
+use crate::project::{MANIFEST_NAME, Manifest, Project};
 use crate::text::{LineColumn, Message};
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::path::Path;
+use std::sync::Arc;
 use tokio::sync::mpsc::{UnboundedSender, unbounded_channel};
 use tower_lsp::Client;
 use tower_lsp::ls_types::{Diagnostic, DiagnosticSeverity, MessageType, Position, Range, Uri};
@@ -12,11 +16,21 @@ use tower_lsp::ls_types::{Diagnostic, DiagnosticSeverity, MessageType, Position,
 #[derive(Default)]
 pub(super) struct Manifests {
     told: FxHashMap<Uri, (Range, String)>,
+    /// Those that the editor has open: their text wins over the disk, and whoever types needs no message on top.
+    open: FxHashMap<Uri, Typed>,
     sender: Option<UnboundedSender<Notice>>,
+}
+
+/// A manifest that the editor has open.
+struct Typed {
+    path: Option<Arc<Path>>,
+    /// Whether a mistake is shown in it.
+    is_told: bool,
 }
 
 struct Notice {
     manifest: Uri,
+    version: Option<i32>,
     diagnostics: Vec<Diagnostic>,
     message: Option<String>,
 }
@@ -25,7 +39,9 @@ impl Manifests {
     /// Tells the mistake of `project` unless it was told before, or takes it back; returns its manifest.
     pub(super) fn note(&mut self, client: &Client, project: &Project, manner: Manner) -> Option<Uri> {
         let manifest = Uri::from_file_path(project.root.join(MANIFEST_NAME))?;
-        let Some(error) = &project.error else {
+        let path = canonical(&project.root.join(MANIFEST_NAME));
+        let is_open = self.open.values().any(|typed| typed.path.as_ref() == Some(&path));
+        let Some(error) = project.error.as_ref().filter(|_| !is_open) else {
             self.take_back(client, &manifest);
             return Some(manifest);
         };
@@ -39,15 +55,9 @@ impl Manifests {
         if self.told.get(&manifest) != Some(&mistake) {
             let message =
                 Message::new("project.manifest").with("line", range.start.line + 1).with("reason", &reason);
-            let diagnostic = Diagnostic {
-                range,
-                severity: Some(DiagnosticSeverity::ERROR),
-                source: Some("rungwise".to_string()),
-                message: reason,
-                ..Diagnostic::default()
-            };
+            let diagnostics = vec![diagnostic(range, reason)];
             let message = Some(message.render(manner.language));
-            self.send(client, Notice { manifest: manifest.clone(), diagnostics: vec![diagnostic], message });
+            self.send(client, Notice { manifest: manifest.clone(), version: None, diagnostics, message });
             self.told.insert(manifest.clone(), mistake);
         }
         Some(manifest)
@@ -61,8 +71,40 @@ impl Manifests {
 
     fn take_back(&mut self, client: &Client, manifest: &Uri) {
         if self.told.remove(manifest).is_some() {
-            let notice = Notice { manifest: manifest.clone(), diagnostics: Vec::new(), message: None };
-            self.send(client, notice);
+            self.send(client, Notice::nothing(manifest));
+        }
+    }
+
+    /// The editor has a manifest: the disk has no say in it any more.
+    pub(super) fn open(&mut self, client: &Client, manifest: &Uri, path: Option<&Arc<Path>>) {
+        self.take_back(client, manifest);
+        // One that is opened a second time was closed in the client's eyes; what is shown in it stays until it is read.
+        let is_told = self.open.get(manifest).is_some_and(|typed| typed.is_told);
+        self.open.insert(manifest.clone(), Typed { path: path.cloned(), is_told });
+    }
+
+    /// Tells the mistake in the text of an open manifest, or that there is none any more.
+    pub(super) fn judge(&mut self, client: &Client, open: &Open, manner: Manner) {
+        let Some(typed) = self.open.get_mut(&open.uri) else { return };
+        let error = Manifest::read(&open.document.text()).err();
+        let was_told = std::mem::replace(&mut typed.is_told, error.is_some());
+        if !was_told && error.is_none() {
+            return;
+        }
+        let place = Place::new(&open.document, manner);
+        let found =
+            error.map(|error| diagnostic(place.range(error.span), error.message.render(manner.language)));
+        let (manifest, version) = (open.uri.clone(), Some(open.version));
+        self.send(
+            client,
+            Notice { manifest, version, diagnostics: found.into_iter().collect(), message: None },
+        );
+    }
+
+    /// The editor has a manifest no longer.
+    pub(super) fn close(&mut self, client: &Client, manifest: &Uri) {
+        if self.open.remove(manifest).is_some_and(|typed| typed.is_told) {
+            self.send(client, Notice::nothing(manifest));
         }
     }
 
@@ -73,7 +115,7 @@ impl Manifests {
             let client = client.clone();
             tokio::spawn(async move {
                 while let Some(notice) = receiver.recv().await {
-                    client.publish_diagnostics(notice.manifest, notice.diagnostics, None).await;
+                    client.publish_diagnostics(notice.manifest, notice.diagnostics, notice.version).await;
                     if let Some(message) = notice.message {
                         client.show_message(MessageType::ERROR, message).await;
                     }
@@ -83,5 +125,21 @@ impl Manifests {
         });
         // The task lives as long as this sender.
         let _ = sender.send(notice);
+    }
+}
+
+impl Notice {
+    fn nothing(manifest: &Uri) -> Notice {
+        Notice { manifest: manifest.clone(), version: None, diagnostics: Vec::new(), message: None }
+    }
+}
+
+fn diagnostic(range: Range, message: String) -> Diagnostic {
+    Diagnostic {
+        range,
+        severity: Some(DiagnosticSeverity::ERROR),
+        source: Some("rungwise".to_string()),
+        message,
+        ..Diagnostic::default()
     }
 }

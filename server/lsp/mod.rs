@@ -16,6 +16,7 @@ mod folders;
 mod frames;
 mod keeper;
 mod linking;
+mod manifest_help;
 mod manifests;
 mod outlet;
 mod progress;

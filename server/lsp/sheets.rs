@@ -4,7 +4,7 @@ use super::projects::{Around, Loaded, canonical, file_path};
 use super::to_proto;
 use super::workspace::{Open, Snapshot, Workspace, edit_of, spliced};
 use crate::document::{Document, Notation};
-use crate::project::{CommentsFile, Manifest, Project};
+use crate::project::{CommentsFile, Manifest, Project, is_table_file};
 use crate::target::{Model, Target};
 use rustc_hash::FxHashMap;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ pub(super) struct Sheet {
 impl Workspace {
     /// Takes a document that is a table; gives back any other.
     pub(super) fn open_sheet(&self, item: TextDocumentItem) -> Option<TextDocumentItem> {
-        let path = file_path(&item.uri).filter(|path| is_table(path));
+        let path = file_path(&item.uri).filter(|path| is_table_file(path));
         let Some(path) = path else { return Some(item) };
         let document = unread(&item.text);
         self.put_sheet(&path, Some(Sheet { uri: item.uri, version: item.version, document }));
@@ -83,11 +83,6 @@ impl Workspace {
             keeper.read(canonical(&project.root), project.root);
         }
     }
-}
-
-/// Whether a document is a table by its name.
-fn is_table(path: &Path) -> bool {
-    path.extension().is_some_and(|end| ["csv", "tsv"].iter().any(|name| end.eq_ignore_ascii_case(name)))
 }
 
 fn unread(text: &str) -> Document {

@@ -173,7 +173,11 @@ fn without_places(snippet: &str) -> String {
             '$' => {
                 let named = characters.next_if_eq(&'{').is_some();
                 while characters.next_if(char::is_ascii_digit).is_some() {}
-                if named {
+                if named && characters.next_if_eq(&'|').is_some() {
+                    // Of words to choose from the first one stands for all.
+                    let choices: String = characters.by_ref().take_while(|other| *other != '}').collect();
+                    text.push_str(choices.split([',', '|']).next().unwrap_or(""));
+                } else if named {
                     depth += 1;
                     characters.next_if_eq(&':');
                 }

@@ -107,6 +107,11 @@ impl Snapshot {
         self.documents.get(uri)
     }
 
+    /// The open document, if it is a program.
+    pub(super) fn program(&self, uri: &Uri) -> Option<&Arc<Open>> {
+        self.open(uri).filter(|open| !is_manifest(&open.uri))
+    }
+
     /// The open document of the file at a canonical path.
     pub(super) fn open_at(&self, path: &Arc<Path>) -> Option<&Arc<Open>> {
         self.documents.get(self.paths.get(path)?)
@@ -231,8 +236,11 @@ impl Workspace {
         }
         // Before the text is read, which may take a while: what was published is not to be cleared.
         let before = state.closing.remove(&uri).map(Closing::superseded);
-        let Belonging { manifest, project, .. } = self.belonging(&mut state, &uri);
         let path = file_path(&uri).map(|path| canonical(&path));
+        if is_manifest(&uri) {
+            state.manifests.open(&self.client, &uri, path.as_ref());
+        }
+        let Belonging { manifest, project, .. } = self.belonging(&mut state, &uri);
         let manifest = Arc::new(manifest);
         let is_ladder = language_id == "ladder";
         let (notation, target) = decided(&uri, &text, &manifest, &state.snapshot.settings, is_ladder);
@@ -306,6 +314,13 @@ impl Workspace {
         let closed = Arc::make_mut(&mut state.snapshot.documents).remove(&uri);
         let Some(closed) = closed else { return };
         state.forget_path(&closed);
+        if is_manifest(&uri) {
+            state.manifests.close(&self.client, &uri);
+            drop(state);
+            // From now on the disk has the say.
+            self.reread_projects();
+            return;
+        }
         if let Some(publisher) = state.publishers.remove(&uri) {
             state.closing.retain(|_, closing| !closing.is_done());
             let heir = state.heir(&closed);
@@ -322,6 +337,9 @@ impl Workspace {
             state.put(open);
         }
         drop(state);
+        if is_manifest(&params.text_document.uri) {
+            self.reread_projects();
+        }
         self.look_around(&params.text_document.uri);
     }
 
@@ -446,6 +464,11 @@ impl State {
         let is_awaited = open.project.as_ref().is_some_and(|project| self.awaited.contains(project));
         let open = Arc::new(open);
         Arc::make_mut(&mut self.snapshot.documents).insert(open.uri.clone(), open.clone());
+        if is_manifest(&open.uri)
+            && let Some(workspace) = self.this.upgrade()
+        {
+            self.manifests.judge(&workspace.client, &open, self.snapshot.manner);
+        }
         if let Some(publisher) = self.publishers.get(&open.uri).filter(|_| !is_awaited) {
             publisher.publish(open, self.snapshot.manner);
         }
@@ -498,7 +521,7 @@ fn read(text: &str, notation: Notation, target: &'static Target) -> Document {
 }
 
 /// Whether a document is a manifest: its text is kept for the links in it, and it is no program.
-fn is_manifest(uri: &Uri) -> bool {
+pub(super) fn is_manifest(uri: &Uri) -> bool {
     uri.path().as_str().rsplit('/').next() == Some(MANIFEST_NAME)
 }
 

@@ -77,7 +77,8 @@ impl Project {
         match &self.manifest.files {
             Some(names) => Ok(names.iter().map(|name| self.root.join(name)).collect()),
             None => {
-                let mut walk = Walk { files: Vec::new(), nested: false, left: usize::MAX };
+                let mut walk =
+                    Walk { files: Vec::new(), nested: false, left: usize::MAX, wanted: is_program_file };
                 walk.folder(&self.root, true)?;
                 Ok(walk.files)
             }
@@ -89,7 +90,7 @@ impl Project {
         if self.manifest.files.is_some() {
             return self.files().unwrap_or_default();
         }
-        let mut walk = Walk { files: Vec::new(), nested: false, left: MOST_ENTRIES };
+        let mut walk = Walk { files: Vec::new(), nested: false, left: MOST_ENTRIES, wanted: is_program_file };
         // A folder that cannot be read ends the walk there; what was found before it stays.
         let _ = walk.folder(&self.root, true);
         walk.files
@@ -111,9 +112,24 @@ pub fn is_program_file(path: &Path) -> bool {
     path.extension().is_some_and(|end| end.eq_ignore_ascii_case("lad") || end.eq_ignore_ascii_case("il"))
 }
 
+/// Whether the name ends in `.csv` or `.tsv`: it may be a table of device comments.
+pub fn is_table_file(path: &Path) -> bool {
+    path.extension().is_some_and(|end| ["csv", "tsv"].iter().any(|name| end.eq_ignore_ascii_case(name)))
+}
+
+/// The files of which `wanted` says so in the project of `folder`, from there, with `/`, by name. What cannot be read
+/// is left out, and a search that has no end is ended.
+pub fn names_in(folder: &Path, wanted: fn(&Path) -> bool) -> Vec<String> {
+    let mut walk = Walk { files: Vec::new(), nested: false, left: MOST_ENTRIES, wanted };
+    // What was found before a folder that cannot be read stays.
+    let _ = walk.folder(folder, true);
+    let names = walk.files.iter().filter_map(|path| path.strip_prefix(folder).ok()?.to_str());
+    names.map(|name| name.replace('\\', "/")).collect()
+}
+
 /// The program files below `folder`, by name; what is hidden, and links to folders, are passed over.
 pub fn program_files(folder: &Path) -> io::Result<Vec<PathBuf>> {
-    let mut walk = Walk { files: Vec::new(), nested: true, left: usize::MAX };
+    let mut walk = Walk { files: Vec::new(), nested: true, left: usize::MAX, wanted: is_program_file };
     walk.folder(folder, true)?;
     Ok(walk.files)
 }
@@ -145,6 +161,8 @@ struct Walk {
     nested: bool,
     /// How many entries may still be looked at.
     left: usize,
+    /// Which files are taken.
+    wanted: fn(&Path) -> bool,
 }
 
 impl Walk {
@@ -161,7 +179,7 @@ impl Walk {
             let path = entry.path();
             if entry.file_type()?.is_dir() {
                 self.folder(&path, false)?;
-            } else if is_program_file(&path) && !path.is_dir() {
+            } else if (self.wanted)(&path) && !path.is_dir() {
                 self.files.push(path);
             }
         }

@@ -13,6 +13,17 @@ pub enum Severity {
     Hint,
 }
 
+impl Severity {
+    /// The word for it in `rungwise.toml` and in results for programs.
+    pub fn word(self) -> &'static str {
+        match self {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+            Severity::Hint => "hint",
+        }
+    }
+}
+
 /// A finding at a place, plain data.
 ///
 /// Parsers and rules make it with offsets into the chunk they saw; the document shifts it to its place.

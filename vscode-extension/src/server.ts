@@ -34,6 +34,8 @@ const DOCUMENTS = [
   // For the programs in its fences.
   { scheme: 'file', language: 'markdown' },
   { scheme: 'untitled', language: 'markdown' },
+  // Its language is that of whatever extension for TOML there is.
+  { scheme: 'file', pattern: '**/rungwise.toml' },
 ];
 
 export class ServerController implements vscode.Disposable {

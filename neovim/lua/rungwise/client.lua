@@ -95,9 +95,11 @@ local function resolved()
   return vim.deepcopy(configured or M.config())
 end
 
---- Whether a buffer is a program, or Markdown with one in a fence.
+--- Whether a buffer is a program, a manifest, or Markdown with a program in a fence.
 function M.serves(buffer)
-  if vim.bo[buffer].filetype ~= 'markdown' then
+  if vim.bo[buffer].filetype == 'toml' then
+    return vim.fs.basename(vim.api.nvim_buf_get_name(buffer)) == 'rungwise.toml'
+  elseif vim.bo[buffer].filetype ~= 'markdown' then
     return vim.list_contains(M.filetypes, vim.bo[buffer].filetype)
   end
   for _, line in ipairs(vim.api.nvim_buf_get_lines(buffer, 0, -1, false)) do
@@ -136,9 +138,11 @@ function M.enable()
   -- Neovim 0.10 has no vim.lsp.enable.
   vim.api.nvim_create_autocmd('FileType', {
     group = vim.api.nvim_create_augroup('rungwise', { clear = true }),
-    pattern = M.filetypes,
+    pattern = vim.list_extend({ 'toml' }, M.filetypes),
     callback = function(event)
-      M.start(event.buf)
+      if M.serves(event.buf) then
+        M.start(event.buf)
+      end
     end,
   })
   return true

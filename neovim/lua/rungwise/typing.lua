@@ -4,9 +4,9 @@
 --- one comes first, so in drawings it is asked for here.
 local client = require('rungwise.client')
 local answered = require('rungwise.typed').answered
+local enter = require('rungwise.enter')
 local M = {}
 
-local TRIGGERS = 'textDocument/onTypeFormatting'
 --- A change of more lines is another program, not an edit of a drawing.
 local MOST_LINES = 400
 
@@ -28,6 +28,7 @@ function M.quietly(buffer, change)
   if state then
     state.quiet = false
     forget(state)
+    state.lines = vim.api.nvim_buf_line_count(buffer)
     state.seq = vim.api.nvim_buf_call(buffer, vim.fn.undotree).seq_last
   end
   if not ok then
@@ -51,19 +52,6 @@ local function apply(buffer, tick, edits, encoding)
       vim.lsp.util.apply_text_edits(edits, buffer, encoding)
     end)
   end)
-end
-
---- Asks for on-type formatting of Enter.
-local function format_enter(running, buffer)
-  local params = vim.lsp.util.make_formatting_params()
-  params.position = vim.lsp.util.make_position_params(0, running.offset_encoding).position
-  params.ch = '\n'
-  local tick = vim.api.nvim_buf_get_changedtick(buffer)
-  client.request(running, TRIGGERS, params, function(err, edits)
-    if not err then
-      apply(buffer, tick, edits, running.offset_encoding)
-    end
-  end, buffer)
 end
 
 --- Makes a line another one. Only what differs is replaced, for marks in the rest, as of a snippet, have to stay.
@@ -201,9 +189,11 @@ local function changed_in_insert(running, buffer, state)
     if format_typed(running, buffer, squeezed_in(typed, -missing), place) then
       return
     end
-  elseif not typed and added == 1 and last == first + 1 then
-    format_enter(running, buffer)
-    return
+  elseif added == 1 and last == first + 1 then
+    -- A line end that came otherwise, as by a paste, is answered as well.
+    if enter.answer(running, buffer, place, typed, M.quietly) or not typed then
+      return
+    end
   end
   if added <= 0 or last - first <= MOST_LINES then
     mend(running, buffer, first, last, place)

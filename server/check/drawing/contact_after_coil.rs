@@ -7,6 +7,9 @@
 //! that was added on the wrong side of the coil, where it locks nothing. For IEC 61131-3, whose coils pass their
 //! power on, the drawing is allowed, and the finding is a hint.
 //!
+//! A narrower rung directly below a wider one can look so, when its right rail meets a corner of the other: a blank
+//! line between makes it a rung of its own.
+//!
 //! ```lad
 //! |   X0        Y0        X1                     |
 //! +---| |-------( )-------| |--------------------+
@@ -51,7 +54,21 @@ pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
                 let message = Message::new("contact-after-coil.also").with("contact", drawn.name(other));
                 diagnostic = diagnostic.related(other.span, message);
             }
+            part(drawn, first, output, &mut diagnostic);
             found.push(diagnostic);
+        }
+    }
+}
+
+/// Rungs that stand directly below a wider one can meet a corner of it with their right rail. Where a blank line
+/// between makes rungs of them, that is what was meant most likely.
+fn part(drawn: &Drawn<'_>, contact: &Element, output: &Element, diagnostic: &mut Diagnostic) {
+    let starts = drawn.text.match_indices('\n').map(|(end, _)| end + 1);
+    let starts = starts.skip(contact.row as usize).take(output.row.saturating_sub(contact.row) as usize);
+    for at in starts {
+        let title = Message::new("contact-after-coil.part").with("output", drawn.name(output));
+        if drawn.try_parting(diagnostic, title, at) {
+            return;
         }
     }
 }

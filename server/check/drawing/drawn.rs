@@ -105,6 +105,35 @@ impl<'a> Drawn<'a> {
         after < before
     }
 
+    /// Adds a blank line before the line that starts at `at` as a fix, if without any mistake the drawing then is more
+    /// rungs of the same elements.
+    pub(super) fn try_parting(&self, found: &mut Diagnostic, title: Message, at: usize) -> bool {
+        let Some((head, tail)) = self.text.split_at_checked(at) else { return false };
+        let Some(trials) = self.trials.get().checked_sub(1) else { return false };
+        self.trials.set(trials);
+        let size = |tree: &LadderTree| {
+            let elements: usize = tree.rungs.iter().map(|rung| rung.graph.elements.len()).sum();
+            (tree.rungs.len(), elements)
+        };
+        let parts = [head, tail].map(|text| (text, parse_with(text, self.target, self.tree.names)));
+        let (mut rungs, mut elements) = (0, 0);
+        for (text, tree) in &parts {
+            if self.untried(text, tree).count() > 0 {
+                return false;
+            }
+            let (more, larger) = size(tree);
+            (rungs, elements) = (rungs + more, elements + larger);
+        }
+        let (before, same) = size(self.tree);
+        let is_better = rungs > before && elements == same;
+        if is_better {
+            let line_end = if head.ends_with("\r\n") { "\r\n" } else { "\n" };
+            let edits = vec![TextEdit::new(Span::at(at), line_end)];
+            found.fixes.push(crate::text::Fix { title, edits });
+        }
+        is_better
+    }
+
     /// Whether fixes can be tried at all.
     pub(super) fn can_try(&self) -> bool {
         self.trials.get() > 0

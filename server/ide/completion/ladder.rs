@@ -2,6 +2,7 @@
 
 use super::{Place, Proposal, iec, instructions, operands};
 use crate::ide::CompletionKind;
+use crate::ladder::{CoilKind, ContactKind, coil_words};
 use crate::target::{Accepts, Access, Form, Operand};
 use crate::text::{Message, Span};
 
@@ -57,15 +58,14 @@ fn inside(place: &mut Place<'_>, bracket: char, content: &str) {
         (_, None) => names(place, typed, COIL, Access::Write),
         (_, Some(word)) => {
             let device = place.document.reader().read(word);
-            let is_letter =
-                matches!(word, "S" | "R" | "P" | "N" | "L" | "U" | "/" | "SET" | "RST" | "PLS" | "PLF");
+            let is_word = coil_words().any(|(name, _)| name.eq_ignore_ascii_case(word));
             match device.device().map(|device| device.kind) {
                 Some(kind) if kind.has_preset() && given.is_empty() => {
                     if let Some(form) = Form::named("OUT") {
                         operands::propose(place, typed, form, &[device]);
                     }
                 }
-                _ if is_letter && given.is_empty() => names(place, typed, COIL, Access::Write),
+                _ if is_word && given.is_empty() => names(place, typed, COIL, Access::Write),
                 _ => {}
             }
         }
@@ -90,20 +90,14 @@ fn names(place: &mut Place<'_>, typed: &str, accepts: Accepts, access: Access) {
 /// Elements to stand on the wire; each takes the place of as much wire behind the cursor as it is long.
 fn elements(place: &mut Place<'_>, typed: &str) {
     let language = place.language;
-    let symbols = [
-        ("| |", Message::new("complete.contact-normally-open")),
-        ("|/|", Message::new("complete.contact-normally-closed")),
-        ("|P|", Message::new("complete.contact-rising")),
-        ("|N|", Message::new("complete.contact-falling")),
-        ("( )", Message::new("complete.coil")),
-        ("(S)", Message::new("complete.coil-set")),
-        ("(R)", Message::new("complete.coil-reset")),
-    ];
+    let contacts =
+        ContactKind::ALL.into_iter().map(|kind| (format!("|{}|", kind.mark()), contact_title(kind)));
+    let coils = coil_kinds().into_iter().map(|kind| (format!("({})", kind.mark()), coil_title(kind)));
     let behind = place.line.get(place.head.len()..).unwrap_or("");
     let wire = behind.chars().take_while(|c| *c == '-').count();
-    for (rank, (symbol, detail)) in symbols.into_iter().enumerate() {
+    for (rank, (symbol, detail)) in contacts.chain(coils).enumerate() {
         let detail = detail.render(language);
-        place.propose(typed, Proposal::new(symbol, CompletionKind::Snippet, detail, rank as u16));
+        place.propose(typed, Proposal::new(&symbol, CompletionKind::Snippet, detail, rank as u16));
         if let Some(last) = place.found.last_mut().filter(|last| last.label == symbol) {
             last.edit.span = Span::new(place.offset - typed.len(), place.offset + wire.min(symbol.len()));
         }
@@ -118,6 +112,38 @@ fn elements(place: &mut Place<'_>, typed: &str) {
             proposal.rank = proposal.rank.saturating_add(20);
         }
     }
+}
+
+/// All kinds of coils that are read, each once, the plain one first.
+fn coil_kinds() -> Vec<CoilKind> {
+    let mut kinds = vec![CoilKind::Plain];
+    for (_, kind) in coil_words() {
+        if !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
+    }
+    kinds
+}
+
+fn contact_title(kind: ContactKind) -> Message {
+    Message::new(match kind {
+        ContactKind::NormallyOpen => "complete.contact-normally-open",
+        ContactKind::NormallyClosed => "complete.contact-normally-closed",
+        ContactKind::Rising => "complete.contact-rising",
+        ContactKind::Falling => "complete.contact-falling",
+    })
+}
+
+fn coil_title(kind: CoilKind) -> Message {
+    Message::new(match kind {
+        CoilKind::Plain => "complete.coil",
+        CoilKind::Negated => "complete.coil-negated",
+        CoilKind::Set => "complete.coil-set",
+        CoilKind::Reset => "complete.coil-reset",
+        CoilKind::Rising => "complete.coil-rising",
+        CoilKind::Falling => "complete.coil-falling",
+        CoilKind::Toggle => "complete.coil-toggle",
+    })
 }
 
 /// Whole rungs, for an empty line.

@@ -1,7 +1,7 @@
 //! The names that a misspelt word may have meant.
 
 use super::{Function, FunctionBlock, Operator};
-use crate::target::instructions::distance;
+use crate::target::instructions::distance_within;
 use std::cmp::Reverse;
 
 /// What other dialects call the operators.
@@ -49,9 +49,9 @@ pub fn nearest<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Vec<Stri
         .filter(|name| name.len().abs_diff(word.len()) <= allowed && name.len() > 1)
         .filter_map(|name| {
             let upper = name.to_ascii_uppercase();
-            let distance = distance(word.as_bytes(), upper.as_bytes());
+            let distance = distance_within(word.as_bytes(), upper.as_bytes(), allowed)?;
             let alike = word.bytes().zip(upper.bytes()).take_while(|(left, right)| left == right).count();
-            (distance <= allowed && distance < word.len()).then_some((distance, Reverse(alike), name))
+            (distance < word.len()).then_some((distance, Reverse(alike), name))
         })
         .collect();
     near.sort();

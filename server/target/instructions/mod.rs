@@ -10,7 +10,7 @@ mod steps;
 pub(super) use steps::steps;
 
 mod suggest;
-pub(super) use suggest::distance;
+pub(super) use suggest::distance_within;
 pub use suggest::suggestions;
 
 mod contacts;

@@ -47,9 +47,9 @@ pub fn suggestions(word: &str, model: Model) -> Vec<String> {
         .filter_map(|(key, form)| {
             let letters = key.to_be_bytes();
             let name = &letters[key.leading_zeros() as usize / 8..];
-            let distance = distance(word.as_bytes(), name);
+            let distance = distance_within(word.as_bytes(), name, allowed)?;
             let alike = word.bytes().zip(name.iter()).take_while(|(left, right)| left == *right).count();
-            (distance <= allowed).then(|| (distance, Reverse(alike), form.mnemonic()))
+            Some((distance, Reverse(alike), form.mnemonic()))
         })
         .collect();
     near.sort();
@@ -64,13 +64,20 @@ pub fn suggestions(word: &str, model: Model) -> Vec<String> {
     found
 }
 
+/// No longer words are compared.
+const MOST_LETTERS: usize = 32;
+
 /// How many letters must be inserted, left out, replaced or swapped with their neighbour to get from one word to the
-/// other (optimal string alignment).
-pub(in crate::target) fn distance(left: &[u8], right: &[u8]) -> usize {
-    let mut before_last: Vec<usize> = Vec::new();
-    let mut last: Vec<usize> = (0..=right.len()).collect();
+/// other (optimal string alignment); `None` if these are more than `allowed`. A file full of unknown words asks this
+/// millions of times, so what is hopeless ends early and nothing is allocated.
+pub(in crate::target) fn distance_within(left: &[u8], right: &[u8], allowed: usize) -> Option<usize> {
+    if left.len().abs_diff(right.len()) > allowed || right.len() > MOST_LETTERS {
+        return None;
+    }
+    let mut before_last = [0; MOST_LETTERS + 1];
+    let mut last: [usize; MOST_LETTERS + 1] = std::array::from_fn(|column| column);
     for (row, &letter) in left.iter().enumerate() {
-        let mut line = vec![row + 1];
+        let mut line = [row + 1; MOST_LETTERS + 1];
         for (column, &other) in right.iter().enumerate() {
             let replaced = last[column] + usize::from(letter != other);
             let mut best = replaced.min(last[column + 1] + 1).min(line[column] + 1);
@@ -78,11 +85,16 @@ pub(in crate::target) fn distance(left: &[u8], right: &[u8]) -> usize {
             if swapped {
                 best = best.min(before_last[column - 1] + 1);
             }
-            line.push(best);
+            line[column + 1] = best;
         }
-        before_last = std::mem::replace(&mut last, line);
+        // A swap goes back two rows and adds one, so no way on is shorter than the shorter of both.
+        let so_far = line[..=right.len()].iter().chain(&last[..=right.len()]).min();
+        if so_far.is_some_and(|least| *least > allowed) {
+            return None;
+        }
+        (before_last, last) = (last, line);
     }
-    last.last().copied().unwrap_or(0)
+    Some(last[right.len()]).filter(|distance| *distance <= allowed)
 }
 
 #[cfg(test)]
@@ -98,9 +110,16 @@ mod tests {
             ("MVO", "MOV", 1),
             ("MOVE", "MOV", 1),
             ("LD", "OUT", 3),
+            ("CA", "ABC", 3),
+            ("BADC", "ABCD", 2),
         ] {
-            assert_eq!(distance(left.as_bytes(), right.as_bytes()), expected, "{left} {right}");
-            assert_eq!(distance(right.as_bytes(), left.as_bytes()), expected, "{right} {left}");
+            for (one, other) in [(left, right), (right, left)] {
+                let within = |allowed| distance_within(one.as_bytes(), other.as_bytes(), allowed);
+                for allowed in 0..5 {
+                    let known = (expected <= allowed).then_some(expected);
+                    assert_eq!(within(allowed), known, "{one} {other} {allowed}");
+                }
+            }
         }
     }
 

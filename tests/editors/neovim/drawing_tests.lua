@@ -259,12 +259,11 @@ check('a rung is typed from a snippet, name by name, and a branch by Enter', fun
   same('the rung', table.concat(join(rung, '', END[2]), '\n'))
   nvim:request('nvim_win_set_cursor', 0, { 2, 4 })
   nvim:press('i<CR>')
-  nvim:until_true('the branch', function()
-    return nvim:text():find('???', 1, true)
+  nvim:until_true('the name to type over', function()
+    return nvim:request('nvim_get_mode').mode == 's'
   end)
+  nvim:type('X5')
   nvim:press('<Esc>')
-  nvim:settle()
-  nvim:press('/???<CR>cwX5<Esc>')
   nvim:settle()
   same('the rung with its branch', table.concat(join({
     '|   X10      Stop                         Y107 |',
@@ -273,6 +272,38 @@ check('a rung is typed from a snippet, name by name, and a branch by Enter', fun
     '+---| |---+                                    |',
   }, '', END[2]), '\n'))
 end)
+
+--- Each: what it is, line and column from 0, the keys behind Enter, the drawing.
+local ENTERED = {
+  { 'a contact, and the name of the branch', 1, 4, 'X17', {
+    '|   X0        X1                           Y0  |',
+    '+---| |---+---| |--------------------------( )-+',
+    '|   X17   |                                    |',
+    '+---| |---+                                    |',
+  } },
+  { 'the end of a rung, and a contact of the next', 1, 48, '| |', join(TWO, '', EMPTY[1], '+---| |----------------------------------------+') },
+}
+
+for _, script in ipairs(ENTERED) do
+  local what, line, column, keys, rows = unpack(script)
+  check('Enter at ' .. what .. ', one key at a time and all at once', function()
+    local insert = column == 48 and 'A' or 'i'
+    nvim:open('entered.lad', program(TWO), line, math.min(column, 47))
+    nvim:press(insert .. '<CR>')
+    nvim:settle()
+    nvim:type(keys)
+    nvim:press('<Esc>')
+    nvim:settle()
+    same('the drawing after slow typing', program(rows))
+    for _, last in ipairs({ '<Esc>', '' }) do
+      nvim:open('entered.lad', program(TWO), line, math.min(column, 47))
+      nvim:press(insert .. '<CR>' .. keys .. last)
+      nvim:settle()
+      nvim:press('<Esc>')
+      same('the drawing after a burst', program(rows))
+    end
+  end)
+end
 
 check('deleting a character of a name keeps the columns, and is undone at once', function()
   nvim:open('deleted.lad', program(SEAL_IN), 0, 15)

@@ -314,6 +314,39 @@ check('a drawing in a fence of a Markdown file is served, other Markdown is not'
   assert(#vim.lsp.get_clients({ name = 'rungwise', bufnr = 0 }) == 0, 'attached to a text without programs')
 end)
 
+check('a manifest is checked as it is typed, completed and explained; other TOML is not served', function()
+  vim.cmd('silent edit other.toml')
+  assert(vim.bo.filetype == 'toml')
+  vim.fn.mkdir('manifest')
+  vim.cmd('silent edit manifest/rungwise.toml')
+  until_true('the client', function()
+    return #vim.lsp.get_clients({ bufnr = 0, name = 'rungwise' }) == 1
+  end)
+  local other = vim.fn.bufnr('other.toml')
+  assert(#vim.lsp.get_clients({ bufnr = other, name = 'rungwise' }) == 0, 'other TOML is served')
+  vim.api.nvim_buf_set_lines(0, 0, -1, false, { 'target = "fx9"' })
+  until_true('the mistake', function()
+    local found = vim.diagnostic.get(0)
+    return #found == 1 and found[1].message:find('fx9', 1, true) and found[1].col == 10
+  end)
+  vim.api.nvim_buf_set_lines(0, 0, -1, false, { 'target = "fx2n"' })
+  until_true('no mistake', function()
+    return #vim.diagnostic.get(0) == 0
+  end)
+  local client = vim.lsp.get_clients({ bufnr = 0, name = 'rungwise' })[1]
+  local function params(column)
+    return { textDocument = vim.lsp.util.make_text_document_params(0), position = { line = 0, character = column } }
+  end
+  local items = request(client, 'textDocument/completion', params(12))
+  local labels = vim.tbl_map(function(item)
+    return item.label
+  end, items.items or items)
+  assert(vim.list_contains(labels, 'fx3u'), vim.inspect(labels))
+  local hover = request(client, 'textDocument/hover', params(2))
+  assert(hover.contents.value:find('PLC model', 1, true), vim.inspect(hover))
+  vim.cmd('silent bwipeout!')
+end)
+
 check(':RungwiseLog opens the log', function()
   vim.cmd('RungwiseLog')
   assert(vim.api.nvim_buf_get_name(0):match('lsp%.log$'), vim.api.nvim_buf_get_name(0))

@@ -2,7 +2,7 @@
 local M = {}
 M.__index = M
 
-local TIMEOUT_MS = 8000
+local TIMEOUT_MS = 30000
 
 --- Starts it with the plugin of the parent, which stands first on its runtime path.
 function M.start()

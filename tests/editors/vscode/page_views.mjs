@@ -45,7 +45,7 @@ async function usage(workbench) {
   await workbench.openFile('in_use.il');
   await workbench.focusEditor();
   await workbench.chord('u');
-  await workbench.page.waitForSelector('.tab[data-resource-name="in_use.il.usage"]', { timeout: 15_000 });
+  await workbench.page.waitForSelector('.tab[data-resource-name="in_use.il.usage"]', { timeout: 45_000 });
   const rows = async () => {
     const lines = await workbench.page.locator('.editor-instance').last().locator('.view-line').allInnerTexts();
     return lines.map((row) => row.replaceAll('\u00a0', ' '));
@@ -68,11 +68,11 @@ async function explain(workbench) {
   await workbench.page.keyboard.press('Control+k');
   await workbench.page.keyboard.press('Control+i');
   const link = workbench.page.locator('.monaco-hover:visible a', { hasText: 'short-circuit' }).first();
-  await link.waitFor({ timeout: 15_000 });
+  await link.waitFor({ timeout: 45_000 });
   await workbench.screenshot('15-link-of-an-error');
   await link.click();
-  await workbench.page.locator('.tab[data-resource-name="short-circuit.md"]').first().waitFor({ timeout: 15_000 });
-  const page = await workbench.until('the page in the preview', () => frameWith(workbench, /A branch made only of wire/), 30_000);
+  await workbench.page.locator('.tab[data-resource-name="short-circuit.md"]').first().waitFor({ timeout: 45_000 });
+  const page = await workbench.until('the page in the preview', () => frameWith(workbench, /A branch made only of wire/), 45_000);
   await workbench.screenshot('16-page-of-a-rule');
   await wholeDrawings(workbench, page);
   await workbench.clear();
@@ -110,7 +110,7 @@ async function walkthrough(workbench) {
   await workbench.clear();
   await workbench.command('Rungwise: Get Started');
   const page = workbench.page.locator('.gettingStartedContainer');
-  await page.locator('text=Get started with Rungwise').first().waitFor({ timeout: 30_000 });
+  await page.locator('text=Get started with Rungwise').first().waitFor({ timeout: 45_000 });
   await workbench.until('all steps', async () => {
     const text = await page.innerText();
     const steps = ['Open the example', 'Make a mistake', 'Edit the drawing', 'Check the program', 'Choose your PLC'];

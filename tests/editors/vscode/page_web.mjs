@@ -15,7 +15,7 @@ export async function runWebTests(server, workspace, home, report, artefacts) {
       await workbench.load(`http://${server.authority}/?folder=${workspace}`);
       await workbench.openFile('edited.lad');
       const toast = workbench.page.locator('.notification-toast', { hasText: 'without a computer for the language server' }).first();
-      await toast.waitFor({ timeout: 30_000 });
+      await toast.waitFor({ timeout: 45_000 });
       await workbench.until('colours', async () => {
         const colours = await workbench.page.locator('.editor-instance .view-line span span').evaluateAll((spans) =>
           spans.filter((span) => span.textContent.trim() !== '').map((span) => getComputedStyle(span).color));

@@ -41,6 +41,22 @@ module.exports = [
     assert.ok(labels.includes('MOV'), `no MOV in ${labels.slice(0, 20)}`);
     await revert(document);
   }],
+  ['a manifest is checked as it is typed, completed and explained', async () => {
+    const file = vscode.Uri.joinPath(vscode.workspace.workspaceFolders[0].uri, 'manifest', 'rungwise.toml');
+    await vscode.workspace.fs.writeFile(file, Buffer.from(''));
+    // The extension starts for a folder with a manifest or with a program; this one has become the former only now.
+    await open('ragged.lad');
+    const document = await vscode.workspace.openTextDocument(file);
+    await replace(document, 0, 0, 0, 'target = "fx9"');
+    await until('the mistake', () => vscode.languages.getDiagnostics(file).some(({ message, range }) =>
+      message.includes('fx9') && range.start.character === 10 && range.end.character === 13));
+    await replace(document, 0, 10, 13, 'fx2n');
+    await until('no mistake', () => vscode.languages.getDiagnostics(file).length === 0);
+    assert.ok((await completionLabels(document, new vscode.Position(0, 12))).includes('fx3u'), 'no fx3u');
+    assert.match(await hoverText(document, new vscode.Position(0, 2)), /PLC model/);
+    await revert(document);
+    await vscode.workspace.fs.delete(vscode.Uri.joinPath(file, '..'), { recursive: true });
+  }],
   ['completion offers the variables of the program', async () => {
     const document = await open('mixer_iec.il');
     const at = find(document, 'ST Motor', 0, 3);

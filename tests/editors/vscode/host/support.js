@@ -6,7 +6,7 @@ const path = require('node:path');
 const vscode = require('vscode');
 
 const WORKSPACE = process.env.RUNGWISE_TEST_WORKSPACE;
-const TIMEOUT_MS = 15_000;
+const TIMEOUT_MS = 45_000;
 const EXPECTED = JSON.parse(fs.readFileSync(path.join(WORKSPACE, 'expected.json'), 'utf8'));
 
 const sleep = (ms) => new Promise((resolve) => setTimeout(resolve, ms));

@@ -10,7 +10,7 @@ const SUITES = [
 ];
 /** A part of the tests, while one works on it: a pattern for their names. */
 const CHOSEN = new RegExp(process.env.RUNGWISE_TESTS_NAMED ?? '');
-const TEST_TIMEOUT_MS = 60_000;
+const TEST_TIMEOUT_MS = 120_000;
 
 exports.run = async function run() {
   const results = process.env.RUNGWISE_TEST_RESULTS;

@@ -1,0 +1,120 @@
+--- The answer to Enter in a drawing: it opens a branch or a rung, and what is typed next goes into that.
+local client = require('rungwise.client')
+local M = {}
+
+local METHOD = 'textDocument/onTypeFormatting'
+--- A server that takes longer is not waited for.
+local PATIENCE_MS = 1000
+--- The name of an element of which a person is to choose one.
+local PLACEHOLDER = '???'
+--- A row of wire from rail to rail, and its cells before those where the first contact goes.
+local EMPTY_RUNG = [[^\s*[+├][-─]\+[+┤]$]]
+local FIRST_CELLS = 4
+
+--- Where to type on in a line that came with an answer: first byte and the one behind; nil if nowhere.
+local function place_in(line)
+  local from = line:find(PLACEHOLDER, 1, true)
+  if from then
+    return from - 1, from - 1 + #PLACEHOLDER
+  elseif vim.fn.match(line, EMPTY_RUNG) < 0 then
+    return nil
+  end
+  local indent = #line:match('^%s*')
+  local at = indent + math.max(0, vim.fn.byteidx(line:sub(indent + 1), FIRST_CELLS))
+  return at, at
+end
+
+--- The place to type on that came with edits, once they are made: row from 0, first byte, the one behind; a name to choose
+--- goes before a new rung.
+local function place_of(edits, buffer)
+  edits = vim.deepcopy(edits)
+  table.sort(edits, function(a, b)
+    local left, right = a.range.start, b.range.start
+    return left.line < right.line or (left.line == right.line and left.character < right.character)
+  end)
+  local added, rung = 0, nil
+  for _, edit in ipairs(edits) do
+    local lines = vim.split(edit.newText, '\n', { plain = true })
+    for index, written in ipairs(lines) do
+      local row = edit.range.start.line + added + index - 1
+      local line = vim.api.nvim_buf_get_lines(buffer, row, row + 1, false)[1] or ''
+      -- The first line of an edit may be a part of a row only.
+      local from, to = place_in(index > 1 and written or written:find(PLACEHOLDER, 1, true) and line or written)
+      if from and from < to then
+        return row, from, to
+      elseif from and line == written then
+        rung = rung or { row, from, to }
+      end
+    end
+    added = added + #lines - 1 - (edit.range['end'].line - edit.range.start.line)
+  end
+  return unpack(rung or {})
+end
+
+--- Keys that select from a byte of a row to before another one, for typing over it; in Insert mode and out of it.
+local function select(row, from, to)
+  local cursor = '<Cmd>call cursor(%d, %d)<CR>'
+  return ('<Esc>' .. cursor .. 'v' .. cursor .. '<C-g>'):format(row + 1, from + 1, row + 1, to)
+end
+
+--- Has the server answer Enter, which ended at `place`, { row, byte } from 0. `typed` was typed behind it before it could be
+--- answered: that is taken out and typed again where the answer has a place for it. `quietly` runs changes that are the
+--- plugin's own. Answers whether there was something to do.
+function M.answer(running, buffer, place, typed, quietly)
+  local row, byte = unpack(place)
+  typed = typed or ''
+  local text = vim.api.nvim_buf_get_lines(buffer, row, row + 1, false)[1] or ''
+  if text:sub(byte - #typed + 1, byte) ~= typed then
+    return false
+  end
+  local start = byte - #typed
+  local function put(old, new)
+    if old ~= new then
+      quietly(buffer, function()
+        vim.api.nvim_buf_set_text(buffer, row, start, row, start + #old, { new })
+      end)
+    end
+  end
+  put(typed, '')
+  local encoding = running.offset_encoding
+  local params = vim.lsp.util.make_formatting_params()
+  params.textDocument = { uri = vim.uri_from_bufnr(buffer) }
+  params.position = { line = row, character = client.character(text, start, encoding) }
+  params.ch = '\n'
+  local edits = client.request_sync(running, METHOD, params, PATIENCE_MS, buffer)
+  if type(edits) ~= 'table' or #edits == 0 then
+    put('', typed)
+    return false
+  end
+  quietly(buffer, function()
+    if not vim.fn.mode():match('^[iR]') then
+      vim.cmd('silent! undojoin')
+    end
+    vim.lsp.util.apply_text_edits(edits, buffer, encoding)
+  end)
+  M.type_on(edits, buffer, typed)
+  return true
+end
+
+--- Puts the cursor where one types on after edits, and has `typed` typed there.
+function M.type_on(edits, buffer, typed)
+  local row, from, to = place_of(edits, buffer)
+  local inserts = vim.fn.mode():match('^[iR]') ~= nil
+  local keys = ''
+  if row and from < to then
+    -- In a hurry Insert mode was left before the answer came; without anything to type over it stays so.
+    keys = (inserts or typed ~= '') and select(row, from, to) or ''
+  elseif row then
+    vim.api.nvim_win_set_cursor(0, { row + 1, from })
+  end
+  if not inserts and typed ~= '' then
+    keys = (keys == '' and 'i' or keys) .. '%s<Esc>'
+  else
+    keys = keys .. '%s'
+  end
+  local before, after = unpack(vim.split(keys, '%s', { plain = true }))
+  -- What came by keys goes in by keys, before those that wait, so that it is answered like all that is typed.
+  vim.api.nvim_feedkeys(vim.keycode(before) .. typed .. vim.keycode(after), 'nit', true)
+end
+
+return M

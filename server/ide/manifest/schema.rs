@@ -1,0 +1,89 @@
+//! The schema of `rungwise.toml`, the same that editors of TOML get. A test holds it to what the reader takes.
+
+use serde_json::Value;
+use std::sync::LazyLock;
+
+static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
+    let text = include_str!("../../../vscode-extension/schemas/rungwise.schema.json");
+    serde_json::from_str(text)
+        .inspect_err(|reason| tracing::error!("the schema of the manifest cannot be read: {reason}"))
+        .unwrap_or_default()
+});
+
+/// A table, a key or a value of the schema.
+#[derive(Clone, Copy)]
+pub(super) struct Node(&'static Value);
+
+/// What stands under a key.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Table,
+    /// Tables of the same name, each under its header.
+    Tables,
+    List,
+    Number,
+    Text,
+}
+
+/// The root of the manifest.
+pub(super) fn root() -> Node {
+    Node(&SCHEMA)
+}
+
+/// What stands under the keys of `path`; nothing if a manifest has no such thing.
+pub(super) fn at(path: &[String]) -> Option<Node> {
+    path.iter().try_fold(root(), |node, key| {
+        let properties = node.element().0.get("properties")?;
+        properties.get(key.as_str()).map(Node)
+    })
+}
+
+impl Node {
+    pub fn kind(self) -> Kind {
+        match self.0["type"].as_str() {
+            Some("object") => Kind::Table,
+            Some("array") if self.element().0["type"] == "object" => Kind::Tables,
+            Some("array") => Kind::List,
+            Some("integer") => Kind::Number,
+            _ => Kind::Text,
+        }
+    }
+
+    /// One of the things in a list; other nodes are their own.
+    pub fn element(self) -> Node {
+        self.0.get("items").map_or(self, Node)
+    }
+
+    pub fn properties(self) -> impl Iterator<Item = (&'static str, Node)> {
+        let properties = self.0["properties"].as_object().into_iter().flatten();
+        properties.map(|(name, node)| (name.as_str(), Node(node)))
+    }
+
+    /// English.
+    pub fn description(self) -> &'static str {
+        self.0["description"].as_str().unwrap_or("")
+    }
+
+    /// The words of which the value is one; none if it may be anything.
+    pub fn words(self) -> Vec<&'static str> {
+        let shared = self.0["allOf"][0]["$ref"].as_str().and_then(|place| place.strip_prefix('#'));
+        let node = shared.and_then(|place| SCHEMA.pointer(place)).unwrap_or(self.0);
+        node["enum"].as_array().into_iter().flatten().filter_map(Value::as_str).collect()
+    }
+
+    /// The files that it names: `program` or `table`.
+    pub fn files(self) -> Option<&'static str> {
+        self.0["x-files"].as_str()
+    }
+
+    /// As TOML.
+    pub fn default(self) -> Option<String> {
+        self.0.get("default").map(Value::to_string)
+    }
+
+    /// As TOML: JSON writes strings, numbers and lists of these in the same way.
+    pub fn examples(self) -> Vec<String> {
+        let examples = self.0["examples"].as_array().into_iter().flatten();
+        examples.filter(|example| !example.is_object()).map(Value::to_string).collect()
+    }
+}
