@@ -1,5 +1,6 @@
 //! What editors show about devices: uses, comments, free numbers, lenses, marks, the list of used devices.
 
+use rungwise::check::{self, Severities};
 use rungwise::document::{Comments, Document, Member, Notation, ProjectView};
 use rungwise::ide::{self, HighlightKind, LensKind, LensSettings, Style};
 use rungwise::project::{CommentsFile, FormatStyle};
@@ -7,7 +8,7 @@ use rungwise::target::{Model, Target};
 use rungwise::text::{Language, Span, TextEdit};
 use std::path::Path;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 const EN: Language = Language::English;
 const TABLE: &str =
@@ -398,9 +399,11 @@ fn large_documents_are_answered_at_once() {
         });
         times.min().unwrap()
     };
-    // The debug build is some thirty times slower than the one that people use.
+    // Anything that looks at each chunk takes a good part of the time of reading them.
+    let reading = fastest(&|| drop(check::all(&fx(&text), &Severities::default())));
     let hover = fastest(&|| drop(ide::hover(&document, offset, EN)));
-    assert!(hover < Duration::from_millis(30), "{hover:?}");
+    assert!(hover * 10 < reading, "{hover:?} of {reading:?}");
     let completion = fastest(&|| drop(ide::completions(&document, offset + 1, EN)));
-    assert!(completion < Duration::from_millis(150), "{completion:?}");
+    assert!(completion * 3 < reading, "{completion:?} of {reading:?}");
+    eprintln!("{reading:?} {hover:?} {completion:?}");
 }

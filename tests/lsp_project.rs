@@ -235,6 +235,37 @@ fn iec_files_know_what_the_others_declare() {
     awaits(&mut client, &main, &[]);
 }
 
+/// What other files saw of an edit that was taken back before it was judged does not stay in them.
+#[test]
+fn an_edit_that_is_taken_back_at_once_leaves_nothing_in_other_files() {
+    let folder = iec();
+    let (mut client, main, fill) = with_both_open(&folder);
+    let globals = folder.uri("globals.il");
+    client.open(&globals, "plc-il", GLOBALS);
+    client.stays_silent(QUIET, |_| false);
+    let mut version = 1;
+    // The other files are linked some sixty milliseconds after a declaration.
+    for (round, wait) in (40..80).step_by(4).enumerate() {
+        let declared = if round % 2 == 0 { "    More : INT;\n" } else { "" };
+        let lines = if round % 2 == 0 { 1 } else { 2 };
+        client.change(&globals, round as i64 + 2, (1, 0), (lines, 0), declared);
+        std::thread::sleep(Duration::from_millis(wait));
+        client.change(&fill, version + 1, (5, 4), (5, 9), "Latch");
+        std::thread::sleep(Duration::from_millis(25));
+        client.change(&fill, version + 2, (5, 4), (5, 9), "Valve");
+        version += 2;
+        client.stays_silent(QUIET, |_| false);
+        let mut last = None;
+        while let Some(message) = client.take(is_about(&main)) {
+            last = Some(message);
+        }
+        if let Some(last) = last {
+            let found = last["params"]["diagnostics"].as_array().unwrap();
+            assert_eq!(codes(found), [""; 0], "after {wait} ms");
+        }
+    }
+}
+
 #[test]
 fn a_keystroke_costs_nothing_in_other_files() {
     let folder = iec();

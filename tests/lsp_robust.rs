@@ -263,12 +263,13 @@ fn cancelled_work_is_answered_at_once() {
     let uri = "untitled:long.il";
     client.open(uri, "plc-il", &"LD X0\nAND X1\nOUT Y0\n".repeat(30_000));
     client.diagnostics(uri, 1);
+    let params = json!({"textDocument": {"uri": uri}, "options": {"tabSize": 4, "insertSpaces": true}});
+    let started = Instant::now();
+    client.request("textDocument/formatting", params.clone());
+    let whole = started.elapsed();
     let mut times = Vec::new();
     for _ in 0..20 {
-        let id = client.ask(
-            "textDocument/formatting",
-            json!({"textDocument": {"uri": uri}, "options": {"tabSize": 4, "insertSpaces": true}}),
-        );
+        let id = client.ask("textDocument/formatting", params.clone());
         let started = Instant::now();
         client.notify("$/cancelRequest", json!({"id": id}));
         let answer = client.answer(id);
@@ -276,5 +277,5 @@ fn cancelled_work_is_answered_at_once() {
         times.push(started.elapsed());
     }
     times.sort_unstable();
-    assert!(times[10] < Duration::from_millis(20), "{times:?}");
+    assert!(times[10] * 4 < whole, "{times:?} of {whole:?}");
 }

@@ -70,7 +70,10 @@ pub fn detect_notation(text: &str) -> Notation {
 /// The target of a ladder that stands alone: FX devices only mean an FX2N, other names IEC. A mistyped device (`X8`,
 /// `MO`) or mnemonic is still meant for the FX, so that it is reported and not taken for a variable.
 pub fn detect_ladder_target(text: &str) -> &'static Target {
-    let header = text.lines().any(|line| line.split_whitespace().next().is_some_and(is_declaration_keyword));
+    // Most lines of a drawing begin with a rail.
+    let mut worded =
+        text.lines().filter(|line| line.trim_start().starts_with(|c: char| c.is_ascii_alphabetic()));
+    let header = worded.any(|line| line.split_whitespace().next().is_some_and(is_declaration_keyword));
     let exported =
         text.trim_start_matches('\u{feff}').lines().take(3).any(|line| line.starts_with("LDmicro export "));
     let foreign = || {

@@ -2,7 +2,7 @@
 
 use super::content::Wants;
 use super::glyph::{Arms, continues_word, is_operator, starts_word};
-use super::grid::{Grid, WIDE};
+use super::grid::{Grid, JUNCTIONS, WIDE};
 use super::scan::Symbol;
 use super::{Block, Element, ElementKind, OperandPlace, Pin, PinWire};
 use crate::target::{Operand, Target};
@@ -38,6 +38,9 @@ pub(super) fn find_blocks(grid: &mut Grid, text: &str, target: &Target) -> (Vec<
     let mut rows = Vec::new();
     for top in 0..grid.height() {
         let mut column = 0;
+        if !grid.may_have(top, JUNCTIONS) {
+            continue;
+        }
         while let Some(corner) = grid.find(top, column, |character| Arms::of(character).is_junction()) {
             let Some(frame) = frame_at(grid, top, corner) else {
                 column = corner + 1;

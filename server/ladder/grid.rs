@@ -25,7 +25,36 @@ struct Row {
     /// One past the last byte of the line.
     end: u32,
     cells: Vec<Cell>,
+    /// Groups of characters that it may have, such as [`WORDS`].
+    groups: u8,
 }
+
+/// Letters, digits and signs with which words begin.
+pub(super) const WORDS: u8 = 1;
+/// Horizontal wire.
+pub(super) const WIRES: u8 = 2;
+/// Corners and branches.
+pub(super) const JUNCTIONS: u8 = 4;
+/// Signs with which boxes of LDmicro begin.
+pub(super) const BOXES: u8 = 8;
+
+/// The groups of the ASCII characters. Most searches are for what most rows do not have.
+const GROUPS: [u8; 128] = {
+    let mut groups = [0; 128];
+    let mut character = 0;
+    while character < 128 {
+        groups[character] = match character as u8 {
+            b'-' | b'_' | b'=' => WIRES,
+            b'+' | b'*' => JUNCTIONS,
+            b'[' | b'{' | b'^' => BOXES,
+            byte if byte.is_ascii_alphanumeric() => WORDS,
+            b'%' | b'\'' | b'"' | b'#' | b'$' | b'@' => WORDS,
+            _ => 0,
+        };
+        character += 1;
+    }
+    groups
+};
 
 /// A displayed cell; the second cell of a wide character is a blank with the same bytes.
 #[derive(Clone, Copy, Debug)]
@@ -38,9 +67,11 @@ struct Cell {
 impl Grid {
     /// Adds a line as the next row, comments blanked out.
     pub(super) fn push(&mut self, line: &Line, number: u32, text: &str) {
-        let mut row = Row { line: number, end: line.span.end, cells: Vec::with_capacity(line.span.len()) };
+        let cells = Vec::with_capacity(line.span.len());
+        let mut row = Row { line: number, end: line.span.end, cells, groups: u8::MAX };
         let content = line.span.of(text);
         if line.comments.is_empty() && content.is_ascii() && !content.contains('\t') {
+            row.groups = content.bytes().fold(0, |groups, byte| groups | GROUPS[usize::from(byte & 0x7F)]);
             row.cells.extend(content.bytes().enumerate().map(|(column, byte)| {
                 let start = line.span.start + column as u32;
                 let blank = matches!(byte, b'\t'..=b'\r');
@@ -78,6 +109,11 @@ impl Grid {
     /// Whether all characters are sure to be ASCII.
     pub(super) fn is_ascii(&self) -> bool {
         !self.is_mixed
+    }
+
+    /// Whether a row may have characters of these groups.
+    pub(super) fn may_have(&self, row: usize, groups: u8) -> bool {
+        self.rows.get(row).is_some_and(|row| row.groups & groups != 0)
     }
 
     /// Number of rows.
@@ -157,6 +193,7 @@ impl Grid {
 
     fn fill(&mut self, row: usize, columns: Range<usize>, character: char) {
         if let Some(row) = self.rows.get_mut(row) {
+            row.groups |= if character == '-' { WIRES } else { 0 };
             for cell in row.cells.iter_mut().take(columns.end).skip(columns.start) {
                 cell.character = character;
             }

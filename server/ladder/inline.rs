@@ -2,8 +2,8 @@
 
 use super::OperandPlace;
 use super::content::Wants;
-use super::glyph::{Arms, contact_mark, continues_word, starts_word};
-use super::grid::{Grid, WIDE};
+use super::glyph::{contact_mark, continues_word, starts_word};
+use super::grid::{Grid, WIDE, WIRES, WORDS};
 use super::scan::{Tokens, What};
 use crate::target::Target;
 use crate::text::{Span, Spanned};
@@ -35,8 +35,9 @@ fn inline_row(grid: &Grid, row: usize) -> Option<Vec<(usize, usize, usize, usize
     let at = |column: usize| grid.at(row, column);
     let width = grid.width(row);
     // Most rows have no word or no wire.
-    grid.find(row, 0, |character| Arms::of(character).is_horizontal())?;
-    grid.find(row, 0, starts_word)?;
+    if !(grid.may_have(row, WORDS) && grid.may_have(row, WIRES)) {
+        return None;
+    }
     let mut found = Vec::new();
     let mut symbols: Vec<usize> = Vec::new();
     let mut column = 0;

@@ -44,12 +44,14 @@ pub(super) struct Lines<'t> {
     offset: usize,
     /// The comment that is open where the next line starts.
     pub(super) open: Option<OpenComment>,
+    /// Whether no comment is in the text.
+    is_plain: bool,
 }
 
 impl<'t> Lines<'t> {
     /// The lines of `text`, which starts outside any comment.
     pub(super) fn new(text: &'t str) -> Lines<'t> {
-        Lines { text, offset: 0, open: None }
+        Lines { text, offset: 0, open: None, is_plain: !may_begin_comment(text.as_bytes()) }
     }
 }
 
@@ -81,7 +83,7 @@ impl Iterator for Lines<'_> {
             return None;
         }
         let (end, next) = end_of_line(bytes, start);
-        let suspicious = self.open.is_some() || may_begin_comment(&bytes[start..end]);
+        let suspicious = !self.is_plain && (self.open.is_some() || may_begin_comment(&bytes[start..end]));
         self.offset = next;
         let continues = self.open.is_some();
         let railed = suspicious && !continues;
@@ -140,11 +142,15 @@ impl Lines<'_> {
     }
 }
 
-/// Whether a comment or a pragma may begin in `bytes`: one can only begin with one of four characters, and most lines
-/// have none of them. All bytes are looked at, since a loop without a way out looks at many at a time.
+/// Whether a comment or a pragma may begin in `bytes`. All of them are looked at, since a loop without a way out looks
+/// at many at a time.
 pub(super) fn may_begin_comment(bytes: &[u8]) -> bool {
-    let begins = |byte: &u8| matches!(byte, b'/' | b'{' | b';' | b'*');
-    bytes.iter().fold(false, |any, byte| any | begins(byte))
+    let single = |byte: &u8| matches!(byte, b'{' | b';');
+    let double =
+        |first: &u8, second: &u8| (*first == b'/') & (*second == b'/') | (*first == b'(') & (*second == b'*');
+    let behind = bytes.get(1..).unwrap_or_default();
+    bytes.iter().fold(false, |any, byte| any | single(byte))
+        || bytes.iter().zip(behind).fold(false, |any, (first, second)| any | double(first, second))
 }
 
 /// The comment of a line such as ` 3 ||  ; text    ||`, which an LDmicro export draws between its double rails.

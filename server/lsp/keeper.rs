@@ -235,7 +235,7 @@ impl Task {
 
     /// Publishes what is found in the files of a project that are not open.
     async fn publish_closed(&mut self, workspace: &Arc<Workspace>, key: &Arc<Path>) {
-        let snapshot = workspace.snapshot();
+        let snapshot = workspace.seen_by_project(key);
         let wanted = !snapshot.settings.pulls && snapshot.settings.whole_project;
         let found = match wanted {
             true => {

@@ -28,7 +28,7 @@ impl Workspace {
     /// Tells every file of a project what the others declare, and publishes the open documents for which that is
     /// something new; returns these. Only the keeper calls it, so no two run at once.
     pub(super) fn link(&self, key: &Arc<Path>) -> Vec<Uri> {
-        let snapshot = self.snapshot();
+        let snapshot = self.seen_by_project(key);
         let linked = snapshot.projects.get(key).map(|loaded| {
             let exports = loaded.files.iter().map(|file| match snapshot.open_at(&file.path) {
                 Some(open) => Arc::new(Exports::of(&open.document)),

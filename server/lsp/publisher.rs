@@ -11,7 +11,7 @@ use super::workspace::{Open, Snapshot, Workspace};
 use crate::check;
 use crate::text::Diagnostic;
 use std::path::Path;
-use std::sync::{Arc, Weak};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::{Duration, Instant};
 use tokio::sync::{Notify, watch};
 use tokio::task::JoinHandle;
@@ -35,6 +35,34 @@ pub(super) struct Publisher {
     sender: watch::Sender<Order>,
     task: JoinHandle<()>,
     reopened: Arc<Notify>,
+    looks: Arc<Looks>,
+}
+
+/// Which versions of a document the judgement of other files has seen.
+///
+/// Of edits in quick succession only the last is judged. What others saw of one between, they must be told to forget,
+/// also if the last one shows them the same as the one before all of them.
+#[derive(Default)]
+struct Looks(Mutex<(i32, Vec<i32>)>);
+
+impl Looks {
+    fn state(&self) -> MutexGuard<'_, (i32, Vec<i32>)> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn note(&self, version: i32) {
+        let (judged, seen) = &mut *self.state();
+        if version != *judged && !seen.contains(&version) {
+            seen.push(version);
+        }
+    }
+
+    /// The version is judged; whether others have seen one that was not.
+    fn judged(&self, version: i32) -> bool {
+        let (judged, seen) = &mut *self.state();
+        *judged = version;
+        std::mem::take(seen).into_iter().any(|seen| seen != version)
+    }
 }
 
 /// A publisher that has its last word still to say.
@@ -67,6 +95,7 @@ struct Task {
     status: Option<StatusNotification>,
     /// What the other files of the project saw of the document last.
     surface: Option<u64>,
+    looks: Arc<Looks>,
 }
 
 /// What the rules about whole programs found.
@@ -116,6 +145,7 @@ impl Publisher {
     ) -> Publisher {
         let (sender, receiver) = watch::channel(Order::Nothing);
         let reopened = Arc::new(Notify::new());
+        let looks = Arc::new(Looks::default());
         let task = Task {
             workspace,
             client: client.clone(),
@@ -126,6 +156,7 @@ impl Publisher {
             batch_took: Duration::ZERO,
             status: None,
             surface: None,
+            looks: looks.clone(),
         };
         let task = tokio::spawn(async move {
             if let Some(before) = before {
@@ -134,7 +165,12 @@ impl Publisher {
             }
             task.run(receiver).await;
         });
-        Publisher { sender, task, reopened }
+        Publisher { sender, task, reopened, looks }
+    }
+
+    /// The judgement of another file sees the document in this version.
+    pub(super) fn note_look(&self, version: i32) {
+        self.looks.note(version);
     }
 
     pub(super) fn publish(&self, open: Arc<Open>, manner: Manner) {
@@ -229,7 +265,7 @@ impl Task {
         let judged = tokio::task::spawn_blocking(move || {
             let realtime = check::realtime(&own.document, &own.severities);
             let started = Instant::now();
-            let snapshot = workspace.upgrade().map(|workspace| workspace.snapshot()).unwrap_or_default();
+            let snapshot = workspace.upgrade().map(|workspace| workspace.seen_by(&own)).unwrap_or_default();
             let batch = Batch::of(&snapshot, &own, is_first);
             let batch_took = started.elapsed();
             Judged { realtime, batch, batch_took, status: Some(StatusNotification::of(&own)) }
@@ -250,7 +286,8 @@ impl Task {
     /// Has the other files of the project judged again if they see something new.
     fn tell_project(&mut self, open: &Open, batch: &Batch) {
         let known = self.surface.or(batch.surface_of_disk);
-        let is_new = batch.surface.is_some() && known != batch.surface;
+        let was_seen_between = self.looks.judged(open.version);
+        let is_new = batch.surface.is_some() && (was_seen_between || known != batch.surface);
         self.surface = batch.surface;
         if let (true, Some(key), Some(workspace)) = (is_new, &open.project, self.workspace.upgrade()) {
             workspace.note_change(key, &open.uri);

@@ -400,6 +400,20 @@ impl Workspace {
         });
     }
 
+    /// The state of this moment for the judgement of `own`, which sees the other open documents of its project.
+    pub(super) fn seen_by(&self, own: &Open) -> Snapshot {
+        let state = self.state();
+        own.project.iter().for_each(|key| state.note_looks(key, Some(&own.uri)));
+        state.snapshot.clone()
+    }
+
+    /// The state of this moment for work that looks at all files of a project.
+    pub(super) fn seen_by_project(&self, key: &Arc<Path>) -> Snapshot {
+        let state = self.state();
+        state.note_looks(key, None);
+        state.snapshot.clone()
+    }
+
     /// A document changed in a way that the other files of its project see.
     pub(super) fn note_change(&self, key: &Arc<Path>, uri: &Uri) {
         if let Some(keeper) = &self.state().keeper {
@@ -424,6 +438,16 @@ struct Belonging {
 }
 
 impl State {
+    /// The open documents of a project but `own` are seen as they are. The snapshot that is looked at has to be taken
+    /// under the same lock, so that a later version is judged afterwards.
+    fn note_looks(&self, key: &Arc<Path>, own: Option<&Uri>) {
+        for open in self.snapshot.documents.values().filter(|open| open.project.as_ref() == Some(key)) {
+            if let (Some(publisher), true) = (self.publishers.get(&open.uri), own != Some(&open.uri)) {
+                publisher.note_look(open.version);
+            }
+        }
+    }
+
     /// Who publishes about the file of `closed` from now on, if it belongs to a project.
     fn heir(&self, closed: &Open) -> Option<(Keeper, Arc<Path>)> {
         let key = closed.project.as_ref()?;

@@ -6,7 +6,7 @@ use super::meaning::{BoxKind, Form, time_literal};
 use crate::ladder::blocks::BlockRow;
 use crate::ladder::content::{Wants, compare_operator};
 use crate::ladder::glyph::{Arms, continues_word};
-use crate::ladder::grid::{Grid, TAKEN};
+use crate::ladder::grid::{BOXES, Grid, JUNCTIONS, TAKEN};
 use crate::ladder::scan::Symbol;
 use crate::ladder::{Block, CoilKind, ContactKind, Element, ElementKind, OperandPlace, Pin, PinWire};
 use crate::target::{Model, Operand, Target};
@@ -50,6 +50,9 @@ pub(in crate::ladder) fn find_boxes(
     for row in 0..finder.grid.height() {
         let mut column = 0;
         let opens = |character| matches!(character, '[' | '{' | '^' | '+');
+        if !finder.grid.may_have(row, BOXES | JUNCTIONS) {
+            continue;
+        }
         while let Some(found) = finder.grid.find(row, column, opens) {
             match finder.grid.at(row, found) {
                 '[' | '{' => finder.bracket(row, found),
