@@ -61,26 +61,6 @@ fn a_refusal_says_why_in_the_language_of_the_user() {
     assert!(answer["error"]["message"].as_str().unwrap().contains("线圈"), "{answer}");
 }
 
-/// The name of the first contact pasted over by a longer one: its row is to be mended before it is in the document.
-#[test]
-fn an_edit_can_be_asked_for_lines_that_are_not_in_the_document() {
-    let mut client = started(json!({}), "en");
-    let row = "|   X107        X1                             Y0  |\n";
-    let lines = |text: &str| json!({"lines": {"first": 0, "end": 1, "text": text}});
-    let answer = edit(&mut client, "mend", (0, 8), lines(row));
-    let edits = answer["result"]["edits"].as_array().unwrap_or_else(|| panic!("{answer}"));
-    assert_eq!(edits.len(), 1, "{edits:?}");
-    assert_eq!(edits[0]["range"]["start"]["line"], 0);
-    assert_eq!(edits[0]["newText"], "", "two blanks go away: {edits:?}");
-    let added = edit(&mut client, "mend", (1, 8), lines(&format!("(* new *)\n{row}")));
-    assert_eq!(
-        added["result"]["edits"][0]["range"]["start"]["line"], 1,
-        "in the text with the lines: {added}"
-    );
-    let none = edit(&mut client, "mend", (0, 8), json!({}));
-    assert_eq!(none["result"]["edits"], json!([]), "nothing of it is kept: {none}");
-}
-
 #[test]
 fn an_edit_of_an_old_version_is_refused() {
     let mut client = started(json!({}), "en");

@@ -9,13 +9,9 @@
 //!   textDocument: { uri, version? },   // an edit for a version that is not current fails with ContentModified
 //!   range: Range,                      // the cursor (empty) or the selection
 //!   edit: string,                      // see below
-//!   operand?: string,                  // the name (`T0 K50`, `MOV K10 D0`, `Delay : TON`) of what is inserted
-//!   lines?: { first, end, text }       // what to read instead of these lines, as in `rungwise/typed`
+//!   operand?: string                   // the name (`T0 K50`, `MOV K10 D0`, `Delay : TON`) of what is inserted
 //! }
 //! ```
-//!
-//! With `lines` all positions, asked and answered, are in the text with these lines: so a client learns what a paste
-//! calls for before it makes it.
 //!
 //! `edit` is one of `insertContact`, `insertNegatedContact`, `insertCoil`, `insertSetCoil`, `insertResetCoil`,
 //! `insertBox`, `insertBranch` (a new branch parallel to the element at the cursor or to the selected ones),
@@ -48,7 +44,6 @@
 //! resolves the property `edit` gets them without it.
 
 use super::to_proto::Place;
-use super::typed::Lines;
 use super::workspace::Open;
 use crate::ide::{self, EditKind, ObjectKind, Style};
 use crate::text::{Language, Message};
@@ -66,7 +61,6 @@ pub(super) struct EditParams {
     pub range: Range,
     pub edit: String,
     pub operand: Option<String>,
-    pub lines: Option<Lines>,
 }
 
 /// A document, and the version that the client had when it asked.
@@ -97,8 +91,6 @@ pub(super) struct EditResult {
 /// Answers `rungwise/edit`.
 pub(super) fn edit(open: &Open, place: Place<'_>, params: &EditParams, style: Style) -> Result<EditResult> {
     params.text_document.refuse_other(open, place.language)?;
-    let other = params.lines.as_ref().map(|lines| lines.instead(place));
-    let place = other.as_ref().map_or(place, |document| Place { document, ..place });
     let refused = |message: Message| Error::invalid_params(message.render(place.language));
     let unknown = || refused(Message::new("edit.unknown").with("edit", &params.edit));
     let kind = EditKind::named(&params.edit).ok_or_else(unknown)?;
@@ -190,7 +182,6 @@ pub(super) fn actions(
             range: params.range,
             edit: kind.name().to_string(),
             operand: None,
-            lines: None,
         };
         let action = CodeAction {
             title: kind.title().render(place.language),

@@ -23,9 +23,9 @@
 use super::editing::MaybeVersioned;
 use super::to_proto::Place;
 use super::workspace::Open;
-use crate::document::{Document, Edit};
+use crate::document::Edit;
 use crate::ide::{self, Style};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use tower_lsp::jsonrpc::Result;
 use tower_lsp::ls_types::{Position, Range, TextEdit};
 
@@ -40,21 +40,11 @@ pub(super) struct TypedParams {
 }
 
 /// Lines of the document, counted from 0, and what stands there instead.
-#[derive(Clone, Serialize, Deserialize, Debug)]
+#[derive(Clone, Deserialize, Debug)]
 pub(super) struct Lines {
     pub first: u32,
     pub end: u32,
     pub text: String,
-}
-
-impl Lines {
-    /// The document with these lines in it.
-    pub(super) fn instead(&self, place: Place<'_>) -> Document {
-        let range = Range::new(Position::new(self.first, 0), Position::new(self.end.max(self.first), 0));
-        let mut document = place.document.clone();
-        document.apply(&[Edit { range: Some(place.span(range).range()), text: self.text.clone() }]);
-        document
-    }
 }
 
 /// Answers `rungwise/typed`.
@@ -65,7 +55,10 @@ pub(super) fn edits(
     style: Style,
 ) -> Result<Vec<TextEdit>> {
     params.text_document.refuse_other(open, place.language)?;
-    let document = params.lines.instead(place);
+    let Lines { first, end, text } = &params.lines;
+    let range = Range::new(Position::new(*first, 0), Position::new((*end).max(*first), 0));
+    let mut document = place.document.clone();
+    document.apply(&[Edit { range: Some(place.span(range).range()), text: text.clone() }]);
     let there = Place { document: &document, ..place };
     Ok(there.edits(&ide::typed(&document, there.offset(params.position), &params.ch, style)))
 }

@@ -3,8 +3,6 @@
 import * as vscode from 'vscode';
 import { areKeystrokes, Burst, isLineEnd, isMadeBy, type Typed } from './burst';
 import { joinStretches, linesToMend, MOST_LINES, rungPlaces, type PlainChange, type Stretch } from './mending';
-import { DrawingPaste } from './paste';
-import type { OtherLines, Preview, Rows } from './preview';
 import type { ServerController } from './server';
 import { operandOf, parseEditAnswer, STRUCTURAL_EDITS, type EditAnswer, type PlainRange, type StructuralEdit } from './structuralEdits';
 
@@ -33,22 +31,13 @@ export class DrawingEditor implements vscode.Disposable {
   /** The lines of the cursors before a change, by number: a change does not tell what it replaced. */
   private before: { document: vscode.TextDocument; rows: Map<number, string> } | undefined;
   private readonly dirty = new Map<vscode.TextDocument, Stretch>();
-  private readonly paste: DrawingPaste;
   private readonly subscriptions: vscode.Disposable[];
 
   constructor(
     private readonly server: ServerController,
     private readonly output: vscode.LogOutputChannel,
   ) {
-    this.paste = new DrawingPaste(
-      {
-        settled: (document) => this.settled(document),
-        edits: (document, change, preview) => this.pasteEdits(document, change, preview),
-      },
-      output,
-    );
     this.subscriptions = [
-      this.paste.register(LANGUAGE),
       ...STRUCTURAL_EDITS.map((edit) =>
         vscode.commands.registerCommand(`rungwise.${edit}`, (args?: unknown) => this.command(edit, args)),
       ),
@@ -105,14 +94,12 @@ export class DrawingEditor implements vscode.Disposable {
     edit: StructuralEdit,
     range: vscode.Range,
     operand?: string,
-    lines?: OtherLines,
   ): Promise<EditAnswer> {
     const answer = parseEditAnswer(
       await this.current(EDIT_REQUEST, document, () => ({
         range: { start: plain(range.start), end: plain(range.end) },
         edit,
         ...(operand === undefined ? {} : { operand }),
-        ...(lines === undefined ? {} : { lines }),
       })),
     );
     if (answer === undefined) {
@@ -155,8 +142,7 @@ export class DrawingEditor implements vscode.Disposable {
       return;
     }
     const changes = contentChanges.map(({ range, text }) => ({ range, text }));
-    const isPaste = this.paste.takes(document, changes, reason !== undefined);
-    if (isPaste || isMadeBy(changes, this.making.get(document) ?? [])) {
+    if (isMadeBy(changes, this.making.get(document) ?? [])) {
       this.made(document, changes);
       return;
     }
@@ -213,8 +199,9 @@ export class DrawingEditor implements vscode.Disposable {
       }
     }
     for (const key of left) {
-      const { first, last, text } = rungLines(rowsOf(document), key.range.start.line, added, bursts);
+      const { first, last } = rungLines(document, key.range.start.line, added, bursts);
       const own = take({ has: (line) => first <= line && line <= last });
+      const text = Array.from({ length: last - first + 1 }, (_, index) => document.lineAt(first + index).text).join('\n');
       bursts.push(new Burst(first, text, own));
     }
     void this.enqueue(() => this.settle(editor));
@@ -398,47 +385,13 @@ export class DrawingEditor implements vscode.Disposable {
     }
   }
 
-  /** Waits until what was typed in a document is answered. */
-  private async settled(document: vscode.TextDocument): Promise<void> {
-    if (this.dirty.has(document) || (this.bursts.get(document)?.length ?? 0) > 0) {
-      await this.enqueue(async () => undefined);
-    }
-  }
-
-  /** What a paste calls for, in the text with it: a name is answered as if it were typed, other things are mended. */
-  private async pasteEdits(
-    document: vscode.TextDocument,
-    change: PlainChange,
-    preview: Preview,
-  ): Promise<EditAnswer['edits'] | undefined> {
-    const stretch = linesToMend([change]);
-    if (!mendsWhileTyping(document) || isLineEnd(change.text)) {
-      return undefined;
-    }
-    if (!areKeystrokes([change])) {
-      return stretch && this.mendingEdits(document, stretch, preview, preview.lines());
-    }
-    const { first, text } = rungLines(preview, change.range.start.line, 0, []);
-    const removed = document.getText(toRange(change.range));
-    const burst = new Burst(first, text, [{ ...change, removed }]);
-    while (!burst.isAnswered) {
-      await burst.answerNext((typed) => this.askTyped(document, burst, typed));
-    }
-    return burst.edits();
-  }
-
   /** The edits that mend the rungs in a stretch of lines. A rung that cannot be mended is left as it is. */
-  private async mendingEdits(
-    document: vscode.TextDocument,
-    stretch: Stretch,
-    rows: Rows = rowsOf(document),
-    lines?: OtherLines,
-  ): Promise<EditAnswer['edits']> {
-    const last = Math.min(stretch.last, rows.lineCount - 1);
-    const places = rungPlaces((line) => rows.lineAt(line), { ...stretch, last });
+  private async mendingEdits(document: vscode.TextDocument, stretch: Stretch): Promise<EditAnswer['edits']> {
+    const last = Math.min(stretch.last, document.lineCount - 1);
+    const places = rungPlaces((line) => document.lineAt(line).text, { ...stretch, last });
     const asked = places.map(({ line, character }) => {
-      const at = new vscode.Position(line, Math.min(character, rows.lineAt(line).length));
-      return this.ask(document, 'mend', new vscode.Range(at, at), undefined, lines).catch((error: unknown) => {
+      const at = document.validatePosition(new vscode.Position(line, character));
+      return this.ask(document, 'mend', new vscode.Range(at, at)).catch((error: unknown) => {
         this.output.debug(`mend, line ${line + 1}: ${String(error)}`);
         return undefined;
       });
@@ -490,28 +443,22 @@ function addedLines({ range, text }: PlainChange): number {
  * Enter may put others; no line of another burst.
  */
 function rungLines(
-  rows: Rows,
+  document: vscode.TextDocument,
   line: number,
   added: number,
   bursts: readonly Burst[],
-): { first: number; last: number; text: string } {
+): { first: number; last: number } {
   let [first, last] = [line, line + added];
   const isOpen = (at: number) =>
-    at >= 0 && at < rows.lineCount && rows.lineAt(at).trim() !== '' && !bursts.some((burst) => burst.has(at));
+    at >= 0 && at < document.lineCount && !document.lineAt(at).isEmptyOrWhitespace && !bursts.some((burst) => burst.has(at));
   while (last - first < MOST_LINES && isOpen(first - 1)) {
     first -= 1;
   }
   while (last - first < MOST_LINES && isOpen(last + 1)) {
     last += 1;
   }
-  const isFree = last + 1 < rows.lineCount && !bursts.some((burst) => burst.has(last + 1));
-  last += isFree ? 1 : 0;
-  const text = Array.from({ length: last - first + 1 }, (_, index) => rows.lineAt(first + index)).join('\n');
-  return { first, last, text };
-}
-
-function rowsOf(document: vscode.TextDocument): Rows {
-  return { lineCount: document.lineCount, lineAt: (line) => document.lineAt(line).text };
+  const isFree = last + 1 < document.lineCount && !bursts.some((burst) => burst.has(last + 1));
+  return { first, last: isFree ? last + 1 : last };
 }
 
 function stretchOf({ first, lineCount }: Burst): Stretch {

@@ -79,7 +79,7 @@ export function joinStretches(a: Stretch | undefined, b: Stretch): Stretch {
 }
 
 /** Where a text ends that was put in at `start`, which lies in line `line` by now. */
-export function endOf(start: PlainPosition, text: string, line: number): PlainPosition {
+function endOf(start: PlainPosition, text: string, line: number): PlainPosition {
   const rows = text.split(/\r\n|\r|\n/);
   const tail = rows.at(-1) ?? '';
   return { line: line + rows.length - 1, character: (rows.length === 1 ? start.character : 0) + tail.length };

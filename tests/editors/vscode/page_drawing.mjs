@@ -21,7 +21,6 @@ export const DRAWING_TESTS = {
   'a program is typed from nothing: snippets, names longer than their places, contacts in a wire, Enter for a branch': wholeProgram,
   'a contact, a branch and a coil are inserted by their keys and taken back': editsByKeys,
   'deleting cells keeps the columns, and is undone at once': deletion,
-  'a paste keeps the columns, and is undone at once': paste,
   'the context menu has the edits': contextMenu,
 };
 
@@ -143,54 +142,4 @@ async function contextMenu(workbench) {
   await workbench.page.keyboard.press('Escape');
   await workbench.page.keyboard.press('Escape');
   await workbench.page.keyboard.press('Escape');
-}
-
-/** Copies and pastes by the keys: each paste is one undo step, with what it pushed aside. */
-async function paste(workbench) {
-  const { keyboard } = workbench.page;
-  await workbench.openFile('edited.lad');
-  const before = await workbench.documentLines();
-  const cut = async (text) => {
-    await keyboard.press('Control+End');
-    await keyboard.press('Enter');
-    await keyboard.type(text);
-    await keyboard.press('Shift+Home');
-    await keyboard.press('Control+x');
-    await keyboard.press('Backspace');
-    await untilText(workbench, 'the text as before', before);
-  };
-  // A name that is longer than the one that it replaces.
-  await cut('X1234');
-  await workbench.goTo(1, 15);
-  await keyboard.press('Shift+ArrowRight');
-  await keyboard.press('Shift+ArrowRight');
-  await keyboard.press('Control+v');
-  const longer = [before[0].replace('X1   ', 'X1234'), ...before.slice(1)];
-  longer[0] = '|   X0        X1234                        Y0  |';
-  await untilText(workbench, 'the pasted name in its place', longer);
-  await workbench.status('Ln 1, Col 20');
-  await workbench.screenshot('15-pasted');
-  await keyboard.press('Control+z');
-  await untilText(workbench, 'all of it to go at once', before);
-  // What is typed just before a paste is answered while the editor asks what to paste.
-  await workbench.goTo(1, 17);
-  await keyboard.type('A');
-  await keyboard.press('Control+v');
-  await untilText(workbench, 'both names', ['|   X0        X1AX1234                     Y0  |', ...before.slice(1)]);
-  await workbench.until('all of it to be undone', async () => {
-    await keyboard.press('Control+z');
-    return JSON.stringify(await workbench.documentLines()) === JSON.stringify(before);
-  });
-  // A part of a drawing in a wire.
-  await cut('[MOV K1 D0]');
-  await workbench.goTo(2, 28);
-  await keyboard.press('Control+v');
-  await untilText(workbench, 'the instruction in the wire', [
-    before[0],
-    '+---| |---+---|/|----------[MOV K1 D0]-----( )-+',
-    ...before.slice(2),
-  ]);
-  await workbench.status('Ln 2, Col 39');
-  await keyboard.press('Control+z');
-  await untilText(workbench, 'the wire again', before);
 }

@@ -159,7 +159,7 @@ module.exports = [
     const wanted = program(['|   X17       X1                           Y0  |', ...SEAL_IN.slice(1)]);
     await until(`the name in its place`, () => document.getText() === wanted)
       .catch((error) => assert.fail(`${error.message}\n${document.getText()}`));
-    // A paste by command goes past the extension; VS Code closes its undo step, so the mending is a step of its own.
+    // VS Code closes the undo step of a paste itself, so the mending is a step of its own.
     await vscode.commands.executeCommand('undo');
     await vscode.commands.executeCommand('undo');
     assert.equal(document.getText(), program(SEAL_IN));
