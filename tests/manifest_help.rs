@@ -110,6 +110,8 @@ fn keys_and_tables_that_are_not_there_yet_are_proposed() {
     assert_eq!(with("ta$0", "target"), "target = \"${1|fx1s,fx1n,fx2n,fx3u,iec|}\"");
     assert_eq!(with("[format]\nw$0", "width"), "[format]\nwidth = ${1:48}");
     assert_eq!(with("format = { $0 }", "style"), "format = { style = \"${1|iec,brackets,unicode|}\" }");
+    assert_eq!(with("format = {$0}", "style"), "format = {style = \"${1|iec,brackets,unicode|}\"}");
+    assert_eq!(with("\"tar$0\"", "target"), "\"target\"", "a key in quotes is completed inside them");
     assert_eq!(labels("# tar$0"), set([]));
     assert_eq!(labels("target $0"), set([]));
 }
@@ -129,6 +131,9 @@ fn values_are_the_words_and_files_that_fit() {
     let rules = labels("[rules]\nopen-circuit = \"off\"\n$0\n[format]\n[[task]]\n");
     assert_eq!(rules, set(codes.chain(["[[task]]"])));
     assert_eq!(labels("files = [$0"), set(["main.lad", "sub/motors.il"]));
+    assert_eq!(labels("files = [$0]"), set(["main.lad", "sub/motors.il"]), "closed by the editor");
+    assert_eq!(labels("files = [\"main.lad\", $0]"), set(["sub/motors.il"]));
+    assert_eq!(labels("files = [\"main.lad\"$0]"), set([]));
     assert_eq!(labels("files = [\n  \"main.lad\",\n  \"$0\"\n]\n"), set(["sub/motors.il"]));
     assert_eq!(with("files = $0", "main.lad"), "files = [\"main.lad\"]");
     assert_eq!(labels("[[task]]\nprograms = [\"$0\"]"), set(["main.lad", "sub/motors.il"]));
@@ -291,7 +296,7 @@ fn a_manifest_of_any_depth_is_read_in_bounded_time() {
     for (start, repeated) in deep {
         let text = format!("{start}{}", repeated.repeat(200_000));
         let begun = Instant::now();
-        let found = manifest_completions(&text, text.len(), &ManifestFiles::default(), Language::English);
+        let found = manifest_completions(&text, text.len(), &ManifestFiles::default, Language::English);
         assert!(
             found.len() < 200 && begun.elapsed() < Duration::from_secs(5),
             "{repeated}: {:?}",
@@ -308,7 +313,7 @@ proptest! {
             if let Some(hover) = manifest_hover(&text, offset, Language::English) {
                 prop_assert!(text.get(hover.span.range()).is_some());
             }
-            for found in manifest_completions(&text, offset, &ManifestFiles::default(), Language::English) {
+            for found in manifest_completions(&text, offset, &ManifestFiles::default, Language::English) {
                 let replaced = text.get(found.edit.span.range());
                 prop_assert!(replaced.is_some_and(|text| !text.contains('\n')), "{text:?} {offset} {found:?}");
                 prop_assert!(found.edit.span.touches(offset), "{text:?} {offset} {found:?}");

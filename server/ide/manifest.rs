@@ -57,11 +57,12 @@ pub fn manifest_hover(text: &str, offset: usize, language: Language) -> Option<H
     Some(Hover { span, markdown })
 }
 
-/// What could be written at `offset`: tables, keys that are not there yet, values.
+/// What could be written at `offset`: tables, keys that are not there yet, values. `files` is asked where a value names
+/// one.
 pub fn manifest_completions(
     text: &str,
     offset: usize,
-    files: &ManifestFiles,
+    files: &dyn Fn() -> ManifestFiles,
     language: Language,
 ) -> Vec<Completion> {
     let reading = Reading::of(text, offset);
@@ -157,7 +158,9 @@ impl List<'_> {
                 continue;
             }
             let documentation = description(&own, node, self.language);
-            let text = if has_value { name.to_string() } else { format!("{name} = {}", template(node)) };
+            let is_quoted = self.text[..word.start as usize].ends_with(['"', '\'']);
+            let is_whole = has_value || is_quoted;
+            let text = if is_whole { name.to_string() } else { format!("{name} = {}", template(node)) };
             self.propose(name, word, CompletionKind::Keyword, documentation, text);
         }
     }
@@ -168,16 +171,17 @@ impl List<'_> {
         path: &[String],
         node: Node,
         (word, is_quoted, in_list): (Span, bool, bool),
-        files: &ManifestFiles,
+        files: &dyn Fn() -> ManifestFiles,
     ) {
         let is_list = node.kind() == Kind::List;
         let element = if is_list { node.element() } else { node };
         let names = match element.files() {
-            Some("program") => &files.programs[..],
-            Some("table") => &files.tables[..],
-            _ => &[],
+            Some("program") => files().programs,
+            Some("table") => files().tables,
+            _ => Vec::new(),
         };
-        let names = names.iter().filter(|name| !reading.is_listed(path, name)).map(String::as_str);
+        let listed = reading.listed(path);
+        let names = names.iter().map(String::as_str).filter(|name| !listed.contains(name));
         let words: Vec<&str> = element.words().into_iter().chain(names).collect();
         for value in &words {
             let text = match (is_quoted, is_list && !in_list) {

@@ -35,7 +35,7 @@ pub(super) async fn completion(open: Arc<Open>, position: Position) -> Result<Op
     beside(move |_| {
         let folder = file_path(&open.uri).and_then(|path| path.parent().map(|folder| folder.to_path_buf()));
         let names = |wanted| folder.as_ref().map(|folder| names_in(folder, wanted)).unwrap_or_default();
-        let files = ManifestFiles { programs: names(is_program_file), tables: names(is_table_file) };
+        let files = || ManifestFiles { programs: names(is_program_file), tables: names(is_table_file) };
         let place = Place::new(&open.document, manner);
         let text = open.document.text();
         let proposals = ide::manifest_completions(&text, place.offset(position), &files, place.language);

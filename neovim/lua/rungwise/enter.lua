@@ -11,44 +11,47 @@ local PLACEHOLDER = '???'
 local EMPTY_RUNG = [[^\s*[+├][-─]\+[+┤]$]]
 local FIRST_CELLS = 4
 
---- Where to type on in a line that came with an answer: first byte and the one behind; nil if nowhere.
-local function place_in(line)
-  local from = line:find(PLACEHOLDER, 1, true)
-  if from then
-    return from - 1, from - 1 + #PLACEHOLDER
-  elseif vim.fn.match(line, EMPTY_RUNG) < 0 then
-    return nil
-  end
+--- The byte at which the first contact of an empty rung goes.
+local function first_place(line)
   local indent = #line:match('^%s*')
-  local at = indent + math.max(0, vim.fn.byteidx(line:sub(indent + 1), FIRST_CELLS))
-  return at, at
+  return indent + math.max(0, vim.fn.byteidx(line:sub(indent + 1), FIRST_CELLS))
 end
 
 --- The place to type on that came with edits, once they are made: row from 0, first byte, the one behind; a name to choose
---- goes before a new rung.
-local function place_of(edits, buffer)
+--- goes before a new rung. Enter was pressed in the row above `row`, behind byte `column`: the new branch is below that,
+--- and of several names that are still to be chosen it has the one nearest to the column.
+local function place_of(edits, buffer, row, column)
   edits = vim.deepcopy(edits)
   table.sort(edits, function(a, b)
     local left, right = a.range.start, b.range.start
     return left.line < right.line or (left.line == right.line and left.character < right.character)
   end)
-  local added, rung = 0, nil
+  local added, name, rung = 0, nil, nil
   for _, edit in ipairs(edits) do
     local lines = vim.split(edit.newText, '\n', { plain = true })
     for index, written in ipairs(lines) do
-      local row = edit.range.start.line + added + index - 1
-      local line = vim.api.nvim_buf_get_lines(buffer, row, row + 1, false)[1] or ''
+      local at = edit.range.start.line + added + index - 1
+      local line = vim.api.nvim_buf_get_lines(buffer, at, at + 1, false)[1] or ''
       -- The first line of an edit may be a part of a row only.
-      local from, to = place_in(index > 1 and written or written:find(PLACEHOLDER, 1, true) and line or written)
-      if from and from < to then
-        return row, from, to
-      elseif from and line == written then
-        rung = rung or { row, from, to }
+      local from = at >= row and written:find(PLACEHOLDER, 1, true) and line:find(PLACEHOLDER, 1, true)
+      while from do
+        local far = math.abs(from - 1 - column)
+        if not name or far < name.far then
+          name = { far = far, row = at, from = from - 1 }
+        end
+        from = line:find(PLACEHOLDER, from + 1, true)
+      end
+      if line == written and vim.fn.match(line, EMPTY_RUNG) >= 0 then
+        rung = rung or { at, first_place(line) }
       end
     end
     added = added + #lines - 1 - (edit.range['end'].line - edit.range.start.line)
   end
-  return unpack(rung or {})
+  if name then
+    return name.row, name.from, name.from + #PLACEHOLDER
+  elseif rung then
+    return rung[1], rung[2], rung[2]
+  end
 end
 
 --- Keys that select from a byte of a row to before another one, for typing over it; in Insert mode and out of it.
@@ -76,13 +79,19 @@ function M.answer(running, buffer, place, typed, quietly)
     end
   end
   put(typed, '')
+  local column = #(vim.api.nvim_buf_get_lines(buffer, row - 1, row, false)[1] or '')
+  local tick = vim.api.nvim_buf_get_changedtick(buffer)
   local encoding = running.offset_encoding
   local params = vim.lsp.util.make_formatting_params()
   params.textDocument = { uri = vim.uri_from_bufnr(buffer) }
   params.position = { line = row, character = client.character(text, start, encoding) }
   params.ch = '\n'
   local edits = client.request_sync(running, METHOD, params, PATIENCE_MS, buffer)
-  if type(edits) ~= 'table' or #edits == 0 then
+  if vim.api.nvim_buf_get_changedtick(buffer) ~= tick then
+    -- While it was waited for, something else has changed the text for which the answer was made.
+    vim.api.nvim_feedkeys(typed, 'ni', true)
+    return true
+  elseif type(edits) ~= 'table' or #edits == 0 then
     put('', typed)
     return false
   end
@@ -92,13 +101,14 @@ function M.answer(running, buffer, place, typed, quietly)
     end
     vim.lsp.util.apply_text_edits(edits, buffer, encoding)
   end)
-  M.type_on(edits, buffer, typed)
+  M.type_on(edits, buffer, { row, column }, typed)
   return true
 end
 
---- Puts the cursor where one types on after edits, and has `typed` typed there.
-function M.type_on(edits, buffer, typed)
-  local row, from, to = place_of(edits, buffer)
+--- Puts the cursor where one types on after edits, and has `typed` typed there. `place` is the row of the line that Enter
+--- made and the byte at which it cut the one above.
+function M.type_on(edits, buffer, place, typed)
+  local row, from, to = place_of(edits, buffer, unpack(place))
   local inserts = vim.fn.mode():match('^[iR]') ~= nil
   local keys = ''
   if row and from < to then
@@ -113,8 +123,9 @@ function M.type_on(edits, buffer, typed)
     keys = keys .. '%s'
   end
   local before, after = unpack(vim.split(keys, '%s', { plain = true }))
-  -- What came by keys goes in by keys, before those that wait, so that it is answered like all that is typed.
-  vim.api.nvim_feedkeys(vim.keycode(before) .. typed .. vim.keycode(after), 'nit', true)
+  -- What came by keys goes in by keys, before those that wait, so that it is answered like all that is typed; but not as
+  -- if it were typed, for a macro that is being recorded has it already, and holds no places of this text.
+  vim.api.nvim_feedkeys(vim.keycode(before) .. typed .. vim.keycode(after), 'ni', true)
 end
 
 return M

@@ -71,8 +71,10 @@ end
 
 --- Has the server answer characters that end at `place`. Answers whether it could; a row that is as it should be is left.
 local function format_typed(running, buffer, characters, place)
+  local tick = vim.api.nvim_buf_get_changedtick(buffer)
   local first, before, lines = answered(running, buffer, characters, place[1], place[2])
-  if not first then
+  -- While it was waited for, something else may have changed the text for which the answer was made.
+  if not first or vim.api.nvim_buf_get_changedtick(buffer) ~= tick then
     return false
   end
   local cursor = vim.api.nvim_win_get_cursor(0)

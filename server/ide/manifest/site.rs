@@ -2,6 +2,7 @@
 //! of the TOML reader, and what does not belong anywhere is passed over.
 
 use crate::text::Span;
+use rustc_hash::FxHashSet;
 use toml_parser::Source;
 use toml_parser::lexer::{Token, TokenKind};
 
@@ -73,9 +74,10 @@ impl Reading {
         self.keys.iter().any(|(number, key)| *number == self.here && key == path)
     }
 
-    /// Whether the key has the word among its values.
-    pub fn is_listed(&self, path: &[String], word: &str) -> bool {
-        self.values.iter().any(|(number, key, value)| *number == self.here && key == path && value == word)
+    /// The values that the key has already.
+    pub fn listed(&self, path: &[String]) -> FxHashSet<&str> {
+        let own = self.values.iter().filter(|(number, key, _)| *number == self.here && key == path);
+        own.map(|(_, _, value)| value.as_str()).collect()
     }
 }
 
@@ -120,7 +122,13 @@ struct Walk<'t> {
 impl Walk<'_> {
     fn take(&mut self, token: &Token, rest: &[Token]) {
         let (start, end) = (token.span().start(), token.span().end());
-        if !self.is_found && self.offset < start {
+        // What closes a list or a table leaves the place right before it to what belongs there.
+        let closes = matches!(
+            token.kind(),
+            TokenKind::RightSquareBracket | TokenKind::RightCurlyBracket | TokenKind::Comma
+        );
+        let is_before = self.offset == start && closes && !matches!(self.state, State::Header(_));
+        if !self.is_found && (self.offset < start || is_before) {
             self.gap(true);
         }
         let is_string = matches!(token.kind(), TokenKind::BasicString | TokenKind::LiteralString);

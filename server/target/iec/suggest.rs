@@ -31,13 +31,15 @@ const ELSEWHERE: &[(&str, &str)] = &[
 ];
 
 /// No name that is looked for is longer.
-const LONGEST: usize = 32;
+const LONGEST: usize = 96;
 
 /// At most three of `names` that are near to `word`, letter case aside, best first; none if nothing is near.
 ///
 /// ```
 /// use rungwise::target::iec::nearest;
 /// assert_eq!(nearest("TONN", ["TON", "TOF", "CTU"].into_iter()), ["TON"]);
+/// let long = "Conveyor_of_the_second_hall_motor_is_running";
+/// assert_eq!(nearest(&long.replace("second", "secnod"), [long].into_iter()), [long]);
 /// ```
 pub fn nearest<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Vec<String> {
     if word.is_empty() || word.len() > LONGEST {

@@ -273,7 +273,10 @@ check('a rung is typed from a snippet, name by name, and a branch by Enter', fun
   }, '', END[2]), '\n'))
 end)
 
---- Each: what it is, line and column from 0, the keys behind Enter, the drawing.
+--- A rung with a name that is still to be chosen.
+local UNNAMED = { (TWO[1]:gsub('X0 ', '???')), TWO[2] }
+
+--- Each: what it is, line and column from 0, the keys behind Enter, the drawing afterwards, that before if it is not TWO.
 local ENTERED = {
   { 'a contact, and the name of the branch', 1, 4, 'X17', {
     '|   X0        X1                           Y0  |',
@@ -281,14 +284,21 @@ local ENTERED = {
     '|   X17   |                                    |',
     '+---| |---+                                    |',
   } },
+  { 'a contact beside one without a name', 1, 12, 'X17', {
+    '|   ???       X1                           Y0  |',
+    '+---| |---+---| |---+----------------------( )-+',
+    '|         |   X17   |                          |',
+    '|         +---| |---+                          |',
+  }, UNNAMED },
   { 'the end of a rung, and a contact of the next', 1, 48, '| |', join(TWO, '', EMPTY[1], '+---| |----------------------------------------+') },
 }
 
 for _, script in ipairs(ENTERED) do
-  local what, line, column, keys, rows = unpack(script)
+  local what, line, column, keys, rows, before = unpack(script)
+  before = before or TWO
   check('Enter at ' .. what .. ', one key at a time and all at once', function()
     local insert = column == 48 and 'A' or 'i'
-    nvim:open('entered.lad', program(TWO), line, math.min(column, 47))
+    nvim:open('entered.lad', program(before), line, math.min(column, 47))
     nvim:press(insert .. '<CR>')
     nvim:settle()
     nvim:type(keys)
@@ -296,7 +306,7 @@ for _, script in ipairs(ENTERED) do
     nvim:settle()
     same('the drawing after slow typing', program(rows))
     for _, last in ipairs({ '<Esc>', '' }) do
-      nvim:open('entered.lad', program(TWO), line, math.min(column, 47))
+      nvim:open('entered.lad', program(before), line, math.min(column, 47))
       nvim:press(insert .. '<CR>' .. keys .. last)
       nvim:settle()
       nvim:press('<Esc>')
@@ -304,6 +314,34 @@ for _, script in ipairs(ENTERED) do
     end
   end)
 end
+
+check('a macro with Enter in it opens a branch wherever it is played, one key at a time and all at once', function()
+  local rungs = join(TWO, '', (vim.tbl_map(function(row)
+    return (row:gsub('X', 'M'))
+  end, TWO)))
+  local branch = ENTERED[1][5]
+  for _, slow in ipairs({ true, false }) do
+    nvim:open('macro.lad', program(rungs), 1, 4)
+    nvim:press('qa')
+    if slow then
+      nvim:press('i<CR>')
+      nvim:settle()
+      nvim:type('X17')
+      nvim:press('<Esc>')
+      nvim:settle()
+      nvim:press('q')
+    else
+      nvim:press('i<CR>X17<Esc>q')
+      nvim:settle()
+    end
+    nvim:request('nvim_win_set_cursor', 0, { 7, 4 })
+    nvim:press('@a')
+    nvim:settle()
+    same('both rungs with their branches', program(join(branch, '', (vim.tbl_map(function(row)
+      return (row:gsub('X([01]) ', 'M%1 '))
+    end, branch)))))
+  end
+end)
 
 check('deleting a character of a name keeps the columns, and is undone at once', function()
   nvim:open('deleted.lad', program(SEAL_IN), 0, 15)
