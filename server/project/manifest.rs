@@ -90,6 +90,32 @@ pub struct ManifestError {
     pub span: Span,
 }
 
+/// What the TOML library says, in words of the catalogue where it is about keys and kinds of values.
+fn message_of(reason: &str) -> Message {
+    let quoted: Vec<&str> = reason.split('`').skip(1).step_by(2).collect();
+    let wanted = reason.rsplit_once("expected ").map_or("", |(_, wanted)| wanted);
+    let is_about = |beginning: &str| reason.starts_with(beginning);
+    match quoted[..] {
+        [word, ref keys @ ..] if is_about("unknown field") => {
+            let message = Message::new("manifest.unknown-key").with("word", word);
+            message.with_words("words", keys.iter().copied(), ", ")
+        }
+        [word, ref words @ ..] if is_about("unknown variant") => {
+            let message = Message::new("manifest.unknown-word").with("word", word);
+            message.with_words("words", words.iter().copied(), ", ")
+        }
+        [word] if is_about("missing field") => Message::new("manifest.missing-key").with("word", word),
+        _ if is_about("invalid type") || is_about("invalid value") => match wanted {
+            "a string" => Message::new("manifest.text"),
+            "a sequence" => Message::new("manifest.list"),
+            "a map" => Message::new("manifest.table"),
+            _ if wanted.starts_with("struct ") => Message::new("manifest.table"),
+            _ => Message::new("manifest.number"),
+        },
+        _ => Message::new("manifest.toml").with("reason", reason),
+    }
+}
+
 impl Manifest {
     /// Reads a manifest.
     ///
@@ -100,7 +126,7 @@ impl Manifest {
             let span = error.span().map_or(Span::default(), |range| {
                 Span::new(at_character(text, range.start), at_character(text, range.end))
             });
-            ManifestError { message: Message::new("manifest.toml").with("reason", error.message()), span }
+            ManifestError { message: message_of(error.message()), span }
         })?;
         manifest.validated(text)
     }
