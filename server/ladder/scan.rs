@@ -414,7 +414,7 @@ impl Scanner<'_> {
             if !is_last || !self.grid.arms(row, self.left).is_upright() {
                 return false;
             }
-            if self.leads(row, column - 1) {
+            if column > 0 && self.leads(row, column - 1) {
                 if !self.ends_in_output(row, column) {
                     return false;
                 }
