@@ -411,7 +411,10 @@ impl<'t> Lines<'t> {
                         text.insert(0, BYTE_ORDER_MARK);
                     }
                 }
-                None => text.extend(self.lines[first..end].iter().copied()),
+                // Blanks at the ends of lines are no part of a drawing.
+                None => {
+                    self.lines[first..end].iter().for_each(|line| push_line_between(&mut text, line, None))
+                }
             }
             line = end;
         }
