@@ -9,6 +9,9 @@ pub mod specs;
 mod steps;
 pub(super) use steps::steps;
 
+mod places;
+pub(super) use places::placed;
+
 mod suggest;
 pub(super) use suggest::distance_within;
 pub use suggest::suggestions;
