@@ -81,21 +81,15 @@ fn form_of(element: &Element) -> Option<(Option<Form>, Span, bool)> {
 
 /// The instructions of the commonest elements, looked up once: each rule asks for them at each element.
 struct DrawnForms {
-    /// By [`ContactKind`].
-    contacts: [Option<Form>; 4],
-    /// By [`CoilKind`].
-    coils: [Option<Form>; 7],
+    /// In the order of [`ContactKind::ALL`], which is that of the kinds.
+    contacts: [Option<Form>; ContactKind::ALL.len()],
+    /// In the order of [`CoilKind::ALL`], which is that of the kinds.
+    coils: [Option<Form>; CoilKind::ALL.len()],
 }
 
-static DRAWN: LazyLock<DrawnForms> = LazyLock::new(|| {
-    use CoilKind as Coil;
-    let contacts = ContactKind::ALL;
-    let coils =
-        [Coil::Plain, Coil::Negated, Coil::Set, Coil::Reset, Coil::Rising, Coil::Falling, Coil::Toggle];
-    let mut forms = DrawnForms { contacts: [None; 4], coils: [None; 7] };
-    contacts.iter().for_each(|kind| forms.contacts[*kind as usize] = Form::named(contact_mnemonic(*kind)));
-    coils.iter().for_each(|kind| forms.coils[*kind as usize] = Form::named(coil_mnemonic(*kind)));
-    forms
+static DRAWN: LazyLock<DrawnForms> = LazyLock::new(|| DrawnForms {
+    contacts: ContactKind::ALL.map(|kind| Form::named(contact_mnemonic(kind))),
+    coils: CoilKind::ALL.map(|kind| Form::named(coil_mnemonic(kind))),
 });
 
 fn contact_mnemonic(kind: ContactKind) -> &'static str {
@@ -133,5 +127,17 @@ fn compare_mnemonic(operator: CompareOperator) -> &'static str {
         CompareOperator::GreaterOrEqual { wide: true } => "LDD>=",
         CompareOperator::LessOrEqual { wide: false } => "LD<=",
         CompareOperator::LessOrEqual { wide: true } => "LDD<=",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The tables of [`DRAWN`] are made in the order of `ALL` and read by the numbers of the kinds.
+    #[test]
+    fn kinds_are_listed_in_the_order_of_their_numbers() {
+        assert!(ContactKind::ALL.iter().enumerate().all(|(place, kind)| *kind as usize == place));
+        assert!(CoilKind::ALL.iter().enumerate().all(|(place, kind)| *kind as usize == place));
     }
 }

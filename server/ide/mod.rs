@@ -88,7 +88,7 @@ mod typing;
 mod linked_editing;
 
 mod manifest;
-pub use manifest::{ManifestFiles, manifest_completions, manifest_hover};
+pub use manifest::{FileKind, manifest_completions, manifest_hover};
 
 /// What stands at `offset`: the page of an instruction, the meaning and range of a device, where it is used.
 pub fn hover(document: &Document, offset: usize, language: Language) -> Option<Hover> {

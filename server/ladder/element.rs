@@ -210,6 +210,17 @@ pub enum CoilKind {
 }
 
 impl CoilKind {
+    /// All of them, the plain one first.
+    pub const ALL: [CoilKind; 7] = [
+        CoilKind::Plain,
+        CoilKind::Negated,
+        CoilKind::Set,
+        CoilKind::Reset,
+        CoilKind::Rising,
+        CoilKind::Falling,
+        CoilKind::Toggle,
+    ];
+
     /// The character that tells it in a drawing; a blank for a plain one.
     pub fn mark(self) -> char {
         match self {

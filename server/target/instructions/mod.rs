@@ -10,8 +10,8 @@ mod steps;
 pub(super) use steps::steps;
 
 mod suggest;
-pub(super) use suggest::distance_within;
 pub use suggest::suggestions;
+pub(super) use suggest::{MOST_LETTERS, distance_within};
 
 mod contacts;
 
