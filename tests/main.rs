@@ -53,3 +53,4 @@ mod target_fx_applied;
 mod target_iec;
 mod tidy;
 mod token_scopes;
+mod usage;

@@ -3,6 +3,7 @@
 import * as vscode from 'vscode';
 import { registerCommands } from './commands';
 import { currentSettings } from './configuration';
+import { DevicesView } from './devicesView';
 import { DrawingEditor } from './drawing';
 import { registerExample } from './example';
 import { Pages } from './pages';
@@ -41,6 +42,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<Rungwi
     new DrawingEditor(controller, output),
     new Pages(controller, statusBar),
     new UsageView(controller),
+    new DevicesView(controller),
     RungwiseTasks.register(controller),
     registerExample(context),
     registerWalkthrough(),
