@@ -33,6 +33,7 @@ mod ladder_print;
 mod ladder_read;
 mod ldmicro;
 mod lsp;
+mod lsp_calls;
 mod lsp_client;
 mod lsp_edit;
 mod lsp_project;

@@ -100,6 +100,11 @@ M.subcommands = {
       require('rungwise.pages').usage()
     end,
   },
+  uses = {
+    run = function(words)
+      require('rungwise.uses').list(words[1])
+    end,
+  },
 }
 
 local function subcommand_names()

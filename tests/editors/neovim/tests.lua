@@ -278,6 +278,42 @@ check('the devices in use are shown below, and anew when asked again', function(
   assert(#vim.api.nvim_list_wins() == 1 and vim.bo.filetype == 'plc-il')
 end)
 
+check('the uses of a device are listed in the quickfix list', function()
+  open('conveyor_fx.il')
+  until_codes({})
+  local function listed(command, title)
+    vim.fn.setqflist({}, 'f')
+    vim.cmd(command)
+    until_true(title, function()
+      return vim.fn.getqflist({ title = true }).title == title
+    end)
+    local places = vim.tbl_map(function(item)
+      local text = vim.api.nvim_buf_get_lines(item.bufnr, item.lnum - 1, item.lnum, false)[1]
+      return ('%d %s | %s'):format(item.lnum, text:sub(item.col), item.text)
+    end, vim.fn.getqflist())
+    vim.cmd('cclose')
+    return places
+  end
+  -- At the Y0 of `1 OR Y0`.
+  vim.api.nvim_win_set_cursor(0, { 4, 5 })
+  local uses = { '4 Y0 | rung 1, read: 1 OR Y0', '6 Y0 | rung 1, written: 3 OUT Y0', '7 Y0 | rung 2, read: 4 LD Y0' }
+  assert(vim.deep_equal(listed('Rungwise uses', 'Uses of Y0'), uses), vim.inspect(vim.fn.getqflist()))
+  assert(vim.deep_equal(listed('Rungwise uses t0', 'Uses of T0'), {
+    '8 T0 K50 | rung 2, written: 5 OUT T0 K50', '9 T0 | rung 3, read: 8 LD T0',
+  }), vim.inspect(vim.fn.getqflist()))
+  local said
+  local notify = vim.notify
+  vim.notify = function(message)
+    said = message
+  end
+  vim.cmd('Rungwise uses Y7')
+  until_true('a word about a device that is not used', function()
+    return said
+  end)
+  vim.notify = notify
+  assert(said:find('does not use "Y7"', 1, true), said)
+end)
+
 check('code lenses come by a refresh, and follow the options', function()
   local client = open('conveyor_fx.il')
   local function titles()
