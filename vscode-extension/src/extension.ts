@@ -6,6 +6,7 @@ import { currentSettings } from './configuration';
 import { DevicesView } from './devicesView';
 import { DrawingEditor } from './drawing';
 import { registerExample } from './example';
+import { FormsView } from './formsView';
 import { Pages } from './pages';
 import { ServerController } from './server';
 import type { ProgramStatus, ServerState } from './status';
@@ -43,6 +44,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<Rungwi
     new Pages(controller, statusBar),
     new UsageView(controller),
     new DevicesView(controller),
+    new FormsView(controller),
     RungwiseTasks.register(controller),
     registerExample(context),
     registerWalkthrough(),

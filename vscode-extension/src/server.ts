@@ -83,6 +83,11 @@ export class ServerController implements vscode.Disposable {
     await this.client?.sendNotification('workspace/didChangeConfiguration', configurationChange(settings));
   }
 
+  /** Whether the running server has a command. */
+  knows(command: string): boolean {
+    return this.client?.initializeResult?.capabilities.executeCommandProvider?.commands.includes(command) ?? false;
+  }
+
   /**
    * Runs a command of the server. Rejects when there is no server, when it answers with an error, and when `token`
    * cancels it.
