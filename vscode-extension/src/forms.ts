@@ -25,7 +25,7 @@ export function formsArgument(place: FormsPlace): object {
   return { ...place, to: 'all' };
 }
 
-/** The answer `{"forms": [{"to", "text", "certificate", "notes"}]}` as Markdown, with the forms as programs in fences. */
+/** The answer `{"forms": [{"to", "text", "certificate", "notes"}]}` as headings, programs in fences, and notes. */
 export function formsPage(answer: unknown): string {
   const forms = (answer as { forms?: unknown } | null)?.forms;
   const sections = (Array.isArray(forms) ? forms : []).map((form) => section(form as Record<string, unknown>));

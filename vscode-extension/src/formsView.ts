@@ -5,8 +5,8 @@ import { FormsFollower, TRANSLATE, formsArgument, type Asking, type FormsPlace }
 import type { ServerController } from './server';
 
 const SCHEME = 'rungwise-forms';
-/** Its name is that of the tab; its ending makes it Markdown, which shows programs in fences in their colours. */
-const PAGE = vscode.Uri.from({ scheme: SCHEME, path: '/Rungwise.md' });
+/** Its name is that of the tab; its ending gives it the colours of the forms, and long rows that are not folded. */
+const PAGE = vscode.Uri.from({ scheme: SCHEME, path: '/Rung.rungwise-forms' });
 const LANGUAGES = ['ladder', 'plc-il'];
 
 export class FormsView implements vscode.TextDocumentContentProvider, vscode.Disposable {
