@@ -100,6 +100,23 @@ fn parts_of_the_list_are_as_in_the_whole() {
 }
 
 #[test]
+fn devices_with_a_comment_are_not_free() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = [
+        ("rungwise.toml", "target = \"fx2n\"\ncomments = \"devices.csv\"\n"),
+        ("devices.csv", "M0;Spare;\nM3;;kept for the press\n"),
+        ("a.il", "LD M1\nOUT M6\nEND\n"),
+    ];
+    files.iter().for_each(|(name, text)| std::fs::write(folder.path().join(name), text).unwrap());
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rungwise"));
+    let output = command.args(["usage", "--format", "json"]).current_dir(folder.path()).output().unwrap();
+    let project = &serde_json::from_slice::<Value>(&output.stdout).unwrap()["projects"][0];
+    let gaps = json!([{"first": "M2", "last": "M2", "count": 1}, {"first": "M4", "last": "M5", "count": 2}]);
+    assert_eq!(project["devices"][0]["gaps"], gaps);
+    assert_eq!(project["kinds"][0]["next"], "M2");
+}
+
+#[test]
 fn gaps_on_the_command_line() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("a.il"), "LD X0\nAND X3\nOUT Y0\nEND\n").unwrap();

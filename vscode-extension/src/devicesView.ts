@@ -9,7 +9,7 @@ const VIEW = 'rungwise.devices';
 const LANGUAGES = ['ladder', 'plc-il'];
 /** The server is asked once in each pause of typing. */
 const PAUSE_MS = 400;
-/** A saved manifest or table of comments is read by the server first. */
+/** The server reads changed files of a project in the background. */
 const READ_MS = 1_500;
 const STATES = {
   leaf: vscode.TreeItemCollapsibleState.None,
@@ -32,16 +32,21 @@ export class DevicesView implements vscode.TreeDataProvider<DeviceNode>, vscode.
 
   constructor(private readonly server: ServerController) {
     this.view = vscode.window.createTreeView(VIEW, { treeDataProvider: this, showCollapseAll: true });
+    const files = vscode.workspace.createFileSystemWatcher('**/{rungwise.toml,*.lad,*.il,*.csv,*.tsv}');
+    const read = () => this.schedule(READ_MS);
     const register = vscode.commands.registerCommand;
     this.subscriptions = [
       this.changes,
       this.view,
+      files,
+      files.onDidCreate(read),
+      files.onDidChange(read),
+      files.onDidDelete(read),
       this.view.onDidChangeVisibility(() => this.isStale && this.schedule(0)),
       server.onDidStart(() => this.schedule(0)),
       vscode.window.onDidChangeActiveTextEditor(() => this.follow()),
       vscode.workspace.onDidCloseTextDocument(() => this.follow()),
       vscode.workspace.onDidChangeTextDocument(({ document }) => isProgram(document) && this.schedule(PAUSE_MS)),
-      vscode.workspace.onDidSaveTextDocument((document) => !isProgram(document) && this.schedule(READ_MS)),
       register('rungwise.filterDevices', () => this.askFilter()),
       register('rungwise.clearDeviceFilter', () => this.setFilter('')),
       register('rungwise.openUse', (use: DeviceUse) => openUse(use)),
@@ -125,7 +130,7 @@ export class DevicesView implements vscode.TreeDataProvider<DeviceNode>, vscode.
         return;
       }
       this.list = undefined;
-      this.view.message = error instanceof Error ? error.message : String(error);
+      this.view.message = this.server.isStarting ? '' : error instanceof Error ? error.message : String(error);
     }
     if (!asking.token.isCancellationRequested) {
       void vscode.commands.executeCommand('setContext', 'rungwise.devices.program', program !== undefined);

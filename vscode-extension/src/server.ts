@@ -60,6 +60,11 @@ export class ServerController implements vscode.Disposable {
     return this.runningVersion;
   }
 
+  /** Whether the server is being started: it will run, or a message says why not. */
+  get isStarting(): boolean {
+    return this.statusBar.serverState === 'starting';
+  }
+
   /** Starts the server. Never rejects: failures are shown to the user. */
   start(): Promise<void> {
     return this.enqueue(() => this.startNow());
