@@ -26,7 +26,13 @@ export type DeviceNode =
       readonly writes: number;
     }
   | { readonly type: 'gap'; readonly first: string; readonly last: string; readonly count: number }
-  | { readonly type: 'use'; readonly use: DeviceUse; readonly device: string; readonly showsFile: boolean };
+  | {
+      readonly type: 'use';
+      readonly use: DeviceUse;
+      readonly device: string;
+      readonly number: number;
+      readonly showsFile: boolean;
+    };
 
 export type KindNode = Extract<DeviceNode, { type: 'kind' }>;
 export type UsedDeviceNode = Extract<DeviceNode, { type: 'device' }>;
@@ -98,7 +104,7 @@ export function usesOf(answer: unknown, device: string): DeviceNode[] {
   const { devices, files } = record(answer);
   const showsFile = list(files).length > 1;
   const uses = list(devices).flatMap((row) => list(record(row)['uses'])).map(record).map(useOf);
-  return uses.map((use) => ({ type: 'use', use, device, showsFile }));
+  return uses.map((use, number) => ({ type: 'use', use, device, number, showsFile }));
 }
 
 /** Whether the name, the symbol or the comment of a device has all the words of `filter`. */
@@ -130,7 +136,7 @@ export function itemOf(node: DeviceNode, filter: string): DeviceItem {
         tooltip: [[node.name, ...said].join(' · '), node.preset, counts, node.latched ? t('keeps its value without power') : '']
           .filter((line) => line !== '')
           .join('\n'),
-        icon: ACCESS_ICONS[node.reads === 0 ? (node.writes === 0 ? 'define' : 'write') : node.writes === 0 ? 'read' : 'read-write'] ?? '',
+        icon: ACCESS_ICONS[accessOf(node)] ?? '',
         state: 'closed',
       };
     }
@@ -144,10 +150,11 @@ export function itemOf(node: DeviceNode, filter: string): DeviceItem {
         state: 'leaf',
       };
     case 'use': {
-      const { file, line, column, rung, access } = node.use;
+      const { file, line, rung, access } = node.use;
       const place = node.showsFile ? `${file}:${line}` : t('line {0}', line);
       return {
-        id: `use:${node.device}:${node.use.uri}:${line}:${column}:${access}`,
+        // A place alone does not tell uses apart: one word may stand for two of them.
+        id: `use:${node.device}:${node.number}`,
         label: node.use.text,
         description: rung === undefined ? place : `${place} · ${t('rung {0}', rung)}`,
         tooltip: accessWords(access),
@@ -167,6 +174,14 @@ const KIND_ICONS: Readonly<Record<string, string>> = {
 const ACCESS_ICONS: Readonly<Record<string, string>> = {
   read: 'eye', write: 'edit', 'read-write': 'arrow-swap', define: 'symbol-constant', jump: 'debug-step-over',
 };
+
+/** What all uses of a device together do. */
+function accessOf({ reads, writes }: UsedDeviceNode): string {
+  if (reads > 0) {
+    return writes > 0 ? 'read-write' : 'read';
+  }
+  return writes > 0 ? 'write' : 'define';
+}
 
 function accessWords(access: string): string {
   switch (access) {

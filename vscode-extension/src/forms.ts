@@ -112,7 +112,8 @@ export class FormsFollower {
     }
     const asking = this.ask(this.place);
     this.asking = asking;
-    const page = await asking.answer.then(formsPage, (error: unknown) => `${error instanceof Error ? error.message : String(error)}\n`);
+    const failed = (error: unknown) => `${error instanceof Error ? error.message : String(error)}\n`;
+    const page = await asking.answer.then(formsPage, failed);
     if (this.asking === asking) {
       this.asking = undefined;
       this.show(page);

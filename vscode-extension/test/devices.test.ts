@@ -78,6 +78,12 @@ test('uses say their place, and their file where there are several', () => {
   assert.deepEqual(usesOf(null, 'M0'), []);
 });
 
+test('uses at the same place are different nodes', () => {
+  const use = { uri: 'file:///a.il', file: 'a.il', line: 1, column: 4, rung: 1, access: 'read', text: 'LD M0' };
+  const nodes = usesOf({ files: ['a.il'], devices: [row('M0', { uses: [use, use] })] }, 'M0');
+  assert.equal(new Set(nodes.map((node) => itemOf(node, '').id)).size, 2);
+});
+
 test('an answer of another shape is no list', () => {
   for (const answer of [undefined, null, 'text', {}, { text: 'Used devices' }]) {
     assert.equal(DeviceList.of(answer), undefined);
