@@ -65,9 +65,9 @@ impl<'a> Operation<'a> {
 /// The instruction of an element, its cells, and whether these are a word.
 fn form_of(element: &Element) -> Option<(Option<Form>, Span, bool)> {
     let form = match &element.kind {
-        ElementKind::Contact(kind) => DRAWN.contacts[*kind as usize],
-        ElementKind::Compare(operator) => Form::named(compare_mnemonic(*operator)),
-        ElementKind::Coil(kind) => DRAWN.coils[*kind as usize],
+        ElementKind::Contact(kind) => contact_form(*kind),
+        ElementKind::Compare(operator) => compare_form(*operator),
+        ElementKind::Coil(kind) => coil_form(*kind),
         ElementKind::Instruction { form, mnemonic } => return Some((*form, *mnemonic, true)),
         ElementKind::Invert => Form::named("INV"),
         ElementKind::Block(_)
@@ -77,6 +77,21 @@ fn form_of(element: &Element) -> Option<(Option<Form>, Span, bool)> {
         | ElementKind::ConnectorIn(_) => return None,
     };
     Some((form, element.span, false))
+}
+
+/// The instruction that loads a contact of this kind.
+pub fn contact_form(kind: ContactKind) -> Option<Form> {
+    DRAWN.contacts[kind as usize]
+}
+
+/// The instruction that loads this comparison.
+pub fn compare_form(operator: CompareOperator) -> Option<Form> {
+    Form::named(compare_mnemonic(operator))
+}
+
+/// The instruction that drives a coil of this kind; a negated one is driven by OUT behind INV.
+pub fn coil_form(kind: CoilKind) -> Option<Form> {
+    DRAWN.coils[kind as usize]
 }
 
 /// The instructions of the commonest elements, looked up once: each rule asks for them at each element.

@@ -11,8 +11,8 @@
 //!
 //! `kind` is the device's letter, `address` or `variable`, and `name` the kind in words; `used` counts its devices in
 //! use, and `next` is the first free one or `null`. `reads` and `writes` count uses; `gaps` are the free devices
-//! between the device and the next one in use. `file` is the name in `files`; `line` and `column` count from 1, columns in
-//! Unicode scalar values; `rung` counts from 1 in its file or is `null`; `access` is `read`, `write`, `read-write`,
+//! between the device and the next one in use. `file` is the name in `files`; `line` and `column` count from 1, columns
+//! in Unicode scalar values; `rung` counts from 1 in its file or is `null`; `access` is `read`, `write`, `read-write`,
 //! `define` or `jump`; the `text` of a use is the instruction or the drawn rung in a line. The page has a grid for each
 //! kind of device. With `devices` or `position` there is no page, and `kinds` and `gaps` are empty.
 //!

@@ -9,6 +9,9 @@ pub mod specs;
 mod steps;
 pub(super) use steps::steps;
 
+mod places;
+pub(super) use places::placed;
+
 mod suggest;
 pub use suggest::suggestions;
 pub(super) use suggest::{MOST_LETTERS, distance_within};
