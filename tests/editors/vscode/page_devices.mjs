@@ -1,18 +1,22 @@
 // The view "Devices": the tree follows the program, its uses lead to their places, and the filter finds devices.
 
+import { mkdirSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+
 /** The files of these checks, and the fixtures of which they are copies. */
 export const DEVICE_FILES = { 'devices.il': 'conveyor_fx.il', 'devices_found.il': 'conveyor_fx.il' };
 
 export const DEVICE_TESTS = {
   'the tree of devices leads to uses and follows the program': inExplorerAfterwards(tree),
+  'the tree of a project has the devices of all its files with their comments': inExplorerAfterwards(project),
   'the filter of devices finds names and says how many': inExplorerAfterwards(filter),
 };
 
 /** Other checks begin in the explorer. */
 function inExplorerAfterwards(check) {
-  return async (workbench) => {
+  return async (workbench, workspace) => {
     try {
-      await check(workbench);
+      await check(workbench, workspace);
     } catch (error) {
       await workbench.screenshot(`failed-${check.name}`);
       throw error;
@@ -46,9 +50,8 @@ async function begin(workbench, file) {
 
 async function tree(workbench) {
   await begin(workbench, 'devices.il');
-  await row(workbench, 'Y output relay').click();
-  await untilRow(workbench, /^Y0.*read 2 ×, written 1 ×/);
-  await row(workbench, /^Y0/).click();
+  await openRow(workbench, 'Y output relay', /^Y0.*read 2 ×, written 1 ×/);
+  await openRow(workbench, /^Y0/, /^1 OR Y0/);
   await untilRow(workbench, /^1 OR Y0.*line 4 · rung 1/);
   await workbench.screenshot('24-tree-of-devices');
   await row(workbench, '1 OR Y0').click();
@@ -66,6 +69,45 @@ async function tree(workbench) {
   // What was open has stayed open.
   await untilRow(workbench, /^1 OR Y0/);
   await workbench.screenshot('25-free-devices');
+}
+
+async function project(workbench, workspace) {
+  const folder = join(workspace, 'press');
+  mkdirSync(folder);
+  const write = (name, text) => writeFileSync(join(folder, name), text);
+  write('rungwise.toml', 'target = "fx2n"\ncomments = "devices.csv"\nfiles = ["press.il", "lamp.il"]\n');
+  write('devices.csv', 'X0;Start;green button\n');
+  write('press.il', 'LD X0\nOUT Y0\n');
+  write('lamp.il', 'LD Y0\n// 灯\nAND X0\nOUT Y3\nEND\n');
+  await workbench.clear();
+  await workbench.page.keyboard.press('Control+p');
+  await workbench.page.waitForSelector('.quick-input-widget:visible');
+  await workbench.page.keyboard.type('press/press.il');
+  await workbench.page.locator('.quick-input-list .monaco-list-row', { hasText: 'press.il' }).first().waitFor();
+  await workbench.page.keyboard.press('Enter');
+  await workbench.page.waitForSelector('.tab.active[data-resource-name="press.il"]');
+  await workbench.command('Rungwise: Focus on Devices View');
+  await untilRow(workbench, /^Y output relay.*2 used/);
+  await openRow(workbench, /^X input relay/, /^X0/);
+  await untilRow(workbench, /^X0\s*Start · green button · read 2 ×/);
+  await openRow(workbench, /^X0/, /^AND X0/);
+  await untilRow(workbench, /^LD X0\s*press.il:1 · rung 1/);
+  await workbench.screenshot('28-devices-of-a-project');
+  // A file that is not open is opened at the place.
+  await row(workbench, 'AND X0').click();
+  await workbench.page.waitForSelector('.tab.active[data-resource-name="lamp.il"]');
+  await workbench.status('Ln 3, Col 7 (2 selected)');
+  await untilRow(workbench, /^AND X0\s*lamp.il:3/);
+  write('devices.csv', 'X0;Start;blue button\n');
+  await untilRow(workbench, /^X0\s*Start · blue button/);
+}
+
+/** Opens a row of the tree, if it is not open already. */
+async function openRow(workbench, words, inside) {
+  if (!(await rows(workbench)).some((text) => inside.test(text))) {
+    await row(workbench, words).click();
+  }
+  await untilRow(workbench, inside);
 }
 
 async function filter(workbench) {
