@@ -281,11 +281,11 @@ fn a_document_closed_and_opened_at_once_keeps_its_diagnostics() {
 
 #[test]
 fn a_document_opened_twice_is_published_by_one_voice() {
-    let mut client = opened(&"LD X8\nOUT M5\n".repeat(3_000));
+    let mut client = opened(&"LD X8\nINC D5\n".repeat(3_000));
     client.diagnostics(URI, 1);
     client.change(URI, 2, (0, 0), (0, 0), "// x\n");
     client.diagnostics(URI, 2);
-    client.open(URI, "plc-il", &"LD X0\nOUT M5\n".repeat(3_000));
+    client.open(URI, "plc-il", &"LD X0\nINC D5\n".repeat(3_000));
     let (count, last) = settled(&mut client);
     assert!(count < 8, "{count} messages about one document");
     assert_eq!(codes(last["diagnostics"].as_array().expect("an array")), ["missing-end"]);

@@ -48,6 +48,7 @@ mod rules;
 mod rules_drawing;
 mod rules_fx;
 mod rules_iec;
+mod rules_sense;
 mod target_fx;
 mod target_fx_applied;
 mod target_iec;

@@ -184,6 +184,7 @@ fn judge_page(
     }
     // What the whole program is judged and counted by, while the chunks are at hand.
     page.milestones();
+    page.accesses();
     page.size();
     diagnostics
 }
