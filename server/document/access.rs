@@ -8,7 +8,7 @@ use crate::il::iec::{Direction, IecTree, Item, ItemKind, MentionRole, OperandId,
 use crate::ladder::{Element, ElementKind, PinWire};
 use crate::target::iec::OperatorRole;
 use crate::target::{
-    Access as Written, Constant, Device, DeviceKind, Drive, Extent, Operand, OperandSpec, Wide,
+    Access as Written, Constant, Device, DeviceKind, Drive, Extent, Flow, Operand, OperandSpec, Wide,
 };
 use crate::text::{Span, Spanned, folded};
 use rustc_hash::FxHashMap;
@@ -264,6 +264,11 @@ impl Collector<'_> {
             };
             let is_edge = operation.form.is_some_and(|form| form.instruction.is_edge_contact());
             let act = if is_edge { Act::ReadEdge } else { act_of(spec) };
+            let gates = operation.form.is_some_and(|form| form.instruction.flow() == Flow::SectionBegin);
+            if gates && act.writes() {
+                // The relay of a master control is there to be read by what it gates.
+                self.operand(operand, None, Act::Read, 1, rung);
+            }
             let count = count(operation, spec, operand.value);
             self.operand(operand, operation.element.filter(|_| place == 0), act, count, rung);
             let pair = operation.form.is_some_and(|form| match form.instruction.wide {

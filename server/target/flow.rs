@@ -59,6 +59,11 @@ impl Instruction {
         }
     }
 
+    /// Whether it is a contact that conducts while its device is off: LDI, ANI, ORI, told by their code.
+    pub fn is_inverse_contact(&self) -> bool {
+        matches!(self.opcode, Opcode::Contact { class: 3 | 5 | 7, .. })
+    }
+
     /// Whether it is a contact that compares its device with that of its last execution: LDP, ANDF and their kin,
     /// told by their code.
     pub fn is_edge_contact(&self) -> bool {

@@ -166,6 +166,11 @@ impl Regions {
         self.covers.get(behind.checked_sub(1)?)?.1
     }
 
+    /// Whether there is anything that a jump passes over or a master control switches off.
+    pub fn has_parts(&self) -> bool {
+        !self.skips.is_empty() || self.regions.iter().any(|(_, region)| region.controls > 0)
+    }
+
     /// Whether a jump may pass over the place at an offset.
     pub fn may_be_skipped(&self, offset: u32) -> bool {
         self.cover(offset).is_some()

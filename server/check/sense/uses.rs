@@ -3,10 +3,11 @@
 
 use crate::check::ProgramContext;
 use crate::check::statements::is_fx_program;
-use crate::document::{Access, Act, Page, Part, Pou, Symbol, Variable};
+use crate::document::{Access, Page, Part, Symbol, Variable};
 use crate::target::{Device, DeviceKind, DirectAddress, Flow};
 use crate::text::Span;
 use rustc_hash::FxHashMap;
+use std::cell::OnceCell;
 
 /// The accesses of a program.
 pub struct Uses<'a> {
@@ -20,6 +21,8 @@ pub struct Uses<'a> {
     /// Devices that are read, and devices that are written, as parts of rows of several.
     read_rows: Rows,
     written_rows: Rows,
+    /// Where each name is written.
+    written: OnceCell<Vec<Vec<u32>>>,
     /// Whether it is a program for an FX.
     pub is_fx: bool,
 }
@@ -45,8 +48,6 @@ pub struct Name<'a> {
     pub key: Key<'a>,
     /// Its declaration, if it is a declared variable.
     pub variable: Option<&'a Variable>,
-    /// The unit in which a variable of its own stands.
-    pub pou: Option<&'a Pou>,
 }
 
 /// What makes names mean the same.
@@ -106,6 +107,7 @@ impl<'a> Uses<'a> {
             order: Vec::new(),
             read_rows: Rows::default(),
             written_rows: Rows::default(),
+            written: OnceCell::new(),
             is_fx: context.files().first().is_some_and(|file| is_fx_program(file.document)),
         };
         uses.number_names(context);
@@ -196,6 +198,18 @@ impl<'a> Uses<'a> {
         places.iter().map(|(page, place)| self.at(*page as usize, *place as usize))
     }
 
+    /// The offsets at which a name is written, in order.
+    pub fn written_at(&self, number: u32) -> &[u32] {
+        let written = self.written.get_or_init(|| {
+            let offsets = |number: u32| {
+                let writes = self.of_name(number).filter(|one| one.access.act.writes());
+                writes.map(|one| one.span.start).collect()
+            };
+            (0..self.names.len() as u32).map(offsets).collect()
+        });
+        written.get(number as usize).map_or(&[], Vec::as_slice)
+    }
+
     fn at(&self, page: usize, place: usize) -> Use {
         let at = &self.pages[page];
         let access = at.page.accesses().all[place];
@@ -252,7 +266,7 @@ fn name_of<'a>(
     started: usize,
     scopes: &'a crate::document::Scopes,
 ) -> Name<'a> {
-    let plain = |key| Name { key, variable: None, pou: None };
+    let plain = |key| Name { key, variable: None };
     match symbol {
         Symbol::Device(device) => plain(Key::Device(*device)),
         Symbol::Direct(address) => plain(Key::Direct(*address)),
@@ -262,7 +276,6 @@ fn name_of<'a>(
         | Symbol::Type(name)
         | Symbol::Connector(name) => {
             let number = started.checked_sub(1);
-            let pou = number.and_then(|number| scopes.pous.get(number)).map(|pou| &**pou);
             let variable = scopes.variable(number, name);
             let address = variable.and_then(|variable| variable.address).filter(|one| one.path[0].is_some());
             let is_global = variable.is_some_and(|variable| variable.section.is_global());
@@ -271,7 +284,7 @@ fn name_of<'a>(
                 None if is_global => Key::Global(name),
                 None => Key::Local(file, started, name),
             };
-            Name { key, variable, pou }
+            Name { key, variable }
         }
     }
 }
