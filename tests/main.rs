@@ -50,6 +50,7 @@ mod rules_drawing;
 mod rules_fx;
 mod rules_iec;
 mod stack_machine;
+mod rules_sense;
 mod target_fx;
 mod target_fx_applied;
 mod target_iec;
