@@ -3,7 +3,7 @@
 use super::Regions;
 use super::uses::{Key, Name, Use, Uses};
 use crate::check::ProgramContext;
-use crate::document::{DeclaredType, Notation};
+use crate::document::DeclaredType;
 use crate::il::iec::SectionKind;
 use crate::target::iec::ElementaryType;
 use crate::target::{DeviceKind, Location, Width};
@@ -15,7 +15,6 @@ const COMPARED: usize = 16;
 pub(super) struct Coils<'c, 'a> {
     uses: &'c Uses<'a>,
     regions: &'c Regions,
-    context: &'c ProgramContext<'a>,
 }
 
 /// A relay or an output with all that is done with it, in the order of execution.
@@ -28,7 +27,7 @@ pub(super) struct Driven {
 
 impl<'c, 'a> Coils<'c, 'a> {
     pub fn of(context: &'c ProgramContext<'a>) -> Coils<'c, 'a> {
-        Coils { uses: context.uses(), regions: context.regions(), context }
+        Coils { uses: context.uses(), regions: context.regions() }
     }
 
     /// The relays and outputs of which `wanted` are more than one, by a first quick look.
@@ -52,14 +51,9 @@ impl<'c, 'a> Coils<'c, 'a> {
             Key::Global(_) | Key::Local(..) => match name.variable {
                 Some(variable) => variable.declared == DeclaredType::Elementary(ElementaryType::Bool),
                 // In a drawing without declarations the coil says it.
-                None => self.uses.of_name(number).all(|one| self.is_drawn(&one)),
+                None => self.uses.of_name(number).all(|one| !self.uses.is_list(&one)),
             },
         }
-    }
-
-    fn is_drawn(&self, one: &Use) -> bool {
-        let file = self.context.files().get(one.file);
-        file.is_some_and(|file| file.document.notation() == Notation::Ladder)
     }
 
     /// Whether what `driven.all[one]` writes is undone by `driven.all[other]`, which comes later, before it matters.

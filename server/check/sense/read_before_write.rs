@@ -73,13 +73,14 @@
 //! END_PROGRAM
 //! ```
 
-use super::relays::{is_latched, is_private};
+use super::relays::{is_general, is_private};
+use super::rungs::{MOST_MENDED, movable};
 use super::uses::{Key, Name, Use, Uses};
 use crate::check::{ProgramContext, Rule, Run};
 use crate::document::{Act, DeclaredType};
 use crate::target::DeviceKind;
 use crate::target::iec::ElementaryType;
-use crate::text::{Diagnostic, Message, Severity};
+use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
 
 pub(super) const RULE: Rule = Rule {
     code: "read-before-write",
@@ -90,6 +91,7 @@ pub(super) const RULE: Rule = Rule {
 
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let uses = context.uses();
+    let mut mended = 0;
     for (number, name) in uses.names().filter(|(_, name)| is_passing_relay(context, name)) {
         let Some((read, coil)) = late(uses, number) else { continue };
         let is_always_executed = |one: &Use| {
@@ -108,15 +110,32 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
         let message =
             Message::new("read-before-write.found").with("name", uses.words(&read)).with("rung", coil.rung);
         let related = Message::new("read-before-write.coil").with("name", uses.words(&coil));
-        found.push(Diagnostic::new(RULE.code, read.span, message).related(coil.span, related));
+        let diagnostic = Diagnostic::new(RULE.code, read.span, message).related(coil.span, related);
+        let moved = (mended < MOST_MENDED).then(|| moved(uses, &read, &coil)).flatten();
+        mended += usize::from(moved.is_some());
+        found.push(match moved {
+            Some(edits) => {
+                diagnostic.fix(Message::new("read-before-write.move").with("rung", coil.rung), edits)
+            }
+            None => diagnostic,
+        });
     }
+}
+
+/// Puts the rung of `coil` before that of `read`.
+fn moved(uses: &Uses<'_>, read: &Use, coil: &Use) -> Option<Vec<TextEdit>> {
+    let ((before, reader), (own, text)) = (movable(uses, read)?, movable(uses, coil)?);
+    let newline = if reader.contains("\r\n") { "\r\n" } else { "\n" };
+    let is_list = uses.is_list(coil);
+    let body = text.trim_end_matches(['\n', '\r']);
+    // Rungs of a drawing are parted by a blank line.
+    let text = format!("{body}{newline}{}", if is_list { "" } else { newline });
+    Some(vec![TextEdit::new(Span::at(before.start as usize), text), TextEdit::new(own, "")])
 }
 
 fn is_passing_relay(context: &ProgramContext<'_>, name: &Name<'_>) -> bool {
     match name.key {
-        Key::Device(device) => {
-            device.kind == DeviceKind::M && !device.is_special() && !is_latched(device, context.target())
-        }
+        Key::Device(device) => device.kind == DeviceKind::M && is_general(device, context.target()),
         _ => {
             let is_bit = |variable: &&crate::document::Variable| {
                 variable.declared == DeclaredType::Elementary(ElementaryType::Bool)
