@@ -509,3 +509,19 @@ fn fixes_make_what_they_say() {
         assert!(found.iter().filter(wanted).all(|one| one.fixes.is_empty()), "{text}");
     }
 }
+
+#[test]
+fn codes_are_proposed_where_something_is_allowed() {
+    let labels = |text: &str| {
+        let offset = text.find('$').expect("a cursor");
+        let document = document(Notation::FxIl, &text.replace('$', ""));
+        let found = ide::completions(&document, offset, rungwise::text::Language::English);
+        found.into_iter().map(|one| one.label).collect::<Vec<_>>()
+    };
+    assert_eq!(labels("// rungwise: allow(double$)\nLD X0\nOUT Y0\nEND\n"), ["double-coil"]);
+    assert_eq!(labels("(* rungwise: allow(double-coil, latched$) *)\nLD X0\nOUT Y0\nEND\n"), ["latched-range"]);
+    assert!(labels("// rungwise: allow($)\nLD X0\nOUT Y0\nEND\n").len() > 30);
+    for text in ["// rungwise: allow(double-coil) d$\n", "// double$\n", "// rungwise: allow(syntax-e$)\n"] {
+        assert_eq!(labels(text), [""; 0], "{text}");
+    }
+}
