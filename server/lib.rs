@@ -15,6 +15,10 @@ pub mod ladder;
 
 pub mod document;
 
+pub mod logic;
+
+pub mod translate;
+
 pub mod check;
 
 pub mod project;

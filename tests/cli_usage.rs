@@ -65,7 +65,7 @@ fn usage_as_text_and_as_table() {
     let (code, out, _) = run(&folder, &["usage", "--format", "csv"]);
     assert_eq!(code, 0);
     let lines: Vec<&str> = out.lines().collect();
-    assert_eq!(lines[0], "device,symbol,comment,latched,preset,reads,writes,uses");
+    assert_eq!(lines[0], "device,symbol,comment,latched,preset,reads,writes,uses,gaps");
     assert!(lines[1].starts_with("X0,Start,button; green,false,,1,0,"), "{out}");
     assert!(lines[4].starts_with("T0,,,false,K50 = 5 s,1,1,"), "{out}");
     // Only the files that are named.

@@ -9,11 +9,13 @@ const FLOORS: &[(&str, u8)] = &[
     ("il", 2),
     ("ladder", 2),
     ("document", 3),
-    ("check", 4),
-    ("project", 5),
-    ("ide", 6),
-    ("lsp", 7),
-    ("cli", 8),
+    ("logic", 4),
+    ("check", 5),
+    ("translate", 5),
+    ("project", 6),
+    ("ide", 7),
+    ("lsp", 8),
+    ("cli", 9),
 ];
 
 /// Words that only some rooms may know.

@@ -26,7 +26,7 @@ pub(super) struct Arguments {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum StyleName {
+pub(super) enum StyleName {
     Iec,
     Brackets,
     Unicode,
@@ -134,7 +134,7 @@ fn formatted(program: &Program, style: Style) -> String {
     text.get(before..).unwrap_or("").to_string()
 }
 
-fn style_of(program: &Program, name: Option<StyleName>) -> Style {
+pub(super) fn style_of(program: &Program, name: Option<StyleName>) -> Style {
     let kind = match name {
         Some(StyleName::Iec) => FormatStyle::Iec,
         Some(StyleName::Brackets) => FormatStyle::Brackets,

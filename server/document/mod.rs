@@ -44,7 +44,7 @@ mod tokens;
 pub use tokens::{Token, TokenKind};
 
 mod operation;
-pub use operation::Operation;
+pub use operation::{Operation, coil_form, compare_form, contact_form};
 
 mod mention;
 pub use mention::{Mention, Symbol, Use};

@@ -65,9 +65,9 @@ impl<'a> Operation<'a> {
 /// The instruction of an element, its cells, and whether these are a word.
 fn form_of(element: &Element) -> Option<(Option<Form>, Span, bool)> {
     let form = match &element.kind {
-        ElementKind::Contact(kind) => DRAWN.contacts[*kind as usize],
-        ElementKind::Compare(operator) => Form::named(compare_mnemonic(*operator)),
-        ElementKind::Coil(kind) => DRAWN.coils[*kind as usize],
+        ElementKind::Contact(kind) => contact_form(*kind),
+        ElementKind::Compare(operator) => compare_form(*operator),
+        ElementKind::Coil(kind) => coil_form(*kind),
         ElementKind::Instruction { form, mnemonic } => return Some((*form, *mnemonic, true)),
         ElementKind::Invert => Form::named("INV"),
         ElementKind::Block(_)
@@ -79,23 +79,32 @@ fn form_of(element: &Element) -> Option<(Option<Form>, Span, bool)> {
     Some((form, element.span, false))
 }
 
-/// The instructions of the commonest elements, looked up once: each rule asks for them at each element.
-struct DrawnForms {
-    /// By [`ContactKind`].
-    contacts: [Option<Form>; 4],
-    /// By [`CoilKind`].
-    coils: [Option<Form>; 7],
+/// The instruction that loads a contact of this kind.
+pub fn contact_form(kind: ContactKind) -> Option<Form> {
+    DRAWN.contacts[kind as usize]
 }
 
-static DRAWN: LazyLock<DrawnForms> = LazyLock::new(|| {
-    use CoilKind as Coil;
-    let contacts = ContactKind::ALL;
-    let coils =
-        [Coil::Plain, Coil::Negated, Coil::Set, Coil::Reset, Coil::Rising, Coil::Falling, Coil::Toggle];
-    let mut forms = DrawnForms { contacts: [None; 4], coils: [None; 7] };
-    contacts.iter().for_each(|kind| forms.contacts[*kind as usize] = Form::named(contact_mnemonic(*kind)));
-    coils.iter().for_each(|kind| forms.coils[*kind as usize] = Form::named(coil_mnemonic(*kind)));
-    forms
+/// The instruction that loads this comparison.
+pub fn compare_form(operator: CompareOperator) -> Option<Form> {
+    Form::named(compare_mnemonic(operator))
+}
+
+/// The instruction that drives a coil of this kind; a negated one is driven by OUT behind INV.
+pub fn coil_form(kind: CoilKind) -> Option<Form> {
+    DRAWN.coils[kind as usize]
+}
+
+/// The instructions of the commonest elements, looked up once: each rule asks for them at each element.
+struct DrawnForms {
+    /// In the order of [`ContactKind::ALL`], which is that of the kinds.
+    contacts: [Option<Form>; ContactKind::ALL.len()],
+    /// In the order of [`CoilKind::ALL`], which is that of the kinds.
+    coils: [Option<Form>; CoilKind::ALL.len()],
+}
+
+static DRAWN: LazyLock<DrawnForms> = LazyLock::new(|| DrawnForms {
+    contacts: ContactKind::ALL.map(|kind| Form::named(contact_mnemonic(kind))),
+    coils: CoilKind::ALL.map(|kind| Form::named(coil_mnemonic(kind))),
 });
 
 fn contact_mnemonic(kind: ContactKind) -> &'static str {
@@ -133,5 +142,17 @@ fn compare_mnemonic(operator: CompareOperator) -> &'static str {
         CompareOperator::GreaterOrEqual { wide: true } => "LDD>=",
         CompareOperator::LessOrEqual { wide: false } => "LD<=",
         CompareOperator::LessOrEqual { wide: true } => "LDD<=",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The tables of [`DRAWN`] are made in the order of `ALL` and read by the numbers of the kinds.
+    #[test]
+    fn kinds_are_listed_in_the_order_of_their_numbers() {
+        assert!(ContactKind::ALL.iter().enumerate().all(|(place, kind)| *kind as usize == place));
+        assert!(CoilKind::ALL.iter().enumerate().all(|(place, kind)| *kind as usize == place));
     }
 }

@@ -18,7 +18,7 @@ pub struct Style {
 
 impl Style {
     /// The same for the printer of ladder.
-    pub(super) fn ladder(self) -> ladder::Style {
+    pub fn ladder(self) -> ladder::Style {
         let kind = match self.kind {
             FormatStyle::Iec => ladder::StyleKind::Iec,
             FormatStyle::Brackets => ladder::StyleKind::Brackets,

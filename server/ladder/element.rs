@@ -210,6 +210,17 @@ pub enum CoilKind {
 }
 
 impl CoilKind {
+    /// All of them, the plain one first.
+    pub const ALL: [CoilKind; 7] = [
+        CoilKind::Plain,
+        CoilKind::Negated,
+        CoilKind::Set,
+        CoilKind::Reset,
+        CoilKind::Rising,
+        CoilKind::Falling,
+        CoilKind::Toggle,
+    ];
+
     /// The character that tells it in a drawing; a blank for a plain one.
     pub fn mark(self) -> char {
         match self {
@@ -237,6 +248,38 @@ pub enum CompareOperator {
 }
 
 impl CompareOperator {
+    /// All of them, each in both widths.
+    pub const ALL: [CompareOperator; 12] = {
+        use CompareOperator::*;
+        [
+            Equal { wide: false },
+            Equal { wide: true },
+            NotEqual { wide: false },
+            NotEqual { wide: true },
+            Greater { wide: false },
+            Greater { wide: true },
+            Less { wide: false },
+            Less { wide: true },
+            GreaterOrEqual { wide: false },
+            GreaterOrEqual { wide: true },
+            LessOrEqual { wide: false },
+            LessOrEqual { wide: true },
+        ]
+    };
+
+    /// The operator that holds where this one does not.
+    pub fn opposite(self) -> CompareOperator {
+        use CompareOperator::*;
+        match self {
+            Equal { wide } => NotEqual { wide },
+            NotEqual { wide } => Equal { wide },
+            Greater { wide } => LessOrEqual { wide },
+            Less { wide } => GreaterOrEqual { wide },
+            GreaterOrEqual { wide } => Less { wide },
+            LessOrEqual { wide } => Greater { wide },
+        }
+    }
+
     /// What it compares for, as the LD>= family of instructions spells it; the 32-bit form has a D before it.
     pub fn sign(self) -> &'static str {
         match self {

@@ -1,8 +1,7 @@
 //! What the server offers, and what the client can do.
 
 use super::abilities::{Abilities, Requests};
-use super::features::USAGE_SCHEME;
-use super::{editing, manifest_help, to_proto};
+use super::{editing, manifest_help, to_proto, usage};
 use crate::text::Encoding;
 use serde_json::json;
 use tower_lsp::ls_types::*;
@@ -47,7 +46,7 @@ pub(super) fn registrations(requests: Requests) -> Vec<Registration> {
         registration("rungwise-configuration", "workspace/didChangeConfiguration", Some(section))
     });
     let content = requests.newer.content.then(|| {
-        let options = json!({"schemes": [USAGE_SCHEME]});
+        let options = json!({"schemes": [usage::SCHEME]});
         registration("rungwise-content", "workspace/textDocumentContent", Some(options))
     });
     let ranges = requests.newer.ranges.then(|| {

@@ -31,6 +31,7 @@ mod status;
 mod to_proto;
 mod tokens;
 mod typed;
+mod usage;
 mod workspace;
 mod written;
 

@@ -214,6 +214,12 @@ impl Form {
         instructions::steps(self, operands)
     }
 
+    /// The same contact alone, in series or in parallel: the AND of an LD, the LD of an ORP. Nothing if it is no
+    /// contact, or `role` is none of [`Role::Load`], [`Role::Series`], [`Role::Parallel`].
+    pub fn placed(self, role: Role) -> Option<Form> {
+        instructions::placed(self, role)
+    }
+
     /// Whether operand number `place`, from 0, may be `operand` on `model`. Words that could not be read pass, and a
     /// place that the instruction does not have takes nothing.
     pub fn takes(self, place: usize, operand: &Operand, model: Model) -> bool {

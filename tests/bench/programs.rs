@@ -47,6 +47,11 @@ pub fn program_of_bytes(bytes: usize) -> String {
 /// The relays that get a coil, on an FX3U. The rungs behind them count instead, as no program has that many.
 const COILS: usize = 7_680;
 
+/// Instruction list of so many rungs.
+pub fn rungs(count: usize) -> String {
+    (0..count).map(|number| il_rung(number, false)).collect::<String>() + "END\n"
+}
+
 /// A rung of a program in which no rule finds anything: each coil, timer and latch is there once, and read.
 fn il_rung(number: usize, marked: bool) -> String {
     let input = if marked { "X10".to_string() } else { format!("X{:o}", number % 128) };

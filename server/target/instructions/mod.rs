@@ -9,9 +9,12 @@ pub mod specs;
 mod steps;
 pub(super) use steps::steps;
 
+mod places;
+pub(super) use places::placed;
+
 mod suggest;
-pub(super) use suggest::distance_within;
 pub use suggest::suggestions;
+pub(super) use suggest::{MOST_LETTERS, distance_within};
 
 mod contacts;
 

@@ -1,0 +1,233 @@
+//! Formulas in an arena: equal ones have equal numbers as far as commuting and associating goes, so that most proofs
+//! are done when they are written down.
+
+use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
+use std::collections::hash_map::Entry;
+
+/// The number of a formula in its [`Formulas`].
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct Formula(pub(super) u32);
+
+/// A bit that nothing is known of but its name.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub enum Atom {
+    /// The value of a bit.
+    Bit(Moment),
+    /// Whether a bit came on (or went off) since it was last asked.
+    Edge {
+        /// The bit when it is asked.
+        of: Moment,
+        /// Its value then, if the run gave it one.
+        value: Option<Formula>,
+        /// On, or off.
+        rising: bool,
+    },
+    /// Whether a word is at least as large as a number.
+    Reaches {
+        /// The word.
+        word: Moment,
+        /// The least number for which it holds.
+        number: i64,
+    },
+    /// Whether a word is at least as large as another.
+    AtLeast {
+        /// The word that is.
+        word: Moment,
+        /// The other.
+        other: Moment,
+    },
+    /// Whether power goes on behind the event of this number, from 1.
+    Behind(u32),
+}
+
+/// A device or variable at a moment of the scan.
+#[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct Moment {
+    /// Its name, as [`Term::key`](super::Term::key) has it; a 32-bit value has a `D` and a blank before it.
+    pub name: SmolStr,
+    /// 0 for its value before the run; else a number that stands for what may have changed it.
+    pub since: u32,
+}
+
+/// What a formula is.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub(super) enum Node {
+    Constant(bool),
+    Atom(u32),
+    Not(Formula),
+    And(Box<[Formula]>),
+    Or(Box<[Formula]>),
+}
+
+/// An arena of formulas. Parts have smaller numbers than what they are part of.
+#[derive(Clone, Debug)]
+pub struct Formulas {
+    nodes: Vec<Node>,
+    numbers: FxHashMap<Node, Formula>,
+    atoms: Vec<Atom>,
+    atom_numbers: FxHashMap<Atom, u32>,
+}
+
+impl Default for Formulas {
+    fn default() -> Formulas {
+        Formulas {
+            nodes: vec![Node::Constant(false), Node::Constant(true)],
+            numbers: FxHashMap::default(),
+            atoms: Vec::new(),
+            atom_numbers: FxHashMap::default(),
+        }
+    }
+}
+
+impl Formulas {
+    /// Never.
+    pub const FALSE: Formula = Formula(0);
+    /// Always.
+    pub const TRUE: Formula = Formula(1);
+
+    /// The constant.
+    pub fn constant(value: bool) -> Formula {
+        Formula(u32::from(value))
+    }
+
+    /// The formula that is this atom. M8000 is on in every scan of a running PLC, M8001 off.
+    pub fn atom(&mut self, atom: Atom) -> Formula {
+        if let Atom::Bit(Moment { name, .. }) = &atom {
+            match name.as_str() {
+                ALWAYS_ON => return Formulas::TRUE,
+                ALWAYS_OFF => return Formulas::FALSE,
+                _ => {}
+            }
+        }
+        let number = match self.atom_numbers.entry(atom) {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(new) => {
+                self.atoms.push(new.key().clone());
+                *new.insert(self.atoms.len() as u32 - 1)
+            }
+        };
+        self.number(Node::Atom(number))
+    }
+
+    /// Where `part` does not hold.
+    pub fn not(&mut self, part: Formula) -> Formula {
+        match self.node(part) {
+            Node::Constant(value) => Formulas::constant(!value),
+            Node::Not(inner) => *inner,
+            _ => self.number(Node::Not(part)),
+        }
+    }
+
+    /// Where all parts hold.
+    pub fn and(&mut self, parts: impl IntoIterator<Item = Formula>) -> Formula {
+        self.join(parts, true)
+    }
+
+    /// Where one of the parts holds.
+    pub fn or(&mut self, parts: impl IntoIterator<Item = Formula>) -> Formula {
+        self.join(parts, false)
+    }
+
+    /// The atom with this number.
+    pub fn atom_at(&self, number: u32) -> &Atom {
+        &self.atoms[number as usize]
+    }
+
+    /// The atoms of a formula by number, in order.
+    pub fn atoms_of(&self, formulas: impl IntoIterator<Item = Formula>) -> Vec<u32> {
+        let mut atoms: Vec<u32> = self
+            .parts_of(formulas)
+            .into_iter()
+            .filter_map(|part| match self.node(part) {
+                Node::Atom(number) => Some(*number),
+                _ => None,
+            })
+            .collect();
+        atoms.sort_unstable();
+        atoms
+    }
+
+    /// The value of each formula, parts before wholes, where `value` gives those of the atoms; those that are no part
+    /// of `formulas` are false.
+    pub fn evaluate(&self, formulas: &[Formula], value: impl Fn(u32) -> bool) -> Vec<bool> {
+        let mut values: FxHashMap<Formula, bool> = FxHashMap::default();
+        for part in self.parts_of(formulas.iter().copied()) {
+            let of = |part: &Formula| values.get(part).copied().unwrap_or(false);
+            let own = match self.node(part) {
+                Node::Constant(value) => *value,
+                Node::Atom(number) => value(*number),
+                Node::Not(inner) => !of(inner),
+                Node::And(parts) => parts.iter().all(of),
+                Node::Or(parts) => parts.iter().any(of),
+            };
+            values.insert(part, own);
+        }
+        formulas.iter().map(|formula| values.get(formula).copied().unwrap_or(false)).collect()
+    }
+
+    /// The formulas and all their parts, each once, parts first.
+    pub(super) fn parts_of(&self, formulas: impl IntoIterator<Item = Formula>) -> Vec<Formula> {
+        let mut waiting: Vec<Formula> = formulas.into_iter().collect();
+        let mut seen = rustc_hash::FxHashSet::default();
+        while let Some(formula) = waiting.pop() {
+            if !seen.insert(formula) {
+                continue;
+            }
+            match self.node(formula) {
+                Node::Constant(_) | Node::Atom(_) => {}
+                Node::Not(part) => waiting.push(*part),
+                Node::And(parts) | Node::Or(parts) => waiting.extend(parts.iter()),
+            }
+        }
+        let mut parts: Vec<Formula> = seen.into_iter().collect();
+        parts.sort_unstable();
+        parts
+    }
+
+    pub(super) fn node(&self, formula: Formula) -> &Node {
+        &self.nodes[formula.0 as usize]
+    }
+
+    fn join(&mut self, parts: impl IntoIterator<Item = Formula>, and: bool) -> Formula {
+        let (neutral, ruling) = (Formulas::constant(and), Formulas::constant(!and));
+        let mut flat = Vec::new();
+        for part in parts {
+            match (self.node(part), and) {
+                (Node::And(inner), true) | (Node::Or(inner), false) => flat.extend(inner.iter().copied()),
+                _ => flat.push(part),
+            }
+        }
+        flat.sort_unstable();
+        flat.dedup();
+        flat.retain(|part| *part != neutral);
+        let is_ruled = flat.first().is_some_and(|first| *first == ruling) || flat.contains(&ruling);
+        let is_contrary = |part: &Formula| match self.node(*part) {
+            Node::Not(inner) => flat.binary_search(inner).is_ok(),
+            _ => false,
+        };
+        if is_ruled || flat.iter().any(is_contrary) {
+            return ruling;
+        }
+        match flat.len() {
+            0 => neutral,
+            1 => flat[0],
+            _ if and => self.number(Node::And(flat.into())),
+            _ => self.number(Node::Or(flat.into())),
+        }
+    }
+
+    fn number(&mut self, node: Node) -> Formula {
+        match self.numbers.entry(node) {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(new) => {
+                self.nodes.push(new.key().clone());
+                *new.insert(Formula(self.nodes.len() as u32 - 1))
+            }
+        }
+    }
+}
+
+/// The relays that are on and off in every scan of a running FX PLC, from its device tables.
+const ALWAYS_ON: &str = "M8000";
+const ALWAYS_OFF: &str = "M8001";

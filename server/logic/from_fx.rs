@@ -1,0 +1,216 @@
+//! Reads a rung of FX instruction list: runs it with paths in place of bits.
+
+use super::builder::Builder;
+use super::{Action, Contact, Deed, Expression, Gate, Path, Refusal, Rung, Term, Test};
+use crate::il::fx::{FxLine, FxTree, LineKind};
+use crate::target::{Flow, Form, Operand, Role};
+use crate::text::{Span, Spanned};
+
+/// The rung that a chunk of FX instruction list is.
+pub(super) fn rung(text: &str, tree: &FxTree) -> Rung {
+    let labels = tree.lines.iter().filter(|line| matches!(line.kind, LineKind::Label(_)));
+    let is_instruction = |line: &&FxLine| !matches!(line.kind, LineKind::Label(_));
+    let span = match (tree.lines.iter().find(is_instruction), tree.lines.last()) {
+        (Some(first), Some(last)) => first.span.to(last.span),
+        _ => Span::at(text.len()),
+    };
+    Rung {
+        labels: labels.map(|line| line.mnemonic.of(text).to_uppercase().into()).collect(),
+        network: None,
+        comments: tree.comments.clone(),
+        span,
+        is_list: true,
+        path: path(text, tree),
+    }
+}
+
+fn path(text: &str, tree: &FxTree) -> Result<Option<Path>, Refusal> {
+    if !tree.problems.is_empty() {
+        return Err(Refusal::Unreadable);
+    }
+    let mut reader = Reader { text, tree, builder: Builder::new(), blocks: Vec::new(), kept: Vec::new() };
+    for line in &tree.lines {
+        match line.kind {
+            LineKind::Instruction(form) => reader.instruction(form, line)?,
+            LineKind::Unknown => return Err(Refusal::Unreadable),
+            LineKind::Label(_) => {}
+        }
+    }
+    reader.finish()
+}
+
+/// The state of the PLC while it runs the rung, with what led there in place of bits.
+struct Reader<'a> {
+    text: &'a str,
+    tree: &'a FxTree,
+    /// What leads to the current result, but for blocks that are not joined yet.
+    builder: Builder,
+    /// The block stack; the first block becomes the way from the left rail at the first output or branch.
+    blocks: Vec<Block>,
+    /// The branch stack: the places whose power is kept.
+    kept: Vec<usize>,
+}
+
+/// A block that waits to be joined.
+struct Block {
+    condition: Expression,
+    /// At least as deep as `condition` nests.
+    depth: usize,
+}
+
+impl Block {
+    fn of(contact: Contact) -> Block {
+        Block { condition: Expression::Contact(contact), depth: 1 }
+    }
+
+    fn invert(&mut self) -> Result<(), Refusal> {
+        self.depth += 1;
+        if self.depth > Expression::DEPTH_MAX {
+            return Err(Refusal::TooDeep);
+        }
+        let condition = std::mem::replace(&mut self.condition, Expression::Constant(true));
+        self.condition = Expression::Not(Box::new(condition));
+        Ok(())
+    }
+
+    fn join(&mut self, other: Block, role: Role) -> Result<(), Refusal> {
+        let is_nested = match role {
+            Role::Series | Role::BlockSeries => !matches!(self.condition, Expression::And(_)),
+            _ => !matches!(self.condition, Expression::Or(_)),
+        };
+        self.depth = (self.depth + usize::from(is_nested)).max(other.depth + 1);
+        if self.depth > Expression::DEPTH_MAX {
+            return Err(Refusal::TooDeep);
+        }
+        match role {
+            Role::Series | Role::BlockSeries => self.condition.and_with(other.condition),
+            _ => self.condition.or_with(other.condition),
+        }
+        Ok(())
+    }
+}
+
+impl Reader<'_> {
+    fn instruction(&mut self, form: Form, line: &FxLine) -> Result<(), Refusal> {
+        let is_fresh = self.builder.is_empty() && self.blocks.is_empty();
+        let role = form.instruction.role;
+        if is_fresh && !matches!(role, Role::Load | Role::StepLoad | Role::Standalone) {
+            return Err(Refusal::NoCurrentResult);
+        }
+        match role {
+            Role::Load => {
+                let block = Block::of(self.contact(form, line)?);
+                self.blocks.push(block);
+            }
+            Role::Series | Role::Parallel => {
+                let contact = Block::of(self.contact(form, line)?);
+                self.join(contact, role)?;
+            }
+            Role::BlockSeries | Role::BlockParallel => {
+                let block = self.blocks.pop().ok_or(Refusal::Blocks)?;
+                if self.blocks.is_empty() && self.builder.is_empty() {
+                    return Err(Refusal::Blocks);
+                }
+                self.join(block, role)?;
+            }
+            Role::BranchPush => {
+                self.settle()?;
+                self.builder.keep();
+                self.kept.push(self.builder.place());
+            }
+            Role::BranchRead | Role::BranchPop => {
+                self.settle()?;
+                let place = self.kept.last().copied().ok_or(Refusal::Branches)?;
+                let for_good = role == Role::BranchPop;
+                self.builder.back_to(place, for_good).ok_or(Refusal::WithoutOutput)?;
+                if for_good {
+                    self.kept.pop();
+                }
+            }
+            Role::Modify => self.modify(form, line)?,
+            Role::StepLoad if !is_fresh => return Err(Refusal::Blocks),
+            Role::StepLoad => {
+                let action = self.action(form, line);
+                self.builder.gate(Gate::Through(action)).ok_or(Refusal::TooDeep)?;
+            }
+            Role::Output => {
+                self.settle()?;
+                let action = self.action(form, line);
+                self.builder.drive(action);
+            }
+            Role::Standalone if form.instruction.flow() == Flow::Nothing => {}
+            Role::Standalone if is_fresh => {
+                let action = self.action(form, line);
+                self.builder.drive(action);
+            }
+            Role::Standalone => return Err(Refusal::WithoutOutput),
+        }
+        Ok(())
+    }
+
+    /// Joins a contact or a block with the block on top of the stack, or with what leads to the current result.
+    fn join(&mut self, block: Block, role: Role) -> Result<(), Refusal> {
+        if let Some(top) = self.blocks.last_mut() {
+            return top.join(block, role);
+        }
+        match role {
+            Role::Series | Role::BlockSeries => self.builder.pass(block.condition).ok_or(Refusal::TooDeep),
+            _ => Err(Refusal::ParallelToBranch),
+        }
+    }
+
+    /// The one block that begins the rung becomes the way from the left rail; others must have been joined.
+    fn settle(&mut self) -> Result<(), Refusal> {
+        match self.blocks.len() {
+            0 => Ok(()),
+            1 if self.builder.is_empty() => {
+                let block = self.blocks.pop().ok_or(Refusal::Blocks)?;
+                self.builder.pass(block.condition).ok_or(Refusal::TooDeep)
+            }
+            _ => Err(Refusal::Blocks),
+        }
+    }
+
+    fn modify(&mut self, form: Form, line: &FxLine) -> Result<(), Refusal> {
+        let inverts = Form::named("INV") == Some(form);
+        if self.blocks.len() > 1 && !inverts {
+            return Err(Refusal::NotBoolean);
+        }
+        if let Some(top) = self.blocks.last_mut().filter(|_| inverts) {
+            return top.invert();
+        }
+        self.settle()?;
+        let gate = if inverts { Gate::Invert } else { Gate::Through(self.action(form, line)) };
+        self.builder.gate(gate).ok_or(Refusal::TooDeep)
+    }
+
+    fn contact(&self, form: Form, line: &FxLine) -> Result<Contact, Refusal> {
+        let test = Test::of_form(form).ok_or(Refusal::Unreadable)?;
+        Ok(Contact { test, terms: self.terms(line), span: line.span })
+    }
+
+    fn action(&self, form: Form, line: &FxLine) -> Action {
+        Action { deed: Deed::of_form(form), terms: self.terms(line), span: line.span }
+    }
+
+    fn terms(&self, line: &FxLine) -> Vec<Term> {
+        let operands = self.tree.operands(line).iter();
+        let term =
+            |operand: &Spanned<Operand>| Term::new(operand.value, operand.span.of(self.text), operand.span);
+        operands.map(term).collect()
+    }
+
+    fn finish(mut self) -> Result<Option<Path>, Refusal> {
+        if self.builder.is_empty() && self.blocks.is_empty() {
+            return Ok(None);
+        }
+        if !self.blocks.is_empty() {
+            self.settle()?;
+            return Err(Refusal::WithoutOutput);
+        }
+        if !self.kept.is_empty() {
+            return Err(Refusal::Branches);
+        }
+        self.builder.finish().map(Some).ok_or(Refusal::WithoutOutput)
+    }
+}

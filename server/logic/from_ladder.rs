@@ -1,0 +1,220 @@
+//! Reads a drawn rung: its series-parallel shape with words for cells.
+
+use super::builder::Builder;
+use super::from_fx;
+use super::{Action, Contact, Deed, Expression, Gate, Network, Path, Refusal, Rung, Term, Test};
+use crate::il::fx;
+use crate::ladder::reduce::{NotSeriesParallel, Shape, reduce};
+use crate::ladder::{self, Element, ElementId, ElementKind, Graph, LadderTree};
+use crate::target::{Operand, Target};
+use crate::text::{Diagnostic, Span, Spanned};
+
+/// The rungs of a chunk of a drawing.
+pub(super) fn rungs(text: &str, tree: &LadderTree, target: &Target) -> Vec<Rung> {
+    let header = tree.header.as_ref();
+    let label = header.and_then(|header| header.label).map(|label| label.of(text).into());
+    let network = header.filter(|header| header.label.is_none()).map(|header| Network {
+        number: header.number.map(|number| number.value),
+        title: header.title.map(|title| title.of(text).into()).unwrap_or_default(),
+    });
+    let mut rungs: Vec<Rung> = Vec::with_capacity(tree.rungs.len().max(1));
+    let mut comments = Vec::new();
+    let mut drawn = tree.rungs.iter().peekable();
+    let mut above = tree.comments.iter().copied().peekable();
+    loop {
+        let end = drawn.peek().map_or(u32::MAX, |rung| rung.span.end);
+        match above.next_if(|comment| comment.start < end) {
+            Some(comment) => match boxed(comment.of(text)) {
+                Some(list) => rungs.push(list_rung(list, comment, std::mem::take(&mut comments), target)),
+                None => comments.push(comment),
+            },
+            None => {
+                let Some(rung) = drawn.next() else { break };
+                rungs.push(Rung {
+                    labels: Vec::new(),
+                    network: None,
+                    comments: std::mem::take(&mut comments),
+                    span: rung.span,
+                    is_list: false,
+                    path: path(text, tree, rung).map(Some),
+                });
+            }
+        }
+    }
+    if rungs.is_empty() {
+        let path = if tree.problems.is_empty() { Ok(None) } else { Err(Refusal::Unreadable) };
+        let span = header.map_or(Span::at(text.len()), |header| header.span);
+        rungs.push(Rung {
+            labels: Vec::new(),
+            network: None,
+            comments: Vec::new(),
+            span,
+            is_list: false,
+            path,
+        });
+    }
+    if let Some(last) = rungs.last_mut() {
+        last.comments.append(&mut comments);
+    }
+    if let Some(first) = rungs.first_mut() {
+        first.labels.extend(label);
+        first.network = network;
+    }
+    rungs
+}
+
+/// The list in a box `{il … }`, in which a drawing carries along what has no drawing, and where it starts there.
+fn boxed(comment: &str) -> Option<(&str, usize)> {
+    let inside = comment.strip_prefix("{il")?.strip_suffix('}')?;
+    let list = inside.trim_start();
+    (list.len() < inside.len()).then(|| (list.trim_end(), "{il".len() + inside.len() - list.len()))
+}
+
+/// The rung that such a list is.
+fn list_rung((list, start): (&str, usize), comment: Span, comments: Vec<Span>, target: &Target) -> Rung {
+    let rung = from_fx::rung(list, &fx::parse(list, target));
+    let span = rung.span.shifted(comment.start as usize + start);
+    // Its own spans would be places in the list alone.
+    Rung { comments, span, path: rung.path, ..rung }
+}
+
+fn path(text: &str, tree: &LadderTree, rung: &ladder::Rung) -> Result<Path, Refusal> {
+    if tree.problems.iter().any(|problem| is_grave(problem, rung.span)) {
+        return Err(Refusal::Unreadable);
+    }
+    let shape = reduce(&rung.graph).map_err(|reason| match reason {
+        NotSeriesParallel::OpenCircuit(_) | NotSeriesParallel::Empty => Refusal::OpenCircuit,
+        NotSeriesParallel::Bridge(_) | NotSeriesParallel::SharedPin(_) => Refusal::Bridge,
+        NotSeriesParallel::TooDeep => Refusal::TooDeep,
+    })?;
+    let mut reader = Reader { text, graph: &rung.graph, builder: Builder::new() };
+    reader.shape(&shape, true)?;
+    reader.builder.finish().ok_or(Refusal::WithoutOutput)
+}
+
+/// Whether the rung may not say what its author meant.
+fn is_grave(problem: &Diagnostic, rung: Span) -> bool {
+    let is_inside = problem.span.start < rung.end && rung.start <= problem.span.end;
+    let is_mild = matches!(problem.code, "ragged-rail" | "ragged-drawing" | "tab-in-drawing")
+        && problem.message.key() != ladder::TWO_READINGS;
+    is_inside && !is_mild
+}
+
+struct Reader<'a> {
+    text: &'a str,
+    graph: &'a Graph,
+    builder: Builder,
+}
+
+impl Reader<'_> {
+    /// Goes through `shape`; behind the last one of the rung nothing follows but the right rail.
+    fn shape(&mut self, shape: &Shape, is_last: bool) -> Result<(), Refusal> {
+        if self.is_invert(shape) {
+            return self.builder.gate(Gate::Invert).ok_or(Refusal::TooDeep);
+        }
+        if !self.acts(shape) {
+            let condition = self.condition(shape)?;
+            return self.builder.pass(condition).ok_or(Refusal::TooDeep);
+        }
+        match shape {
+            Shape::Series(parts) => {
+                for (number, part) in parts.iter().enumerate() {
+                    self.shape(part, is_last && number + 1 == parts.len())?;
+                }
+                Ok(())
+            }
+            Shape::Parallel(_) if !is_last => Err(Refusal::BehindOutput),
+            Shape::Parallel(branches) => {
+                let place = self.builder.place();
+                self.builder.keep();
+                for (number, branch) in branches.iter().enumerate() {
+                    self.shape(branch, true)?;
+                    let is_end = number + 1 == branches.len();
+                    self.builder.back_to(place, is_end).ok_or(Refusal::WithoutOutput)?;
+                }
+                Ok(())
+            }
+            Shape::Element(id) => self.element(self.graph.element(*id)),
+            Shape::Block(_) => Err(Refusal::Element),
+            Shape::Wire => Err(Refusal::ShortCircuit),
+        }
+    }
+
+    /// Whether it does anything beyond letting power pass or not.
+    fn acts(&self, shape: &Shape) -> bool {
+        match shape {
+            Shape::Series(parts) | Shape::Parallel(parts) => parts.iter().any(|part| self.acts(part)),
+            Shape::Element(id) => !self.is_invert(shape) && !self.graph.element(*id).is_contact(),
+            Shape::Block(_) => true,
+            Shape::Wire => false,
+        }
+    }
+
+    fn is_invert(&self, shape: &Shape) -> bool {
+        matches!(shape, Shape::Element(id) if self.graph.element(*id).kind == ElementKind::Invert)
+    }
+
+    /// What must hold for power to pass `shape`. An inverter in it inverts what stands before it in its own branch, as
+    /// INV does with the block that it belongs to.
+    fn condition(&self, shape: &Shape) -> Result<Expression, Refusal> {
+        match shape {
+            Shape::Series(parts) => {
+                let mut series = Expression::Constant(true);
+                for part in parts {
+                    match self.is_invert(part) {
+                        true if series == Expression::Constant(true) => return Err(Refusal::NoCurrentResult),
+                        true => series = Expression::Not(Box::new(series)),
+                        false => series.and_with(self.condition(part)?),
+                    }
+                }
+                Ok(series)
+            }
+            Shape::Parallel(parts) => {
+                let branches: Result<Vec<_>, _> = parts.iter().map(|part| self.condition(part)).collect();
+                branches.map(Expression::or)
+            }
+            Shape::Element(id) => self.contact(*id).map(Expression::Contact),
+            Shape::Block(_) => Err(Refusal::Element),
+            Shape::Wire => Err(Refusal::ShortCircuit),
+        }
+    }
+
+    fn contact(&self, id: ElementId) -> Result<Contact, Refusal> {
+        let element = self.graph.element(id);
+        let test = match &element.kind {
+            ElementKind::Contact(kind) => Test::Bit(*kind),
+            ElementKind::Compare(operator) => Test::Compare(*operator),
+            _ => return Err(Refusal::Element),
+        };
+        Ok(Contact { test, terms: self.terms(element), span: element.span })
+    }
+
+    fn element(&mut self, element: &Element) -> Result<(), Refusal> {
+        let deed = match &element.kind {
+            ElementKind::Coil(kind) => Deed::of_coil(*kind),
+            ElementKind::Instruction { form: Some(form), .. } => Deed::of_form(*form),
+            ElementKind::Instruction { form: None, .. } => return Err(Refusal::Unreadable),
+            ElementKind::Jump(_) => Deed::Jump,
+            ElementKind::Return => Deed::Return,
+            _ => return Err(Refusal::Element),
+        };
+        let mut action = Action { deed, terms: self.terms(element), span: element.span };
+        if let ElementKind::Jump(label) = &element.kind {
+            let operand = Operand::Variable;
+            action.terms.push(Term::new(operand, label.of(self.text), *label));
+        }
+        match element.is_output() {
+            true => self.builder.drive(action),
+            false => self.builder.gate(Gate::Through(action)).ok_or(Refusal::TooDeep)?,
+        }
+        Ok(())
+    }
+
+    fn terms(&self, element: &Element) -> Vec<Term> {
+        let operands = element.operands.iter().enumerate();
+        let term = |(index, operand): (usize, &Spanned<Operand>)| {
+            Term::new(operand.value, &element.operand_text(index, self.text), operand.span)
+        };
+        operands.map(term).collect()
+    }
+}

@@ -1,0 +1,46 @@
+//! What a rung means, whatever it was written in: conditions, paths of power, and the proof that two of them are equal.
+//!
+//! [`rungs`] reads a chunk as [`Rung`]s. A [`Path`] is the structure, with the words where they stand; what it does to
+//! the devices is found by running it with formulas in place of bits.
+
+mod term;
+pub use term::Term;
+
+mod expression;
+pub use expression::{Contact, Expression, Test};
+
+mod path;
+pub use path::{Action, Deed, Drive, Gate, Path};
+
+mod rung;
+pub use rung::{Network, Refusal, Rung};
+
+mod builder;
+
+mod from_fx;
+
+mod from_ladder;
+
+mod formula;
+pub use formula::{Atom, Formula, Formulas, Moment};
+
+mod run;
+pub use run::{Effect, Run};
+
+mod decide;
+pub use decide::{Verdict, equal, is_never};
+
+mod compare;
+pub use compare::{Comparison, compare, compare_outcome, touches_bits};
+
+use crate::document::{Chunk, Tree};
+use crate::target::Target;
+
+/// The rungs of a chunk written for `target`, in the order of execution. Spans are offsets into the chunk.
+pub fn rungs(chunk: &Chunk, target: &Target) -> Vec<Rung> {
+    match chunk.tree() {
+        Tree::Fx(tree) => vec![from_fx::rung(chunk.text(), tree)],
+        Tree::Ladder(tree) => from_ladder::rungs(chunk.text(), tree, target),
+        Tree::Iec(_) => Vec::new(),
+    }
+}

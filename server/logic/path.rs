@@ -1,0 +1,125 @@
+//! What power does in a rung: conditions that it passes, and what it drives behind them.
+
+use super::{Expression, Term};
+use crate::document::coil_form;
+use crate::ladder::CoilKind;
+use crate::target::{Form, Role};
+use crate::text::Span;
+
+/// A path of power from the left rail, or from where it leaves another path: it passes all gates, then it drives one
+/// thing after another. A path that leaves it starts with the power behind its gates.
+///
+/// The power that reaches the drives is found once, however many there are.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Path {
+    /// From left to right.
+    pub gates: Vec<Gate>,
+    /// From top to bottom, the order of execution.
+    pub drives: Vec<Drive>,
+}
+
+/// What power passes, or does not.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Gate {
+    /// Power goes on where this holds.
+    Pass(Expression),
+    /// Power goes on where there was none: all gates before it, back to the left rail, are inverted.
+    Invert,
+    /// Something that power reaches and that decides by itself whether power goes on: STL, MEP, MEF, a function block.
+    Through(Action),
+}
+
+/// What power drives behind the gates of a path.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Drive {
+    /// An output.
+    Action(Action),
+    /// A path that leaves here.
+    Path(Path),
+}
+
+/// Something done with the power that reaches it.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Action {
+    /// What is done.
+    pub deed: Deed,
+    /// With which operands, in the order in which they are written.
+    pub terms: Vec<Term>,
+    /// Its cells, or its line, in the chunk that it was read from.
+    pub span: Span,
+}
+
+/// What an action is.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Deed {
+    /// A coil; with two operands that of a timer or counter with its preset.
+    Coil(CoilKind),
+    /// Any other instruction of the FX family.
+    Instruction(Form),
+    /// Goes on at a network of the same program; the label is the operand.
+    Jump,
+    /// Leaves the program unit.
+    Return,
+}
+
+impl Deed {
+    /// What an FX instruction does: coils where there is one for it, so that `[SET M0]` and `(S)` are the same.
+    pub fn of_form(form: Form) -> Deed {
+        COILS
+            .iter()
+            .find(|kind| coil_form(**kind) == Some(form))
+            .map_or(Deed::Instruction(form), |kind| Deed::Coil(*kind))
+    }
+
+    /// What a drawn coil does. On the FX family one that turns its device over is an instruction.
+    pub fn of_coil(kind: CoilKind) -> Deed {
+        match kind {
+            CoilKind::Toggle => coil_form(kind).map_or(Deed::Coil(kind), Deed::Instruction),
+            _ => Deed::Coil(kind),
+        }
+    }
+
+    /// Whether it stands without a condition: END, MCR, NEXT and their kin.
+    pub fn stands_alone(self) -> bool {
+        matches!(self, Deed::Instruction(form) if form.instruction.role == Role::Standalone)
+    }
+}
+
+/// Coils that one instruction drives.
+const COILS: [CoilKind; 5] =
+    [CoilKind::Plain, CoilKind::Set, CoilKind::Reset, CoilKind::Rising, CoilKind::Falling];
+
+impl Path {
+    /// A path that drives this alone, as it stands.
+    pub fn of_action(action: Action) -> Path {
+        Path { gates: Vec::new(), drives: vec![Drive::Action(action)] }
+    }
+
+    /// All actions in the order of execution, those that power passes through among them.
+    pub fn actions(&self) -> Vec<&Action> {
+        let mut actions = Vec::new();
+        self.visit(&mut |action| actions.push(action), &mut |_| {});
+        actions
+    }
+
+    /// Calls `action` and `condition` with what the path consists of, in the order of execution.
+    pub fn visit<'p>(
+        &'p self,
+        action: &mut impl FnMut(&'p Action),
+        condition: &mut impl FnMut(&'p Expression),
+    ) {
+        for gate in &self.gates {
+            match gate {
+                Gate::Pass(expression) => condition(expression),
+                Gate::Invert => {}
+                Gate::Through(through) => action(through),
+            }
+        }
+        for drive in &self.drives {
+            match drive {
+                Drive::Action(driven) => action(driven),
+                Drive::Path(path) => path.visit(action, condition),
+            }
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! From one form of a program to another: drawing, instruction list, equations.
+//!
+//! Every way goes through the [`Path`](crate::logic::Path) of a rung, and what was written is read again and compared
+//! with what it was made of.
+
+mod source;
+
+mod page;
+
+mod certificate;
+pub use certificate::Certificate;
+
+mod stack;
+
+mod prove;
+pub use prove::{Counterexample, Proof, Value, prove};
+
+pub mod to_fx;
+
+pub mod to_ladder;
+
+pub mod to_boolean;
+
+use crate::document::Document;
+use crate::ladder::Style;
+use crate::text::{Message, Span};
+use std::ops::Range;
+
+/// A form of a program.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum To {
+    /// A ladder diagram.
+    Ladder,
+    /// FX instruction list.
+    Fx,
+    /// Equations, one for each output.
+    Boolean,
+}
+
+impl To {
+    /// All of them.
+    pub const ALL: [To; 3] = [To::Ladder, To::Fx, To::Boolean];
+
+    /// The name on the command line and in requests.
+    pub fn name(self) -> &'static str {
+        match self {
+            To::Ladder => "ladder",
+            To::Fx => "fx",
+            To::Boolean => "boolean",
+        }
+    }
+
+    /// The form of this name.
+    pub fn named(name: &str) -> Option<To> {
+        To::ALL.into_iter().find(|to| to.name() == name)
+    }
+}
+
+/// How a translation is written.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Options {
+    /// The look of drawings.
+    pub style: Style,
+    /// The look of equations.
+    pub notation: to_boolean::Notation,
+    /// Whether the result is read again and compared with the source.
+    pub proves: bool,
+    /// Whether it is a whole program, which in instruction list ends with END.
+    pub is_whole: bool,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options { style: Style::default(), notation: Default::default(), proves: true, is_whole: true }
+    }
+}
+
+/// A program in another form.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Translation {
+    /// The text, lines ended by line feeds.
+    pub text: String,
+    /// What became of each rung of the source, in order.
+    pub rungs: Vec<Translated>,
+}
+
+/// What became of a rung.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Translated {
+    /// Where it stands in the source.
+    pub span: Span,
+    /// The bytes of the result that stand for it, comments left out.
+    pub result: Range<usize>,
+    /// The proof; nothing if none was asked for.
+    pub certificate: Option<Certificate>,
+    /// Why it was not translated but kept as it is, or why nothing is proved.
+    pub note: Option<Message>,
+}
+
+impl Translation {
+    /// Whether every rung is proved.
+    pub fn is_certain(&self) -> bool {
+        self.rungs.iter().all(|rung| rung.certificate.is_some_and(Certificate::is_certain))
+    }
+}
+
+/// `document` in another form; with `part` only the rungs that touch these bytes.
+pub fn translate(document: &Document, part: Option<Span>, to: To, options: &Options) -> Translation {
+    let sources = source::rungs(document, part);
+    let mut translation = page::write(document, &sources, to, options);
+    if options.proves {
+        certificate::add(document, &sources, to, &mut translation);
+    }
+    translation
+}

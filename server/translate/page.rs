@@ -1,0 +1,191 @@
+//! Puts translated rungs together to a text, with their comments and labels.
+
+use super::source::Source;
+use super::to_fx::Line;
+use super::{Options, To, Translated, Translation, to_boolean, to_fx, to_ladder};
+use crate::document::{Document, Notation};
+use crate::ladder::{Drawing, Style};
+use crate::logic::{Deed, Network, Path};
+use crate::target::{Flow, Form};
+use crate::text::Message;
+
+/// A rung in its new form.
+enum Body {
+    /// Comments and labels only.
+    Nothing,
+    /// Instructions.
+    Lines(Vec<Line>),
+    /// A drawing that has no right rail yet.
+    Drawing(Box<Drawing>),
+    /// Equations.
+    Equations(Vec<String>),
+    /// What had no other form, as it stands in the source, with the reason.
+    Kept(String, Message),
+}
+
+/// The text of `sources` in another form, without certificates.
+pub(super) fn write(document: &Document, sources: &[Source], to: To, options: &Options) -> Translation {
+    let bodies: Vec<Body> = sources.iter().map(|source| body(document, source, to, options)).collect();
+    let rails = bodies.iter().filter_map(|body| match body {
+        Body::Drawing(drawing) => Some(drawing.rail_column_min()),
+        _ => None,
+    });
+    let rail = rails.max().unwrap_or(0).max(options.style.width.clamp(1, Style::WIDTH_MAX) - 1);
+    let mut page = Page { text: String::new(), to, rail };
+    let mut rungs = Vec::with_capacity(sources.len());
+    for (source, body) in sources.iter().zip(bodies) {
+        page.head(source);
+        let start = page.text.len();
+        let note = page.body(body, source);
+        rungs.push(Translated {
+            span: source.span(),
+            result: start..page.text.len(),
+            certificate: None,
+            note,
+        });
+    }
+    if to == To::Fx && options.is_whole && !sources.iter().any(ends_program) {
+        page.text.push_str("END\n");
+    }
+    Translation { text: page.text, rungs }
+}
+
+fn body(document: &Document, source: &Source, to: To, options: &Options) -> Body {
+    let kept = |reason: Message| Body::Kept(source.rung.span.of(source.chunk.text()).to_string(), reason);
+    let path = match &source.rung.path {
+        Ok(None) => return Body::Nothing,
+        Ok(Some(path)) => path,
+        Err(refusal) => return kept(refusal.message()),
+    };
+    let written = match to {
+        To::Fx => to_fx::lines(path, document.target()).map(Body::Lines),
+        To::Boolean => to_boolean::equations(path, options.notation).map(Body::Equations),
+        To::Ladder => drawing(path, document, options),
+    };
+    written.unwrap_or_else(kept)
+}
+
+fn drawing(path: &Path, document: &Document, options: &Options) -> Result<Body, Message> {
+    let plan = to_ladder::plan(path, document.target().model)?;
+    let drawing = Drawing::new(&plan.shape, &plan.graph, &plan.source, options.style.kind);
+    let drawing = drawing.ok_or_else(|| Message::new("translate.no-drawing"))?;
+    Ok(Body::Drawing(Box::new(drawing)))
+}
+
+/// Whether the program ends with this rung.
+fn ends_program(source: &Source) -> bool {
+    let Ok(Some(path)) = &source.rung.path else { return false };
+    path.actions().iter().any(|action| match action.deed {
+        Deed::Instruction(Form { instruction, .. }) => instruction.flow() == Flow::ProgramEnd,
+        _ => false,
+    })
+}
+
+struct Page {
+    text: String,
+    to: To,
+    /// The column of the right rail.
+    rail: u32,
+}
+
+impl Page {
+    /// What stands above a rung: a blank line, comments, the network's name, labels.
+    fn head(&mut self, source: &Source) {
+        let rung = &source.rung;
+        let has_head = !rung.comments.is_empty() || rung.network.is_some();
+        // Rungs that are drawn need a blank line between them; lists breathe only where there is something to say.
+        if !self.text.is_empty() && (self.to == To::Ladder || has_head) && !self.text.ends_with("\n\n") {
+            self.text.push('\n');
+        }
+        for comment in source.comments().filter(|comment| !is_network(comment)) {
+            self.line(comment);
+        }
+        let mut networks: Vec<String> = rung.network.iter().map(network_text).collect();
+        networks.extend(
+            source
+                .comments()
+                .filter(|comment| is_network(comment))
+                .map(|comment| comment.trim_start_matches([';', ' ']).to_string()),
+        );
+        for network in networks {
+            match self.to {
+                To::Ladder => self.line(&network),
+                _ => self.line(&format!("; {network}")),
+            }
+        }
+        for label in &rung.labels {
+            match self.to {
+                To::Fx => self.line(label),
+                _ => self.line(&format!("{label}:")),
+            }
+        }
+    }
+
+    /// Writes the rung; the note says why it could not be written.
+    fn body(&mut self, body: Body, source: &Source) -> Option<Message> {
+        match body {
+            Body::Nothing => {}
+            Body::Lines(lines) => lines.iter().for_each(|line| self.line(&line.to_string())),
+            Body::Equations(equations) => equations.iter().for_each(|equation| self.line(equation)),
+            Body::Drawing(drawing) => match drawing.paint(self.rail) {
+                Some(lines) => lines.iter().for_each(|line| self.line(line)),
+                None => {
+                    let text = source.rung.span.of(source.chunk.text());
+                    return self.kept(text, source.rung.is_list, Message::new("translate.no-drawing"));
+                }
+            },
+            Body::Kept(text, reason) => return self.kept(&text, source.rung.is_list, reason),
+        }
+        None
+    }
+
+    /// What cannot be translated is carried along as it is: a list in a box that the drawing does not look into, a
+    /// drawing as comments.
+    fn kept(&mut self, text: &str, is_list: bool, reason: Message) -> Option<Message> {
+        match self.to {
+            To::Fx if is_list => text.lines().for_each(|line| self.line(line.trim())),
+            To::Ladder if is_list => {
+                self.line("{il");
+                text.lines().for_each(|line| self.line(line.trim_end()));
+                self.line("}");
+            }
+            _ => {
+                text.lines().for_each(|line| self.line(format!("; {line}").trim_end()));
+            }
+        }
+        Some(reason)
+    }
+
+    fn line(&mut self, line: &str) {
+        self.text.push_str(line);
+        self.text.push('\n');
+    }
+}
+
+/// `; NETWORK 3 'title'`: the name of a network where only comments can have it.
+fn is_network(comment: &str) -> bool {
+    let Some(text) = comment.strip_prefix(';') else { return false };
+    let text = text.trim_start();
+    let is_word = text.get(..7).is_some_and(|word| word.eq_ignore_ascii_case("NETWORK"));
+    is_word && text.get(7..).is_some_and(|rest| rest.trim_end().is_empty() || rest.starts_with(' '))
+}
+
+fn network_text(network: &Network) -> String {
+    let mut text = "NETWORK".to_string();
+    if let Some(number) = network.number {
+        text += &format!(" {number}");
+    }
+    if !network.title.is_empty() {
+        text += &format!(" '{}'", network.title);
+    }
+    text
+}
+
+/// The notation of the document that a translation is; equations are none.
+pub(super) fn notation(to: To) -> Option<Notation> {
+    match to {
+        To::Ladder => Some(Notation::Ladder),
+        To::Fx => Some(Notation::FxIl),
+        To::Boolean => None,
+    }
+}
