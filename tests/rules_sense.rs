@@ -56,6 +56,7 @@ fn coils_of_parts_that_do_not_run_together_are_no_double_coils() {
             ("LD X0; OUT Y0; LD X1; CJ P1; LD X2; OUT Y0; P1; LD X3; OUT Y1", &[2]),
             ("LD X0; CJ P1; LD X1; OUT Y0; FEND; P1; LD X2; OUT Y0; FEND", &[]),
             ("LD X0; OUT Y0; LD X1; OUT Y0; LD X2; OUT Y0", &[2, 4]),
+            ("LD X0; CJ P1; LD X1; OUT Y0; P1; LDI X0; CJ P63; LD X2; OUT Y0", &[]),
             ("LD X0; PLS M0; LD X1; OUT M0; LD M0; OUT Y0", &[2]),
             ("LD X0; MC N0 M5; LD X1; MCR N0; LD X1; MC N0 M5; MCR N0", &[2]),
             ("LD X0; OUT T0 K5; LD X1; OUT T0 K5; LD T0; OUT Y0", &[]),
@@ -519,7 +520,10 @@ fn codes_are_proposed_where_something_is_allowed() {
         found.into_iter().map(|one| one.label).collect::<Vec<_>>()
     };
     assert_eq!(labels("// rungwise: allow(double$)\nLD X0\nOUT Y0\nEND\n"), ["double-coil"]);
-    assert_eq!(labels("(* rungwise: allow(double-coil, latched$) *)\nLD X0\nOUT Y0\nEND\n"), ["latched-range"]);
+    assert_eq!(
+        labels("(* rungwise: allow(double-coil, latched$) *)\nLD X0\nOUT Y0\nEND\n"),
+        ["latched-range"]
+    );
     assert!(labels("// rungwise: allow($)\nLD X0\nOUT Y0\nEND\n").len() > 30);
     for text in ["// rungwise: allow(double-coil) d$\n", "// double$\n", "// rungwise: allow(syntax-e$)\n"] {
         assert_eq!(labels(text), [""; 0], "{text}");

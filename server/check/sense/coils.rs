@@ -21,8 +21,20 @@ pub(super) struct Coils<'c, 'a> {
 pub(super) struct Driven {
     /// Everything.
     pub all: Vec<Use>,
+    /// How often it is read before each of them, and before the end.
+    reads: Vec<u32>,
     /// Whether what it is at the end of the scan goes out of the program.
     is_output: bool,
+}
+
+impl Driven {
+    fn new(all: Vec<Use>, is_output: bool) -> Driven {
+        let mut reads = vec![0; all.len() + 1];
+        for (place, one) in all.iter().enumerate() {
+            reads[place + 1] = reads[place] + u32::from(one.access.act.reads());
+        }
+        Driven { all, reads, is_output }
+    }
 }
 
 impl<'c, 'a> Coils<'c, 'a> {
@@ -35,7 +47,7 @@ impl<'c, 'a> Coils<'c, 'a> {
         self.uses.names().filter_map(move |(number, name)| {
             let is_many = self.uses.of_name(number).filter(|one| wanted(one)).take(2).count() == 2;
             (is_many && self.is_relay(number, name))
-                .then(|| Driven { all: self.uses.of_name(number).collect(), is_output: is_output(name) })
+                .then(|| Driven::new(self.uses.of_name(number).collect(), is_output(name)))
         })
     }
 
@@ -67,8 +79,8 @@ impl<'c, 'a> Coils<'c, 'a> {
         }
         // In Instruction List of IEC 61131-3 a variable is often used for one result after another, and given a value
         // that a later statement may change.
-        let is_read = || driven.all[one + 1..other].iter().any(|between| between.access.act.reads());
-        !self.regions.may_skip(second, first) && (driven.is_output || !is_read())
+        let is_read = driven.reads[other] > driven.reads[one + 1];
+        !self.regions.may_skip(second, first) && (driven.is_output || !is_read)
     }
 
     /// The last of `later`, places in `driven.all`, that undoes what `one` writes.

@@ -81,6 +81,7 @@ use crate::document::{Act, DeclaredType};
 use crate::target::DeviceKind;
 use crate::target::iec::ElementaryType;
 use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
+use rustc_hash::FxHashSet;
 
 pub(super) const RULE: Rule = Rule {
     code: "read-before-write",
@@ -165,16 +166,23 @@ fn late(uses: &Uses<'_>, number: u32) -> Option<(Use, Use)> {
     (rest_is_late && is_late(&first)).then_some((first, coil))
 }
 
+/// What so many places of a rung need is not looked for.
+const LARGEST_RUNG: usize = 500;
+
 /// Whether the rung of `coil` needs what the rungs from `read` on make, or keeps for the next scan what the rung of
 /// `read` looks at itself.
 fn needs_it(uses: &Uses<'_>, own: u32, read: &Use, coil: &Use) -> bool {
+    if uses.in_rung(coil).take(LARGEST_RUNG).count() == LARGEST_RUNG {
+        return true;
+    }
     let start = uses.in_rung(read).map(|(_, one)| one.span.start).min().unwrap_or(read.span.start);
     let conditions = uses.in_rung(coil).filter(|(name, one)| *name != own && one.access.act.reads());
-    let reader = || uses.in_rung(read).filter(|(_, one)| one.access.act.reads()).map(|(name, _)| name);
+    let reader = uses.in_rung(read).filter(|(_, one)| one.access.act.reads());
+    let reader: FxHashSet<u32> = reader.map(|(name, _)| name).collect();
     conditions.into_iter().any(|(name, _)| {
         let written = uses.written_at(name);
         let behind = written.partition_point(|offset| *offset < start);
         let is_made = written.get(behind).is_some_and(|offset| *offset < coil.span.start);
-        is_made || reader().any(|other| other == name)
+        is_made || reader.contains(&name)
     })
 }
