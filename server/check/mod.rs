@@ -18,6 +18,9 @@ pub use surface::surface;
 mod engine;
 pub use engine::{Severities, all, once, program, project, realtime, sorted, within_project};
 
+mod suppression;
+pub use suppression::is_suppressible;
+
 mod statements;
 
 mod iec;

@@ -320,9 +320,14 @@ impl LanguageServer for Backend {
             let fixes = fixes.map(|fix| features::quick_fix(around, place, &fix));
             let edits = editing::actions(open, place, &params, settings.style(&open.manifest), resolves);
             let rewrites = features::rewrites(around.here(), place, &params);
+            let allowing = ide::allowing(place.document, &found, place.span(params.range));
+            let allow = allowing.iter().map(|(diagnostic, fix)| {
+                features::quick_fix(around, place, &ide::FixOf { diagnostic, fix, is_preferred: false })
+            });
             fixes
                 .chain(edits)
                 .chain(rewrites)
+                .chain(allow)
                 .map(|action| across::code_action(action, place.abilities))
                 .collect()
         })
