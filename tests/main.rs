@@ -38,6 +38,7 @@ mod lsp_edit;
 mod lsp_project;
 mod lsp_robust;
 mod lsp_tokens;
+mod lsp_translate;
 mod lsp_within;
 mod manifest_help;
 mod manifest_schema;

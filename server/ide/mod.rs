@@ -87,6 +87,9 @@ mod typing;
 
 mod linked_editing;
 
+mod forms;
+pub use forms::{ProgramPart, TranslatedForm, form_of, form_steps, forms, part_at};
+
 mod manifest;
 pub use manifest::{ManifestFiles, manifest_completions, manifest_hover};
 

@@ -34,13 +34,22 @@ impl Certificate {
     }
 }
 
-/// Certifies each rung of `translation`, which was made of `sources`.
-pub(super) fn add(document: &Document, sources: &[Source], to: To, translation: &mut Translation) {
-    let Some(notation) = page::notation(to) else { return };
+/// Certifies each rung of `translation`, which was made of `sources`; nothing if it was cancelled on the way.
+pub(super) fn add(
+    document: &Document,
+    sources: &[Source],
+    to: To,
+    translation: &mut Translation,
+    is_cancelled: &dyn Fn() -> bool,
+) -> Option<()> {
+    let Some(notation) = page::notation(to) else { return Some(()) };
     let again = Document::frugal(&translation.text, notation, document.target());
     let written = source::rungs(&again, None);
     let mut written = written.iter().peekable();
     for (source, translated) in sources.iter().zip(&mut translation.rungs) {
+        if is_cancelled() {
+            return None;
+        }
         let mut paths = Vec::new();
         let mut is_readable = true;
         while let Some(rung) = written.next_if(|rung| (rung.span().start as usize) < translated.result.end) {
@@ -61,6 +70,7 @@ pub(super) fn add(document: &Document, sources: &[Source], to: To, translation: 
         translated.certificate = Some(certificate);
         translated.note = note.map(Message::new);
     }
+    Some(())
 }
 
 fn judge(own: &[&Path], written: &[&Path]) -> (Certificate, Option<&'static str>) {
