@@ -22,6 +22,7 @@ mod grammar;
 mod ide;
 mod ide_devices;
 mod ide_names;
+mod ide_refactor;
 mod ide_signature;
 mod ide_structure;
 mod ide_typing;

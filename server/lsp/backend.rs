@@ -320,10 +320,13 @@ impl LanguageServer for Backend {
             let fixes = fixes.map(|fix| features::quick_fix(around, place, &fix));
             let edits = editing::actions(open, place, &params, settings.style(&open.manifest), resolves);
             let rewrites = features::rewrites(around.here(), place, &params);
+            let style = settings.style(&open.manifest);
+            let refactorings = features::refactorings(around, place, &params, style);
             let translations = translating::actions(around, place, &params, &settings);
             fixes
                 .chain(edits)
                 .chain(rewrites)
+                .chain(refactorings)
                 .chain(translations)
                 .map(|action| across::code_action(action, place.abilities))
                 .collect()
