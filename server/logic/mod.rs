@@ -31,15 +31,16 @@ mod decide;
 pub use decide::{Verdict, equal, is_never};
 
 mod compare;
-pub use compare::{Comparison, compare};
+pub use compare::{Comparison, compare, compare_outcome, touches_bits};
 
 use crate::document::{Chunk, Tree};
+use crate::target::Target;
 
-/// The rungs of a chunk, in the order of execution. Spans are offsets into the chunk.
-pub fn rungs(chunk: &Chunk) -> Vec<Rung> {
+/// The rungs of a chunk written for `target`, in the order of execution. Spans are offsets into the chunk.
+pub fn rungs(chunk: &Chunk, target: &Target) -> Vec<Rung> {
     match chunk.tree() {
         Tree::Fx(tree) => vec![from_fx::rung(chunk.text(), tree)],
-        Tree::Ladder(tree) => from_ladder::rungs(chunk.text(), tree),
+        Tree::Ladder(tree) => from_ladder::rungs(chunk.text(), tree, target),
         Tree::Iec(_) => Vec::new(),
     }
 }

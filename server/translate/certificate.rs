@@ -59,7 +59,10 @@ pub(super) fn add(
             }
         }
         if translated.note.is_some() {
-            translated.certificate = Some(Certificate::Undecided);
+            // A list is carried along word by word; a drawing in a list is but a comment.
+            let carried = source.rung.is_list && to != To::Boolean;
+            let certificate = if carried { Certificate::Construction } else { Certificate::Undecided };
+            translated.certificate = Some(certificate);
             continue;
         }
         let own: Vec<&Path> = source.rung.path.iter().flatten().collect();
@@ -77,7 +80,7 @@ fn judge(own: &[&Path], written: &[&Path]) -> (Certificate, Option<&'static str>
     match compare(own, written, &mut Formulas::default()) {
         Comparison::Same { is_boolean: true } => (Certificate::Proved, None),
         Comparison::Same { is_boolean: false } => (Certificate::Construction, None),
-        Comparison::Different { .. } | Comparison::Unlike { .. } => {
+        Comparison::Different { .. } | Comparison::Unlike => {
             (Certificate::Undecided, Some("translate.different"))
         }
         Comparison::Undecided => (Certificate::Undecided, Some("translate.undecided")),

@@ -10,6 +10,11 @@ mod page;
 mod certificate;
 pub use certificate::Certificate;
 
+mod stack;
+
+mod prove;
+pub use prove::{Counterexample, Proof, Value, prove};
+
 pub mod to_fx;
 
 pub mod to_ladder;

@@ -42,7 +42,7 @@ pub(super) fn rungs(document: &Document, part: Option<Span>) -> Vec<Source> {
             continue;
         }
         let reading = at.chunk.reading();
-        for rung in logic::rungs(&reading) {
+        for rung in logic::rungs(&reading, document.reader()) {
             let source = Source { start: at.start, chunk: at.chunk.clone(), rung };
             if !source.is_blank() && touches(source.span()) {
                 rungs.push(source);
