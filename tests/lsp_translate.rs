@@ -104,7 +104,6 @@ fn a_rung_that_cannot_be_translated_is_noted_with_its_line() {
     let mut client = Client::start();
     client.open(LIST, "plc-il", "LD X0\nOUT Y0\nLD X1\nMPP\nOUT Y1\nEND\n");
     let ladder = form(&mut client, json!({"uri": LIST, "to": "ladder"}));
-    assert_eq!(ladder["certificate"], "undecided");
     let note = ladder["notes"][0].as_str().unwrap();
     assert!(note.starts_with("line 3: ") && note.contains("MPP"), "{note}");
     let mut chinese = Client::spawn();

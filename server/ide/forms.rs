@@ -61,7 +61,7 @@ pub fn part_at(document: &Document, span: Span) -> Option<ProgramPart> {
     let at = document.chunk_at(span.start as usize)?;
     let inside = (span.start as usize).saturating_sub(at.start);
     let reading = at.chunk.reading();
-    let rungs = logic::rungs(&reading);
+    let rungs = logic::rungs(&reading, document.target());
     let shifted = |span: Span| span.shifted(at.start);
     if let Tree::Ladder(tree) = reading.tree()
         && tree.header.as_ref().is_some_and(|header| header.label.is_none() && header.span.touches(inside))

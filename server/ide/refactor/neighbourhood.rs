@@ -40,7 +40,7 @@ impl Placed {
             && let Some(at) = document.chunk_at(offset)
             && at.start >= offset
         {
-            let rungs = logic::rungs(&at.chunk.reading()).into_iter();
+            let rungs = logic::rungs(&at.chunk.reading(), document.target()).into_iter();
             placed.extend(rungs.map(|rung| Placed { start: at.start, chunk: at.chunk.clone(), rung }));
             offset = at.start + at.chunk.len();
         }
