@@ -184,6 +184,7 @@ fn judge_page(
     }
     // What the whole program is judged and counted by, while the chunks are at hand.
     page.milestones();
+    page.accesses();
     page.size();
     diagnostics
 }
@@ -193,6 +194,8 @@ const OWN_SEVERITIES: &[(&str, Severity)] = &[
     // Nothing was read there.
     (crate::ladder::TWO_READINGS, Severity::Warning),
     (super::drawing::CONTACT_AFTER_COIL_ALLOWED, Severity::Hint),
+    // It runs once the cassette is there.
+    (super::sense::WITH_CASSETTE, Severity::Warning),
 ];
 
 fn with_severities(diagnostics: Vec<Diagnostic>, severities: &Severities) -> Vec<Diagnostic> {

@@ -1,5 +1,6 @@
 //! A chunk: a piece of text with what it says, shared by all snapshots that contain it.
 
+use super::access::{self, OwnAccesses};
 use super::milestone::{self, Milestone};
 use super::{Mention, Notation, Size, Token, exported, mention, tokens};
 use crate::il::{fx, iec};
@@ -69,6 +70,7 @@ enum Kind {
 struct Outline {
     size: Size,
     milestones: Box<[Milestone]>,
+    accesses: OwnAccesses,
 }
 
 /// A chunk for reading: its own tree is kept if it has one, else it goes away with this.
@@ -253,10 +255,19 @@ impl Chunk {
         &self.outline().milestones
     }
 
+    /// What it reads and drives.
+    pub(super) fn accesses(&self) -> &OwnAccesses {
+        &self.outline().accesses
+    }
+
     fn outline(&self) -> &Outline {
         self.known.outline.get_or_init(|| {
             let reading = self.reading();
-            Outline { size: Size::of(&reading), milestones: milestone::of_chunk(&reading).into_boxed_slice() }
+            Outline {
+                size: Size::of(&reading),
+                milestones: milestone::of_chunk(&reading).into_boxed_slice(),
+                accesses: access::of_chunk(&reading),
+            }
         })
     }
 

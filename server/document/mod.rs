@@ -34,6 +34,9 @@ pub use names::Names;
 mod milestone;
 pub use milestone::{Milestone, MilestoneKind};
 
+mod access;
+pub use access::{Access, Accesses, Act, Joint, JointKind, Part};
+
 mod tokens;
 pub use tokens::{Token, TokenKind};
 

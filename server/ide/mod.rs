@@ -39,7 +39,7 @@ mod highlight;
 pub use highlight::{Highlight, HighlightKind};
 
 mod usage;
-pub use usage::{Usage, UsageAt, UsageKey, UsageRow};
+pub use usage::{Usage, UsageAt, UsageKey, UsageKind, UsageOf, UsageRow, UsageWish, UsedKind};
 
 mod lens;
 pub use lens::{Lens, LensKind, LensSettings};
@@ -94,7 +94,7 @@ mod refactor;
 pub use refactor::Refactoring;
 
 mod manifest;
-pub use manifest::{ManifestFiles, manifest_completions, manifest_hover};
+pub use manifest::{FileKind, manifest_completions, manifest_hover};
 
 /// What stands at `offset`: the page of an instruction, the meaning and range of a device, where it is used.
 pub fn hover(document: &Document, offset: usize, language: Language) -> Option<Hover> {
@@ -133,7 +133,12 @@ pub fn highlights(document: &Document, offset: usize) -> Vec<Highlight> {
 
 /// The list of used devices of a project.
 pub fn usage(view: &ProjectView<'_>) -> Usage {
-    usage::of(view)
+    usage_of(view, &UsageWish { places: true, of: UsageOf::All })
+}
+
+/// A part of it.
+pub fn usage_of(view: &ProjectView<'_>, wish: &UsageWish) -> Usage {
+    usage::of(view, wish)
 }
 
 /// The lenses above rungs, without their words.

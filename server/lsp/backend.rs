@@ -11,7 +11,7 @@ use super::tokens;
 use super::typed;
 use super::workspace::{SNAPSHOT, Snapshot, Workspace};
 use super::written::{given, write};
-use super::{capabilities, features, translating};
+use super::{capabilities, features, translating, usage};
 use crate::ide;
 use crate::text::Message;
 use serde_json::{Value, json};
@@ -429,7 +429,10 @@ impl LanguageServer for Backend {
             }
             "rungwise.format" => self.format(uri).await,
             "rungwise.usage" => {
-                whole(uri, |around, place| features::usage_json(around, place.language)).await
+                let Some(asked) = usage::Asked::of(params.arguments.get(1)) else {
+                    return Err(refused(Message::new("request.no-usage").with("command", params.command)));
+                };
+                whole(uri, |around, place| usage::answer(around, place, asked)).await
             }
             other => Err(refused(Message::new("request.no-command").with("command", other))),
         }
@@ -452,10 +455,10 @@ impl Backend {
     }
 
     /// The content of a virtual document, `workspace/textDocumentContent` of LSP 3.18.
-    pub(super) async fn content(&self, params: features::ContentParams) -> Result<Option<features::Content>> {
-        let Some(uri) = features::told_document(&params.uri) else { return Ok(None) };
-        let text = whole(uri, |around, place| features::usage_text(around, place.language)).await?;
-        Ok(text.map(|text| features::Content { text }))
+    pub(super) async fn content(&self, params: usage::ContentParams) -> Result<Option<usage::Content>> {
+        let Some(uri) = usage::told_document(&params.uri) else { return Ok(None) };
+        let text = whole(uri, |around, place| usage::page(around, place.language)).await?;
+        Ok(text.map(|text| usage::Content { text }))
     }
 
     /// Edits that were made for a text that has changed meanwhile help nobody.

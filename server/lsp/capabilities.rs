@@ -1,15 +1,20 @@
 //! What the server offers, and what the client can do.
 
 use super::abilities::{Abilities, Requests};
-use super::features::USAGE_SCHEME;
-use super::{editing, manifest_help, to_proto, translating};
+use super::{editing, manifest_help, to_proto, translating, usage};
 use crate::text::Encoding;
 use serde_json::json;
 use tower_lsp::ls_types::*;
 
 /// The commands of `workspace/executeCommand`.
-pub(super) const COMMANDS: &[&str] =
-    &["rungwise.check", "rungwise.format", "rungwise.usage", translating::TRANSLATE, translating::BESIDE, APPLY];
+pub(super) const COMMANDS: &[&str] = &[
+    "rungwise.check",
+    "rungwise.format",
+    "rungwise.usage",
+    translating::TRANSLATE,
+    translating::BESIDE,
+    APPLY,
+];
 
 /// Applies the `WorkspaceEdit` that is its argument: what a code action does where clients know commands alone.
 pub(super) const APPLY: &str = "rungwise.applyEdit";
@@ -48,7 +53,7 @@ pub(super) fn registrations(requests: Requests) -> Vec<Registration> {
         registration("rungwise-configuration", "workspace/didChangeConfiguration", Some(section))
     });
     let content = requests.newer.content.then(|| {
-        let options = json!({"schemes": [USAGE_SCHEME]});
+        let options = json!({"schemes": [usage::SCHEME]});
         registration("rungwise-content", "workspace/textDocumentContent", Some(options))
     });
     let ranges = requests.newer.ranges.then(|| {

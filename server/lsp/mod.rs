@@ -32,6 +32,7 @@ mod to_proto;
 mod tokens;
 mod translating;
 mod typed;
+mod usage;
 mod workspace;
 mod written;
 

@@ -172,7 +172,7 @@ impl<'a> View<'a> {
         let tree = self.tree;
         let stores = tree.items.iter().filter_map(|item| match item.kind {
             ItemKind::Operation { operation, operand } => operand
-                .filter(|_| matches!(operation.operator.role, OperatorRole::Store | OperatorRole::Latch)),
+                .filter(|_| matches!(operation.operator.role, OperatorRole::Store | OperatorRole::Latch { .. })),
             _ => None,
         });
         let lists = tree.items.iter().filter_map(|item| match item.kind {
