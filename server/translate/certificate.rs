@@ -34,10 +34,19 @@ impl Certificate {
     }
 }
 
-/// Certifies each rung of `translation`, which was made of `sources`.
-pub(super) fn add(document: &Document, sources: &[Source], to: To, translation: &mut Translation) {
+/// Certifies each rung of `translation`, which was made of `sources`; nothing if it was cancelled on the way.
+pub(super) fn add(
+    document: &Document,
+    sources: &[Source],
+    to: To,
+    translation: &mut Translation,
+    is_cancelled: &dyn Fn() -> bool,
+) -> Option<()> {
     let mut written = read_again(document, to, &translation.text).into_iter().peekable();
     for (source, translated) in sources.iter().zip(&mut translation.rungs) {
+        if is_cancelled() {
+            return None;
+        }
         let own = std::iter::from_fn(|| written.next_if(|rung| rung.start < translated.result.end));
         let paths: Option<Vec<Path>> = own
             .filter_map(|rung| match rung.path {
@@ -60,6 +69,7 @@ pub(super) fn add(document: &Document, sources: &[Source], to: To, translation: 
         translated.certificate = Some(certificate);
         translated.note = note.map(Message::new);
     }
+    Some(())
 }
 
 /// A rung of the result.

@@ -78,7 +78,7 @@ impl Default for Options {
 }
 
 /// A program in another form.
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Translation {
     /// The text, lines ended by line feeds.
     pub text: String,
@@ -108,10 +108,21 @@ impl Translation {
 
 /// `document` in another form; with `part` only the rungs that touch these bytes.
 pub fn translate(document: &Document, part: Option<Span>, to: To, options: &Options) -> Translation {
+    translate_unless(document, part, to, options, &|| false).unwrap_or_default()
+}
+
+/// The same; nothing if `is_cancelled` says on the way that nobody waits for it any more.
+pub fn translate_unless(
+    document: &Document,
+    part: Option<Span>,
+    to: To,
+    options: &Options,
+    is_cancelled: &dyn Fn() -> bool,
+) -> Option<Translation> {
     let sources = source::rungs(document, part);
-    let mut translation = page::write(document, &sources, to, options);
+    let mut translation = page::write(document, &sources, to, options, is_cancelled)?;
     if options.proves {
-        certificate::add(document, &sources, to, &mut translation);
+        certificate::add(document, &sources, to, &mut translation, is_cancelled)?;
     }
-    translation
+    Some(translation)
 }

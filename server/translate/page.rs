@@ -23,9 +23,16 @@ enum Body {
     Kept(String, Message),
 }
 
-/// The text of `sources` in another form, without certificates.
-pub(super) fn write(document: &Document, sources: &[Source], to: To, options: &Options) -> Translation {
-    let bodies: Vec<Body> = sources.iter().map(|source| body(document, source, to, options)).collect();
+/// The text of `sources` in another form, without certificates; nothing if it was cancelled on the way.
+pub(super) fn write(
+    document: &Document,
+    sources: &[Source],
+    to: To,
+    options: &Options,
+    is_cancelled: &dyn Fn() -> bool,
+) -> Option<Translation> {
+    let unless_cancelled = |source| (!is_cancelled()).then(|| body(document, source, to, options));
+    let bodies: Vec<Body> = sources.iter().map(unless_cancelled).collect::<Option<_>>()?;
     let rails = bodies.iter().filter_map(|body| match body {
         Body::Drawing(drawing) => Some(drawing.rail_column_min()),
         _ => None,
@@ -47,7 +54,7 @@ pub(super) fn write(document: &Document, sources: &[Source], to: To, options: &O
     if to == To::Fx && options.is_whole && !sources.iter().any(ends_program) {
         page.text.push_str("END\n");
     }
-    Translation { text: page.text, rungs }
+    Some(Translation { text: page.text, rungs })
 }
 
 fn body(document: &Document, source: &Source, to: To, options: &Options) -> Body {
