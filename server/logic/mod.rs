@@ -15,9 +15,17 @@ pub use path::{Action, Deed, Drive, Gate, Path};
 mod rung;
 pub use rung::{Network, Refusal, Rung};
 
+mod call;
+pub use call::{Argument, Call};
+
+mod block;
+
 mod builder;
 
 mod from_fx;
+
+mod from_iec;
+pub use from_iec::declarations;
 
 mod from_ladder;
 
@@ -33,13 +41,20 @@ pub use decide::{Verdict, equal, is_never};
 mod compare;
 pub use compare::{Comparison, compare};
 
-use crate::document::{Chunk, Tree};
+use crate::document::{Chunk, Scopes, Tree};
 
 /// The rungs of a chunk, in the order of execution. Spans are offsets into the chunk.
+///
+/// What IEC instruction list means depends on declarations elsewhere; with them there is [`rungs_with`].
 pub fn rungs(chunk: &Chunk) -> Vec<Rung> {
+    rungs_with(chunk, &Scopes::default(), 0)
+}
+
+/// The rungs of a chunk, where `scopes` has the declarations of its document and `pous` program units start before it.
+pub fn rungs_with(chunk: &Chunk, scopes: &Scopes, pous: usize) -> Vec<Rung> {
     match chunk.tree() {
         Tree::Fx(tree) => vec![from_fx::rung(chunk.text(), tree)],
         Tree::Ladder(tree) => from_ladder::rungs(chunk.text(), tree),
-        Tree::Iec(_) => Vec::new(),
+        Tree::Iec(tree) => from_iec::rungs(chunk.text(), tree, scopes, pous),
     }
 }

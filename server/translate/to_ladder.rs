@@ -122,6 +122,7 @@ impl Planner {
                 let mnemonic = self.word(&form.mnemonic());
                 ElementKind::Instruction { form: Some(form), mnemonic }
             }
+            Deed::Call(_) => return Err(Message::new("translate.no-drawing")),
             Deed::Jump => {
                 let label = action.terms.first().ok_or_else(|| Message::new("translate.no-instruction"))?;
                 let label = self.word(&label.text);
