@@ -10,7 +10,11 @@ mod page;
 mod certificate;
 pub use certificate::Certificate;
 
+mod header;
+
 pub mod to_fx;
+
+pub mod to_iec;
 
 pub mod to_ladder;
 
@@ -19,6 +23,7 @@ pub mod to_boolean;
 use crate::document::Document;
 use crate::ladder::Style;
 use crate::text::{Message, Span};
+use smol_str::SmolStr;
 use std::ops::Range;
 
 /// A form of a program.
@@ -28,19 +33,22 @@ pub enum To {
     Ladder,
     /// FX instruction list.
     Fx,
+    /// Instruction list of IEC 61131-3.
+    Iec,
     /// Equations, one for each output.
     Boolean,
 }
 
 impl To {
     /// All of them.
-    pub const ALL: [To; 3] = [To::Ladder, To::Fx, To::Boolean];
+    pub const ALL: [To; 4] = [To::Ladder, To::Fx, To::Iec, To::Boolean];
 
     /// The name on the command line and in requests.
     pub fn name(self) -> &'static str {
         match self {
             To::Ladder => "ladder",
             To::Fx => "fx",
+            To::Iec => "iec",
             To::Boolean => "boolean",
         }
     }
@@ -77,6 +85,8 @@ pub struct Translation {
     pub text: String,
     /// What became of each rung of the source, in order.
     pub rungs: Vec<Translated>,
+    /// The variables that the result declares beyond those of the source.
+    pub helpers: Vec<SmolStr>,
 }
 
 /// What became of a rung.
@@ -101,10 +111,10 @@ impl Translation {
 
 /// `document` in another form; with `part` only the rungs that touch these bytes.
 pub fn translate(document: &Document, part: Option<Span>, to: To, options: &Options) -> Translation {
-    let sources = source::rungs(document, part);
-    let mut translation = page::write(document, &sources, to, options);
+    let program = source::program(document, part);
+    let mut translation = page::write(document, &program, to, options, part.is_none());
     if options.proves {
-        certificate::add(document, &sources, to, &mut translation);
+        certificate::add(document, &program.rungs, to, &mut translation);
     }
     translation
 }

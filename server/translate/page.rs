@@ -1,7 +1,9 @@
 //! Puts translated rungs together to a text, with their comments and labels.
 
-use super::source::Source;
+use super::header;
+use super::source::{Program, Source};
 use super::to_fx::Line;
+use super::to_iec::{self, Helpers};
 use super::{Options, To, Translated, Translation, to_boolean, to_fx, to_ladder};
 use crate::document::{Document, Notation};
 use crate::ladder::{Drawing, Style};
@@ -15,6 +17,8 @@ enum Body {
     Nothing,
     /// Instructions.
     Lines(Vec<Line>),
+    /// Instructions of IEC 61131-3 as they are laid out.
+    Text(String),
     /// A drawing that has no right rail yet.
     Drawing(Box<Drawing>),
     /// Equations.
@@ -23,17 +27,37 @@ enum Body {
     Kept(String, Message),
 }
 
-/// The text of `sources` in another form, without certificates.
-pub(super) fn write(document: &Document, sources: &[Source], to: To, options: &Options) -> Translation {
-    let bodies: Vec<Body> = sources.iter().map(|source| body(document, source, to, options)).collect();
+/// The text of `program` in another form, without certificates. A whole one gets the declarations that it lacks.
+pub(super) fn write(
+    document: &Document,
+    program: &Program,
+    to: To,
+    options: &Options,
+    is_whole: bool,
+) -> Translation {
+    let sources = &program.rungs;
+    let mut helpers = match to {
+        To::Iec => Helpers::beside(header::names(document, sources.iter())),
+        _ => Helpers::default(),
+    };
+    let bodies: Vec<Body> =
+        sources.iter().map(|source| body(document, source, to, options, &mut helpers)).collect();
     let rails = bodies.iter().filter_map(|body| match body {
         Body::Drawing(drawing) => Some(drawing.rail_column_min()),
         _ => None,
     });
     let rail = rails.max().unwrap_or(0).max(options.style.width.clamp(1, Style::WIDTH_MAX) - 1);
     let mut page = Page { text: String::new(), to, rail };
+    let needs_header = to == To::Iec && is_whole && !sources.is_empty() && !header::has_units(document);
+    if needs_header {
+        page.declare(document, &header::header(document, sources, &helpers.declared));
+    }
     let mut rungs = Vec::with_capacity(sources.len());
     for (source, body) in sources.iter().zip(bodies) {
+        if !source.declarations.is_empty() {
+            page.declare(document, &source.declarations);
+            page.declare(document, &header::helpers_of(&helpers.declared, source.pou));
+        }
         page.head(source);
         let start = page.text.len();
         let note = page.body(body, source);
@@ -44,13 +68,18 @@ pub(super) fn write(document: &Document, sources: &[Source], to: To, options: &O
             note,
         });
     }
+    page.declare(document, &program.tail);
+    if needs_header {
+        page.declare(document, "END_PROGRAM\n");
+    }
     if to == To::Fx && options.is_whole && !sources.iter().any(ends_program) {
         page.text.push_str("END\n");
     }
-    Translation { text: page.text, rungs }
+    let helpers = helpers.declared.into_iter().map(|helper| helper.name).collect();
+    Translation { text: page.text, rungs, helpers }
 }
 
-fn body(document: &Document, source: &Source, to: To, options: &Options) -> Body {
+fn body(document: &Document, source: &Source, to: To, options: &Options, helpers: &mut Helpers) -> Body {
     let kept = |reason: Message| Body::Kept(source.rung.span.of(source.chunk.text()).to_string(), reason);
     let path = match &source.rung.path {
         Ok(None) => return Body::Nothing,
@@ -59,6 +88,10 @@ fn body(document: &Document, source: &Source, to: To, options: &Options) -> Body
     };
     let written = match to {
         To::Fx => to_fx::lines(path, document.target()).map(Body::Lines),
+        To::Iec => {
+            helpers.pou = source.pou;
+            to_iec::lines(path, helpers).map(|lines| Body::Text(header::laid_out(document, &(lines.join("\n") + "\n"))))
+        }
         To::Boolean => to_boolean::equations(path, options.notation).map(Body::Equations),
         To::Ladder => drawing(path, document, options),
     };
@@ -99,8 +132,11 @@ impl Page {
         }
         for comment in source.comments().filter(|comment| !is_network(comment)) {
             // An instruction list that is carried along in a drawing is instruction list again.
-            if boxed(comment).is_none() || self.to != To::Fx {
-                self.line(comment);
+            if boxed(comment).is_none() || self.to == To::Boolean || self.to == To::Ladder {
+                match self.to {
+                    To::Iec => self.line(&header::comment(comment)),
+                    _ => self.line(comment),
+                }
             }
         }
         let mut networks: Vec<String> = rung.network.iter().map(network_text).collect();
@@ -113,6 +149,7 @@ impl Page {
         for network in networks {
             match self.to {
                 To::Ladder => self.line(&network),
+                To::Iec => self.line(&format!("(* {network} *)")),
                 _ => self.line(&format!("; {network}")),
             }
         }
@@ -122,7 +159,7 @@ impl Page {
                 _ => self.line(&format!("{label}:")),
             }
         }
-        if self.to == To::Fx {
+        if self.to == To::Fx || self.to == To::Iec {
             source.comments().filter_map(boxed).for_each(|list| self.line(list));
         }
     }
@@ -132,6 +169,7 @@ impl Page {
         match body {
             Body::Nothing => {}
             Body::Lines(lines) => lines.iter().for_each(|line| self.line(&line.to_string())),
+            Body::Text(text) => self.text.push_str(&text),
             Body::Equations(equations) => equations.iter().for_each(|equation| self.line(equation)),
             Body::Drawing(drawing) => match drawing.paint(self.rail) {
                 Some(lines) => lines.iter().for_each(|line| self.line(line)),
@@ -154,11 +192,30 @@ impl Page {
                 text.lines().for_each(|line| self.line(line.trim_end()));
                 self.line("}");
             }
+            To::Iec => text.lines().for_each(|line| self.line(&header::comment(&format!("; {line}")))),
             To::Fx | To::Boolean => {
                 text.lines().for_each(|line| self.line(format!("; {line}").trim_end()));
             }
         }
         Some(reason)
+    }
+
+    /// Declarations, which stand in instruction list as in drawings.
+    fn declare(&mut self, document: &Document, text: &str) {
+        let text = text.trim_matches(['\r', '\n']);
+        if text.is_empty() || !matches!(self.to, To::Iec | To::Ladder) {
+            return;
+        }
+        if !self.text.is_empty() && !self.text.ends_with("\n\n") {
+            self.text.push('\n');
+        }
+        match self.to {
+            To::Iec => self.text += &header::laid_out(document, &format!("{text}\n")),
+            _ => text.lines().for_each(|line| self.line(line.trim_end())),
+        }
+        if !self.text.ends_with("\n\n") {
+            self.text.push('\n');
+        }
     }
 
     fn line(&mut self, line: &str) {
@@ -196,6 +253,7 @@ pub(super) fn notation(to: To) -> Option<Notation> {
     match to {
         To::Ladder => Some(Notation::Ladder),
         To::Fx => Some(Notation::FxIl),
+        To::Iec => Some(Notation::IecIl),
         To::Boolean => None,
     }
 }
