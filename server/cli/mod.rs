@@ -12,6 +12,7 @@ mod help;
 mod import;
 mod input;
 mod language;
+mod prove;
 mod render;
 mod sarif;
 mod server;
@@ -59,6 +60,8 @@ enum Verb {
     Fmt(fmt::Arguments),
     /// Translate a program between ladder, instruction list and equations.
     Translate(translate::Arguments),
+    /// Tell whether two programs do the same, and if not, for which inputs.
+    Prove(prove::Arguments),
     /// List the devices that programs use: where read, where written, comment.
     Usage(usage::Arguments),
     /// Show the page of a rule, an instruction, a function or a function block.
@@ -112,6 +115,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Verb::Check(verb) => check::run(&verb, arguments.color, language).into(),
         Verb::Fmt(verb) => fmt::run(&verb, arguments.color, language).into(),
         Verb::Translate(verb) => translate::run(&verb, language).into(),
+        Verb::Prove(verb) => prove::run(&verb, language).into(),
         Verb::Usage(verb) => usage::run(&verb, language).into(),
         Verb::Explain(arguments) => explain::run(&arguments, language).into(),
         Verb::Import(arguments) => import::run(&arguments, language).into(),

@@ -2,7 +2,8 @@
 
 use super::Outcome;
 use super::fmt::style_of;
-use super::input::{Program, complain, programs, remark, say};
+use super::input::{Program, complain, remark, say};
+use super::prove;
 use crate::text::{Encoding, Language, Message};
 use crate::translate::to_boolean::Notation;
 use crate::translate::{Certificate, Options, To, Translation, translate};
@@ -41,15 +42,8 @@ enum Form {
 }
 
 pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
-    let Some(programs) = programs(std::slice::from_ref(&arguments.file), None, language) else {
-        return Outcome::Unusable;
-    };
-    let [program] = &programs[..] else {
-        let reason = Message::new("cli.one-program").with("path", arguments.file.display());
-        let help = Message::new("cli.name-one-file").render(language);
-        complain("several-programs", &reason.render(language), &help, language);
-        return Outcome::Unusable;
-    };
+    let Some(program) = prove::read(&arguments.file, language) else { return Outcome::Unusable };
+    let program = &program;
     let to = match arguments.to {
         Form::Ladder => To::Ladder,
         Form::Fx => To::Fx,
@@ -77,10 +71,10 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
             }
         }
     }
-    match translation.rungs.iter().all(|rung| rung.note.is_none()) {
-        true => Outcome::Clean,
-        false => Outcome::Findings,
-    }
+    // Equations are not read again, so nothing is proved of them.
+    let is_whole =
+        is_certain || (to == To::Boolean && translation.rungs.iter().all(|rung| rung.note.is_none()));
+    if is_whole { Outcome::Clean } else { Outcome::Findings }
 }
 
 /// Notes about rungs, and with `--prove` how many are proved.

@@ -1,7 +1,8 @@
 //! Whether two stretches of program do the same.
 
 use super::decide::{Verdict, equal};
-use super::{Formulas, Path, Run};
+use super::{Action, Deed, Effect, Formula, Formulas, Path, Run, Term};
+use crate::target::{Flow, Operand};
 use std::collections::BTreeMap;
 
 /// What comes of a comparison.
@@ -13,41 +14,122 @@ pub enum Comparison {
         /// them, with the same operands.
         is_boolean: bool,
     },
-    /// Both do the same to the same devices in the same order, but not under the same conditions.
+    /// What one does differs from what the other does.
     Different {
-        /// The number of the effect whose conditions differ.
-        effect: usize,
+        /// What differs: the bit, or the first operand of the action.
+        what: String,
+        /// What it is on the left and on the right: the bit, or whether the action is done.
+        sides: [bool; 2],
         /// Values of atoms for which they do, by the number of the atom.
         values: BTreeMap<u32, bool>,
     },
     /// They do not the same things in the same order.
-    Unlike {
-        /// The number of the first effect that differs.
-        effect: usize,
-    },
+    Unlike,
     /// Too large a question.
     Undecided,
 }
 
-/// Compares what is done by paths run one after the other from the same state, step by step.
+/// Compares what is done by paths run one after the other from the same state, step by step: the same things in the
+/// same order under equal conditions.
 pub fn compare(left: &[&Path], right: &[&Path], formulas: &mut Formulas) -> Comparison {
-    let [left, right] = [left, right].map(|paths| {
-        let mut run = Run::new();
-        paths.iter().for_each(|path| run.path(path, formulas));
-        run
-    });
+    let [left, right] = [run(left, formulas), run(right, formulas)];
     let pairs = left.effects.iter().zip(&right.effects);
-    let unlike = pairs.clone().position(|(left, right)| !left.is_like(right));
-    let lengths = [left.effects.len(), right.effects.len()];
-    if let Some(effect) = unlike.or((lengths[0] != lengths[1]).then(|| lengths[0].min(lengths[1]))) {
-        return Comparison::Unlike { effect };
+    if left.effects.len() != right.effects.len() || pairs.clone().any(|(left, right)| !left.is_like(right)) {
+        return Comparison::Unlike;
     }
-    for (effect, (left, right)) in pairs.enumerate() {
-        match equal(formulas, left.guard, right.guard) {
-            Verdict::Equal => {}
-            Verdict::Different(values) => return Comparison::Different { effect, values },
-            Verdict::Undecided => return Comparison::Undecided,
+    for (left, right) in pairs {
+        let sides = [left.guard, right.guard];
+        if let Some(difference) = difference(formulas, sides, || what(left)) {
+            return difference;
         }
     }
     Comparison::Same { is_boolean: left.is_boolean() }
+}
+
+/// Compares what has come of the same state when paths were run: the same events in the same order under equal
+/// conditions, and the same values of all bits at the end, whatever the way there. Of the paths the first `known` on
+/// either side are known to do the same.
+pub fn compare_outcome(
+    left: &[&Path],
+    right: &[&Path],
+    known: [usize; 2],
+    formulas: &mut Formulas,
+) -> Comparison {
+    let skipped = run(&left[..known[0].min(left.len())], &mut Formulas::default()).events() as usize;
+    let [left, right] = [run(left, formulas), run(right, formulas)];
+    let events = |run: &Run<'_>| run.events() as usize;
+    let pairs = || {
+        let [left, right] = [&left, &right].map(|run| run.effects.iter().filter(|e| e.event.is_some()));
+        left.zip(right)
+    };
+    if events(&left) != events(&right) || pairs().any(|(left, right)| !left.is_like(right)) {
+        return Comparison::Unlike;
+    }
+    for (left, right) in pairs().skip(skipped) {
+        let sides = [left.guard, right.guard];
+        if let Some(difference) = difference(formulas, sides, || what(left)) {
+            return difference;
+        }
+        // What an event makes of bits that differ when it happens, nobody knows.
+        if touches_bits(left.action) {
+            return Comparison::Undecided;
+        }
+    }
+    let mut bits: Vec<_> = left.bits().chain(right.bits()).map(|term| (term.key(), term)).collect();
+    bits.sort_by(|(left, _), (right, _)| left.cmp(right));
+    bits.dedup_by(|(left, _), (right, _)| left == right);
+    for (_, bit) in bits {
+        let sides = [left.bit(bit, formulas), right.bit(bit, formulas)];
+        if let Some(difference) = difference(formulas, sides, || bit.text.to_string()) {
+            return difference;
+        }
+    }
+    Comparison::Same { is_boolean: left.is_boolean() }
+}
+
+fn run<'p>(paths: &[&'p Path], formulas: &mut Formulas) -> Run<'p> {
+    let mut run = Run::new();
+    paths.iter().for_each(|path| run.path(path, formulas));
+    run
+}
+
+/// The difference between two sides; nothing if they are equal.
+fn difference(
+    formulas: &mut Formulas,
+    [left, right]: [Formula; 2],
+    what: impl FnOnce() -> String,
+) -> Option<Comparison> {
+    match equal(formulas, left, right) {
+        Verdict::Equal => None,
+        Verdict::Undecided => Some(Comparison::Undecided),
+        Verdict::Different(values) => {
+            let value = |atom: u32| values.get(&atom).copied().unwrap_or(false);
+            let sides = formulas.evaluate(&[left, right], value);
+            Some(Comparison::Different { what: what(), sides: [sides[0], sides[1]], values })
+        }
+    }
+}
+
+fn what(effect: &Effect<'_>) -> String {
+    let action = effect.action;
+    match (action.deed, action.terms.first()) {
+        (Deed::Coil(_), Some(term)) => term.text.to_string(),
+        (Deed::Instruction(form), _) => {
+            let words = action.terms.iter().map(|term| term.text.as_str());
+            std::iter::once(form.mnemonic().as_str()).chain(words).collect::<Vec<_>>().join(" ")
+        }
+        (_, term) => term.map(|term| term.text.to_string()).unwrap_or_default(),
+    }
+}
+
+/// Whether an action looks at bits other than through its condition, or may change bits whose values are known. What
+/// it does when its condition fails depends on what these were before.
+pub fn touches_bits(action: &Action) -> bool {
+    let Deed::Instruction(form) = action.deed else { return false };
+    let is_bit = |term: &Term| match term.operand {
+        Operand::Device(device) => device.kind.is_bit(),
+        Operand::Nibbles { .. } => true,
+        _ => false,
+    };
+    form.instruction.flow() != Flow::Straight || action.terms.iter().any(is_bit)
 }

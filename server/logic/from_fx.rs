@@ -10,7 +10,8 @@ use crate::text::{Span, Spanned};
 /// The rung that a chunk of FX instruction list is.
 pub(super) fn rung(text: &str, tree: &FxTree) -> Rung {
     let labels = tree.lines.iter().filter(|line| matches!(line.kind, LineKind::Label(_)));
-    let span = match (tree.lines.first(), tree.lines.last()) {
+    let is_instruction = |line: &&FxLine| !matches!(line.kind, LineKind::Label(_));
+    let span = match (tree.lines.iter().find(is_instruction), tree.lines.last()) {
         (Some(first), Some(last)) => first.span.to(last.span),
         _ => Span::at(text.len()),
     };
@@ -19,6 +20,7 @@ pub(super) fn rung(text: &str, tree: &FxTree) -> Rung {
         network: None,
         comments: tree.comments.clone(),
         span,
+        is_list: true,
         path: path(text, tree),
     }
 }

@@ -10,7 +10,7 @@
 mod reader;
 
 use self::reader::Reader;
-use super::{Path, Refusal, Rung};
+use super::{Declared, Path, Refusal, Rung};
 use crate::document::{DeclaredType, Scopes};
 use crate::il::iec::{Condition, IecTree, Item, ItemKind, ListForm};
 use crate::target::Operand;
@@ -21,9 +21,9 @@ use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 use std::ops::Range;
 
-/// The rungs of a piece of a file, before which `pous` program units start and in which `scopes` are declared.
-pub(super) fn rungs(text: &str, tree: &IecTree, scopes: &Scopes, pous: usize) -> Vec<Rung> {
-    let source = Source::new(text, tree, scopes, pous);
+/// The rungs of a piece of a file.
+pub(super) fn rungs(text: &str, tree: &IecTree, declared: Declared<'_>) -> Vec<Rung> {
+    let source = Source::new(text, tree, declared.scopes, declared.pous);
     let mut comments = Comments::of(text, tree);
     let mut rungs = Vec::new();
     let mut first = 0;
@@ -36,7 +36,14 @@ pub(super) fn rungs(text: &str, tree: &IecTree, scopes: &Scopes, pous: usize) ->
     let rest = comments.rest();
     if !source.ends_declared && !rest.is_empty() {
         let span = Span::at(text.len());
-        rungs.push(Rung { labels: Vec::new(), network: None, comments: rest, span, path: Ok(None) });
+        rungs.push(Rung {
+            labels: Vec::new(),
+            network: None,
+            comments: rest,
+            span,
+            is_list: true,
+            path: Ok(None),
+        });
     }
     rungs
 }
@@ -374,6 +381,7 @@ impl<'a> Source<'a> {
                 network: None,
                 comments: comments.up_to(end_of_line(self.text, span.end as usize)),
                 span,
+                is_list: true,
                 path,
             });
             at += count;

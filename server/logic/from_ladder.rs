@@ -1,50 +1,107 @@
 //! Reads a drawn rung: its series-parallel shape with words for cells.
 
 use super::builder::Builder;
-use super::{Action, Contact, Deed, Expression, Gate, Network, Path, Refusal, Rung, Term, Test};
+use super::from_fx;
+use super::from_iec;
+use super::{Action, Contact, Declared, Deed, Expression, Gate, Network, Path, Refusal, Rung, Term, Test};
+use crate::il::{fx, iec};
 use crate::ladder::reduce::{NotSeriesParallel, Shape, reduce};
 use crate::ladder::{self, Element, ElementId, ElementKind, Graph, LadderTree};
-use crate::target::Operand;
+use crate::target::{Model, Operand, Target};
 use crate::text::{Diagnostic, Span, Spanned};
 
 /// The rungs of a chunk of a drawing.
-pub(super) fn rungs(text: &str, tree: &LadderTree) -> Vec<Rung> {
+pub(super) fn rungs(text: &str, tree: &LadderTree, target: &Target, declared: Declared<'_>) -> Vec<Rung> {
     let header = tree.header.as_ref();
     let label = header.and_then(|header| header.label).map(|label| label.of(text).into());
     let network = header.filter(|header| header.label.is_none()).map(|header| Network {
         number: header.number.map(|number| number.value),
         title: header.title.map(|title| title.of(text).into()).unwrap_or_default(),
     });
-    let mut comments = tree.comments.iter().copied().peekable();
     let mut rungs: Vec<Rung> = Vec::with_capacity(tree.rungs.len().max(1));
-    for rung in &tree.rungs {
-        let own = std::iter::from_fn(|| comments.next_if(|comment| comment.start < rung.span.end));
-        rungs.push(Rung {
-            labels: Vec::new(),
-            network: None,
-            comments: own.collect(),
-            span: rung.span,
-            path: path(text, tree, rung).map(Some),
-        });
+    let mut comments = Vec::new();
+    let mut drawn = tree.rungs.iter().peekable();
+    let mut above = tree.comments.iter().copied().peekable();
+    loop {
+        let end = drawn.peek().map_or(u32::MAX, |rung| rung.span.end);
+        match above.next_if(|comment| comment.start < end) {
+            Some(comment) => match boxed(comment.of(text)) {
+                Some(list) => rungs.push(list_rung(list, comment, std::mem::take(&mut comments), target, declared)),
+                None => comments.push(comment),
+            },
+            None => {
+                let Some(rung) = drawn.next() else { break };
+                rungs.push(Rung {
+                    labels: Vec::new(),
+                    network: None,
+                    comments: std::mem::take(&mut comments),
+                    span: rung.span,
+                    is_list: false,
+                    path: path(text, tree, rung).map(Some),
+                });
+            }
+        }
     }
     if rungs.is_empty() {
         let path = if tree.problems.is_empty() { Ok(None) } else { Err(Refusal::Unreadable) };
+        let span = header.map_or(Span::at(text.len()), |header| header.span);
         rungs.push(Rung {
             labels: Vec::new(),
             network: None,
             comments: Vec::new(),
-            span: header.map_or(Span::at(text.len()), |header| header.span),
+            span,
+            is_list: false,
             path,
         });
     }
     if let Some(last) = rungs.last_mut() {
-        last.comments.extend(comments);
+        last.comments.append(&mut comments);
     }
     if let Some(first) = rungs.first_mut() {
         first.labels.extend(label);
         first.network = network;
     }
     rungs
+}
+
+/// The list in a box `{il … }`, in which a drawing carries along what has no drawing, and where it starts there.
+fn boxed(comment: &str) -> Option<(&str, usize)> {
+    let inside = comment.strip_prefix("{il")?.strip_suffix('}')?;
+    let list = inside.trim_start();
+    (list.len() < inside.len()).then(|| (list.trim_end(), "{il".len() + inside.len() - list.len()))
+}
+
+/// The rung that such a list is.
+fn list_rung(
+    (list, start): (&str, usize),
+    comment: Span,
+    comments: Vec<Span>,
+    target: &Target,
+    declared: Declared<'_>,
+) -> Rung {
+    let rung = match target.model {
+        Model::Iec => iec_rung(list, target, declared),
+        _ => from_fx::rung(list, &fx::parse(list, target)),
+    };
+    let span = rung.span.shifted(comment.start as usize + start);
+    // Its own spans would be places in the list alone.
+    Rung { comments, span, path: rung.path, ..rung }
+}
+
+/// The rung that a list of IEC 61131-3 is as a whole.
+fn iec_rung(list: &str, target: &Target, declared: Declared<'_>) -> Rung {
+    let mut rungs = from_iec::rungs(list, &iec::parse(list, target), declared);
+    match rungs.pop() {
+        Some(rung) if rungs.is_empty() => rung,
+        _ => Rung {
+            labels: Vec::new(),
+            network: None,
+            comments: Vec::new(),
+            span: Span::new(0, list.len()),
+            is_list: true,
+            path: Err(Refusal::NotBoolean),
+        },
+    }
 }
 
 fn path(text: &str, tree: &LadderTree, rung: &ladder::Rung) -> Result<Path, Refusal> {

@@ -39,22 +39,32 @@ mod decide;
 pub use decide::{Verdict, equal, is_never};
 
 mod compare;
-pub use compare::{Comparison, compare};
+pub use compare::{Comparison, compare, compare_outcome, touches_bits};
 
 use crate::document::{Chunk, Scopes, Tree};
+use crate::target::Target;
 
-/// The rungs of a chunk, in the order of execution. Spans are offsets into the chunk.
+/// The rungs of a chunk written for `target`, in the order of execution. Spans are offsets into the chunk.
 ///
 /// What IEC instruction list means depends on declarations elsewhere; with them there is [`rungs_with`].
-pub fn rungs(chunk: &Chunk) -> Vec<Rung> {
-    rungs_with(chunk, &Scopes::default(), 0)
+pub fn rungs(chunk: &Chunk, target: &Target) -> Vec<Rung> {
+    rungs_with(chunk, target, Declared { scopes: &Scopes::default(), pous: 0 })
 }
 
-/// The rungs of a chunk, where `scopes` has the declarations of its document and `pous` program units start before it.
-pub fn rungs_with(chunk: &Chunk, scopes: &Scopes, pous: usize) -> Vec<Rung> {
+/// What is declared where a chunk stands.
+#[derive(Clone, Copy)]
+pub struct Declared<'a> {
+    /// The declarations of the document.
+    pub scopes: &'a Scopes,
+    /// How many program units start before the chunk.
+    pub pous: usize,
+}
+
+/// The rungs of a chunk written for `target`, as declarations around it have them.
+pub fn rungs_with(chunk: &Chunk, target: &Target, declared: Declared<'_>) -> Vec<Rung> {
     match chunk.tree() {
         Tree::Fx(tree) => vec![from_fx::rung(chunk.text(), tree)],
-        Tree::Ladder(tree) => from_ladder::rungs(chunk.text(), tree),
-        Tree::Iec(tree) => from_iec::rungs(chunk.text(), tree, scopes, pous),
+        Tree::Ladder(tree) => from_ladder::rungs(chunk.text(), tree, target, declared),
+        Tree::Iec(tree) => from_iec::rungs(chunk.text(), tree, declared),
     }
 }

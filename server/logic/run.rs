@@ -15,6 +15,8 @@ pub struct Effect<'p> {
     pub action: &'p Action,
     /// When, over the atoms at the start of the run.
     pub guard: Formula,
+    /// Its number among the events, from 1; nothing if it drives a bit whose value is known.
+    pub event: Option<u32>,
 }
 
 impl Effect<'_> {
@@ -42,8 +44,8 @@ pub struct Run<'p> {
     pub effects: Vec<Effect<'p>>,
     /// How many of the effects are events.
     events: u32,
-    /// Bits that were driven, with their values and how many events there had been.
-    driven: FxHashMap<SmolStr, (Formula, u32)>,
+    /// Bits that were driven.
+    driven: FxHashMap<SmolStr, Driven<'p>>,
     /// The last event, counted from 1, that may have changed this device.
     changed: FxHashMap<SmolStr, u32>,
     /// The last event that may have changed any device of a kind; the last place is for variables.
@@ -52,6 +54,15 @@ pub struct Run<'p> {
     touched: [u32; KINDS],
     /// The last event that may have set special relays: flags of arithmetic and of completion.
     flags: u32,
+}
+
+/// A bit that was driven.
+#[derive(Clone, Copy, Debug)]
+struct Driven<'p> {
+    term: &'p Term,
+    value: Formula,
+    /// How many events there had been.
+    since: u32,
 }
 
 /// One for each kind of device, and one for variables.
@@ -77,9 +88,33 @@ impl<'p> Run<'p> {
         self.powered(path, Formulas::TRUE, formulas);
     }
 
+    /// How many events there were.
+    pub fn events(&self) -> u32 {
+        self.events
+    }
+
     /// Whether only bits were driven.
     pub fn is_boolean(&self) -> bool {
         self.events == 0
+    }
+
+    /// The bits that were driven.
+    pub fn bits(&self) -> impl Iterator<Item = &'p Term> {
+        self.driven.values().map(|driven| driven.term)
+    }
+
+    /// The value of a bit where the run stands.
+    pub fn bit(&self, term: &Term, formulas: &mut Formulas) -> Formula {
+        if let Operand::Literal(literal) = &term.operand
+            && let LiteralValue::Bool(value) = literal.value
+        {
+            return Formulas::constant(value);
+        }
+        let name = term.key();
+        self.value(term, &name).unwrap_or_else(|| {
+            let of = self.moment(term, name);
+            formulas.atom(Atom::Bit(of))
+        })
     }
 
     fn powered(&mut self, path: &'p Path, power: Formula, formulas: &mut Formulas) {
@@ -147,23 +182,10 @@ impl<'p> Run<'p> {
         }
     }
 
-    fn bit(&self, term: &Term, formulas: &mut Formulas) -> Formula {
-        if let Operand::Literal(literal) = &term.operand
-            && let LiteralValue::Bool(value) = literal.value
-        {
-            return Formulas::constant(value);
-        }
-        let name = term.key();
-        self.value(term, &name).unwrap_or_else(|| {
-            let of = self.moment(term, name);
-            formulas.atom(Atom::Bit(of))
-        })
-    }
-
     /// The value that the run gave to `term`, whose key is `name`.
     fn value(&self, term: &Term, name: &SmolStr) -> Option<Formula> {
-        let (value, since) = self.driven.get(name)?;
-        (*since >= self.last_event(term, name)).then_some(*value)
+        let driven = self.driven.get(name)?;
+        (driven.since >= self.last_event(term, name)).then_some(driven.value)
     }
 
     /// The moment at which `term`, whose key is `name`, is read.
@@ -258,14 +280,15 @@ impl<'p> Run<'p> {
             Deed::Coil(CoilKind::Negated) => formulas.not(power),
             _ => power,
         };
-        self.effects.push(Effect { action, guard });
-        let number = self.effects.len() as u32;
+        let number = self.effects.len() as u32 + 1;
         if let Some((term, value)) = self.bit_driven(action, guard, formulas) {
-            self.driven.insert(term.key(), (value, self.events));
+            self.effects.push(Effect { action, guard, event: None });
+            self.driven.insert(term.key(), Driven { term, value, since: self.events });
             self.touched[slot(term)] = number;
             return;
         }
         self.events += 1;
+        self.effects.push(Effect { action, guard, event: Some(self.events) });
         match action.deed {
             Deed::Coil(_) => {
                 if let Some(term) = action.terms.first() {

@@ -13,8 +13,10 @@ pub struct Rung {
     pub network: Option<Network>,
     /// The comments before and inside it, delimiters included, in order.
     pub comments: Vec<Span>,
-    /// All of it without the comments before it.
+    /// All of it without the comments and labels before it.
     pub span: Span,
+    /// Whether it is written as instruction list, also where a drawing carries it along in a box `{il … }`.
+    pub is_list: bool,
     /// What it does; nothing if there are only comments and labels.
     pub path: Result<Option<Path>, Refusal>,
 }

@@ -50,7 +50,10 @@ pub(super) fn add(document: &Document, sources: &[Source], to: To, translation: 
             }
         }
         if translated.note.is_some() {
-            translated.certificate = Some(Certificate::Undecided);
+            // A list is carried along word by word; a drawing in a list is but a comment.
+            let carried = source.rung.is_list && to != To::Boolean;
+            let certificate = if carried { Certificate::Construction } else { Certificate::Undecided };
+            translated.certificate = Some(certificate);
             continue;
         }
         let own: Vec<&Path> = source.rung.path.iter().flatten().collect();
@@ -67,7 +70,7 @@ fn judge(own: &[&Path], written: &[&Path]) -> (Certificate, Option<&'static str>
     match compare(own, written, &mut Formulas::default()) {
         Comparison::Same { is_boolean: true } => (Certificate::Proved, None),
         Comparison::Same { is_boolean: false } => (Certificate::Construction, None),
-        Comparison::Different { .. } | Comparison::Unlike { .. } => {
+        Comparison::Different { .. } | Comparison::Unlike => {
             (Certificate::Undecided, Some("translate.different"))
         }
         Comparison::Undecided => (Certificate::Undecided, Some("translate.undecided")),

@@ -10,6 +10,11 @@ mod page;
 mod certificate;
 pub use certificate::Certificate;
 
+mod stack;
+
+mod prove;
+pub use prove::{Counterexample, Proof, Value, prove};
+
 mod header;
 
 pub mod to_fx;

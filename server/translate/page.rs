@@ -60,7 +60,7 @@ pub(super) fn write(
         }
         page.head(source);
         let start = page.text.len();
-        let note = page.body(body, source);
+        let note = page.body(document, body, source);
         rungs.push(Translated {
             span: source.span(),
             result: start..page.text.len(),
@@ -131,12 +131,9 @@ impl Page {
             self.text.push('\n');
         }
         for comment in source.comments().filter(|comment| !is_network(comment)) {
-            // An instruction list that is carried along in a drawing is instruction list again.
-            if boxed(comment).is_none() || self.to == To::Boolean || self.to == To::Ladder {
-                match self.to {
-                    To::Iec => self.line(&header::comment(comment)),
-                    _ => self.line(comment),
-                }
+            match self.to {
+                To::Iec => self.line(&header::comment(comment)),
+                _ => self.line(comment),
             }
         }
         let mut networks: Vec<String> = rung.network.iter().map(network_text).collect();
@@ -159,13 +156,10 @@ impl Page {
                 _ => self.line(&format!("{label}:")),
             }
         }
-        if self.to == To::Fx || self.to == To::Iec {
-            source.comments().filter_map(boxed).for_each(|list| self.line(list));
-        }
     }
 
     /// Writes the rung; the note says why it could not be written.
-    fn body(&mut self, body: Body, source: &Source) -> Option<Message> {
+    fn body(&mut self, document: &Document, body: Body, source: &Source) -> Option<Message> {
         match body {
             Body::Nothing => {}
             Body::Lines(lines) => lines.iter().for_each(|line| self.line(&line.to_string())),
@@ -175,25 +169,30 @@ impl Page {
                 Some(lines) => lines.iter().for_each(|line| self.line(line)),
                 None => {
                     let text = source.rung.span.of(source.chunk.text());
-                    return self.kept(text, Message::new("translate.no-drawing"));
+                    return self.kept(document, text, source.rung.is_list, Message::new("translate.no-drawing"));
                 }
             },
-            Body::Kept(text, reason) => return self.kept(&text, reason),
+            Body::Kept(text, reason) => return self.kept(document, &text, source.rung.is_list, reason),
         }
         None
     }
 
     /// What cannot be translated is carried along as it is: a list in a box that the drawing does not look into, a
     /// drawing as comments.
-    fn kept(&mut self, text: &str, reason: Message) -> Option<Message> {
+    fn kept(&mut self, document: &Document, text: &str, is_list: bool, reason: Message) -> Option<Message> {
         match self.to {
-            To::Ladder => {
+            To::Fx if is_list => text.lines().for_each(|line| self.line(line.trim())),
+            To::Ladder if is_list => {
                 self.line("{il");
                 text.lines().for_each(|line| self.line(line.trim_end()));
                 self.line("}");
             }
+            To::Iec if is_list => {
+                let laid_out = header::laid_out(document, &format!("{}\n", text.trim_end()));
+                self.text += &laid_out;
+            }
             To::Iec => text.lines().for_each(|line| self.line(&header::comment(&format!("; {line}")))),
-            To::Fx | To::Boolean => {
+            _ => {
                 text.lines().for_each(|line| self.line(format!("; {line}").trim_end()));
             }
         }
@@ -222,11 +221,6 @@ impl Page {
         self.text.push_str(line);
         self.text.push('\n');
     }
-}
-
-/// The list in a box `{il … }` of a drawing, which keeps what has no drawing.
-fn boxed(comment: &str) -> Option<&str> {
-    Some(comment.strip_prefix("{il")?.strip_suffix('}')?.trim_matches(['\n', '\r']))
 }
 
 /// `; NETWORK 3 'title'`: the name of a network where only comments can have it.

@@ -1,8 +1,8 @@
 //! The rungs of a document that are to be translated.
 
-use crate::document::{Chunk, Document, Tree};
+use crate::document::{Chunk, Document, Notation, Tree};
 use crate::il::iec::{IecTree, ItemKind};
-use crate::logic::{self, Rung};
+use crate::logic::{self, Declared, Rung};
 use crate::text::Span;
 use std::sync::Arc;
 
@@ -55,7 +55,7 @@ pub(super) fn rungs(document: &Document, part: Option<Span>) -> Vec<Source> {
 /// `document` in rungs and declarations; with `part` only the rungs that touch these bytes.
 pub(super) fn program(document: &Document, part: Option<Span>) -> Program {
     let mut reader = Reader { document, part, pous: 0, program: Program::default() };
-    if document.chunks().all(|at| at.chunk.is_iec()) {
+    if document.notation() == Notation::IecIl {
         // A rung of instruction list may reach over several chunks: the calls before it belong to it.
         let whole = Arc::new(document.chunk_of(&document.text()));
         reader.chunk(0, &whole);
@@ -90,7 +90,8 @@ impl Reader<'_> {
             _ => Vec::new(),
         };
         let mut declared = declared.into_iter().peekable();
-        for rung in logic::rungs_with(&reading, self.document.scopes(), self.pous) {
+        let context = Declared { scopes: self.document.scopes(), pous: self.pous };
+        for rung in logic::rungs_with(&reading, self.document.reader(), context) {
             while let Some(span) = declared.next_if(|span| span.start <= rung.span.start) {
                 self.declare(&reading, span);
             }

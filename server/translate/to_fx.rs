@@ -4,6 +4,7 @@
 //! the first part of the one around it, and branching one for each conditional path behind which the power is wanted
 //! again; the exhaustive search in the tests finds no shorter list.
 
+use super::stack::{self, Wants};
 use crate::document::coil_form;
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
@@ -49,28 +50,6 @@ struct Writer {
     limits: Limits,
 }
 
-/// What the current result is among the drives of a path.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Current {
-    /// The power behind the gates.
-    Power,
-    /// The inverse of it.
-    Inverse,
-    /// Something else: a conditional path was written.
-    Lost,
-}
-
-/// What a drive does to the current result.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Wants {
-    /// An output: keeps it.
-    Power,
-    /// A negated coil, or outputs behind an inverter: wants the inverse, and keeps that.
-    Inverse,
-    /// A conditional path: loses it.
-    Everything,
-}
-
 impl Writer {
     /// `is_first` if nothing is loaded yet.
     fn path(&mut self, path: &Path, is_first: bool) -> Result<(), Message> {
@@ -99,43 +78,22 @@ impl Writer {
     }
 
     fn drives(&mut self, drives: &[Drive]) -> Result<(), Message> {
-        let mut result = Current::Power;
-        let mut is_kept = false;
-        // The last conditional path behind which something comes: up to there the power is wanted again.
-        let last_loss = drives.iter().rposition(|drive| wants(drive) == Wants::Everything);
-        let last_loss = match last_loss {
-            Some(last) if last + 1 == drives.len() => {
-                drives[..last].iter().rposition(|drive| wants(drive) == Wants::Everything)
-            }
-            last => last,
-        };
-        for (number, drive) in drives.iter().enumerate() {
-            let wanted = wants(drive);
-            if result == Current::Lost {
-                let is_last = last_loss.is_none_or(|last| last < number);
-                self.bare(if is_last { "MPP" } else { "MRD" })?;
-                self.branches -= u32::from(is_last);
-                is_kept &= !is_last;
-                result = Current::Power;
-            }
-            if (wanted == Wants::Inverse) != (result == Current::Inverse) {
-                self.bare("INV")?;
-                result = if result == Current::Power { Current::Inverse } else { Current::Power };
-            }
-            if wanted == Wants::Everything && number + 1 < drives.len() {
-                if !is_kept {
-                    self.bare("MPS")?;
-                    self.branches += 1;
-                    is_kept = true;
-                    if self.branches > self.limits.branches {
-                        return Err(Message::new("translate.branches").with("limit", self.limits.branches));
-                    }
+        let wanted: Vec<Wants> = drives.iter().map(wants).collect();
+        for ((drive, wanted), moves) in drives.iter().zip(&wanted).zip(stack::moves(&wanted)) {
+            for mnemonic in moves {
+                self.bare(mnemonic)?;
+                match mnemonic {
+                    "MPS" => self.branches += 1,
+                    "MPP" => self.branches -= 1,
+                    _ => {}
                 }
-                result = Current::Lost;
+                if self.branches > self.limits.branches {
+                    return Err(Message::new("translate.branches").with("limit", self.limits.branches));
+                }
             }
             match drive {
                 Drive::Action(action) => self.action(action)?,
-                Drive::Path(path) if wanted == Wants::Inverse => self.inverted(path)?,
+                Drive::Path(path) if *wanted == Wants::Inverse => self.inverted(path)?,
                 Drive::Path(path) => self.path(path, false)?,
             }
         }

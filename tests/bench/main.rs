@@ -21,6 +21,8 @@ mod command_line;
 
 mod interleaved;
 
+mod translation;
+
 use figures::{Figures, Table, calibrate, milliseconds};
 use lsp_client::{Client, at};
 use programs::Program;
@@ -46,6 +48,7 @@ fn main() {
     }
     start(&table);
     interleaved::measure(&table);
+    translation::measure(&table);
     command_line::measure(&table);
     println!("| (calibration again) | {} | | | | |", milliseconds(calibrate()));
 }

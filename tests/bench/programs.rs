@@ -44,6 +44,11 @@ pub fn program_of_bytes(bytes: usize) -> String {
     text + "END\n"
 }
 
+/// Instruction list of so many rungs.
+pub fn rungs(count: usize) -> String {
+    (0..count).map(|number| il_rung(number, false)).collect::<String>() + "END\n"
+}
+
 fn il_rung(number: usize, marked: bool) -> String {
     let relay = number % 1500;
     let input = if marked { "X10".to_string() } else { format!("X{:o}", number % 128) };

@@ -1,0 +1,301 @@
+//! Whether two programs do the same, and if not, for which inputs.
+//!
+//! Rungs are compared in step as far as they drive the same things in the same order. Where one program does so in
+//! another way, stretches between jumps, labels and the like are compared by what comes of them.
+
+use super::source::{self, Source};
+use crate::document::Document;
+use crate::logic::{Atom, Comparison, Deed, Formulas, Path, compare, compare_outcome, touches_bits};
+use crate::target::Flow;
+use crate::text::{Message, Span};
+use std::collections::BTreeMap;
+
+/// What is known of two programs.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Proof {
+    /// For all inputs and all states both do the same in each scan.
+    Equal {
+        /// Whether some bits are driven in another order, or other relays on the way, with the same outcome.
+        is_reordered: bool,
+    },
+    /// They differ in a scan.
+    Different(Box<Counterexample>),
+    /// Nothing is proved.
+    Undecided {
+        /// Why.
+        reason: Message,
+        /// The rung of the first program from which on, and that of the second, if there is one.
+        at: [Option<Span>; 2],
+    },
+}
+
+/// A scan in which two programs differ.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Counterexample {
+    /// Inputs and states at its start, by name.
+    pub inputs: BTreeMap<String, Value>,
+    /// Bits as they were one scan before, where it matters that they changed.
+    pub before: BTreeMap<String, bool>,
+    /// What differs: a bit, or an action that only one does.
+    pub what: String,
+    /// What it is on either side.
+    pub sides: [bool; 2],
+    /// The rungs on either side that differ, or where the stretch starts that does.
+    pub at: [Option<Span>; 2],
+}
+
+/// A value at the start of a scan.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Value {
+    /// Of a bit, or of a condition that stands for itself.
+    Bit(bool),
+    /// Of a word.
+    Word(i64),
+}
+
+/// Compares two programs.
+pub fn prove(left: &Document, right: &Document) -> Proof {
+    let sources = [source::rungs(left, None), source::rungs(right, None)];
+    let stretches = [stretches(&sources[0]), stretches(&sources[1])];
+    let mut prover = Prover { before: [Vec::new(), Vec::new()], is_reordered: false };
+    let [left, right] = &stretches;
+    let outcome = left.iter().zip(right).try_for_each(|(left, right)| prover.stretches(left, right));
+    match outcome {
+        Err(proof) => proof,
+        Ok(()) if left.len() != right.len() => {
+            let least = left.len().min(right.len());
+            let at = [left, right].map(|side| side.get(least).and_then(Stretch::span));
+            Proof::Undecided { reason: Message::new("prove.structure"), at }
+        }
+        Ok(()) => Proof::Equal { is_reordered: prover.is_reordered },
+    }
+}
+
+/// Rungs that are executed one after the other, and what ends them: a label, a jump, or an instruction of which
+/// nobody knows which bits it looks at.
+#[derive(Default)]
+struct Stretch<'s> {
+    rungs: Vec<(&'s Source, &'s Path)>,
+    end: Option<End<'s>>,
+}
+
+enum End<'s> {
+    Label(Span, &'s str),
+    Rung(&'s Source, &'s Path),
+    /// A rung that cannot be read, by its words.
+    Unread(&'s Source, Vec<&'s str>),
+}
+
+impl Stretch<'_> {
+    /// Where it starts.
+    fn span(&self) -> Option<Span> {
+        let first = self.rungs.first().map(|(source, _)| source.span());
+        first.or_else(|| self.end.as_ref().map(End::span))
+    }
+}
+
+impl End<'_> {
+    fn span(&self) -> Span {
+        match self {
+            End::Label(span, _) => *span,
+            End::Rung(source, _) | End::Unread(source, _) => source.span(),
+        }
+    }
+
+    /// Whether it is nothing but END.
+    fn ends_program(&self) -> bool {
+        let End::Rung(_, path) = self else { return false };
+        path.actions().iter().all(|action| match action.deed {
+            Deed::Instruction(form) => form.instruction.flow() == Flow::ProgramEnd,
+            _ => false,
+        })
+    }
+}
+
+/// The stretches of a program. The END at its end is left out: a drawing may go without.
+fn stretches(sources: &[Source]) -> Vec<Stretch<'_>> {
+    let mut stretches = Vec::new();
+    let mut open = Stretch::default();
+    for source in sources {
+        for label in &source.rung.labels {
+            open.end = Some(End::Label(source.span(), label));
+            stretches.push(std::mem::take(&mut open));
+        }
+        match &source.rung.path {
+            Ok(None) => {}
+            Ok(Some(path)) if path.actions().iter().any(|action| touches_bits(action)) => {
+                open.end = Some(End::Rung(source, path));
+                stretches.push(std::mem::take(&mut open));
+            }
+            Ok(Some(path)) => open.rungs.push((source, path)),
+            Err(_) => {
+                let text = source.rung.span.of(source.chunk.text());
+                open.end = Some(End::Unread(source, text.split_whitespace().collect()));
+                stretches.push(std::mem::take(&mut open));
+            }
+        }
+    }
+    match stretches.last_mut() {
+        Some(last) if open.rungs.is_empty() && last.end.as_ref().is_some_and(End::ends_program) => {
+            last.end = None;
+        }
+        _ => stretches.push(open),
+    }
+    stretches
+}
+
+struct Prover<'s> {
+    /// The paths that are known to do the same, on either side.
+    before: [Vec<&'s Path>; 2],
+    is_reordered: bool,
+}
+
+impl<'s> Prover<'s> {
+    fn stretches(&mut self, left: &Stretch<'s>, right: &Stretch<'s>) -> Result<(), Proof> {
+        // What ends at different things does not start at the same ones, either.
+        let is_alike = match (&left.end, &right.end) {
+            (None, None) | (Some(End::Rung(..)), Some(End::Rung(..))) => true,
+            (Some(End::Label(_, left)), Some(End::Label(_, right))) => left == right,
+            (Some(End::Unread(_, left)), Some(End::Unread(_, right))) => left == right,
+            _ => false,
+        };
+        if !is_alike {
+            let at = [left, right].map(|side| side.end.as_ref().map(End::span));
+            return Err(Proof::Undecided { reason: Message::new("prove.structure"), at });
+        }
+        self.rungs([&left.rungs, &right.rungs])?;
+        match (&left.end, &right.end) {
+            (Some(End::Rung(left, left_path)), Some(End::Rung(right, right_path))) => {
+                self.rungs([&[(*left, *left_path)], &[(*right, *right_path)]])
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Compares rungs in step; where that does not do, by what comes of them.
+    fn rungs(&mut self, sides: [&[(&'s Source, &'s Path)]; 2]) -> Result<(), Proof> {
+        let in_step = groups(sides).is_some_and(|groups| {
+            groups.into_iter().all(|group| {
+                let paths = group.map(|side| side.iter().map(|(_, path)| *path).collect::<Vec<_>>());
+                let comparison = compare(&paths[0], &paths[1], &mut Formulas::default());
+                matches!(comparison, Comparison::Same { .. })
+            })
+        });
+        let paths = sides.map(|side| side.iter().map(|(_, path)| *path).collect::<Vec<&Path>>());
+        if !in_step {
+            self.outcome(&paths, sides)?;
+            self.is_reordered = true;
+        }
+        let [left, right] = paths;
+        self.before[0].extend(left);
+        self.before[1].extend(right);
+        Ok(())
+    }
+
+    fn outcome(
+        &self,
+        paths: &[Vec<&'s Path>; 2],
+        sides: [&[(&'s Source, &'s Path)]; 2],
+    ) -> Result<(), Proof> {
+        let mut formulas = Formulas::default();
+        let alone = compare_outcome(&paths[0], &paths[1], [0, 0], &mut formulas);
+        if matches!(alone, Comparison::Same { .. }) {
+            return Ok(());
+        }
+        // What is different from any state may be the same from those that the rungs before can lead to.
+        let [left, right] =
+            [0, 1].map(|side| self.before[side].iter().chain(&paths[side]).copied().collect::<Vec<&Path>>());
+        let known = [self.before[0].len(), self.before[1].len()];
+        let mut formulas = Formulas::default();
+        let at = sides.map(|side| side.first().map(|(source, _)| source.span()));
+        let undecided = |key| Err(Proof::Undecided { reason: Message::new(key), at });
+        match compare_outcome(&left, &right, known, &mut formulas) {
+            Comparison::Same { .. } => Ok(()),
+            Comparison::Undecided => undecided("prove.undecided"),
+            Comparison::Unlike => undecided("prove.unlike"),
+            Comparison::Different { what, sides: values_of, values } => {
+                let at = sides.map(|side| rung_of(side, &what));
+                let (inputs, before) = inputs(&formulas, &values);
+                let found = Counterexample { inputs, before, what, sides: values_of, at };
+                Err(Proof::Different(Box::new(found)))
+            }
+        }
+    }
+}
+
+/// A rung with its path, on either side.
+type Group<'r, 's> = [&'r [(&'s Source, &'s Path)]; 2];
+
+/// The least groups of rungs with as many actions on either side; nothing if that does not come out even.
+fn groups<'r, 's>(sides: Group<'r, 's>) -> Option<Vec<Group<'r, 's>>> {
+    let [mut left, mut right] = sides;
+    let mut groups = Vec::with_capacity(left.len());
+    while !left.is_empty() || !right.is_empty() {
+        let (mut ends, mut actions) = ([0, 0], [0, 0]);
+        while ends == [0, 0] || actions[0] != actions[1] {
+            let side = usize::from(actions[0] > actions[1] || (ends[0] > 0 && ends[1] == 0));
+            let (_, path) = [left, right][side].get(ends[side])?;
+            actions[side] += path.actions().len();
+            ends[side] += 1;
+        }
+        let ([left_group, right_group], rest) =
+            ([&left[..ends[0]], &right[..ends[1]]], [&left[ends[0]..], &right[ends[1]..]]);
+        groups.push([left_group, right_group]);
+        [left, right] = rest;
+    }
+    Some(groups)
+}
+
+/// The last rung that drives `what`, else the first.
+fn rung_of(side: &[(&Source, &Path)], what: &str) -> Option<Span> {
+    let drives = |(_, path): &&(&Source, &Path)| {
+        path.actions().iter().any(|action| action.terms.first().is_some_and(|term| term.text == what))
+    };
+    let rung = side.iter().rfind(drives).or(side.first());
+    rung.map(|(source, _)| source.span())
+}
+
+/// Values of atoms as values of devices, and as they were one scan before where a change matters.
+fn inputs(
+    formulas: &Formulas,
+    values: &BTreeMap<u32, bool>,
+) -> (BTreeMap<String, Value>, BTreeMap<String, bool>) {
+    let mut inputs = BTreeMap::new();
+    let mut before = BTreeMap::new();
+    let mut limits: BTreeMap<String, (i64, Option<i64>)> = BTreeMap::new();
+    let mut idle = Vec::new();
+    for (atom, value) in values {
+        match formulas.atom_at(*atom) {
+            Atom::Bit(of) => {
+                inputs.insert(of.name.to_string(), Value::Bit(*value));
+            }
+            Atom::Edge { of, rising, .. } if *value => {
+                inputs.insert(of.name.to_string(), Value::Bit(*rising));
+                before.insert(of.name.to_string(), !rising);
+            }
+            Atom::Edge { of, rising, .. } => idle.push((of.name.to_string(), *rising)),
+            Atom::Behind(_) => {}
+            Atom::Reaches { word, number } => {
+                let name = word.name.trim_start_matches("D ").to_string();
+                let (least, below) = limits.entry(name).or_insert((0, None));
+                match value {
+                    true => *least = (*least).max(*number),
+                    false => *below = Some(below.map_or(*number, |other| other.min(*number))),
+                }
+            }
+            Atom::AtLeast { word, other } => {
+                inputs.insert(format!("{} >= {}", word.name, other.name), Value::Bit(*value));
+            }
+        }
+    }
+    for (name, (least, below)) in limits {
+        let word = below.map_or(least, |below| least.min(below - 1));
+        inputs.insert(name, Value::Word(word));
+    }
+    for (name, rising) in idle {
+        // A bit that did not change has no edge of either kind.
+        let now = inputs.get(&name).map_or(rising, |value| *value == Value::Bit(true));
+        before.entry(name).or_insert(now);
+    }
+    (inputs, before)
+}

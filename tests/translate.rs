@@ -1,0 +1,428 @@
+//! From drawing to list and back, with an answer beside each that owes nothing to the translator: the list is run by
+//! `stack_machine`, the drawing by following its wires.
+
+use crate::stack_machine::{self, Bits};
+use rungwise::document::{Document, Notation, Tree};
+use rungwise::ladder::{ContactKind, ElementKind, Graph, VertexId, VertexKind};
+use rungwise::target::{Model, Target};
+use rungwise::translate::{Certificate, Options, Proof, To, Value, prove, translate};
+use std::collections::{HashSet, VecDeque};
+
+fn list(text: &str) -> Document {
+    Document::new(text, Notation::FxIl, Target::of(Model::Fx2n))
+}
+
+fn drawing(text: &str) -> Document {
+    Document::new(text, Notation::Ladder, Target::of(Model::Fx2n))
+}
+
+/// The translation, of which every rung must be proved.
+fn certain(document: &Document, to: To) -> String {
+    let translation = translate(document, None, to, &Options::default());
+    for rung in &translation.rungs {
+        let certificate = rung.certificate;
+        let source = document.slice(rung.span);
+        assert!(
+            to == To::Boolean || certificate.is_some_and(Certificate::is_certain),
+            "{certificate:?} {:?}\n{source}\n{}",
+            rung.note,
+            translation.text
+        );
+        assert_eq!(rung.note, None, "{source}");
+    }
+    translation.text
+}
+
+fn there_and_back(text: &str) -> (String, String) {
+    let drawn = certain(&list(text), To::Ladder);
+    (certain(&drawing(&drawn), To::Fx), drawn)
+}
+
+/// A rung of contacts in series and in parallel, for which all orders and depths are made.
+#[derive(Clone, Debug)]
+enum Part {
+    Contact,
+    Series(Vec<Part>),
+    Parallel(Vec<Part>),
+}
+
+/// All parts with `contacts` contacts; those in series (or in parallel) are left out if `but` says so, so that none
+/// stands directly in its like.
+fn parts(contacts: usize, but: Option<bool>) -> Vec<Part> {
+    if contacts == 1 {
+        return vec![Part::Contact];
+    }
+    let mut all = Vec::new();
+    for series in [true, false].into_iter().filter(|series| but != Some(*series)) {
+        for rows in rows(contacts, series) {
+            all.push(if series { Part::Series(rows) } else { Part::Parallel(rows) });
+        }
+    }
+    all
+}
+
+/// At least two parts side by side with so many contacts in all.
+fn rows(contacts: usize, series: bool) -> Vec<Vec<Part>> {
+    let mut all = Vec::new();
+    for first in 1..contacts {
+        for head in parts(first, Some(series)) {
+            let rest = contacts - first;
+            let mut tails: Vec<Vec<Part>> =
+                parts(rest, Some(series)).into_iter().map(|part| vec![part]).collect();
+            tails.extend(if rest > 1 { rows(rest, series) } else { Vec::new() });
+            all.extend(tails.into_iter().map(|tail| [vec![head.clone()], tail].concat()));
+        }
+    }
+    all
+}
+
+/// The part as a list that joins block by block, as nobody would write it.
+fn naive(part: &Part, next: &mut u32, closed: u32, text: &mut String) {
+    match part {
+        Part::Contact => {
+            let mnemonic = if closed & 1 << *next == 0 { "LD" } else { "LDI" };
+            *text += &format!("{mnemonic} X{next}\n");
+            *next += 1;
+        }
+        Part::Series(parts) | Part::Parallel(parts) => {
+            for (number, inner) in parts.iter().enumerate() {
+                naive(inner, next, closed, text);
+                if number > 0 {
+                    *text += if matches!(part, Part::Series(_)) { "ANB\n" } else { "ORB\n" };
+                }
+            }
+        }
+    }
+}
+
+/// All series-parallel rungs of up to five contacts, open and closed, as lists.
+fn all_small_rungs() -> Vec<String> {
+    let mut rungs = Vec::new();
+    for contacts in 1..=5 {
+        for part in parts(contacts, None) {
+            for closed in 0..1 << contacts {
+                let mut text = String::new();
+                naive(&part, &mut 0, closed, &mut text);
+                rungs.push(text + "OUT Y0\n");
+            }
+        }
+    }
+    rungs
+}
+
+/// What a list drives Y0 with, for all values of X0 to X4, a bit each.
+fn truth_of_list(text: &str) -> u32 {
+    (0..32).filter(|inputs| stack_machine_output(text, *inputs)).fold(0, |truth, inputs| truth | 1 << inputs)
+}
+
+fn stack_machine_output(text: &str, inputs: u32) -> bool {
+    let mut bits: Bits = (0..5).map(|number| (format!("X{number}"), inputs & 1 << number != 0)).collect();
+    stack_machine::scan(text, &mut bits, &Bits::new());
+    bits["Y0"]
+}
+
+/// What a drawing of one rung drives its coil with, found along its wires.
+fn truth_of_drawing(graph: &Graph) -> u32 {
+    let coil = graph
+        .vertex_ids()
+        .find(|id| graph.element_at(*id).is_some_and(|element| matches!(element.kind, ElementKind::Coil(_))));
+    let coil = coil.expect("a coil");
+    (0..32).filter(|inputs| power_before(graph, coil, *inputs)).fold(0, |truth, inputs| truth | 1 << inputs)
+}
+
+fn power_before(graph: &Graph, at: VertexId, inputs: u32) -> bool {
+    graph.incoming(at).any(|arc| {
+        let tail = graph.arc(arc).tail;
+        match graph.vertex(tail).kind {
+            VertexKind::LeftRail => true,
+            VertexKind::Element(id) => {
+                let element = graph.element(id);
+                let number = element.device().expect("a device").number;
+                let on = inputs & 1 << number != 0;
+                let closed = element.kind == ElementKind::Contact(ContactKind::NormallyClosed);
+                on != closed && power_before(graph, tail, inputs)
+            }
+            _ => power_before(graph, tail, inputs),
+        }
+    })
+}
+
+#[test]
+fn every_small_rung_goes_there_and_back() {
+    let rungs = all_small_rungs();
+    assert_eq!(rungs.len(), 3290);
+    let (again, drawn) = there_and_back(&(rungs.concat() + "END\n"));
+    // What came back is drawn the same, and written the same.
+    assert_eq!(certain(&list(&again), To::Ladder), drawn);
+    assert_eq!(certain(&list(&again), To::Fx), again);
+    let mut lists = again.split_inclusive("OUT Y0\n");
+    let document = drawing(&drawn);
+    let graphs = document.chunks().flat_map(|at| match at.chunk.tree() {
+        Tree::Ladder(tree) => tree.rungs.iter().map(|rung| rung.graph.clone()).collect::<Vec<_>>(),
+        _ => Vec::new(),
+    });
+    let mut graphs = graphs.collect::<Vec<_>>().into_iter();
+    for rung in &rungs {
+        let truth = truth_of_list(rung);
+        let list = lists.next().expect("a list for each rung");
+        assert_eq!(truth_of_list(list), truth, "{rung}\n{list}");
+        assert_eq!(truth_of_drawing(&graphs.next().expect("a drawing for each rung")), truth, "{rung}");
+    }
+}
+
+/// Instructions of the shortest list that drives the outputs with these truths in this order, each contact once and in
+/// this order, if it is shorter than `known`; else `known`. Found by trying all lists that can be.
+fn shortest(contacts: &[u32], outputs: &[u32], known: usize) -> usize {
+    type State = (Vec<u32>, Vec<u32>, usize, usize);
+    let mut waiting: VecDeque<(State, usize)> = VecDeque::from([((vec![], vec![], 0, 0), 0)]);
+    let mut seen: HashSet<State> = HashSet::new();
+    while let Some((state, length)) = waiting.pop_front() {
+        let (blocks, kept, next, driven) = &state;
+        if *driven == outputs.len() && *next == contacts.len() && kept.is_empty() && blocks.len() == 1 {
+            return length;
+        }
+        let mut go = |blocks: Vec<u32>, kept: Vec<u32>, next: usize, driven: usize| {
+            // Each contact and output still takes an instruction, and so do each block to join and each power to
+            // forget.
+            let left = contacts.len() - next + outputs.len() - driven + kept.len() + blocks.len().max(1) - 1;
+            let state = (blocks, kept, next, driven);
+            if length + 1 + left < known && seen.insert(state.clone()) {
+                waiting.push_back((state, length + 1));
+            }
+        };
+        let joined = |value: u32, and: bool| {
+            let mut blocks = blocks.clone();
+            if let Some(top) = blocks.last_mut() {
+                *top = if and { *top & value } else { *top | value };
+            }
+            blocks
+        };
+        if let Some(contact) = contacts.get(*next) {
+            let mut loaded = blocks.clone();
+            loaded.push(*contact);
+            go(loaded, kept.clone(), next + 1, *driven);
+            if !blocks.is_empty() {
+                go(joined(*contact, true), kept.clone(), next + 1, *driven);
+                go(joined(*contact, false), kept.clone(), next + 1, *driven);
+            }
+        }
+        let Some(top) = blocks.last() else { continue };
+        if let [rest @ .., lower, upper] = &blocks[..] {
+            go([rest, &[lower & upper]].concat(), kept.clone(), *next, *driven);
+            go([rest, &[lower | upper]].concat(), kept.clone(), *next, *driven);
+        }
+        let replaced = |value: u32| [&blocks[..blocks.len() - 1], &[value]].concat();
+        go(replaced(!top), kept.clone(), *next, *driven);
+        go(blocks.clone(), [&kept[..], &[*top]].concat(), *next, *driven);
+        if let [rest @ .., last] = &kept[..] {
+            go(replaced(*last), kept.clone(), *next, *driven);
+            go(replaced(*last), rest.to_vec(), *next, *driven);
+        }
+        if outputs.get(*driven) == Some(top) && blocks.len() == 1 {
+            go(blocks.clone(), kept.clone(), *next, driven + 1);
+        }
+    }
+    known
+}
+
+/// The truth of input `number` over all values of five inputs.
+fn input(number: u32) -> u32 {
+    (0..32).filter(|inputs| inputs & 1 << number != 0).fold(0, |truth, inputs| truth | 1 << inputs)
+}
+
+#[test]
+fn no_list_for_the_drawn_order_is_shorter() {
+    for contacts in 1..=4 {
+        for part in parts(contacts, None) {
+            let mut text = String::new();
+            naive(&part, &mut 0, 0, &mut text);
+            text += "OUT Y0\n";
+            let truth = truth_of_list(&text);
+            let short = certain(&list(&text), To::Fx);
+            let inputs: Vec<u32> = (0..contacts as u32).map(input).collect();
+            // END is no part of the rung.
+            let length = short.lines().count() - 1;
+            assert_eq!(length, shortest(&inputs, &[truth], length), "{short}");
+        }
+    }
+}
+
+#[test]
+fn no_list_for_several_outputs_is_shorter() {
+    // Behind X0, each letter is what one drive needs: o output, n negated coil, b output behind a contact, c output
+    // behind two contacts in parallel, v output behind a contact that feeds another one behind a second.
+    for drives in words("onbcv", 3) {
+        let mut rows = Vec::new();
+        let mut next = 1;
+        let mut outputs = Vec::new();
+        let mut number = 0;
+        let mut coil = || {
+            number += 1;
+            format!("Y{}", number - 1)
+        };
+        for drive in drives.chars() {
+            let mut contact = || {
+                next += 1;
+                next - 1
+            };
+            match drive {
+                'o' => {
+                    outputs.push(input(0));
+                    rows.push(format!("OUT {}", coil()));
+                }
+                'n' => {
+                    outputs.push(!input(0));
+                    rows.push(format!("INV\nOUT {}", coil()));
+                }
+                'b' => {
+                    let own = contact();
+                    outputs.push(input(0) & input(own));
+                    rows.push(format!("AND X{own}\nOUT {}", coil()));
+                }
+                'c' => {
+                    let [one, two] = [contact(), contact()];
+                    outputs.push(input(0) & (input(one) | input(two)));
+                    rows.push(format!("LD X{one}\nOR X{two}\nANB\nOUT {}", coil()));
+                }
+                _ => {
+                    let [one, two] = [contact(), contact()];
+                    outputs.extend([input(0) & input(one), input(0) & input(one) & input(two)]);
+                    rows.push(format!("AND X{one}\nOUT {}\nAND X{two}\nOUT {}", coil(), coil()));
+                }
+            }
+        }
+        if next > 5 {
+            continue;
+        }
+        let mut text = "LD X0\n".to_string();
+        for (row, drive) in rows.iter().enumerate() {
+            text += match row {
+                _ if rows.len() == 1 => "",
+                0 => "MPS\n",
+                _ if row + 1 == rows.len() => "MPP\n",
+                _ => "MRD\n",
+            };
+            text += &format!("{drive}\n");
+        }
+        let short = certain(&list(&text), To::Fx);
+        let contacts: Vec<u32> = (0..next).map(input).collect();
+        let length = short.lines().count() - 1;
+        assert_eq!(length, shortest(&contacts, &outputs, length), "{drives}\n{text}\n{short}");
+    }
+}
+
+/// All words of up to `length` letters.
+fn words(letters: &str, length: usize) -> Vec<String> {
+    let mut all = vec![String::new()];
+    let mut start = 0;
+    for _ in 0..length {
+        let end = all.len();
+        for word in start..end {
+            all.extend(letters.chars().map(|letter| format!("{}{letter}", all[word])).collect::<Vec<_>>());
+        }
+        start = end;
+    }
+    all.split_off(1)
+}
+
+/// The programs of the papers, as list and as equations.
+const WORKED: [(&str, &str); 3] = [
+    ("LD X4\nOR X6\nORI M102\nOUT Y5\nEND\n", "Y5 = X4 + X6 + [M102]\nEND\n"),
+    (
+        "LDI Y5\nAND X7\nOR M108\nANI X10\nORI M110\nOUT M103\nEND\n",
+        "M103 = ([Y5]*X7 + M108)*[X10] + [M110]\nEND\n",
+    ),
+    (
+        "LD X0\nOR X1\nLD X2\nAND X3\nLDI X4\nANI X5\nORB\nOR X6\nANB\nOR X7\nOUT Y6\nEND\n",
+        "Y6 = (X0 + X1)*(X2*X3 + [X4]*[X5] + X6) + X7\nEND\n",
+    ),
+];
+
+#[test]
+fn worked_examples_of_the_field() {
+    for (text, equation) in WORKED {
+        let (again, drawn) = there_and_back(text);
+        assert_eq!(again, text);
+        assert_eq!(certain(&list(text), To::Boolean), equation);
+        assert_eq!(certain(&drawing(&drawn), To::Boolean).replace("+--[END]--", ""), equation);
+    }
+}
+
+/// The bits that a proof gives for a scan, and as they were one scan before.
+fn bits_of(found: &rungwise::translate::Counterexample) -> (Bits, Bits) {
+    let now: Bits = found
+        .inputs
+        .iter()
+        .filter_map(|(name, value)| match value {
+            Value::Bit(value) => Some((name.clone(), *value)),
+            Value::Word(_) => None,
+        })
+        .collect();
+    let mut before = now.clone();
+    before.extend(found.before.clone());
+    (now, before)
+}
+
+/// The proof finds that two lists differ, and the scan that it names does tell them apart.
+fn found_different(left: &str, right: &str) {
+    let Proof::Different(found) = prove(&list(left), &list(right)) else {
+        panic!("no difference is found between\n{left}\nand\n{right}");
+    };
+    let (now, before) = bits_of(&found);
+    let ends = [left, right].map(|text| {
+        let mut bits = now.clone();
+        stack_machine::scan(text, &mut bits, &before);
+        bits
+    });
+    assert_ne!(ends[0], ends[1], "{found:?}\n{left}\nand\n{right}");
+    assert_eq!(ends.map(|bits| bits[&found.what]), found.sides, "{found:?}");
+}
+
+#[test]
+fn every_wrong_translation_is_found() {
+    let source = "LD X0\nOR Y0\nANI X1\nOUT Y0\nLDP X2\nMPS\nAND X3\nSET M0\nMRD\nANI X4\nRST M1\nMPP\n\
+                  LD X5\nOR X6\nANB\nOUT Y1\nLD M0\nLD X7\nANI M1\nORB\nINV\nOUT Y2\nEND\n";
+    let right = there_and_back(source).0;
+    assert!(matches!(prove(&list(source), &list(&right)), Proof::Equal { is_reordered: false }));
+    let lines: Vec<&str> = right.lines().collect();
+    let mutate = |number: usize, line: &str| {
+        let mut lines = lines.clone();
+        lines[number] = line;
+        lines.join("\n") + "\n"
+    };
+    let mut mutants = 0;
+    for (number, line) in lines.iter().enumerate() {
+        let (mnemonic, device) = line.split_once(' ').unwrap_or((line, ""));
+        // Each contact the other way round, each put elsewhere, each left out, each output another one.
+        let others: &[&str] = match mnemonic {
+            "LD" => &["LDI"],
+            "LDI" => &["LD"],
+            "LDP" => &["LDF", "LD"],
+            "AND" => &["ANI"],
+            "ANI" => &["AND"],
+            "OR" => &["ORI", "AND"],
+            "ORB" => &["ANB"],
+            "SET" => &["RST", "OUT"],
+            "RST" => &["SET", "OUT"],
+            "OUT" => &["SET"],
+            _ => &[],
+        };
+        for other in others {
+            found_different(&right, &mutate(number, &format!("{other} {device}")));
+            mutants += 1;
+        }
+        if matches!(mnemonic, "AND" | "ANI" | "OR" | "INV") {
+            found_different(&right, &mutate(number, "NOP").replace("NOP\n", ""));
+            mutants += 1;
+        }
+        for other in lines[number + 1..].iter().filter(|_| mnemonic == "OUT") {
+            let Some(target) = other.strip_prefix("OUT ") else { continue };
+            let swapped = mutate(number, &format!("OUT {target}"));
+            let last = swapped.rfind(other).expect("the other output");
+            let swapped = format!("{}OUT {device}{}", &swapped[..last], &swapped[last + other.len()..]);
+            found_different(&right, &swapped);
+            mutants += 1;
+        }
+    }
+    assert!(mutants > 30, "{mutants}");
+}
