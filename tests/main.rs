@@ -55,3 +55,4 @@ mod target_iec;
 mod tidy;
 mod token_scopes;
 mod translate;
+mod translate_iec;

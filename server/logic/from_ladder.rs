@@ -1,5 +1,7 @@
 //! Reads a drawn rung: its series-parallel shape with words for cells.
 
+mod block;
+
 use super::builder::Builder;
 use super::from_fx;
 use super::from_iec;
@@ -160,7 +162,7 @@ impl Reader<'_> {
                 }
                 Ok(())
             }
-            Shape::Element(id) => self.element(self.graph.element(*id)),
+            Shape::Element(id) => self.element(self.graph.element(*id), is_last),
             Shape::Block(_) => Err(Refusal::Element),
             Shape::Wire => Err(Refusal::ShortCircuit),
         }
@@ -215,7 +217,15 @@ impl Reader<'_> {
         Ok(Contact { test, terms: self.terms(element), span: element.span })
     }
 
-    fn element(&mut self, element: &Element) -> Result<(), Refusal> {
+    fn element(&mut self, element: &Element, is_last: bool) -> Result<(), Refusal> {
+        if let ElementKind::Block(block) = &element.kind {
+            let (action, goes_on) = block::call(self.text, element, block)?;
+            match goes_on && !is_last {
+                true => return self.builder.gate(Gate::Through(action)).ok_or(Refusal::TooDeep),
+                false => self.builder.drive(action),
+            }
+            return Ok(());
+        }
         let deed = match &element.kind {
             ElementKind::Coil(kind) => Deed::of_coil(*kind),
             ElementKind::Instruction { form: Some(form), .. } => Deed::of_form(*form),

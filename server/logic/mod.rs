@@ -39,7 +39,7 @@ mod decide;
 pub use decide::{Verdict, equal, is_never};
 
 mod compare;
-pub use compare::{Comparison, compare, compare_outcome, touches_bits};
+pub use compare::{Comparison, compare, compare_but, compare_outcome, touches_bits};
 
 use crate::document::{Chunk, Scopes, Tree};
 use crate::target::Target;

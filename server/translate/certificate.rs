@@ -3,8 +3,10 @@
 use super::source::{self, Source};
 use super::{To, Translation, page};
 use crate::document::Document;
-use crate::logic::{Comparison, Formulas, Path, compare};
-use crate::text::Message;
+use crate::logic::{Comparison, Formulas, Path, compare_but};
+use crate::text::{Message, folded};
+use rustc_hash::FxHashSet;
+use smol_str::SmolStr;
 
 /// What is known of a translated rung.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -40,6 +42,7 @@ pub(super) fn add(document: &Document, sources: &[Source], to: To, translation: 
     let again = Document::frugal(&translation.text, notation, document.target());
     let written = source::rungs(&again, None);
     let mut written = written.iter().peekable();
+    let helpers: FxHashSet<SmolStr> = translation.helpers.iter().map(|name| folded(name)).collect();
     for (source, translated) in sources.iter().zip(&mut translation.rungs) {
         let mut paths = Vec::new();
         let mut is_readable = true;
@@ -58,7 +61,7 @@ pub(super) fn add(document: &Document, sources: &[Source], to: To, translation: 
         }
         let own: Vec<&Path> = source.rung.path.iter().flatten().collect();
         let (certificate, note) = match is_readable {
-            true => judge(&own, &paths),
+            true => judge(&own, &paths, &helpers),
             false => (Certificate::Undecided, Some("translate.unreadable")),
         };
         translated.certificate = Some(certificate);
@@ -66,8 +69,12 @@ pub(super) fn add(document: &Document, sources: &[Source], to: To, translation: 
     }
 }
 
-fn judge(own: &[&Path], written: &[&Path]) -> (Certificate, Option<&'static str>) {
-    match compare(own, written, &mut Formulas::default()) {
+fn judge(
+    own: &[&Path],
+    written: &[&Path],
+    helpers: &FxHashSet<SmolStr>,
+) -> (Certificate, Option<&'static str>) {
+    match compare_but(own, written, helpers, &mut Formulas::default()) {
         Comparison::Same { is_boolean: true } => (Certificate::Proved, None),
         Comparison::Same { is_boolean: false } => (Certificate::Construction, None),
         Comparison::Different { .. } | Comparison::Unlike => {

@@ -174,6 +174,10 @@ pub(super) fn has_units(document: &Document) -> bool {
 
 /// A comment as instruction list of IEC 61131-3 has it.
 pub(super) fn comment(comment: &str) -> String {
+    if comment.starts_with('{') {
+        // Braces may nest in a drawing.
+        return format!("(* {} *)", comment.replace("(*", "( *").replace("*)", "* )"));
+    }
     let line = comment.strip_prefix("//").or_else(|| comment.strip_prefix(';'));
     match line {
         Some(text) if !text.contains("*)") && !text.contains("(*") => format!("(* {} *)", text.trim()),

@@ -75,6 +75,9 @@ pub(super) fn write(
     if to == To::Fx && options.is_whole && !sources.iter().any(ends_program) {
         page.text.push_str("END\n");
     }
+    if to == To::Iec {
+        page.lay_out(document, &mut rungs);
+    }
     let helpers = helpers.declared.into_iter().map(|helper| helper.name).collect();
     Translation { text: page.text, rungs, helpers }
 }
@@ -197,6 +200,26 @@ impl Page {
             }
         }
         Some(reason)
+    }
+
+    /// Comments are indented like what they stand above.
+    fn lay_out(&mut self, document: &Document, rungs: &mut [Translated]) {
+        let laid_out = header::laid_out(document, &self.text);
+        let starts = |text: &str| -> Vec<usize> {
+            let ends = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at + 1);
+            std::iter::once(0).chain(ends).collect()
+        };
+        let (before, after) = (starts(&self.text), starts(&laid_out));
+        if before.len() != after.len() {
+            return;
+        }
+        for rung in rungs {
+            let place = |at: usize| before.binary_search(&at).map(|line| after[line]);
+            if let (Ok(start), Ok(end)) = (place(rung.result.start), place(rung.result.end)) {
+                rung.result = start..end;
+            }
+        }
+        self.text = laid_out;
     }
 
     /// Declarations, which stand in instruction list as in drawings.

@@ -133,10 +133,15 @@ impl Writer<'_> {
         if !is_first {
             return self.drives(path, inverse, reloaded(path, gates, is_whole));
         }
-        path.drives.iter().try_for_each(|drive| match drive {
-            Drive::Path(path) => self.path(path, true),
-            Drive::Action(action) => self.unconditional(action),
-        })
+        let mut is_loaded = false;
+        for drive in &path.drives {
+            match drive {
+                Drive::Path(path) => self.path(path, true)?,
+                Drive::Action(action) => self.unconditional(action, is_loaded)?,
+            }
+            is_loaded = !loses(drive);
+        }
+        Ok(())
     }
 
     /// What comes behind a call that was written with its input: gate `number` of `path`, or its only drive.
@@ -147,18 +152,18 @@ impl Writer<'_> {
         self.path(&rest, false)
     }
 
-    /// An action at the left rail.
-    fn unconditional(&mut self, action: &Action) -> Result<(), Message> {
-        self.start();
-        match action.deed {
-            Deed::Jump | Deed::Return => self.leave(action, "")?,
-            Deed::Call(_) => self.call(action, Some("TRUE".into()))?,
-            _ => {
-                self.lines.push("LD TRUE".into());
-                self.action(action, false)?;
-            }
+    /// An action at the left rail, whose power may be loaded already.
+    fn unconditional(&mut self, action: &Action, is_loaded: bool) -> Result<(), Message> {
+        if !is_loaded {
+            self.start();
         }
-        Ok(())
+        match action.deed {
+            Deed::Jump | Deed::Return => return self.leave(action, ""),
+            Deed::Call(_) => return self.call(action, Some("TRUE".into())),
+            _ if is_loaded => {}
+            _ => self.lines.push("LD TRUE".into()),
+        }
+        self.action(action, false)
     }
 
     fn drives(&mut self, path: &Path, inverse: bool, reloaded: Option<String>) -> Result<(), Message> {

@@ -43,6 +43,8 @@ pub(super) struct Reader<'s, 'a> {
     driven: FxHashSet<SmolStr>,
     /// The instance whose power was just stored, folded.
     fed: Option<SmolStr>,
+    /// Whether the current result is the inverse of the power.
+    is_inverted: bool,
     /// Whether a jump or a call ends the rung.
     has_ended: bool,
 }
@@ -60,6 +62,7 @@ impl<'s, 'a> Reader<'s, 'a> {
             edges: FxHashMap::default(),
             driven: FxHashSet::default(),
             fed: None,
+            is_inverted: false,
             has_ended: false,
         }
     }
@@ -138,12 +141,16 @@ impl<'s, 'a> Reader<'s, 'a> {
                 if self.source.feeds(index) {
                     return self.feed(id, operation.negated);
                 }
-                let coil = match (operator.name, operation.negated) {
-                    ("S", _) => CoilKind::Set,
-                    ("R", _) => CoilKind::Reset,
-                    (_, false) => CoilKind::Plain,
-                    (_, true) => CoilKind::Negated,
+                let coil = match operator.name {
+                    "S" => CoilKind::Set,
+                    "R" => CoilKind::Reset,
+                    // The inverse needs no inverter.
+                    _ if operation.negated != self.is_inverted => CoilKind::Negated,
+                    _ => CoilKind::Plain,
                 };
+                if operator.role == OperatorRole::Latch {
+                    self.invert()?;
+                }
                 let term = self.bit(id)?;
                 self.driven.insert(term.key());
                 let action = Action { deed: Deed::Coil(coil), terms: vec![term], span: item.span };
@@ -162,9 +169,8 @@ impl<'s, 'a> Reader<'s, 'a> {
         if !block.inputs.first().is_some_and(|first| first.name.eq_ignore_ascii_case(pin)) {
             return Err(Refusal::NotBoolean);
         }
-        if negated {
-            self.builder.gate(Gate::Invert).ok_or(Refusal::TooDeep)?;
-        }
+        self.is_inverted ^= negated;
+        self.invert()?;
         self.fed = Some(folded(instance));
         Ok(())
     }
@@ -174,7 +180,7 @@ impl<'s, 'a> Reader<'s, 'a> {
             Value::Nothing => return Err(Refusal::NoCurrentResult),
             Value::Power => {
                 self.value = Value::Power;
-                return self.builder.gate(Gate::Invert).ok_or(Refusal::TooDeep);
+                self.is_inverted = !self.is_inverted;
             }
             loaded => self.value = Value::Block(inverted(self.block(loaded)?)?),
         }
@@ -224,6 +230,7 @@ impl<'s, 'a> Reader<'s, 'a> {
             Value::Nothing => return Err(Refusal::NoCurrentResult),
             Value::Power => {
                 self.value = Value::Power;
+                self.invert()?;
                 return match role {
                     Role::BlockSeries => self.builder.pass(block.condition).ok_or(Refusal::TooDeep),
                     _ => Err(Refusal::ParallelToBranch),
@@ -262,6 +269,14 @@ impl<'s, 'a> Reader<'s, 'a> {
         }
     }
 
+    /// Two inversions without anything between them are none.
+    fn invert(&mut self) -> Result<(), Refusal> {
+        match std::mem::take(&mut self.is_inverted) {
+            true => self.builder.gate(Gate::Invert).ok_or(Refusal::TooDeep),
+            false => Ok(()),
+        }
+    }
+
     /// A jump or a return, which ends the rung: what a drawing has beside a jump is done before it.
     fn leave(&mut self, deed: Deed, terms: Vec<Term>, condition: Condition, span: Span) -> Result<(), Refusal> {
         if !self.frames.is_empty() {
@@ -270,10 +285,10 @@ impl<'s, 'a> Reader<'s, 'a> {
         match condition {
             Condition::Always if self.is_fresh() => {}
             Condition::Always => return Err(Refusal::NotBoolean),
-            Condition::IfTrue => self.settle()?,
-            Condition::IfFalse => {
+            Condition::IfTrue | Condition::IfFalse => {
                 self.settle()?;
-                self.builder.gate(Gate::Invert).ok_or(Refusal::TooDeep)?;
+                self.is_inverted ^= condition == Condition::IfFalse;
+                self.invert()?;
             }
         }
         self.builder.drive(Action { deed, terms, span });
