@@ -3,8 +3,10 @@
 use super::source::{self, Source};
 use super::{To, Translation, from_boolean, page};
 use crate::document::Document;
-use crate::logic::{Comparison, Formulas, Path, compare};
-use crate::text::Message;
+use crate::logic::{Comparison, Formulas, Path, compare_but};
+use crate::text::{Message, folded};
+use rustc_hash::FxHashSet;
+use smol_str::SmolStr;
 
 /// What is known of a translated rung.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -43,6 +45,7 @@ pub(super) fn add(
     is_cancelled: &dyn Fn() -> bool,
 ) -> Option<()> {
     let mut written = read_again(document, to, &translation.text).into_iter().peekable();
+    let helpers: FxHashSet<SmolStr> = translation.helpers.iter().map(|name| folded(name)).collect();
     for (source, translated) in sources.iter().zip(&mut translation.rungs) {
         if is_cancelled() {
             return None;
@@ -63,7 +66,7 @@ pub(super) fn add(
         }
         let sources: Vec<&Path> = source.rung.path.iter().flatten().collect();
         let (certificate, note) = match paths {
-            Some(paths) => judge(&sources, &paths.iter().collect::<Vec<_>>()),
+            Some(paths) => judge(&sources, &paths.iter().collect::<Vec<_>>(), &helpers),
             None => (Certificate::Undecided, Some("translate.unreadable")),
         };
         translated.certificate = Some(certificate);
@@ -98,8 +101,12 @@ fn read_again(document: &Document, to: To, text: &str) -> Vec<Written> {
     rungs.map(|rung| Written { start: rung.span().start as usize, path: rung.rung.path.ok() }).collect()
 }
 
-fn judge(own: &[&Path], written: &[&Path]) -> (Certificate, Option<&'static str>) {
-    match compare(own, written, &mut Formulas::default()) {
+fn judge(
+    own: &[&Path],
+    written: &[&Path],
+    helpers: &FxHashSet<SmolStr>,
+) -> (Certificate, Option<&'static str>) {
+    match compare_but(own, written, helpers, &mut Formulas::default()) {
         Comparison::Same { is_boolean: true } => (Certificate::Proved, None),
         Comparison::Same { is_boolean: false } => (Certificate::Construction, None),
         Comparison::Different { .. } | Comparison::Unlike => {
