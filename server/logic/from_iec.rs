@@ -14,8 +14,8 @@ use super::{Declared, Path, Refusal, Rung};
 use crate::document::{DeclaredType, Scopes};
 use crate::il::iec::{Condition, IecTree, Item, ItemKind, ListForm};
 use crate::target::Operand;
-use crate::target::iec::{ElementaryType, FunctionBlock, LiteralValue, OperatorRole};
 use crate::target::Width;
+use crate::target::iec::{ElementaryType, FunctionBlock, LiteralValue, OperatorRole};
 use crate::text::{Severity, Span, folded};
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
@@ -255,7 +255,8 @@ impl<'a> Source<'a> {
 
     /// Whether item `index`, outside of parentheses, begins a segment behind `last`.
     fn begins(&self, last: &Segment, index: usize) -> bool {
-        let is_fed = index.checked_sub(1).is_some_and(|before| last.items.contains(&before) && self.feeds(before));
+        let is_fed =
+            index.checked_sub(1).is_some_and(|before| last.items.contains(&before) && self.feeds(before));
         self.starts_afresh(&self.tree.items[index].kind) && !is_fed
     }
 
@@ -278,7 +279,12 @@ impl<'a> Source<'a> {
         let asks = match item.kind {
             ItemKind::Operation { operation, operand: Some(id) } => {
                 operation.operator.role == OperatorRole::Load
-                    && self.tree.operand(id).span.of(self.text).eq_ignore_ascii_case(&output_of(block, instance))
+                    && self
+                        .tree
+                        .operand(id)
+                        .span
+                        .of(self.text)
+                        .eq_ignore_ascii_case(&output_of(block, instance))
             }
             _ => false,
         };
@@ -313,7 +319,8 @@ impl<'a> Source<'a> {
             let before = starts.partition_point(|start| *start <= operand.span.start);
             let pou = (pous + before).checked_sub(1);
             let path = operand.span.of(self.text);
-            let (instance, member) = path.split_once('.').map_or((path, None), |(root, rest)| (root, Some(rest)));
+            let (instance, member) =
+                path.split_once('.').map_or((path, None), |(root, rest)| (root, Some(rest)));
             if !self.block(pou, instance).is_some_and(|block| matches!(block.name, "R_TRIG" | "F_TRIG")) {
                 continue;
             }
@@ -321,7 +328,8 @@ impl<'a> Source<'a> {
             match member {
                 None => detector.bare += 1,
                 Some(member) if member.eq_ignore_ascii_case("Q") => {
-                    detector.reads = Some(detector.reads.map_or(operand.span, |reads| reads.to(operand.span)));
+                    detector.reads =
+                        Some(detector.reads.map_or(operand.span, |reads| reads.to(operand.span)));
                 }
                 Some(_) => detector.is_opened = true,
             }
@@ -367,8 +375,10 @@ impl<'a> Source<'a> {
     fn read(&self, segments: &[Segment], comments: &mut Comments, rungs: &mut Vec<Rung>) {
         let mut at = 0;
         while let Some(first) = segments.get(at) {
-            let more = segments[at + 1..].iter().take(JOINED_MAX).take_while(|segment| segment.goes_on).count();
-            let joined = (more > 0).then(|| self.path(first.pou, first.items.start..segments[at + more].items.end));
+            let more =
+                segments[at + 1..].iter().take(JOINED_MAX).take_while(|segment| segment.goes_on).count();
+            let joined =
+                (more > 0).then(|| self.path(first.pou, first.items.start..segments[at + more].items.end));
             let (count, path) = match joined {
                 Some(Ok(path)) => (more + 1, Ok(path)),
                 _ => (1, self.path(first.pou, first.items.clone())),

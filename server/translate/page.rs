@@ -96,7 +96,8 @@ fn body(document: &Document, source: &Source, to: To, options: &Options, helpers
         To::Fx => to_fx::lines(path, document.target()).map(Body::Lines),
         To::Iec => {
             helpers.pou = source.pou;
-            to_iec::lines(path, helpers).map(|lines| Body::Text(header::laid_out(document, &(lines.join("\n") + "\n"))))
+            to_iec::lines(path, helpers)
+                .map(|lines| Body::Text(header::laid_out(document, &(lines.join("\n") + "\n"))))
         }
         To::Boolean => to_boolean::equations(path, options.notation).map(Body::Equations),
         To::Ladder => drawing(path, document, options),
@@ -175,7 +176,12 @@ impl Page {
                 Some(lines) => lines.iter().for_each(|line| self.line(line)),
                 None => {
                     let text = source.rung.span.of(source.chunk.text());
-                    return self.kept(document, text, source.rung.is_list, Message::new("translate.no-drawing"));
+                    return self.kept(
+                        document,
+                        text,
+                        source.rung.is_list,
+                        Message::new("translate.no-drawing"),
+                    );
                 }
             },
             Body::Kept(text, reason) => return self.kept(document, &text, source.rung.is_list, reason),

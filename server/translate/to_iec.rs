@@ -99,7 +99,8 @@ enum Place {
 impl Writer<'_> {
     /// `is_first` if nothing is loaded yet.
     fn path(&mut self, path: &Path, is_first: bool) -> Result<(), Message> {
-        let inverse = matches!(path.gates.last(), Some(Gate::Invert)) && path.drives.iter().all(is_invertible);
+        let inverse =
+            matches!(path.gates.last(), Some(Gate::Invert)) && path.drives.iter().all(is_invertible);
         let gates = &path.gates[..path.gates.len() - usize::from(inverse)];
         let is_whole = is_first;
         let mut is_first = is_first;
@@ -197,10 +198,12 @@ impl Writer<'_> {
 
     /// Outputs behind an inverter alone.
     fn inverted(&mut self, path: &Path, is_last: bool) -> Result<(), Message> {
-        let actions = || path.drives.iter().filter_map(|drive| match drive {
-            Drive::Action(action) => Some(action),
-            Drive::Path(_) => None,
-        });
+        let actions = || {
+            path.drives.iter().filter_map(|drive| match drive {
+                Drive::Action(action) => Some(action),
+                Drive::Path(_) => None,
+            })
+        };
         if path.drives.iter().all(is_invertible) {
             return actions().try_for_each(|action| self.action(action, true));
         }

@@ -1,7 +1,9 @@
 //! Runs a rung of instruction list with conditions in place of the current result.
 
 use super::{Source, ValueKind, output_of};
-use crate::il::iec::{Condition, Direction, Item, ItemKind, OperandId, Operation, Parameter, ParameterValue, Run};
+use crate::il::iec::{
+    Condition, Direction, Item, ItemKind, OperandId, Operation, Parameter, ParameterValue, Run,
+};
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::logic::block::Block;
 use crate::logic::builder::Builder;
@@ -76,9 +78,12 @@ impl<'s, 'a> Reader<'s, 'a> {
             let item = self.source.item(index);
             index += 1;
             match item.kind {
-                ItemKind::Operation { operation, operand } => self.operation(index - 1, item, operation, operand)?,
+                ItemKind::Operation { operation, operand } => {
+                    self.operation(index - 1, item, operation, operand)?
+                }
                 ItemKind::Open { operation, operand } => {
-                    let inner = operand.map_or(Value::Nothing, |id| Value::Loaded(id, ContactKind::NormallyOpen));
+                    let inner =
+                        operand.map_or(Value::Nothing, |id| Value::Loaded(id, ContactKind::NormallyOpen));
                     let before = std::mem::replace(&mut self.value, inner);
                     self.frames.push(Frame { operation, before });
                 }
@@ -88,7 +93,9 @@ impl<'s, 'a> Reader<'s, 'a> {
                     let term = Term::new(crate::target::Operand::Variable, label.of(self.source.text), label);
                     self.leave(Deed::Jump, vec![term], condition, item.span)?;
                 }
-                ItemKind::Return { condition, .. } => self.leave(Deed::Return, Vec::new(), condition, item.span)?,
+                ItemKind::Return { condition, .. } => {
+                    self.leave(Deed::Return, Vec::new(), condition, item.span)?
+                }
                 ItemKind::Call { condition: Condition::Always, callee: Some(callee), parameters, .. } => {
                     let next = (index < items.end).then(|| self.source.item(index));
                     index += usize::from(self.call(item, callee, parameters, next)?);
@@ -203,9 +210,13 @@ impl<'s, 'a> Reader<'s, 'a> {
     fn close(&mut self) -> Result<(), Refusal> {
         let Frame { operation, before } = self.frames.pop().ok_or(Refusal::Unreadable)?;
         let inner = std::mem::replace(&mut self.value, before);
-        let OperatorRole::Combine { comparison } = operation.operator.role else { return Err(Refusal::NotBoolean) };
+        let OperatorRole::Combine { comparison } = operation.operator.role else {
+            return Err(Refusal::NotBoolean);
+        };
         if comparison {
-            let Value::Loaded(right, ContactKind::NormallyOpen) = inner else { return Err(Refusal::NotBoolean) };
+            let Value::Loaded(right, ContactKind::NormallyOpen) = inner else {
+                return Err(Refusal::NotBoolean);
+            };
             return self.compare(operation.operator.name, right, operation.word);
         }
         let mut block = match inner {
@@ -278,7 +289,13 @@ impl<'s, 'a> Reader<'s, 'a> {
     }
 
     /// A jump or a return, which ends the rung: what a drawing has beside a jump is done before it.
-    fn leave(&mut self, deed: Deed, terms: Vec<Term>, condition: Condition, span: Span) -> Result<(), Refusal> {
+    fn leave(
+        &mut self,
+        deed: Deed,
+        terms: Vec<Term>,
+        condition: Condition,
+        span: Span,
+    ) -> Result<(), Refusal> {
         if !self.frames.is_empty() {
             return Err(Refusal::NotBoolean);
         }
@@ -320,7 +337,8 @@ impl<'s, 'a> Reader<'s, 'a> {
         let mut power = None;
         let mut arguments = Vec::with_capacity(parameters.len());
         for (place, parameter) in parameters.iter().enumerate() {
-            let (name, is_output, id) = argument(parameter, text, || block.inputs.get(place).map(|pin| pin.name))?;
+            let (name, is_output, id) =
+                argument(parameter, text, || block.inputs.get(place).map(|pin| pin.name))?;
             let is_power = block.inputs.first().is_some_and(|first| first.name.eq_ignore_ascii_case(name));
             match is_power && !is_output {
                 true => power = Some(id),
@@ -465,7 +483,8 @@ fn inverted(mut block: Block) -> Result<Block, Refusal> {
 
 /// `JMPCN` behind one contact alone is a jump behind its opposite.
 fn straightened(mut path: Path) -> Path {
-    if let ([Gate::Pass(Expression::Contact(contact))], [Drive::Path(inner)]) = (&path.gates[..], &path.drives[..])
+    if let ([Gate::Pass(Expression::Contact(contact))], [Drive::Path(inner)]) =
+        (&path.gates[..], &path.drives[..])
         && inner.gates == [Gate::Invert]
         && let Some(test) = contact.test.opposite()
     {
