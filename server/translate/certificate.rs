@@ -3,6 +3,7 @@
 use super::source::{self, Source};
 use super::{To, Translation, page};
 use crate::document::Document;
+use crate::target::Target;
 use crate::logic::{Comparison, Formulas, Path, compare_but};
 use crate::text::{Message, folded};
 use rustc_hash::FxHashSet;
@@ -37,9 +38,9 @@ impl Certificate {
 }
 
 /// Certifies each rung of `translation`, which was made of `sources`.
-pub(super) fn add(document: &Document, sources: &[Source], to: To, translation: &mut Translation) {
+pub(super) fn add(target: &'static Target, sources: &[Source], to: To, translation: &mut Translation) {
     let Some(notation) = page::notation(to) else { return };
-    let again = Document::frugal(&translation.text, notation, document.target());
+    let again = Document::frugal(&translation.text, notation, target);
     let written = source::rungs(&again, None);
     let mut written = written.iter().peekable();
     let helpers: FxHashSet<SmolStr> = translation.helpers.iter().map(|name| folded(name)).collect();

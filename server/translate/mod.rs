@@ -15,6 +15,8 @@ mod stack;
 mod prove;
 pub use prove::{Counterexample, Proof, Value, prove};
 
+mod dialect;
+
 mod header;
 
 pub mod to_fx;
@@ -116,10 +118,12 @@ impl Translation {
 
 /// `document` in another form; with `part` only the rungs that touch these bytes.
 pub fn translate(document: &Document, part: Option<Span>, to: To, options: &Options) -> Translation {
-    let program = source::program(document, part);
-    let mut translation = page::write(document, &program, to, options, part.is_none());
+    let mut program = source::program(document, part);
+    let target = dialect::target(document, to);
+    dialect::convert(document, target, &mut program);
+    let mut translation = page::write(document, &program, (to, target), options, part.is_none());
     if options.proves {
-        certificate::add(document, &program.rungs, to, &mut translation);
+        certificate::add(target, &program.rungs, to, &mut translation);
     }
     translation
 }
