@@ -1,7 +1,7 @@
 //! The device comments file: encodings, separators, headers, bad lines at their places, and symbols in programs.
 
 use proptest::prelude::*;
-use rungwise::check::{self, Rule, Severities};
+use rungwise::check::{self, Rule};
 use rungwise::document::{Document, Notation, Symbol};
 use rungwise::project::{CommentsFile, decode};
 use rungwise::target::{Model, Target};
@@ -149,7 +149,7 @@ fn with_symbols(text: &str, notation: Notation) -> Document {
 }
 
 fn codes(document: &Document) -> Vec<String> {
-    let found = check::all(document, &Severities::default());
+    let found = check::all(document, &crate::rules_sense::without_sense());
     found.iter().map(|found| format!("{} {}", found.code, found.message.render(Language::English))).collect()
 }
 

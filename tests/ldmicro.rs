@@ -1,6 +1,7 @@
 //! Texts of LDmicro: its export as a drawing, in both generations, and its own file.
 
 use crate::ladder_read::{chunks, dump};
+use crate::rules_sense::without_sense;
 use proptest::prelude::*;
 use rungwise::document::{DeclaredType, Document, Notation, Tree, detect_ladder_target};
 use rungwise::ide::{self, Style};
@@ -291,7 +292,7 @@ fn both_generations_say_the_same() {
         assert_eq!(logic(&text), unindent(LAMP), "{text}");
         let document = open(&text);
         assert_eq!(document.target().model, Model::Iec);
-        let found = check::all(&document, &check::Severities::default());
+        let found = check::all(&document, &without_sense());
         assert!(found.is_empty(), "{found:?}");
     }
 }
@@ -377,7 +378,7 @@ fn the_canonical_form_has_the_same_logic() {
         assert_eq!(table(&formatted), table(text));
         let again = open(&formatted);
         assert!(ide::format(&again, style).is_empty(), "{formatted}");
-        let found = check::all(&again, &check::Severities::default());
+        let found = check::all(&again, &without_sense());
         assert!(found.is_empty(), "{formatted}\n{found:?}");
     }
 }
@@ -453,7 +454,7 @@ fn programs_by_other_people() {
         let text = &text[text.find('\n').unwrap() + 1..];
         assert_eq!(logic(text), unindent(expected), "{name}");
         let document = project::open_document("x.lad", text, &project::Manifest::default(), None, None);
-        let found = check::all(&document, &check::Severities::default());
+        let found = check::all(&document, &without_sense());
         assert!(found.is_empty(), "{name}: {found:?}");
         let tables = document.chunks().filter(|at| matches!(at.chunk.tree(), Tree::Iec(_))).count();
         assert_eq!(tables, 1, "{name}");
@@ -526,7 +527,7 @@ fn notes(import: &rungwise::ladder::Import) -> Vec<String> {
 /// The imported text has no mistakes but those of these codes.
 fn check_import(import: &rungwise::ladder::Import, codes: &[&str]) {
     let document = open(&import.text);
-    let found = check::all(&document, &check::Severities::default());
+    let found = check::all(&document, &without_sense());
     let found: Vec<_> = found.iter().map(|found| found.code).collect();
     assert_eq!(found, codes, "{}", import.text);
     let style = Style { kind: FormatStyle::Iec, width: 48 };

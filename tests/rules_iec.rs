@@ -1,8 +1,9 @@
 //! Rules on IEC programs, where a page is too small: every example of the tables, applied fixes, programs of other
 //! people, one diagnostic for one mistake.
 
+use crate::rules_sense::without_sense;
 use proptest::prelude::*;
-use rungwise::check::{self, Severities};
+use rungwise::check;
 use rungwise::document::{Document, Notation};
 use rungwise::target::iec::{Function, FunctionBlock, Operator};
 use rungwise::target::{Model, Target};
@@ -10,13 +11,13 @@ use rungwise::text::{Diagnostic, Language, Severity, TextEdit};
 
 fn judged(text: &str) -> Vec<Diagnostic> {
     let document = Document::new(text, Notation::IecIl, Target::of(Model::Iec));
-    check::all(&document, &Severities::default())
+    check::all(&document, &without_sense())
 }
 
 /// `line:column code message` of everything found that is graver than a hint.
 fn found(text: &str) -> Vec<String> {
     let document = Document::new(text, Notation::IecIl, Target::of(Model::Iec));
-    let all = check::all(&document, &Severities::default());
+    let all = check::all(&document, &without_sense());
     all.iter()
         .filter(|one| one.severity != Severity::Hint)
         .map(|one| {

@@ -1,6 +1,7 @@
 //! What a rule may look at.
 
 use super::order::rung;
+use super::sense::{Regions, Uses};
 use super::words::plain::is_plain;
 use crate::document::{Chunk, ChunkRef, Document, Notation, Operation, Pou, Scopes, Tree};
 use crate::il::fx::FxTree;
@@ -60,6 +61,8 @@ pub struct ProgramContext<'a> {
     files: Vec<ProgramFile<'a>>,
     /// The only file about which the findings are wanted, if not all.
     wanted: Option<usize>,
+    uses: OnceCell<Uses<'a>>,
+    regions: OnceCell<Regions>,
 }
 
 /// A file of a program.
@@ -95,12 +98,22 @@ impl<'a> ProgramContext<'a> {
             file
         });
         let files = files.take_while(|file| file.start.saturating_add(file.document.len()) < MOST_BYTES);
-        ProgramContext { files: files.collect(), wanted }
+        ProgramContext { files: files.collect(), wanted, uses: OnceCell::new(), regions: OnceCell::new() }
     }
 
     /// The files in order.
     pub fn files(&self) -> &[ProgramFile<'a>] {
         &self.files
+    }
+
+    /// Who reads and who drives what.
+    pub(super) fn uses(&self) -> &Uses<'a> {
+        self.uses.get_or_init(|| Uses::of(self))
+    }
+
+    /// Which parts of the program can run together.
+    pub(super) fn regions(&self) -> &Regions {
+        self.regions.get_or_init(|| Regions::of(self, self.uses()))
     }
 
     /// The last file; nothing if there is none.

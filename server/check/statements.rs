@@ -3,7 +3,7 @@
 //! Lines of FX instruction list and elements of FX ladders come alike, whichever file of the program they stand in.
 
 use super::{ProgramContext, ProgramFile};
-use crate::document::{ChunkRef, Document, Notation};
+use crate::document::{Chunk, ChunkRef, Document, Notation};
 use crate::target::{Device, Flow, Operand};
 use crate::text::{Span, Spanned, TextEdit};
 
@@ -70,6 +70,11 @@ impl<'a> Statement<'a> {
             Operand::Device(device) => Some(device),
             _ => None,
         }
+    }
+
+    /// The chunk in which it stands, and its word there.
+    pub fn in_chunk(&self) -> (&'a Chunk, Span) {
+        (self.at.chunk, self.relative(self.word))
     }
 
     /// Its mnemonic as it is written.

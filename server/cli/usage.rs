@@ -2,7 +2,7 @@
 
 use super::input::{Program, folder_of, programs, say};
 use super::{Outcome, paths_or_here};
-use crate::document::{Document, Member, ProjectView, Use};
+use crate::document::{Document, Member, ProjectView};
 use crate::ide::{self, Usage};
 use crate::text::Language;
 use clap::ValueEnum;
@@ -47,7 +47,7 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         let Some(view) = ProjectView::new(members, 0, true) else { continue };
         let usage = ide::usage(&view);
         match arguments.format {
-            TableFormat::Json => projects.push(as_json(&usage, group)),
+            TableFormat::Json => projects.push(as_json(&usage, group, language)),
             TableFormat::Csv => output += &as_csv(&usage, group, output.is_empty()),
             TableFormat::Text => {
                 let separator = if output.is_empty() { "" } else { "\n" };
@@ -89,38 +89,46 @@ impl Group {
     }
 }
 
-/// `{"target", "files", "devices": […]}` with a row of [`UsageRow::json`] for each device, whose uses have a `path`.
+/// `{"target", "files", "kinds": […], "devices": […]}` with a row of [`UsedKind::json`] for each kind, and one of
+/// [`UsageRow::json`] for each device, whose uses have a `path`.
 ///
+/// [`UsedKind::json`]: crate::ide::UsedKind::json
 /// [`UsageRow::json`]: crate::ide::UsageRow::json
-fn as_json(usage: &Usage, group: &Group) -> Value {
+fn as_json(usage: &Usage, group: &Group, language: Language) -> Value {
     let path = |file: usize| vec![("path", json!(group.path(file)))];
     let files: Vec<&str> = group.files.iter().map(|(path, _)| path.as_str()).collect();
     json!({
         "target": group.files.first().map(|(_, document)| document.target().name),
         "files": files,
+        "kinds": usage.kinds.iter().map(|kind| kind.json(language)).collect::<Vec<_>>(),
         "devices": usage.rows.iter().map(|row| row.json(path)).collect::<Vec<_>>(),
     })
 }
 
-/// One line for each device; its uses are in the last field, parted by blanks: `main.il:3:read`.
+/// One line for each device. Parted by blanks are its uses, `main.il:3:read`, and, in the last field, the free devices
+/// between it and the next one in use, `M3 M5-M7`.
 fn as_csv(usage: &Usage, group: &Group, with_header: bool) -> String {
     let mut text = String::new();
     if with_header {
-        text += "device,symbol,comment,latched,preset,reads,writes,uses\n";
+        text += "device,symbol,comment,latched,preset,reads,writes,uses,gaps\n";
     }
     for row in &usage.rows {
-        let count = |is: fn(Use) -> bool| row.uses.iter().filter(|at| is(at.usage)).count().to_string();
         let uses =
             row.uses.iter().map(|at| format!("{}:{}:{}", group.path(at.file), at.line + 1, at.access_word()));
+        let gaps = row.gaps.iter().map(|(first, last)| match first == last {
+            true => first.to_string(),
+            false => format!("{first}-{last}"),
+        });
         let fields = [
             row.full_name(),
             row.symbol.clone(),
             row.comment.clone(),
             row.is_latched.to_string(),
             row.preset.clone(),
-            count(Use::reads),
-            count(Use::writes),
+            row.reads.to_string(),
+            row.writes.to_string(),
             uses.collect::<Vec<_>>().join(" "),
+            gaps.collect::<Vec<_>>().join(" "),
         ];
         text += &fields.iter().map(|field| quoted(field)).collect::<Vec<_>>().join(",");
         text.push('\n');

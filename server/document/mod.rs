@@ -34,6 +34,12 @@ pub use names::Names;
 mod milestone;
 pub use milestone::{Milestone, MilestoneKind};
 
+mod access;
+pub use access::{Access, Accesses, Act, Joint, JointKind, Part};
+
+mod allowance;
+pub use allowance::{Allowance, DIRECTIVE};
+
 mod tokens;
 pub use tokens::{Token, TokenKind};
 

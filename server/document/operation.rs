@@ -96,10 +96,10 @@ pub fn coil_form(kind: CoilKind) -> Option<Form> {
 
 /// The instructions of the commonest elements, looked up once: each rule asks for them at each element.
 struct DrawnForms {
-    /// By [`ContactKind`].
-    contacts: [Option<Form>; 4],
-    /// By [`CoilKind`].
-    coils: [Option<Form>; 7],
+    /// In the order of [`ContactKind::ALL`], which is that of the kinds.
+    contacts: [Option<Form>; ContactKind::ALL.len()],
+    /// In the order of [`CoilKind::ALL`], which is that of the kinds.
+    coils: [Option<Form>; CoilKind::ALL.len()],
 }
 
 static DRAWN: LazyLock<DrawnForms> = LazyLock::new(|| DrawnForms {
@@ -142,5 +142,17 @@ fn compare_mnemonic(operator: CompareOperator) -> &'static str {
         CompareOperator::GreaterOrEqual { wide: true } => "LDD>=",
         CompareOperator::LessOrEqual { wide: false } => "LD<=",
         CompareOperator::LessOrEqual { wide: true } => "LDD<=",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The tables of [`DRAWN`] are made in the order of `ALL` and read by the numbers of the kinds.
+    #[test]
+    fn kinds_are_listed_in_the_order_of_their_numbers() {
+        assert!(ContactKind::ALL.iter().enumerate().all(|(place, kind)| *kind as usize == place));
+        assert!(CoilKind::ALL.iter().enumerate().all(|(place, kind)| *kind as usize == place));
     }
 }

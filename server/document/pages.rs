@@ -1,7 +1,8 @@
 //! The sequence of chunks: pages of some dozens each, so that a snapshot copies one pointer a page and an edit
 //! rebuilds one page.
 
-use super::{Chunk, Found, Milestone, Names, Size, chunk, milestone};
+use super::allowance::{self, OwnAllowance};
+use super::{Accesses, Chunk, Found, Milestone, Names, Size, access, chunk, milestone};
 use crate::ladder::NameHabit;
 use crate::text::Diagnostic;
 use std::sync::{Arc, Mutex, OnceLock};
@@ -20,6 +21,8 @@ pub struct Page {
     names: OnceLock<Arc<Names>>,
     pou_starts: OnceLock<usize>,
     milestones: OnceLock<Arc<[Milestone]>>,
+    accesses: OnceLock<Arc<Accesses>>,
+    allowances: OnceLock<Arc<[(usize, OwnAllowance)]>>,
     found: chunk::Kept,
 }
 
@@ -38,6 +41,8 @@ impl Page {
             names: OnceLock::new(),
             pou_starts: OnceLock::new(),
             milestones: OnceLock::new(),
+            accesses: OnceLock::new(),
+            allowances: OnceLock::new(),
             found: Mutex::new(None),
         })
     }
@@ -81,6 +86,16 @@ impl Page {
     /// Its instructions and labels as far as they matter for the structure of a program, offsets from its start.
     pub fn milestones(&self) -> &[Milestone] {
         self.milestones.get_or_init(|| milestone::of_page(&self.chunks).into())
+    }
+
+    /// What its chunks read and drive, offsets from its start.
+    pub fn accesses(&self) -> &Accesses {
+        self.accesses.get_or_init(|| Arc::new(access::of_page(&self.chunks)))
+    }
+
+    /// The comments that allow something, each with the number of its chunk.
+    pub(super) fn allowances(&self) -> &[(usize, OwnAllowance)] {
+        self.allowances.get_or_init(|| allowance::of_page(&self.chunks).into())
     }
 
     /// Whether there are diagnostics under `key`.
@@ -137,6 +152,8 @@ impl Pages {
                 names: page.names.clone(),
                 pou_starts: page.pou_starts.clone(),
                 milestones: page.milestones.clone(),
+                accesses: page.accesses.clone(),
+                allowances: page.allowances.clone(),
                 found: Mutex::new(None),
             }),
         };

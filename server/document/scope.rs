@@ -382,7 +382,7 @@ fn direct_uses(tree: &IecTree) -> Vec<Use> {
     };
     for item in &tree.items {
         if let ItemKind::Operation { operation, operand: Some(id) } = item.kind
-            && matches!(operation.operator.role, OperatorRole::Store | OperatorRole::Latch)
+            && matches!(operation.operator.role, OperatorRole::Store | OperatorRole::Latch { .. })
         {
             set(id, Use::Write);
         }

@@ -6,19 +6,11 @@ use crate::check::Rule;
 use crate::text::{Language, Message, Span, TextEdit, phrase};
 
 mod schema;
+pub use schema::FileKind;
 use schema::{Kind, Node};
 
 mod site;
 use site::{Reading, Site};
-
-/// The names of the files that a manifest may name, from its folder, with `/`.
-#[derive(Clone, PartialEq, Eq, Debug, Default)]
-pub struct ManifestFiles {
-    /// Program files.
-    pub programs: Vec<String>,
-    /// Tables, one of which may have the comments of devices.
-    pub tables: Vec<String>,
-}
 
 /// The table in which the severities of rules are: their descriptions are those of the rules.
 const RULES: &str = "rules";
@@ -58,11 +50,11 @@ pub fn manifest_hover(text: &str, offset: usize, language: Language) -> Option<H
 }
 
 /// What could be written at `offset`: tables, keys that are not there yet, values. `files` is asked where a value names
-/// one.
+/// one: for the names of the files of a kind, from the manifest's folder, with `/`.
 pub fn manifest_completions(
     text: &str,
     offset: usize,
-    files: &dyn Fn() -> ManifestFiles,
+    files: &dyn Fn(FileKind) -> Vec<String>,
     language: Language,
 ) -> Vec<Completion> {
     let reading = Reading::of(text, offset);
@@ -171,15 +163,11 @@ impl List<'_> {
         path: &[String],
         node: Node,
         (word, is_quoted, in_list): (Span, bool, bool),
-        files: &dyn Fn() -> ManifestFiles,
+        files: &dyn Fn(FileKind) -> Vec<String>,
     ) {
         let is_list = node.kind() == Kind::List;
         let element = if is_list { node.element() } else { node };
-        let names = match element.files() {
-            Some("program") => files().programs,
-            Some("table") => files().tables,
-            _ => Vec::new(),
-        };
+        let names = element.files().map(files).unwrap_or_default();
         let listed = reading.listed(path);
         let names = names.iter().map(String::as_str).filter(|name| !listed.contains(name));
         let words: Vec<&str> = element.words().into_iter().chain(names).collect();

@@ -2,7 +2,7 @@
 
 use crate::document::{ChunkRef, Document};
 pub use crate::document::{Token, TokenKind};
-use crate::text::{Diagnostic, Language, Message, Span, TextEdit};
+use crate::text::{Diagnostic, Fix, Language, Message, Span, TextEdit};
 
 mod answer;
 pub use answer::{
@@ -39,7 +39,7 @@ mod highlight;
 pub use highlight::{Highlight, HighlightKind};
 
 mod usage;
-pub use usage::{Usage, UsageAt, UsageKey, UsageRow};
+pub use usage::{Usage, UsageAt, UsageKey, UsageKind, UsageOf, UsageRow, UsageWish, UsedKind};
 
 mod lens;
 pub use lens::{Lens, LensKind, LensSettings};
@@ -73,6 +73,8 @@ pub use format::Style;
 mod fixes;
 pub use fixes::FixOf;
 
+mod allowing;
+
 mod status;
 
 mod summary;
@@ -87,8 +89,14 @@ mod typing;
 
 mod linked_editing;
 
+mod forms;
+pub use forms::{ProgramPart, TranslatedForm, form_of, form_steps, forms, part_at};
+
+mod refactor;
+pub use refactor::Refactoring;
+
 mod manifest;
-pub use manifest::{ManifestFiles, manifest_completions, manifest_hover};
+pub use manifest::{FileKind, manifest_completions, manifest_hover};
 
 /// What stands at `offset`: the page of an instruction, the meaning and range of a device, where it is used.
 pub fn hover(document: &Document, offset: usize, language: Language) -> Option<Hover> {
@@ -127,7 +135,12 @@ pub fn highlights(document: &Document, offset: usize) -> Vec<Highlight> {
 
 /// The list of used devices of a project.
 pub fn usage(view: &ProjectView<'_>) -> Usage {
-    usage::of(view)
+    usage_of(view, &UsageWish { places: true, of: UsageOf::All })
+}
+
+/// A part of it.
+pub fn usage_of(view: &ProjectView<'_>, wish: &UsageWish) -> Usage {
+    usage::of(view, wish)
 }
 
 /// The lenses above rungs, without their words.
@@ -326,9 +339,24 @@ pub fn linked_places(document: &Document, offset: usize) -> Vec<Span> {
     linked_editing::of(document, offset)
 }
 
+/// The refactorings of the rung at the cursor or selection `span` that are proved to keep what the program does.
+pub fn refactorings(view: &ProjectView<'_>, span: Span, style: Style) -> Vec<Refactoring> {
+    refactor::at(view, span, style)
+}
+
 /// The fixes of `diagnostics` that touch `span`.
 pub fn fixes(diagnostics: &[Diagnostic], span: Span) -> Vec<FixOf<'_>> {
     fixes::within(diagnostics, span)
+}
+
+/// For each of `diagnostics` that touches `span` and that comments may allow, the fixes that write such a comment:
+/// above its rung, and at the top of the file.
+pub fn allowing<'d>(
+    document: &Document,
+    diagnostics: &'d [Diagnostic],
+    span: Span,
+) -> Vec<(&'d Diagnostic, Fix)> {
+    allowing::within(document, diagnostics, span)
 }
 
 /// What the status bar shows.

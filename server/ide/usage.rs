@@ -1,21 +1,47 @@
 //! The list of used devices: where each is read and written, as a table and as a grid like those of programming tools.
 
-use super::names::PouWalk;
+use super::names::{self, PouWalk, Thing};
 use super::{devices, uses};
-use crate::document::{Chunk, ChunkRef, Mention, ProjectView, Symbol, Use};
-use crate::target::{Device, Opcode, Operand, Role};
-use crate::text::{Encoding, Language, Message};
-use rustc_hash::FxHashSet;
+use crate::document::{Chunk, ChunkRef, Document, Mention, Operation, ProjectView, Scopes, Symbol, Use};
+use crate::target::{Device, DirectAddress, Opcode, Operand, Role};
+use crate::text::{Encoding, Language, Message, folded};
+use rustc_hash::{FxHashMap, FxHashSet};
 use serde_json::{Value, json};
+use smol_str::SmolStr;
 use std::collections::BTreeMap;
 
+mod gaps;
+pub use gaps::{UsageKind, UsedKind};
+
 mod grid;
+
+/// What of the uses is wanted. Programs may have a hundred thousand of them.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct UsageWish {
+    /// Whether each use is told with its place and text; else the uses are counted.
+    pub places: bool,
+    /// Of which devices.
+    pub of: UsageOf,
+}
+
+/// The devices whose uses are wanted.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum UsageOf {
+    /// All of them, with the kinds and what is unused.
+    All,
+    /// Those of these names, as [`UsageRow::full_name`] has them, letter case aside.
+    Named(Vec<String>),
+    /// The one at this byte of the file that is looked at.
+    At(usize),
+}
 
 /// The devices, addresses and variables of a project.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Usage {
     /// In reading order: devices by kind and number, then addresses, then variables by unit and name.
     pub rows: Vec<UsageRow>,
+    /// The kinds of the rows, in the order of the rows; empty if only some devices were wanted.
+    pub kinds: Vec<UsedKind>,
 }
 
 /// A device, an address or a variable with all its uses.
@@ -33,19 +59,49 @@ pub struct UsageRow {
     pub is_latched: bool,
     /// The preset of a timer or counter as written, and what it amounts to: `K50 = 5 s`.
     pub preset: String,
-    /// Its uses, file by file in the order of the text.
+    /// How many uses read it.
+    pub reads: usize,
+    /// How many uses write it. Some do both, and some neither, such as declarations.
+    pub writes: usize,
+    /// How many consecutive devices from it on the longest use means: 16 for the M0 of `K4M0`.
+    pub length: u16,
+    /// The first and last of each run of free devices between it and the next one in use: those that no use means and
+    /// that the project says nothing of.
+    pub gaps: Vec<(Device, Device)>,
+    /// Its uses, file by file in the order of the text; none if they were only counted.
     pub uses: Vec<UsageAt>,
 }
 
 /// What a row is about. The order is that of the rows.
-#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Debug)]
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub enum UsageKey {
     /// A device of the PLC.
     Device(Device),
     /// A direct address.
-    Direct(crate::target::DirectAddress),
+    Direct(DirectAddress),
     /// A variable: the unit that declares or uses it, empty for global ones, and its folded name.
     Variable(String, String),
+}
+
+impl UsageKey {
+    /// The kind.
+    pub fn kind(&self) -> UsageKind {
+        match self {
+            UsageKey::Device(device) => UsageKind::Device(device.kind),
+            UsageKey::Direct(_) => UsageKind::Address,
+            UsageKey::Variable(..) => UsageKind::Variable,
+        }
+    }
+
+    /// The name, behind that of its unit for a variable of one, which has the folded name here.
+    fn full_name(&self) -> String {
+        match self {
+            UsageKey::Device(device) => device.to_string(),
+            UsageKey::Direct(address) => address.to_string(),
+            UsageKey::Variable(unit, name) if unit.is_empty() => name.clone(),
+            UsageKey::Variable(unit, name) => format!("{unit}.{name}"),
+        }
+    }
 }
 
 /// One use.
@@ -91,17 +147,9 @@ impl UsageRow {
         }
     }
 
-    /// The letter of a device, `address` or `variable`.
-    pub fn kind_word(&self) -> String {
-        match &self.key {
-            UsageKey::Device(device) => device.kind.letter().to_string(),
-            UsageKey::Direct(_) => "address".to_string(),
-            UsageKey::Variable(..) => "variable".to_string(),
-        }
-    }
-
     /// The row for programs that read it, as the command line and the editors give it, lines and columns from 1:
-    /// `{"device", "kind", "symbol", "comment", "latched", "preset", "read", "written",
+    /// `{"device", "kind", "symbol", "comment", "latched", "preset", "read", "written", "reads", "writes",
+    /// "gaps": [{"first", "last", "count"}],
     /// "uses": [{"line", "column", "rung", "access", "coil", "count", "text"}]}`.
     /// `names` are more fields of each use that say which file it is in.
     pub fn json(&self, names: impl Fn(usize) -> Vec<(&'static str, Value)>) -> Value {
@@ -120,75 +168,165 @@ impl UsageRow {
             }
             fields
         };
+        let gap = |(first, last): &(Device, Device)| {
+            json!({
+                "first": first.to_string(),
+                "last": last.to_string(),
+                "count": last.number - first.number + 1,
+            })
+        };
         json!({
             "device": self.full_name(),
-            "kind": self.kind_word(),
+            "kind": self.key.kind().word(),
             "symbol": self.symbol,
             "comment": self.comment,
             "latched": self.is_latched,
             "preset": self.preset,
             "read": self.is_read(),
             "written": self.is_written(),
+            "reads": self.reads,
+            "writes": self.writes,
+            "gaps": self.gaps.iter().map(gap).collect::<Vec<_>>(),
             "uses": self.uses.iter().map(one).collect::<Vec<_>>(),
         })
     }
 
     /// Whether the program reads it.
     pub fn is_read(&self) -> bool {
-        self.uses.iter().any(|at| at.usage.reads())
+        self.reads > 0
     }
 
     /// Whether the program writes it.
     pub fn is_written(&self) -> bool {
-        self.uses.iter().any(|at| at.usage.writes())
+        self.writes > 0
     }
 }
 
-/// All uses in the files of `view`.
-pub(super) fn of(view: &ProjectView<'_>) -> Usage {
-    let mut rows: BTreeMap<UsageKey, UsageRow> = BTreeMap::new();
+/// The uses in the files of `view`.
+pub(super) fn of(view: &ProjectView<'_>, wish: &UsageWish) -> Usage {
+    let mut collector =
+        Collector { rows: BTreeMap::new(), places: wish.places, wanted: wanted(view, &wish.of) };
     for file in 0..view.members().len() {
-        collect(view, file, &mut rows);
+        collector.file(view, file);
     }
-    Usage { rows: rows.into_values().collect() }
+    let mut usage = Usage { rows: collector.rows.into_values().collect(), kinds: Vec::new() };
+    if wish.of == UsageOf::All {
+        gaps::find(&mut usage, view);
+    }
+    usage
 }
 
-fn collect(view: &ProjectView<'_>, file: usize, rows: &mut BTreeMap<UsageKey, UsageRow>) {
-    let document = &view.members()[file].document.lean();
-    let scopes = document.scopes();
-    let mut walk = PouWalk::default();
-    let mut rungs = 0;
-    for at in document.chunks() {
-        let pou = walk.enter(at.chunk);
-        let coils = coils(at.chunk);
-        for mention in at.chunk.mentions() {
-            let Some(key) = key_of(&mention.symbol, pou, scopes) else { continue };
-            let row = rows.entry(key).or_insert_with_key(|key| new_row(document, key, mention, at));
-            if row.preset.is_empty()
-                && let UsageKey::Device(device) = row.key
-            {
-                row.preset = preset(document, at.chunk, device);
-            }
-            let inside = mention.span.start as usize;
-            let position = document.position(at.start + inside, Encoding::Utf32);
-            row.uses.push(UsageAt {
-                file,
-                line: position.line,
-                column: position.column,
-                rung: uses::rung_in(at.chunk, inside).map(|own| rungs + own),
-                usage: mention.usage,
-                by_coil: mention.usage.writes() && coils.contains(&mention.span.start),
-                count: mention.count,
-                text: uses::text_at(at, inside),
-            });
+/// Which devices are wanted.
+enum Wanted {
+    All,
+    /// Those of these folded names, and what is known of the keys that were asked about.
+    Named(FxHashSet<SmolStr>, FxHashMap<UsageKey, bool>),
+    Key(Option<UsageKey>),
+}
+
+fn wanted(view: &ProjectView<'_>, of: &UsageOf) -> Wanted {
+    match of {
+        UsageOf::All => Wanted::All,
+        UsageOf::Named(names) => {
+            Wanted::Named(names.iter().map(|name| folded(name)).collect(), FxHashMap::default())
         }
-        rungs += at.chunk.size().rungs;
+        UsageOf::At(offset) => Wanted::Key(key_at(view.here(), *offset)),
+    }
+}
+
+/// What stands at `offset`, if it is something of which uses are told.
+fn key_at(document: &Document, offset: usize) -> Option<UsageKey> {
+    match names::at(document, offset)?.thing {
+        Thing::Devices(device, _) => Some(UsageKey::Device(device)),
+        Thing::Direct(address) => Some(UsageKey::Direct(address)),
+        Thing::Variable { pou, name } => key_of(&Symbol::Variable(name), pou, document.scopes()),
+        Thing::Label { .. } | Thing::Connector { .. } | Thing::Pou(_) | Thing::Type(_) => None,
+    }
+}
+
+impl Wanted {
+    fn has(&mut self, key: &UsageKey) -> bool {
+        match self {
+            Wanted::All => true,
+            Wanted::Key(wanted) => wanted.as_ref() == Some(key),
+            Wanted::Named(names, known) => match known.get(key) {
+                Some(known) => *known,
+                None => {
+                    let is_named = names.contains(&folded(&key.full_name()));
+                    known.insert(key.clone(), is_named);
+                    is_named
+                }
+            },
+        }
+    }
+}
+
+struct Collector {
+    rows: BTreeMap<UsageKey, UsageRow>,
+    places: bool,
+    wanted: Wanted,
+}
+
+impl Collector {
+    fn file(&mut self, view: &ProjectView<'_>, file: usize) {
+        let document = &view.members()[file].document.lean();
+        let scopes = document.scopes();
+        let mut walk = PouWalk::default();
+        let mut rungs = 0;
+        for at in document.chunks() {
+            if view.is_cancelled() {
+                return;
+            }
+            let pou = walk.enter(at.chunk);
+            let mut driven = None;
+            for mention in at.chunk.mentions() {
+                let key = key_of(&mention.symbol, pou, scopes).filter(|key| self.wanted.has(key));
+                let Some(key) = key else { continue };
+                let row = self.rows.entry(key).or_insert_with_key(|key| new_row(document, key, mention, at));
+                row.reads += usize::from(mention.usage.reads());
+                row.writes += usize::from(mention.usage.writes());
+                row.length = row.length.max(mention.count);
+                if row.preset.is_empty()
+                    && mention.usage.writes()
+                    && let UsageKey::Device(device) = row.key
+                {
+                    row.preset = preset(document, at.chunk, device);
+                }
+                if self.places {
+                    let driven = driven.get_or_insert_with(|| coils(at.chunk));
+                    row.uses.push(use_at(document, file, at, mention, (rungs, driven)));
+                }
+            }
+            rungs += at.chunk.size().rungs;
+        }
+    }
+}
+
+/// The use that is `mention`, in a chunk with `rungs` before it and the operands of coils at `driven`.
+fn use_at(
+    document: &Document,
+    file: usize,
+    at: ChunkRef<'_>,
+    mention: &Mention,
+    (rungs, driven): (usize, &FxHashSet<u32>),
+) -> UsageAt {
+    let inside = mention.span.start as usize;
+    let position = document.position(at.start + inside, Encoding::Utf32);
+    UsageAt {
+        file,
+        line: position.line,
+        column: position.column,
+        rung: uses::rung_in(at.chunk, inside).map(|own| rungs + own),
+        usage: mention.usage,
+        by_coil: mention.usage.writes() && driven.contains(&mention.span.start),
+        count: mention.count,
+        text: uses::text_at(at, inside),
     }
 }
 
 /// Where the operands of coils start.
 fn coils(chunk: &Chunk) -> FxHashSet<u32> {
-    let drives = |operation: &crate::document::Operation<'_>| {
+    let drives = |operation: &Operation<'_>| {
         operation.form.is_some_and(|form| {
             form.instruction.role == Role::Output && !matches!(form.instruction.opcode, Opcode::Function(_))
         })
@@ -198,7 +336,7 @@ fn coils(chunk: &Chunk) -> FxHashSet<u32> {
     operands.map(|operand| operand.span.start).collect()
 }
 
-fn key_of(symbol: &Symbol, pou: Option<usize>, scopes: &crate::document::Scopes) -> Option<UsageKey> {
+fn key_of(symbol: &Symbol, pou: Option<usize>, scopes: &Scopes) -> Option<UsageKey> {
     match symbol {
         Symbol::Device(device) => Some(UsageKey::Device(*device)),
         Symbol::Direct(address) => Some(UsageKey::Direct(*address)),
@@ -215,12 +353,7 @@ fn key_of(symbol: &Symbol, pou: Option<usize>, scopes: &crate::document::Scopes)
     }
 }
 
-fn new_row(
-    document: &crate::document::Document,
-    key: &UsageKey,
-    mention: &Mention,
-    at: ChunkRef<'_>,
-) -> UsageRow {
+fn new_row(document: &Document, key: &UsageKey, mention: &Mention, at: ChunkRef<'_>) -> UsageRow {
     let said = document.comments().of(&mention.symbol);
     let name = match key {
         UsageKey::Device(device) => device.to_string(),
@@ -238,12 +371,16 @@ fn new_row(
         comment: said.map(|row| row.comment.to_string()).unwrap_or_default(),
         is_latched: range.is_some_and(|range| range.latched),
         preset: String::new(),
+        reads: 0,
+        writes: 0,
+        length: 1,
+        gaps: Vec::new(),
         uses: Vec::new(),
     }
 }
 
 /// `K50 = 5 s`
-fn preset(document: &crate::document::Document, chunk: &Chunk, device: Device) -> String {
+fn preset(document: &Document, chunk: &Chunk, device: Device) -> String {
     if !device.kind.has_preset() {
         return String::new();
     }

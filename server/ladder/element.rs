@@ -210,7 +210,7 @@ pub enum CoilKind {
 }
 
 impl CoilKind {
-    /// All of them, the commonest first.
+    /// All of them, the plain one first.
     pub const ALL: [CoilKind; 7] = [
         CoilKind::Plain,
         CoilKind::Negated,

@@ -1,9 +1,9 @@
 //! Puts the rungs of a document into the canonical form and leaves everything else as it is.
 //!
 //! Only rungs that were read without doubt are redrawn: a rung with a problem, a loose end, a bridge, a comment
-//! in its midst, or outputs that would change their order stays exactly as it was drawn. Lines and names that are
-//! off by a column or two are straightened where they have one reading. What was redrawn is read again, and taken
-//! only if the logic is the same.
+//! in its midst, or outputs that would change their order stays as it was drawn, but for blanks at the ends of
+//! lines. Lines and names that are off by a column or two are straightened where they have one reading. What was
+//! redrawn is read again, and taken only if the logic is the same.
 
 use super::lines::ended_lines;
 use super::ragged::TWO_READINGS;

@@ -28,7 +28,7 @@ const ASCII: [u8; 128] = {
 
 impl Arms {
     /// The arms of `character`. `+` and `*` run in all four directions.
-    pub(super) fn of(character: char) -> Arms {
+    pub(super) const fn of(character: char) -> Arms {
         Arms(match character {
             '\0'..='\x7F' => ASCII[character as usize & 0x7F],
             '\u{2500}'..='\u{257F}' => {
@@ -40,7 +40,7 @@ impl Arms {
     }
 
     /// A wire: only to the left and right.
-    pub(super) fn is_horizontal(self) -> bool {
+    pub(super) const fn is_horizontal(self) -> bool {
         self.0 != 0 && self.0 & (UP | DOWN) == 0
     }
 
@@ -50,7 +50,7 @@ impl Arms {
     }
 
     /// A corner, a branch or a connected crossing.
-    pub(super) fn is_junction(self) -> bool {
+    pub(super) const fn is_junction(self) -> bool {
         self.0 & (UP | DOWN) != 0 && self.0 & (LEFT | RIGHT) != 0
     }
 
@@ -121,7 +121,12 @@ impl Strokes {
 
 /// Whether a word may start with `character`: names, devices, numbers, `%` addresses, quoted text.
 pub(super) fn starts_word(character: char) -> bool {
-    character.is_alphanumeric() || matches!(character, '%' | '\'' | '"' | '#' | '$' | '@')
+    if character.is_ascii() { starts_ascii_word(character) } else { character.is_alphanumeric() }
+}
+
+/// The same of an ASCII character, for tables; false for others.
+pub(super) const fn starts_ascii_word(character: char) -> bool {
+    character.is_ascii_alphanumeric() || matches!(character, '%' | '\'' | '"' | '#' | '$' | '@')
 }
 
 /// Whether a word goes on with `character`.

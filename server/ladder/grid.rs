@@ -1,6 +1,6 @@
 //! A block of drawing lines as rows of displayed cells.
 
-use super::glyph::Arms;
+use super::glyph::{Arms, starts_ascii_word};
 use super::lines::{Line, display_width, is_blank};
 use crate::text::Span;
 use std::ops::Range;
@@ -43,12 +43,13 @@ const GROUPS: [u8; 128] = {
     let mut groups = [0; 128];
     let mut character = 0;
     while character < 128 {
-        groups[character] = match character as u8 {
-            b'-' | b'_' | b'=' => WIRES,
-            b'+' | b'*' => JUNCTIONS,
-            b'[' | b'{' | b'^' => BOXES,
-            byte if byte.is_ascii_alphanumeric() => WORDS,
-            b'%' | b'\'' | b'"' | b'#' | b'$' | b'@' => WORDS,
+        let own = character as u8 as char;
+        let arms = Arms::of(own);
+        groups[character] = match own {
+            _ if arms.is_horizontal() => WIRES,
+            _ if arms.is_junction() => JUNCTIONS,
+            _ if starts_ascii_word(own) => WORDS,
+            '[' | '{' | '^' => BOXES,
             _ => 0,
         };
         character += 1;

@@ -38,6 +38,9 @@ pub use run::{Effect, Run};
 mod decide;
 pub use decide::{Verdict, equal, is_never};
 
+mod minimal;
+pub use minimal::{Sum, sum_of_products};
+
 mod compare;
 pub use compare::{Comparison, compare, compare_but, compare_outcome, touches_bits};
 

@@ -1,14 +1,4 @@
 //! Answers of features about devices and one document, in the protocol's types.
-//!
-//! `rungwise.usage` takes a document's URI and answers
-//! `{"text", "target", "files": ["main.il", …], "devices": [{"device", "kind", "symbol", "comment", "latched",
-//! "preset", "read", "written", "uses": [{"file", "uri", "line", "column", "rung", "access", "coil", "count",
-//! "text"}]}]}`.
-//! `kind` is the device's letter, `address` or `variable`; `file` is the name in `files`; `line` and `column` count
-//! from 1, columns in Unicode scalar values; `rung` counts from 1 in its file or is `null`; `access` is `read`,
-//! `write`, `read-write`, `define` or `jump`; `text` is the same list as a page with a grid for each kind of device.
-//! The page alone is also the content of the virtual document `rungwise-usage:` + the path of the document, which
-//! clients of LSP 3.18 ask for with `workspace/textDocumentContent` (`{"uri"}` → `{"text"}`).
 
 use super::editing;
 use super::projects::Around;
@@ -24,33 +14,12 @@ use serde_json::{Value, json};
 use std::sync::Arc;
 use tower_lsp::ls_types::*;
 
-/// The scheme of the virtual document with the list of used devices.
-pub(super) const USAGE_SCHEME: &str = "rungwise-usage";
-
 /// The parameters of `textDocument/rangesFormatting`; the client's options of formatting are the project's matter.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct RangesParams {
     pub text_document: TextDocumentIdentifier,
     pub ranges: Vec<Range>,
-}
-
-/// The parameters of `workspace/textDocumentContent`.
-#[derive(Deserialize)]
-pub(super) struct ContentParams {
-    pub uri: Uri,
-}
-
-/// Its answer.
-#[derive(Serialize)]
-pub(super) struct Content {
-    pub text: String,
-}
-
-/// The document of which a virtual one tells.
-pub(super) fn told_document(uri: &Uri) -> Option<Uri> {
-    let rest = uri.as_str().strip_prefix(USAGE_SCHEME)?.strip_prefix(':')?;
-    format!("file:{rest}").parse().ok()
 }
 
 /// The address of a line of a file, for links in Markdown.
@@ -167,25 +136,31 @@ pub(super) fn rewrites(open: &Open, place: Place<'_>, params: &CodeActionParams)
     rewrites.map(action).collect()
 }
 
-/// The page of used devices.
-pub(super) fn usage_text(around: &Around, language: Language) -> String {
-    let view = around.view();
-    ide::usage(&view).text(&view, language)
-}
-
-/// The answer of `rungwise.usage`.
-pub(super) fn usage_json(around: &Around, language: Language) -> Value {
-    let view = around.view();
-    let usage = ide::usage(&view);
-    let text = usage.text(&view, language);
-    let place = |number: usize| {
-        let name = view.members().get(number).map_or("", |member| member.name);
-        let uri = around.file(number).map(|file| file.uri.to_string());
-        vec![("file", json!(name)), ("uri", json!(uri))]
+/// The refactorings of the rung at a range as code actions.
+pub(super) fn refactorings(
+    around: &Around,
+    place: Place<'_>,
+    params: &CodeActionParams,
+    style: ide::Style,
+) -> Vec<CodeAction> {
+    let only = params.context.only.as_deref();
+    let groups = ["refactor.rewrite.rung", "refactor.extract.relay", "refactor.inline.relay"];
+    let is_asked = |only: &&[CodeActionKind]| {
+        let own = only.iter().any(|kind| kind.as_str().starts_with(groups[0]));
+        own || groups.iter().any(|group| editing::is_wanted(&(*group).into(), Some(only)))
     };
-    let devices: Vec<Value> = usage.rows.iter().map(|row| row.json(place)).collect();
-    let files: Vec<&str> = view.members().iter().map(|member| member.name).collect();
-    json!({"text": text, "target": view.here().target().name, "files": files, "devices": devices})
+    if only.is_some_and(|only| !is_asked(&only)) {
+        return Vec::new();
+    }
+    let refactorings = ide::refactorings(&around.view(), place.span(params.range), style).into_iter();
+    let wanted = refactorings.filter(|refactoring| editing::is_wanted(&refactoring.kind.into(), only));
+    let action = |refactoring: ide::Refactoring| CodeAction {
+        title: refactoring.title.render(place.language),
+        kind: Some(refactoring.kind.into()),
+        edit: Some(editing::changes(around.here(), place.edits(&refactoring.edits))),
+        ..CodeAction::default()
+    };
+    wanted.map(action).collect()
 }
 
 /// A fix as a code action.

@@ -4,7 +4,7 @@ use super::answering::{beside, snapshot};
 use super::projects::file_path;
 use super::to_proto::{self, Place};
 use super::workspace::{Open, is_manifest};
-use crate::ide::{self, ManifestFiles};
+use crate::ide::{self, FileKind};
 use crate::project::{is_program_file, is_table_file, names_in};
 use std::sync::Arc;
 use tower_lsp::jsonrpc::Result;
@@ -34,8 +34,13 @@ pub(super) async fn completion(open: Arc<Open>, position: Position) -> Result<Op
     let manner = snapshot().manner;
     beside(move |_| {
         let folder = file_path(&open.uri).and_then(|path| path.parent().map(|folder| folder.to_path_buf()));
-        let names = |wanted| folder.as_ref().map(|folder| names_in(folder, wanted)).unwrap_or_default();
-        let files = || ManifestFiles { programs: names(is_program_file), tables: names(is_table_file) };
+        let files = |kind: FileKind| {
+            let wanted = match kind {
+                FileKind::Program => is_program_file,
+                FileKind::Table => is_table_file,
+            };
+            folder.as_ref().map(|folder| names_in(folder, wanted)).unwrap_or_default()
+        };
         let place = Place::new(&open.document, manner);
         let text = open.document.text();
         let proposals = ide::manifest_completions(&text, place.offset(position), &files, place.language);

@@ -30,7 +30,9 @@ mod sheets;
 mod status;
 mod to_proto;
 mod tokens;
+mod translating;
 mod typed;
+mod usage;
 mod workspace;
 mod written;
 

@@ -441,7 +441,7 @@ impl State {
     /// The open documents of a project but `own` are seen as they are. The snapshot that is looked at has to be taken
     /// under the same lock, so that a later version is judged afterwards.
     fn note_looks(&self, key: &Arc<Path>, own: Option<&Uri>) {
-        for open in self.snapshot.documents.values().filter(|open| open.project.as_ref() == Some(key)) {
+        for open in self.snapshot.opens_of(key) {
             if let (Some(publisher), true) = (self.publishers.get(&open.uri), own != Some(&open.uri)) {
                 publisher.note_look(open.version);
             }

@@ -109,12 +109,16 @@ fn with_target_of_comments(manifest: Manifest, folder: &Path) -> Manifest {
 
 /// Whether the name ends in `.lad` or `.il`.
 pub fn is_program_file(path: &Path) -> bool {
-    path.extension().is_some_and(|end| end.eq_ignore_ascii_case("lad") || end.eq_ignore_ascii_case("il"))
+    ends_in(path, ["lad", "il"])
 }
 
 /// Whether the name ends in `.csv` or `.tsv`: it may be a table of device comments.
 pub fn is_table_file(path: &Path) -> bool {
-    path.extension().is_some_and(|end| ["csv", "tsv"].iter().any(|name| end.eq_ignore_ascii_case(name)))
+    ends_in(path, ["csv", "tsv"])
+}
+
+fn ends_in(path: &Path, extensions: [&str; 2]) -> bool {
+    path.extension().is_some_and(|end| extensions.iter().any(|extension| end.eq_ignore_ascii_case(extension)))
 }
 
 /// The files of which `wanted` says so in the project of `folder`, from there, with `/`, by name. What cannot be read

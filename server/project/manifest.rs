@@ -96,13 +96,10 @@ fn message_of(reason: &str) -> Message {
     let wanted = reason.rsplit_once("expected ").map_or("", |(_, wanted)| wanted);
     let is_about = |beginning: &str| reason.starts_with(beginning);
     match quoted[..] {
-        [word, ref keys @ ..] if is_about("unknown field") => {
-            let message = Message::new("manifest.unknown-key").with("word", word);
-            message.with_words("words", keys.iter().copied(), ", ")
-        }
-        [word, ref words @ ..] if is_about("unknown variant") => {
-            let message = Message::new("manifest.unknown-word").with("word", word);
-            message.with_words("words", words.iter().copied(), ", ")
+        [word, ref words @ ..] if is_about("unknown field") || is_about("unknown variant") => {
+            let key =
+                if is_about("unknown field") { "manifest.unknown-key" } else { "manifest.unknown-word" };
+            Message::new(key).with("word", word).with_words("words", words.iter().copied(), ", ")
         }
         [word] if is_about("missing field") => Message::new("manifest.missing-key").with("word", word),
         _ if is_about("invalid type") || is_about("invalid value") => match wanted {
@@ -219,11 +216,9 @@ fn dialect_named(word: &str) -> Option<Notation> {
 
 /// `Some(None)` is `off`.
 fn severity_named(word: &str) -> Option<Option<Severity>> {
+    let all = [Severity::Error, Severity::Warning, Severity::Hint];
     match word {
-        "error" => Some(Some(Severity::Error)),
-        "warning" => Some(Some(Severity::Warning)),
-        "hint" => Some(Some(Severity::Hint)),
         "off" => Some(None),
-        _ => None,
+        _ => all.into_iter().find(|severity| severity.word() == word).map(Some),
     }
 }

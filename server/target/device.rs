@@ -119,6 +119,14 @@ pub struct Device {
 }
 
 impl Device {
+    /// The special relay that is on while the CPU runs.
+    pub const ALWAYS_ON: Device = Device::new(DeviceKind::M, 8000);
+
+    /// Whether it is a special relay or register, which the CPU knows: M8000 and up, D8000 and up.
+    pub fn is_special(self) -> bool {
+        matches!(self.kind, DeviceKind::M | DeviceKind::D) && self.number >= 8000
+    }
+
     /// The device of `kind` with this number's value.
     pub const fn new(kind: DeviceKind, number: u32) -> Device {
         Device { kind, number }

@@ -1,6 +1,6 @@
 //! What an instruction does to the order of execution: jumps, loops, sections, steps, the end.
 
-use super::{Instruction, Opcode};
+use super::{Instruction, Opcode, Role};
 
 /// The part of an instruction in the structure of a program.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -57,5 +57,17 @@ impl Instruction {
             Opcode::Word(0xFFFF) => Flow::Nothing,
             _ => Flow::Straight,
         }
+    }
+
+    /// Whether it is a contact that conducts while its device is off: LDI, ANI, ORI, told by their code.
+    pub fn is_inverse_contact(&self) -> bool {
+        matches!(self.opcode, Opcode::Contact { class: 3 | 5 | 7, .. })
+    }
+
+    /// Whether it is a contact that compares its device with that of its last execution: LDP, ANDF and their kin,
+    /// told by their code.
+    pub fn is_edge_contact(&self) -> bool {
+        matches!(self.role, Role::Load | Role::Series | Role::Parallel)
+            && matches!(self.opcode, Opcode::Device(_))
     }
 }

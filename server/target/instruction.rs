@@ -93,6 +93,34 @@ pub enum Access {
     ReadWrite,
 }
 
+/// How an operand that is written gets its value.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Drive {
+    /// While the result is on, from the instruction (MOV, INC, CMP); else it keeps what it has.
+    Value,
+    /// In every scan, the current result itself: OUT, the relay of MC.
+    Coil,
+    /// In every scan, on for the scan of an edge and else off: PLS, PLF.
+    Pulse,
+    /// While the result is on it goes on, else it stays: SET.
+    Set,
+    /// While the result is on it goes off or to 0, else it stays: RST, ZRST.
+    Reset,
+}
+
+/// How many devices from its own on an operand covers.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Extent {
+    /// [`OperandSpec::count`].
+    Fixed,
+    /// So many times that as the operand at this place says, from 0.
+    Counted(u8),
+    /// Up to the device that stands at this place, from 0.
+    Through(u8),
+    /// What follows from several operands or from settings; nobody counts it.
+    Onwards,
+}
+
 /// One operand of an instruction.
 #[derive(Clone, Copy, Debug)]
 pub struct OperandSpec {
@@ -110,6 +138,10 @@ pub struct OperandSpec {
     pub wide_range: Option<(i64, i64)>,
     /// How many consecutive devices it covers (`2` for a pair …), where that is fixed and not 1; else 1.
     pub count: u8,
+    /// How far it reaches where its own operand does not tell.
+    pub extent: Extent,
+    /// What becomes of a device that is written here.
+    pub drive: Drive,
     /// Whether it may be left out (the preset of OUT, which only timers and counters take).
     pub optional: bool,
 }

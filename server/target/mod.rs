@@ -19,7 +19,7 @@ mod accepts;
 pub use accepts::Accepts;
 
 mod instruction;
-pub use instruction::{Access, Form, Instruction, Opcode, OperandSpec, Role, Steps, Wide};
+pub use instruction::{Access, Drive, Extent, Form, Instruction, Opcode, OperandSpec, Role, Steps, Wide};
 
 mod flow;
 pub use flow::Flow;

@@ -44,6 +44,8 @@ pub struct Target {
 pub struct Limits {
     /// Program steps that fit; 0 where the notion has no meaning.
     pub steps: u32,
+    /// Program steps that fit with the largest memory cassette.
+    pub steps_at_most: u32,
     /// Contacts in series that the maker's tool can show in one line, without the output.
     pub contacts_in_series: u32,
     /// Rows of a rung that the maker's tool can show.
@@ -123,6 +125,7 @@ static IEC: Target = Target {
     special: &[],
     limits: Limits {
         steps: 0,
+        steps_at_most: 0,
         contacts_in_series: 11,
         rows: 24,
         blocks: 8,

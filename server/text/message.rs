@@ -202,6 +202,7 @@ macro_rules! catalogue_in {
                 include_str!(concat!("messages/", $tag, "/words.toml")),
                 include_str!(concat!("messages/", $tag, "/order.toml")),
                 include_str!(concat!("messages/", $tag, "/declarations.toml")),
+                include_str!(concat!("messages/", $tag, "/sense.toml")),
                 include_str!(concat!("messages/", $tag, "/ide.toml")),
                 include_str!(concat!("messages/", $tag, "/devices.toml")),
                 include_str!(concat!("messages/", $tag, "/cli.toml")),
@@ -211,6 +212,7 @@ macro_rules! catalogue_in {
                 include_str!(concat!("messages/", $tag, "/ldmicro.toml")),
                 include_str!(concat!("messages/", $tag, "/editing.toml")),
                 include_str!(concat!("messages/", $tag, "/translate.toml")),
+                include_str!(concat!("messages/", $tag, "/refactor.toml")),
             ])
         })
     };

@@ -27,6 +27,8 @@ pub mod to_ladder;
 
 pub mod to_boolean;
 
+pub mod from_boolean;
+
 use crate::document::Document;
 use crate::ladder::Style;
 use crate::text::{Message, Span};
@@ -86,7 +88,7 @@ impl Default for Options {
 }
 
 /// A program in another form.
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Translation {
     /// The text, lines ended by line feeds.
     pub text: String,
@@ -118,12 +120,24 @@ impl Translation {
 
 /// `document` in another form; with `part` only the rungs that touch these bytes.
 pub fn translate(document: &Document, part: Option<Span>, to: To, options: &Options) -> Translation {
+    translate_unless(document, part, to, options, &|| false).unwrap_or_default()
+}
+
+/// The same; nothing if `is_cancelled` says on the way that nobody waits for it any more.
+pub fn translate_unless(
+    document: &Document,
+    part: Option<Span>,
+    to: To,
+    options: &Options,
+    is_cancelled: &dyn Fn() -> bool,
+) -> Option<Translation> {
     let mut program = source::program(document, part);
     let target = dialect::target(document, to);
     dialect::convert(document, target, &mut program);
-    let mut translation = page::write(document, &program, (to, target), options, part.is_none());
+    let is_whole = part.is_none();
+    let mut translation = page::write(document, &program, (to, target), options, is_whole, is_cancelled)?;
     if options.proves {
-        certificate::add(target, &program.rungs, to, &mut translation);
+        certificate::add((document, target), &program.rungs, to, &mut translation, is_cancelled)?;
     }
-    translation
+    Some(translation)
 }

@@ -27,21 +27,24 @@ enum Body {
     Kept(String, Message),
 }
 
-/// The text of `program` in another form, without certificates. A whole one gets the declarations that it lacks.
+/// The text of `program` in another form, without certificates; nothing if it was cancelled on the way. A whole one
+/// gets the declarations that it lacks.
 pub(super) fn write(
     document: &Document,
     program: &Program,
     (to, target): (To, &'static Target),
     options: &Options,
     is_whole: bool,
-) -> Translation {
+    is_cancelled: &dyn Fn() -> bool,
+) -> Option<Translation> {
     let sources = &program.rungs;
     let mut helpers = match to {
         To::Iec => Helpers::beside(header::names(document, sources.iter())),
         _ => Helpers::default(),
     };
-    let bodies: Vec<Body> =
-        sources.iter().map(|source| body(source, (to, target), options, &mut helpers)).collect();
+    let mut unless_cancelled =
+        |source| (!is_cancelled()).then(|| body(source, (to, target), options, &mut helpers));
+    let bodies: Vec<Body> = sources.iter().map(&mut unless_cancelled).collect::<Option<_>>()?;
     let rails = bodies.iter().filter_map(|body| match body {
         Body::Drawing(drawing) => Some(drawing.rail_column_min()),
         _ => None,
@@ -79,7 +82,7 @@ pub(super) fn write(
         page.lay_out(&mut rungs);
     }
     let helpers = helpers.declared.into_iter().map(|helper| helper.name).collect();
-    Translation { text: page.text, rungs, helpers }
+    Some(Translation { text: page.text, rungs, helpers })
 }
 
 fn body(

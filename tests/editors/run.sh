@@ -73,7 +73,7 @@ grammar() {
     node_packages "$TESTS" || return 1
     cd "$TESTS" || return 1
     npx --no-install vscode-tmgrammar-test -g "$ROOT/syntaxes/rungwise-il.tmLanguage.json" \
-        -g "$ROOT/syntaxes/rungwise-ladder.tmLanguage.json" "$ROOT/syntaxes/tests/*.test.*" 2>&1 | tee "$ARTEFACTS/grammar.out"
+        -g "$ROOT/syntaxes/rungwise-ladder.tmLanguage.json" -g "$ROOT/syntaxes/rungwise-forms.tmLanguage.json" "$ROOT/syntaxes/tests/*.test.*" 2>&1 | tee "$ARTEFACTS/grammar.out"
     ok=$(grep -c '^✓ ' "$ARTEFACTS/grammar.out")
     bad=$(grep -c '^✖ ' "$ARTEFACTS/grammar.out")
     files=$(find "$ROOT/syntaxes/tests" -name '*.test.*' | wc -l)

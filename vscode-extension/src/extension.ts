@@ -3,8 +3,10 @@
 import * as vscode from 'vscode';
 import { registerCommands } from './commands';
 import { currentSettings } from './configuration';
+import { DevicesView } from './devicesView';
 import { DrawingEditor } from './drawing';
 import { registerExample } from './example';
+import { FormsView } from './formsView';
 import { Pages } from './pages';
 import { ServerController } from './server';
 import type { ProgramStatus, ServerState } from './status';
@@ -41,6 +43,8 @@ export async function activate(context: vscode.ExtensionContext): Promise<Rungwi
     new DrawingEditor(controller, output),
     new Pages(controller, statusBar),
     new UsageView(controller),
+    new DevicesView(controller),
+    new FormsView(controller),
     RungwiseTasks.register(controller),
     registerExample(context),
     registerWalkthrough(),

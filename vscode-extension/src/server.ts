@@ -40,6 +40,9 @@ const DOCUMENTS = [
 
 export class ServerController implements vscode.Disposable {
   private client: LanguageClient | undefined;
+  private readonly started = new vscode.EventEmitter<void>();
+  /** The server has been started, for the first time or anew. */
+  readonly onDidStart = this.started.event;
   private readonly watcher = vscode.workspace.createFileSystemWatcher('**/{rungwise.toml,*.lad,*.il}');
   private readonly crashes = new CrashPolicy();
   /** Starts and stops run one after another; two restarts in a row must not leave two servers. */
@@ -55,6 +58,11 @@ export class ServerController implements vscode.Disposable {
   /** Version of the running server; `undefined` while there is none. */
   get version(): string | undefined {
     return this.runningVersion;
+  }
+
+  /** Whether the server is being started: it will run, or a message says why not. */
+  get isStarting(): boolean {
+    return this.statusBar.serverState === 'starting';
   }
 
   /** Starts the server. Never rejects: failures are shown to the user. */
@@ -80,12 +88,20 @@ export class ServerController implements vscode.Disposable {
     await this.client?.sendNotification('workspace/didChangeConfiguration', configurationChange(settings));
   }
 
-  /** Runs a command of the server. Rejects when there is no server or it answers with an error. */
-  async executeCommand(command: string, args: readonly unknown[]): Promise<unknown> {
+  /** Whether the running server has a command. */
+  knows(command: string): boolean {
+    return this.client?.initializeResult?.capabilities.executeCommandProvider?.commands.includes(command) ?? false;
+  }
+
+  /**
+   * Runs a command of the server. Rejects when there is no server, when it answers with an error, and when `token`
+   * cancels it.
+   */
+  async executeCommand(command: string, args: readonly unknown[], token?: vscode.CancellationToken): Promise<unknown> {
     if (this.client === undefined || !this.client.isRunning()) {
       throw new Error(vscode.l10n.t('the language server is not running'));
     }
-    return this.client.sendRequest(ExecuteCommandRequest.type, { command, arguments: [...args] });
+    return this.client.sendRequest(ExecuteCommandRequest.type, { command, arguments: [...args] }, token);
   }
 
   /** Sends a request of the server's own kind. Rejects as `executeCommand` does. */
@@ -124,6 +140,7 @@ export class ServerController implements vscode.Disposable {
 
   dispose(): void {
     this.watcher.dispose();
+    this.started.dispose();
     void this.stop();
   }
 
@@ -153,6 +170,7 @@ export class ServerController implements vscode.Disposable {
       await client.start();
       this.runningVersion = probe.version;
       this.statusBar.setServerState('running');
+      this.started.fire();
     } catch (error) {
       this.client = undefined;
       const reason = error instanceof Error ? error.message : String(error);

@@ -31,7 +31,7 @@ export class UsageView implements vscode.TextDocumentContentProvider, vscode.Dis
 
   async provideTextDocumentContent(uri: vscode.Uri): Promise<string> {
     try {
-      return usageText(await this.server.executeCommand('rungwise.usage', [uri.query]));
+      return usageText(await this.server.executeCommand('rungwise.usage', [uri.query, { uses: false }]));
     } catch (error) {
       // The document stays open while the server restarts, so the reason stands in it and goes with the next change.
       return error instanceof Error ? error.message : String(error);

@@ -74,6 +74,7 @@ test('all files that package.json names exist', () => {
   const { languages, grammars, snippets, walkthroughs, tomlValidation } = manifest.contributes;
   const files = [manifest.icon, ...[...languages, ...grammars, ...snippets].flatMap((c: any) => [c.configuration, c.path])];
   files.push(manifest.main, manifest.browser, ...manifest.contributes['markdown.previewStyles'], ...tomlValidation.map((c: any) => c.url));
+  files.push(...manifest.contributes.viewsContainers.activitybar.map((container: any) => container.icon));
   for (const language of languages) {
     files.push(language.icon.light, language.icon.dark);
   }

@@ -178,12 +178,23 @@ function M.restart()
   end
 end
 
---- Sends a request and calls back with (error, result).
+--- Sends a request and calls back with (error, result). Answers what cancels it.
 function M.request(client, method, params, callback, buffer)
+  local sent, id
   if vim.fn.has('nvim-0.11') == 1 then
-    client:request(method, params, callback, buffer)
+    sent, id = client:request(method, params, callback, buffer)
   else
-    client.request(method, params, callback, buffer)
+    sent, id = client.request(method, params, callback, buffer)
+  end
+  return sent and id or nil
+end
+
+--- Tells the server that nobody waits for the answer to a request any more.
+function M.cancel(client, id)
+  if id and vim.fn.has('nvim-0.11') == 1 then
+    client:cancel_request(id)
+  elseif id then
+    client.cancel_request(id)
   end
 end
 

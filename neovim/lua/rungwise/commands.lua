@@ -1,4 +1,4 @@
---- The command :Rungwise with its subcommands, and :RungwiseCheck, :RungwiseRestart, :RungwiseLog, :RungwiseTarget.
+--- The command :Rungwise with its subcommands, and :RungwiseCheck, :RungwiseForms, :RungwiseRestart, :RungwiseLog, :RungwiseTarget.
 local client = require('rungwise.client')
 local t = require('rungwise.words').t
 local M = {}
@@ -80,6 +80,11 @@ M.subcommands = {
       return vim.fn.uniq(codes)
     end,
   },
+  forms = {
+    run = function()
+      require('rungwise.forms').open()
+    end,
+  },
   health = {
     run = function()
       vim.cmd.checkhealth('rungwise')
@@ -98,6 +103,11 @@ M.subcommands = {
   usage = {
     run = function()
       require('rungwise.pages').usage()
+    end,
+  },
+  uses = {
+    run = function(words)
+      require('rungwise.uses').list(words[1])
     end,
   },
 }
@@ -137,6 +147,9 @@ function M.create()
     desc = t('Check, edit, explain: what Rungwise can do'), nargs = '+', range = true, complete = M.complete,
   })
   command('RungwiseCheck', M.check, { desc = t('Check the program in this buffer') })
+  command('RungwiseForms', function()
+    require('rungwise.forms').open()
+  end, { desc = t('Show the forms of the rung at the cursor') })
   command('RungwiseRestart', client.restart, { desc = t('Restart the Rungwise language server') })
   command('RungwiseLog', M.log, { desc = t('Open the log of the language server') })
   command('RungwiseTarget', function(arguments)

@@ -60,6 +60,27 @@ local function select(row, from, to)
   return ('<Esc>' .. cursor .. 'v' .. cursor .. '<C-g>'):format(row + 1, from + 1, row + 1, to)
 end
 
+--- Puts the cursor where one types on after edits, and has `typed` typed there. `place` is the row of the line that Enter
+--- made and the byte at which it cut the one above.
+local function type_on(edits, buffer, place, typed)
+  local row, from, to = place_of(edits, buffer, unpack(place))
+  local inserts = vim.fn.mode():match('^[iR]') ~= nil
+  local before, after = '', ''
+  if row and from < to then
+    -- In a hurry Insert mode was left before the answer came; without anything to type over it stays so.
+    before = (inserts or typed ~= '') and select(row, from, to) or ''
+  elseif row then
+    vim.api.nvim_win_set_cursor(0, { row + 1, from })
+  end
+  if not inserts and typed ~= '' then
+    before = before == '' and 'i' or before
+    after = '<Esc>'
+  end
+  -- What came by keys goes in by keys, before those that wait, so that it is answered like all that is typed; but not as
+  -- if it were typed, for a macro that is being recorded has it already, and holds no places of this text.
+  vim.api.nvim_feedkeys(vim.keycode(before) .. typed .. vim.keycode(after), 'ni', true)
+end
+
 --- Has the server answer Enter, which ended at `place`, { row, byte } from 0. `typed` was typed behind it before it could be
 --- answered: that is taken out and typed again where the answer has a place for it. `quietly` runs changes that are the
 --- plugin's own. Answers whether there was something to do.
@@ -101,31 +122,8 @@ function M.answer(running, buffer, place, typed, quietly)
     end
     vim.lsp.util.apply_text_edits(edits, buffer, encoding)
   end)
-  M.type_on(edits, buffer, { row, column }, typed)
+  type_on(edits, buffer, { row, column }, typed)
   return true
-end
-
---- Puts the cursor where one types on after edits, and has `typed` typed there. `place` is the row of the line that Enter
---- made and the byte at which it cut the one above.
-function M.type_on(edits, buffer, place, typed)
-  local row, from, to = place_of(edits, buffer, unpack(place))
-  local inserts = vim.fn.mode():match('^[iR]') ~= nil
-  local keys = ''
-  if row and from < to then
-    -- In a hurry Insert mode was left before the answer came; without anything to type over it stays so.
-    keys = (inserts or typed ~= '') and select(row, from, to) or ''
-  elseif row then
-    vim.api.nvim_win_set_cursor(0, { row + 1, from })
-  end
-  if not inserts and typed ~= '' then
-    keys = (keys == '' and 'i' or keys) .. '%s<Esc>'
-  else
-    keys = keys .. '%s'
-  end
-  local before, after = unpack(vim.split(keys, '%s', { plain = true }))
-  -- What came by keys goes in by keys, before those that wait, so that it is answered like all that is typed; but not as
-  -- if it were typed, for a macro that is being recorded has it already, and holds no places of this text.
-  vim.api.nvim_feedkeys(vim.keycode(before) .. typed .. vim.keycode(after), 'ni', true)
 end
 
 return M

@@ -71,7 +71,7 @@ function M.usage()
     client.notify(t('no language server for this buffer; see :checkhealth rungwise'), vim.log.levels.ERROR)
     return
   end
-  local params = { command = 'rungwise.usage', arguments = { vim.uri_from_bufnr(buffer) } }
+  local params = { command = 'rungwise.usage', arguments = { vim.uri_from_bufnr(buffer), { uses = false } } }
   client.request(running, 'workspace/executeCommand', params, function(err, result)
     if err then
       client.notify(err.message or vim.inspect(err), vim.log.levels.ERROR)

@@ -92,8 +92,9 @@ impl<'a> Drawn<'a> {
         edits: Option<Vec<TextEdit>>,
     ) -> bool {
         let Some(edits) = edits.filter(|edits| !edits.is_empty()) else { return false };
-        let Some(trials) = self.trials.get().checked_sub(1) else { return false };
-        self.trials.set(trials);
+        if !self.take_trial() {
+            return false;
+        }
         let before = self.mistakes.get().unwrap_or_else(|| self.count());
         self.mistakes.set(Some(before));
         let text = TextEdit::apply_all(&edits, self.text);
@@ -109,8 +110,9 @@ impl<'a> Drawn<'a> {
     /// rungs of the same elements.
     pub(super) fn try_parting(&self, found: &mut Diagnostic, title: Message, at: usize) -> bool {
         let Some((head, tail)) = self.text.split_at_checked(at) else { return false };
-        let Some(trials) = self.trials.get().checked_sub(1) else { return false };
-        self.trials.set(trials);
+        if !self.take_trial() {
+            return false;
+        }
         let size = |tree: &LadderTree| {
             let elements: usize = tree.rungs.iter().map(|rung| rung.graph.elements.len()).sum();
             (tree.rungs.len(), elements)
@@ -132,6 +134,12 @@ impl<'a> Drawn<'a> {
             found.fixes.push(crate::text::Fix { title, edits });
         }
         is_better
+    }
+
+    /// Counts a trial; false if there have been enough.
+    fn take_trial(&self) -> bool {
+        let left = self.trials.get().checked_sub(1);
+        left.inspect(|left| self.trials.set(*left)).is_some()
     }
 
     /// Whether fixes can be tried at all.

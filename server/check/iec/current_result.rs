@@ -136,7 +136,7 @@ impl<'a> Walk<'a> {
                 self.current = Current::Value(Value { kind, at: item.span, source: operand });
             }
             OperatorRole::Store => self.store(operation, operand),
-            OperatorRole::Latch => self.latch(operation, operand),
+            OperatorRole::Latch { .. } => self.latch(operation, operand),
             OperatorRole::Complement => {
                 let Some(current) = self.needed(operation.word, None) else { return };
                 let wrong = matches!(fit(&current.kind, Expected::Group(GenericType::AnyBit)), Fit::Mismatch);

@@ -160,7 +160,7 @@ fn operands(place: &mut Place<'_>, typed: &str, word: &str) {
         OperatorRole::Jump => labels(place, typed),
         OperatorRole::Call => instances(place, typed, true, |_| true),
         OperatorRole::Return | OperatorRole::Complement => {}
-        OperatorRole::Store | OperatorRole::Latch => propose_variables(place, typed, true),
+        OperatorRole::Store | OperatorRole::Latch { .. } => propose_variables(place, typed, true),
         OperatorRole::Load | OperatorRole::Combine { .. } => {
             propose_variables(place, typed, false);
             for word in ["TRUE", "FALSE"] {

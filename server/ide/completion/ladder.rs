@@ -92,7 +92,7 @@ fn elements(place: &mut Place<'_>, typed: &str) {
     let language = place.language;
     let contacts =
         ContactKind::ALL.into_iter().map(|kind| (format!("|{}|", kind.mark()), contact_title(kind)));
-    let coils = coil_kinds().into_iter().map(|kind| (format!("({})", kind.mark()), coil_title(kind)));
+    let coils = CoilKind::ALL.into_iter().map(|kind| (format!("({})", kind.mark()), coil_title(kind)));
     let behind = place.line.get(place.head.len()..).unwrap_or("");
     let wire = behind.chars().take_while(|c| *c == '-').count();
     for (rank, (symbol, detail)) in contacts.chain(coils).enumerate() {
@@ -112,17 +112,6 @@ fn elements(place: &mut Place<'_>, typed: &str) {
             proposal.rank = proposal.rank.saturating_add(20);
         }
     }
-}
-
-/// All kinds of coils that are read, each once, the plain one first.
-fn coil_kinds() -> Vec<CoilKind> {
-    let mut kinds = vec![CoilKind::Plain];
-    for (_, kind) in coil_words() {
-        if !kinds.contains(&kind) {
-            kinds.push(kind);
-        }
-    }
-    kinds
 }
 
 fn contact_title(kind: ContactKind) -> Message {

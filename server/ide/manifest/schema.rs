@@ -25,6 +25,15 @@ pub(super) enum Kind {
     Text,
 }
 
+/// The files that a value of a manifest may name.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum FileKind {
+    /// Program files.
+    Program,
+    /// Tables, one of which may have the comments of devices.
+    Table,
+}
+
 /// The root of the manifest.
 pub(super) fn root() -> Node {
     Node(&SCHEMA)
@@ -71,9 +80,13 @@ impl Node {
         node["enum"].as_array().into_iter().flatten().filter_map(Value::as_str).collect()
     }
 
-    /// The files that it names: `program` or `table`.
-    pub fn files(self) -> Option<&'static str> {
-        self.0["x-files"].as_str()
+    /// The kind of the files that it names.
+    pub fn files(self) -> Option<FileKind> {
+        match self.0["x-files"].as_str()? {
+            "program" => Some(FileKind::Program),
+            "table" => Some(FileKind::Table),
+            _ => None,
+        }
     }
 
     /// As TOML.

@@ -1,12 +1,15 @@
 //! The list of used devices as text: a grid for each kind of device, then every device with its uses.
 
-use super::{Usage, UsageKey, UsageRow, access_words};
+use super::{Usage, UsageKey, UsageKind, UsageRow, access_words};
 use crate::document::ProjectView;
 use crate::ide::{devices, uses};
 use crate::target::{Device, DeviceKind};
 use crate::text::{Language, Message, text_width};
 use rustc_hash::FxHashMap;
 use std::collections::BTreeSet;
+
+/// So many runs of free devices of a kind are listed.
+const GAPS: usize = 16;
 
 /// What is done with a device, for its cell.
 #[derive(Clone, Copy, Default)]
@@ -40,6 +43,7 @@ pub(super) fn text(usage: &Usage, view: &ProjectView<'_>, language: Language) ->
     }
     for kind in DeviceKind::ALL {
         text += &grid(kind, &marks, language);
+        text += &unused(kind, usage, language);
     }
     text.push('\n');
     for row in &usage.rows {
@@ -91,6 +95,30 @@ fn grid(kind: DeviceKind, marks: &FxHashMap<Device, Mark>, language: Language) -
     }
     text.truncate(text.trim_end().len());
     text + "\n"
+}
+
+/// `free in between: M3–M5, M8; next free: M9`
+fn unused(kind: DeviceKind, usage: &Usage, language: Language) -> String {
+    let Some(own) = usage.kinds.iter().find(|own| own.kind == UsageKind::Device(kind)) else {
+        return String::new();
+    };
+    let gaps = usage.rows.iter().filter(|row| row.key.kind() == own.kind).flat_map(|row| &row.gaps);
+    let mut names: Vec<String> =
+        gaps.clone().take(GAPS).map(|(first, last)| run_name(*first, *last)).collect();
+    let more = gaps.count().saturating_sub(GAPS);
+    if more > 0 {
+        names.push(Message::new("usage.more-gaps").with("count", more).render(language));
+    }
+    let between = Message::new("usage.gaps").with_words("devices", names.iter().map(String::as_str), ", ");
+    let next = own.next.map(|device| Message::new("lens.next-free").with("devices", device));
+    let parts = [Some(between).filter(|_| !names.is_empty()), next];
+    let parts: Vec<String> = parts.into_iter().flatten().map(|part| part.render(language)).collect();
+    if parts.is_empty() { String::new() } else { parts.join("; ") + "\n" }
+}
+
+/// `M3–M5`, or one device.
+fn run_name(first: Device, last: Device) -> String {
+    if first == last { first.to_string() } else { format!("{first}–{last}") }
 }
 
 /// `Y0       Motor: contactor`, and below each use in a line.

@@ -256,7 +256,7 @@ impl Collector<'_> {
 
 fn use_by(role: OperatorRole) -> MentionRole {
     match role {
-        OperatorRole::Store | OperatorRole::Latch => MentionRole::Writes,
+        OperatorRole::Store | OperatorRole::Latch { .. } => MentionRole::Writes,
         _ => MentionRole::Reads,
     }
 }

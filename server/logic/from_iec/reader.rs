@@ -137,9 +137,10 @@ impl<'s, 'a> Reader<'s, 'a> {
                 let contact = Block::of(self.contact(id, kind)?);
                 self.combine(operator.name, contact)
             }
-            OperatorRole::Store | OperatorRole::Latch if self.frames.is_empty() => {
+            OperatorRole::Store | OperatorRole::Latch { .. } if self.frames.is_empty() => {
                 let word = operation.word.of(self.source.text);
-                if operator.role == OperatorRole::Latch && self.block_of(id).is_some() {
+                let latches = matches!(operator.role, OperatorRole::Latch { .. });
+                if latches && self.block_of(id).is_some() {
                     return self.input_operator(word, id, item.span);
                 }
                 if word.ends_with('?') {
@@ -149,14 +150,14 @@ impl<'s, 'a> Reader<'s, 'a> {
                 if self.source.feeds(index) {
                     return self.feed(id, operation.negated);
                 }
-                let coil = match operator.name {
-                    "S" => CoilKind::Set,
-                    "R" => CoilKind::Reset,
+                let coil = match operator.role {
+                    OperatorRole::Latch { on: true } => CoilKind::Set,
+                    OperatorRole::Latch { on: false } => CoilKind::Reset,
                     // The inverse needs no inverter.
                     _ if operation.negated != self.is_inverted => CoilKind::Negated,
                     _ => CoilKind::Plain,
                 };
-                if operator.role == OperatorRole::Latch {
+                if matches!(operator.role, OperatorRole::Latch { .. }) {
                     self.invert()?;
                 }
                 let term = self.bit(id)?;

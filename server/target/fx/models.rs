@@ -12,7 +12,7 @@ pub static FX1S: Target = Target {
     devices: ranges::FX1S,
     first_ranges: first_ranges(ranges::FX1S),
     special: &special::FX1S,
-    limits: Limits { steps: 2000, ..LIMITS },
+    limits: Limits { steps: 2000, steps_at_most: 2000, ..LIMITS },
     symbols: None,
 };
 
@@ -24,7 +24,7 @@ pub static FX1N: Target = Target {
     devices: ranges::FX1N,
     first_ranges: first_ranges(ranges::FX1N),
     special: &special::FX1N,
-    limits: Limits { steps: 8000, ..LIMITS },
+    limits: Limits { steps: 8000, steps_at_most: 8000, ..LIMITS },
     symbols: None,
 };
 
@@ -36,7 +36,7 @@ pub static FX2N: Target = Target {
     devices: ranges::FX2N,
     first_ranges: first_ranges(ranges::FX2N),
     special: &special::FX2N,
-    limits: Limits { steps: 8000, ..LIMITS },
+    limits: Limits { steps: 8000, steps_at_most: 16_000, ..LIMITS },
     symbols: None,
 };
 
@@ -48,13 +48,14 @@ pub static FX3U: Target = Target {
     devices: ranges::FX3U,
     first_ranges: first_ranges(ranges::FX3U),
     special: &special::FX3U,
-    limits: Limits { steps: 64_000, ..LIMITS },
+    limits: Limits { steps: 64_000, steps_at_most: 64_000, ..LIMITS },
     symbols: None,
 };
 
 /// What all models of the family have in common; only the memory differs.
 const LIMITS: Limits = Limits {
     steps: 0,
+    steps_at_most: 0,
     contacts_in_series: 11,
     rows: 24,
     blocks: 8,

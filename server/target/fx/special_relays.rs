@@ -25,7 +25,9 @@ pub const RELAYS: &[Row] = &[
     relay(8019, "The clock was set to an impossible date or time"),
     relay(8020, "Zero flag: the result of the last arithmetic or compare instruction is 0"),
     relay(8021, "Borrow flag: the result fell below the smallest number"),
-    relay(8022, "Carry flag: the result exceeded the largest number, or a rotation shifted out a 1"),
+    // A rotation through the carry begins with what the program puts there.
+    relay(8022, "Carry flag: the result exceeded the largest number, or a rotation shifted out a 1")
+        .writable(),
     relay(8024, "Direction of BMOV: while on, BMOV copies from D to S").fx2n_up().writable(),
     relay(8025, "High-speed compare instructions also act on an external reset").fx2n_up().writable(),
     relay(8026, "RAMP stops at its end value instead of starting over").fx1n_up().writable(),
@@ -77,8 +79,8 @@ pub const RELAYS: &[Row] = &[
     relay(8071, "This PLC is the slave of a parallel link").writable(),
     relay(8072, "On while the parallel link works"),
     relay(8073, "M8070 and M8071 are both set, or neither"),
-    relay(8075, "Sampling trace: prepare").fx2n_up(),
-    relay(8076, "Sampling trace: start").fx2n_up(),
+    relay(8075, "Sampling trace: prepare").fx2n_up().writable(),
+    relay(8076, "Sampling trace: start").fx2n_up().writable(),
     relay(8077, "Sampling trace: running").fx2n_up(),
     relay(8078, "Sampling trace: complete").fx2n_up(),
     relay(8079, "Sampling trace: more than 512 samples").fx2n_up(),

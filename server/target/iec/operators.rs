@@ -57,7 +57,10 @@ pub enum OperatorRole {
     /// ST: stores it.
     Store,
     /// S, R: set and reset, driven by it.
-    Latch,
+    Latch {
+        /// S.
+        on: bool,
+    },
     /// AND, ADD, GT …: combines it with the operand; `comparison` makes it BOOL.
     Combine {
         /// GT GE EQ NE LE LT.

@@ -1,7 +1,7 @@
 //! The names that a misspelt word may have meant.
 
 use super::{Function, FunctionBlock, Operator};
-use crate::target::instructions::distance_within;
+use crate::target::instructions::{MOST_LETTERS, distance_within};
 use std::cmp::Reverse;
 
 /// What other dialects call the operators.
@@ -30,9 +30,6 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("MOV", "MOVE"),
 ];
 
-/// No name that is looked for is longer.
-const LONGEST: usize = 96;
-
 /// At most three of `names` that are near to `word`, letter case aside, best first; none if nothing is near.
 ///
 /// ```
@@ -42,7 +39,7 @@ const LONGEST: usize = 96;
 /// assert_eq!(nearest(&long.replace("second", "secnod"), [long].into_iter()), [long]);
 /// ```
 pub fn nearest<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Vec<String> {
-    if word.is_empty() || word.len() > LONGEST {
+    if word.is_empty() || word.len() > MOST_LETTERS {
         return Vec::new();
     }
     let word = word.to_ascii_uppercase();

@@ -1,7 +1,7 @@
 //! Master control and step ladder.
 
 use super::specs::{operand, plain};
-use crate::target::{Accepts, Access, Instruction, Opcode, OperandSpec, Role, Steps};
+use crate::target::{Accepts, Access, Drive, Instruction, Opcode, OperandSpec, Role, Steps};
 
 const LEVEL: OperandSpec = operand("n", "nesting level", Access::Read, Accepts::N);
 
@@ -38,7 +38,11 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
         ),
-        &[LEVEL, operand("D", "relay of the section", Access::Write, Accepts::Y.or(Accepts::M))],
+        &[
+            LEVEL,
+            operand("D", "relay of the section", Access::Write, Accepts::Y.or(Accepts::M))
+                .driven(Drive::Coil),
+        ],
         3,
         Opcode::Device(0x000A),
     ),

@@ -1,7 +1,7 @@
 //! Working on data: FNC 40 to 49.
 
 use super::specs::{FX2N_UP, applied, bits_out, count, destination, operand, source};
-use crate::target::{Accepts, Access, Instruction};
+use crate::target::{Accepts, Access, Drive, Extent, Instruction};
 
 /// What can be reset as a range.
 const RESETTABLE: Accepts =
@@ -21,8 +21,10 @@ pub const ROWS: &[Instruction] = &[
         "ZRST",
         "reset a range",
         &[
-            operand("D1", "first device", Access::Write, RESETTABLE),
-            operand("D2", "last device", Access::Write, RESETTABLE),
+            operand("D1", "first device", Access::Write, RESETTABLE)
+                .reaching(Extent::Through(1))
+                .driven(Drive::Reset),
+            operand("D2", "last device", Access::Write, RESETTABLE).driven(Drive::Reset),
         ],
         "Resets all devices from D1 to D2: relays and states go off, registers become 0, timers and \
          counters lose value and contact. Both must be of the same kind and D1 must not be above D2, \
@@ -41,7 +43,7 @@ pub const ROWS: &[Instruction] = &[
         "decode",
         &[
             source("S", "number").accepting(RELAYS.or(REGISTERS).or(Accepts::K)),
-            operand("D", "first device of the row", Access::Write, RESETTABLE),
+            operand("D", "first device of the row", Access::Write, RESETTABLE).reaching(Extent::Onwards),
             count("n", "number of bits that are read", (1, 8)),
         ],
         "Switches on one of 2 to the power of n bits: the one whose place, counted from 0, is the \
@@ -62,7 +64,7 @@ pub const ROWS: &[Instruction] = &[
         "ENCO",
         "encode",
         &[
-            source("S", "first device of the row").accepting(RELAYS.or(REGISTERS)),
+            source("S", "first device of the row").accepting(RELAYS.or(REGISTERS)).reaching(Extent::Onwards),
             destination("D", "place of the highest bit that is on").accepting(REGISTERS),
             count("n", "number of bits that are written", (1, 8)),
         ],
@@ -120,7 +122,8 @@ pub const ROWS: &[Instruction] = &[
         "mean value",
         &[
             source("S", "first value")
-                .accepting(Accepts::WORD_SOURCE.without(Accepts::K.or(Accepts::V).or(Accepts::Z))),
+                .accepting(Accepts::WORD_SOURCE.without(Accepts::K.or(Accepts::V).or(Accepts::Z)))
+                .counted_by(2),
             destination("D", "mean value"),
             count("n", "number of values", (1, 64)).or_register(),
         ],

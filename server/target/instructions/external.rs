@@ -69,7 +69,9 @@ pub const ROWS: &[Instruction] = &[
         &[
             operand("S", "first of 4 inputs (8 for two sets)", Access::Read, Accepts::X).covering(4),
             operand("D1", "first of 4 strobe outputs", Access::Write, Accepts::Y).covering(4),
-            destination("D2", "number set, and that of the second set").accepting(STORED_OR_INDEX),
+            destination("D2", "number set, and that of the second set")
+                .accepting(STORED_OR_INDEX)
+                .counted_by(3),
             count("n", "sets of switches", (1, 2)),
         ],
         "Reads one or two sets of four BCD thumbwheels through four (or eight) inputs and four strobe \
@@ -205,7 +207,7 @@ pub const ROWS: &[Instruction] = &[
         &[
             count("m1", "module number from the CPU on", (0, 7)).or_register(),
             count("m2", "first buffer memory number", (0, 32_767)).or_register(),
-            destination("D", "first word of the destination"),
+            destination("D", "first word of the destination").counted_by(3),
             count("n", "words to read", (1, 32_767)).or_register(),
         ],
         "Reads `n` words from the buffer memory of the special module `m1`, from number `m2` on, to \
@@ -232,7 +234,7 @@ pub const ROWS: &[Instruction] = &[
         &[
             count("m1", "module number from the CPU on", (0, 7)).or_register(),
             count("m2", "first buffer memory number", (0, 32_767)).or_register(),
-            source("S", "first word to write"),
+            source("S", "first word to write").counted_by(3),
             count("n", "words to write", (1, 32_767)).or_register(),
         ],
         "Writes `n` words from `S` on to the buffer memory of the special module `m1`, beginning at \

@@ -1,7 +1,7 @@
 //! FNC 60–69: ready-made solutions for frequent tasks: step control, search, drums, special timers, ramps, sorting.
 
 use super::specs::{FX2N_UP, applied, bits, bits_out, count, destination, operand, source};
-use crate::target::{Accepts, Access, Instruction};
+use crate::target::{Accepts, Access, Extent, Instruction};
 
 const REGISTER: Accepts = Accepts::D.or(Accepts::R);
 const STORED: Accepts = Accepts::T.or(Accepts::C).or(REGISTER);
@@ -42,7 +42,7 @@ pub const ROWS: &[Instruction] = &[
         "SER",
         "search in a table",
         &[
-            source("S1", "first word of the table").accepting(BITS_AS_WORDS.or(STORED)),
+            source("S1", "first word of the table").accepting(BITS_AS_WORDS.or(STORED)).counted_by(3),
             source("S2", "value to look for"),
             destination("D", "first of 5 results").except(Accepts::V.or(Accepts::Z)).covering(5),
             count("n", "words in the table", (1, 256)).within_wide(1, 128).or_register(),
@@ -69,9 +69,12 @@ pub const ROWS: &[Instruction] = &[
         "ABSD",
         "absolute drum",
         &[
-            source("S1", "first of n pairs: on at, off at").accepting(BITS_AS_WORDS.or(STORED)),
+            source("S1", "first of n pairs: on at, off at")
+                .accepting(BITS_AS_WORDS.or(STORED))
+                .covering(2)
+                .counted_by(3),
             operand("S2", "counter that gives the position", Access::Read, Accepts::C),
-            bits_out("D", "first of n outputs"),
+            bits_out("D", "first of n outputs").counted_by(3),
             count("n", "outputs", (1, 64)),
         ],
         "A cam switch: each of `n` outputs from `D` on is on while the counter `S2` lies between its \
@@ -101,10 +104,10 @@ pub const ROWS: &[Instruction] = &[
         "INCD",
         "incremental drum",
         &[
-            source("S1", "first of n counts").accepting(BITS_AS_WORDS.or(STORED)),
+            source("S1", "first of n counts").accepting(BITS_AS_WORDS.or(STORED)).counted_by(3),
             operand("S2", "counter of events and counter of steps", Access::ReadWrite, Accepts::C)
                 .covering(2),
-            bits_out("D", "first of n outputs"),
+            bits_out("D", "first of n outputs").counted_by(3),
             count("n", "steps", (1, 64)),
         ],
         "A step switch: one of `n` outputs from `D` on is on at a time. When the counter `S2` reaches \
@@ -255,10 +258,10 @@ pub const ROWS: &[Instruction] = &[
         "SORT",
         "sort a table",
         &[
-            operand("S", "first word of the table", Access::Read, REGISTER),
+            operand("S", "first word of the table", Access::Read, REGISTER).reaching(Extent::Onwards),
             count("m1", "rows", (1, 32)),
             count("m2", "columns", (1, 6)),
-            operand("D", "first word of the sorted table", Access::Write, REGISTER),
+            operand("D", "first word of the sorted table", Access::Write, REGISTER).reaching(Extent::Onwards),
             count("n", "column to sort by", (1, 6)).or_register(),
         ],
         "Copies a table of `m1` rows and `m2` columns to `D` with the rows in rising order of column \

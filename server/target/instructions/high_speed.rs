@@ -3,7 +3,7 @@
 //! Where only the 32-bit form exists, `count` is that form's: 2 for a pair of registers.
 
 use super::specs::{FX2N_UP, applied, bits_out, count, destination, operand, source};
-use crate::target::{Accepts, Access, Instruction, OperandSpec};
+use crate::target::{Accepts, Access, Extent, Instruction, OperandSpec};
 
 /// Y with a transistor behind it; which numbers can give pulses depends on the unit.
 const fn pulse_output(meaning: &'static str) -> OperandSpec {
@@ -23,7 +23,7 @@ pub const ROWS: &[Instruction] = &[
         "refresh inputs or outputs",
         &[
             // Refreshing an input is not writing to it, so the operand counts as read.
-            operand("D", "first input or output", Access::Read, Accepts::X.or(Accepts::Y)),
+            operand("D", "first input or output", Access::Read, Accepts::X.or(Accepts::Y)).counted_by(1),
             count("n", "points, a multiple of 8", (8, 256)),
         ],
         "Reads `n` inputs from their terminals, or sends `n` outputs to theirs, at once instead of at \
@@ -68,8 +68,8 @@ pub const ROWS: &[Instruction] = &[
         "input matrix",
         &[
             operand("S", "first of 8 inputs", Access::Read, Accepts::X).covering(8),
-            operand("D1", "first row output", Access::Write, Accepts::Y),
-            bits_out("D2", "first bit of the image of the matrix"),
+            operand("D1", "first row output", Access::Write, Accepts::Y).counted_by(3),
+            bits_out("D2", "first bit of the image of the matrix").reaching(Extent::Onwards),
             count("n", "rows", (2, 8)),
         ],
         "Reads up to 64 contacts through 8 inputs and `n` transistor outputs: each output in turn feeds \

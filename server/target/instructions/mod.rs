@@ -13,8 +13,8 @@ mod places;
 pub(super) use places::placed;
 
 mod suggest;
-pub(super) use suggest::distance_within;
 pub use suggest::suggestions;
+pub(super) use suggest::{MOST_LETTERS, distance_within};
 
 mod contacts;
 

@@ -75,8 +75,8 @@ pub const ROWS: &[Instruction] = &[
         "BMOV",
         "move a block",
         &[
-            source("S", "first source").accepting(BLOCK.or(Accepts::KNX)),
-            destination("D", "first destination").accepting(BLOCK),
+            source("S", "first source").accepting(BLOCK.or(Accepts::KNX)).counted_by(2),
+            destination("D", "first destination").accepting(BLOCK).counted_by(2),
             count("n", "number of words", (1, 512)).or_register(),
         ],
         "Copies a row of n words to another place, in each scan in which the result is on; areas that \
@@ -96,7 +96,7 @@ pub const ROWS: &[Instruction] = &[
         "fill",
         &[
             source("S", "value"),
-            destination("D", "first destination").accepting(BLOCK),
+            destination("D", "first destination").accepting(BLOCK).counted_by(2),
             count("n", "number of words", (1, 512)),
         ],
         "Writes one value to a row of n words, for instance 0 to clear a table. It is executed in \

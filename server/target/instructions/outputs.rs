@@ -1,7 +1,7 @@
 //! Outputs: OUT, SET, RST, PLS, PLF.
 
 use super::specs::{ALL_FX, operand, source};
-use crate::target::{Accepts, Access, Instruction, Opcode, OperandSpec, Role, Steps, Wide};
+use crate::target::{Accepts, Access, Drive, Instruction, Opcode, OperandSpec, Role, Steps, Wide};
 
 const PRESET: OperandSpec = source("K", "preset of a timer or counter")
     .accepting(Accepts::K.or(Accepts::D).or(Accepts::R))
@@ -15,7 +15,8 @@ const RESET: Accepts = Accepts::BIT_DESTINATION
     .or(Accepts::V)
     .or(Accepts::Z);
 
-const PULSED: &[OperandSpec] = &[operand("D", "relay", Access::Write, Accepts::Y.or(Accepts::M))];
+const PULSED: &[OperandSpec] =
+    &[operand("D", "relay", Access::Write, Accepts::Y.or(Accepts::M)).driven(Drive::Pulse)];
 
 const fn output(
     mnemonic: &'static str,
@@ -43,7 +44,8 @@ pub const ROWS: &[Instruction] = &[
         "OUT",
         "coil",
         &[
-            operand("D", "coil", Access::Write, Accepts::BIT_DESTINATION.or(Accepts::T).or(Accepts::C)),
+            operand("D", "coil", Access::Write, Accepts::BIT_DESTINATION.or(Accepts::T).or(Accepts::C))
+                .driven(Drive::Coil),
             PRESET,
         ],
         "Writes the current result to the device in every scan: on while the result is on, off while \
@@ -69,7 +71,7 @@ pub const ROWS: &[Instruction] = &[
     output(
         "SET",
         "set and hold",
-        &[operand("D", "bit device", Access::Write, Accepts::BIT_DESTINATION)],
+        &[operand("D", "bit device", Access::Write, Accepts::BIT_DESTINATION).driven(Drive::Set)],
         "Switches the device on when the result is on and leaves it on afterwards, until RST switches \
          it off. In a step ladder SET of a state is a transfer: the state that it stands in is left \
          in the next scan. Where SET and RST are both on, the one that comes later in the program \
@@ -85,7 +87,7 @@ pub const ROWS: &[Instruction] = &[
     output(
         "RST",
         "reset",
-        &[operand("D", "device", Access::Write, RESET)],
+        &[operand("D", "device", Access::Write, RESET).driven(Drive::Reset)],
         "Switches the device off when the result is on and leaves it off. For a timer or a counter it \
          also clears the current value, for a register it writes 0. Counters and retentive timers \
          need it, since nothing else brings them back to 0; a counter whose RST is on does not count.\n\n\

@@ -1,7 +1,7 @@
 //! FNC 80–88: serial communication, ASCII conversion, the trimmers of the CPU, and PID control.
 
 use super::specs::{applied, count, destination, operand, source};
-use crate::target::{Accepts, Access, Instruction};
+use crate::target::{Accepts, Access, Extent, Instruction};
 
 const REGISTER: Accepts = Accepts::D.or(Accepts::R);
 const INDEX: Accepts = Accepts::V.or(Accepts::Z);
@@ -13,9 +13,9 @@ pub const ROWS: &[Instruction] = &[
         "RS",
         "serial communication",
         &[
-            operand("S", "first word to send", Access::Read, REGISTER),
+            operand("S", "first word to send", Access::Read, REGISTER).reaching(Extent::Onwards),
             count("m", "bytes to send", (0, 4_096)).or_register(),
-            operand("D", "first word received", Access::Write, REGISTER),
+            operand("D", "first word received", Access::Write, REGISTER).reaching(Extent::Onwards),
             count("n", "bytes to receive at most", (0, 4_096)).or_register(),
         ],
         "Sends and receives frames of bytes through a serial board or adapter, with the format set in \
@@ -65,8 +65,8 @@ pub const ROWS: &[Instruction] = &[
         "ASCI",
         "hexadecimal to ASCII",
         &[
-            source("S", "first word to convert"),
-            destination("D", "first word of the characters").except(INDEX),
+            source("S", "first word to convert").reaching(Extent::Onwards),
+            destination("D", "first word of the characters").except(INDEX).reaching(Extent::Onwards),
             count("n", "characters", (1, 256)).or_register(),
         ],
         "Writes the last `n` hexadecimal digits of the words from `S` on as ASCII characters to `D`, \
@@ -89,8 +89,8 @@ pub const ROWS: &[Instruction] = &[
         "HEX",
         "ASCII to hexadecimal",
         &[
-            source("S", "first word of the characters").except(INDEX),
-            destination("D", "first word of the digits"),
+            source("S", "first word of the characters").except(INDEX).reaching(Extent::Onwards),
+            destination("D", "first word of the digits").reaching(Extent::Onwards),
             count("n", "characters", (1, 256)).or_register(),
         ],
         "Reads `n` ASCII characters (`0`–`9`, `A`–`F`) from `S` on as hexadecimal digits and packs them \
@@ -113,7 +113,7 @@ pub const ROWS: &[Instruction] = &[
         "CCD",
         "check code",
         &[
-            source("S", "first word of the data").except(INDEX.or(Accepts::K)),
+            source("S", "first word of the data").except(INDEX.or(Accepts::K)).reaching(Extent::Onwards),
             destination("D", "sum and parity").except(INDEX).covering(2),
             count("n", "bytes", (1, 256)).or_register(),
         ],

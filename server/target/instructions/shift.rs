@@ -9,11 +9,13 @@ const BY: OperandSpec = count("n", "number of bits", (1, 16)).within_wide(1, 32)
 /// Words that stand in rows.
 const ROW: Accepts = Accepts::WORD_DESTINATION.without(Accepts::V.or(Accepts::Z));
 
-const BITS_IN: OperandSpec = bits("S", "first bit that is shifted in");
+const BITS_IN: OperandSpec = bits("S", "first bit that is shifted in").counted_by(3);
 const BITS_MOVED: OperandSpec =
-    bits_out("D", "first bit of the row").except(Accepts::WORD_BIT).read_and_written();
-const WORDS_IN: OperandSpec = source("S", "first word that is shifted in").accepting(ROW.or(Accepts::KNX));
-const WORDS_MOVED: OperandSpec = destination("D", "first word of the row").accepting(ROW).read_and_written();
+    bits_out("D", "first bit of the row").except(Accepts::WORD_BIT).read_and_written().counted_by(2);
+const WORDS_IN: OperandSpec =
+    source("S", "first word that is shifted in").accepting(ROW.or(Accepts::KNX)).counted_by(3);
+const WORDS_MOVED: OperandSpec =
+    destination("D", "first word of the row").accepting(ROW).read_and_written().counted_by(2);
 
 /// ROR ROL RCR RCL SFTR SFTL WSFR WSFL SFWR SFRD.
 pub const ROWS: &[Instruction] = &[
@@ -178,7 +180,10 @@ pub const ROWS: &[Instruction] = &[
         "write to a queue",
         &[
             source("S", "value that is put in"),
-            destination("D", "counter of the queue, its values follow").accepting(ROW).read_and_written(),
+            destination("D", "counter of the queue, its values follow")
+                .accepting(ROW)
+                .read_and_written()
+                .counted_by(2),
             count("n", "length with the counter", (2, 512)),
         ],
         "Puts a value into a queue: D counts the values, the n-1 words after it hold them in the \
@@ -201,7 +206,10 @@ pub const ROWS: &[Instruction] = &[
         "SFRD",
         "read from a queue",
         &[
-            source("S", "counter of the queue, its values follow").accepting(ROW).read_and_written(),
+            source("S", "counter of the queue, its values follow")
+                .accepting(ROW)
+                .read_and_written()
+                .counted_by(2),
             destination("D", "value that is taken out"),
             count("n", "length with the counter", (2, 512)),
         ],

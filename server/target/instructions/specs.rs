@@ -17,7 +17,9 @@
 //! assert_eq!(ROWS[0].operands.len(), 2);
 //! ```
 
-use crate::target::{Accepts, Access, Instruction, Model, Opcode, OperandSpec, Role, Steps, Wide};
+use crate::target::{
+    Accepts, Access, Drive, Extent, Instruction, Model, Opcode, OperandSpec, Role, Steps, Wide,
+};
 
 /// Every model of the family.
 pub const ALL_FX: &[Model] = &[Model::Fx1s, Model::Fx1n, Model::Fx2n, Model::Fx3u];
@@ -35,7 +37,18 @@ pub const fn operand(
     access: Access,
     accepts: Accepts,
 ) -> OperandSpec {
-    OperandSpec { name, meaning, access, accepts, range: None, wide_range: None, count: 1, optional: false }
+    OperandSpec {
+        name,
+        meaning,
+        access,
+        accepts,
+        range: None,
+        wide_range: None,
+        count: 1,
+        extent: Extent::Fixed,
+        drive: Drive::Value,
+        optional: false,
+    }
 }
 
 /// A value that is read: any word, bits as a word (`K4M0`), a constant.
@@ -102,6 +115,21 @@ impl OperandSpec {
     /// Covers `count` consecutive devices.
     pub const fn covering(self, count: u8) -> OperandSpec {
         OperandSpec { count, ..self }
+    }
+
+    /// Reaches as far as `extent` says.
+    pub const fn reaching(self, extent: Extent) -> OperandSpec {
+        OperandSpec { extent, ..self }
+    }
+
+    /// So many times its count as the operand at `place` says, from 0.
+    pub const fn counted_by(self, place: u8) -> OperandSpec {
+        self.reaching(Extent::Counted(place))
+    }
+
+    /// Is written in this way.
+    pub const fn driven(self, drive: Drive) -> OperandSpec {
+        OperandSpec { drive, ..self }
     }
 
     /// Reads and writes it.

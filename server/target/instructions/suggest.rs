@@ -65,7 +65,7 @@ pub fn suggestions(word: &str, model: Model) -> Vec<String> {
 }
 
 /// No longer words are compared.
-const MOST_LETTERS: usize = 96;
+pub(in crate::target) const MOST_LETTERS: usize = 96;
 
 /// How many letters must be inserted, left out, replaced or swapped with their neighbour to get from one word to the
 /// other (optimal string alignment); `None` if these are more than `allowed`. A file full of unknown words asks this

@@ -278,6 +278,129 @@ check('the devices in use are shown below, and anew when asked again', function(
   assert(#vim.api.nvim_list_wins() == 1 and vim.bo.filetype == 'plc-il')
 end)
 
+check('the uses of a device are listed in the quickfix list', function()
+  open('conveyor_fx.il')
+  until_codes({})
+  local function listed(command, title)
+    vim.fn.setqflist({}, 'f')
+    vim.cmd(command)
+    until_true(title, function()
+      return vim.fn.getqflist({ title = true }).title == title
+    end)
+    local places = vim.tbl_map(function(item)
+      local text = vim.api.nvim_buf_get_lines(item.bufnr, item.lnum - 1, item.lnum, false)[1]
+      return ('%d %s | %s'):format(item.lnum, text:sub(item.col), item.text)
+    end, vim.fn.getqflist())
+    vim.cmd('cclose')
+    return places
+  end
+  -- At the Y0 of `1 OR Y0`.
+  vim.api.nvim_win_set_cursor(0, { 4, 5 })
+  local uses = { '4 Y0 | rung 1, read: 1 OR Y0', '6 Y0 | rung 1, written: 3 OUT Y0', '7 Y0 | rung 2, read: 4 LD Y0' }
+  assert(vim.deep_equal(listed('Rungwise uses', 'Uses of Y0'), uses), vim.inspect(vim.fn.getqflist()))
+  assert(vim.deep_equal(listed('Rungwise uses t0', 'Uses of T0'), {
+    '8 T0 K50 | rung 2, written: 5 OUT T0 K50', '9 T0 | rung 3, read: 8 LD T0',
+  }), vim.inspect(vim.fn.getqflist()))
+  local said
+  local notify = vim.notify
+  vim.notify = function(message)
+    said = message
+  end
+  vim.cmd('Rungwise uses Y7')
+  until_true('a word about a device that is not used', function()
+    return said
+  end)
+  vim.notify = notify
+  assert(said:find('does not use "Y7"', 1, true), said)
+end)
+
+--- Has the server seem to know the translation, or not; answers what it is asked.
+local function translating(client, answers)
+  local commands = vim.tbl_filter(function(command)
+    return command ~= 'rungwise.translate'
+  end, client.server_capabilities.executeCommandProvider.commands)
+  client.server_capabilities.executeCommandProvider.commands = commands
+  if not answers then
+    return
+  end
+  table.insert(commands, 'rungwise.translate')
+  local plugin = require('rungwise.client')
+  local fake = { asked = {}, cancelled = {}, request = plugin.request, cancel = plugin.cancel }
+  plugin.request = function(_, method, params, callback)
+    assert(method == 'workspace/executeCommand' and params.command == 'rungwise.translate')
+    local argument = params.arguments[1]
+    table.insert(fake.asked, { argument = argument, callback = callback })
+    if answers ~= 'late' then
+      callback(nil, answers(argument))
+    end
+    return #fake.asked
+  end
+  plugin.cancel = function(_, id)
+    table.insert(fake.cancelled, id)
+  end
+  function fake.restore()
+    plugin.request, plugin.cancel = fake.request, fake.cancel
+  end
+  return fake
+end
+
+local function page_text()
+  local buffer = vim.fn.bufnr('rungwise://forms')
+  return buffer ~= -1 and table.concat(vim.api.nvim_buf_get_lines(buffer, 0, -1, false), '\n') or ''
+end
+
+check('the forms of a rung stand beside it and follow the cursor', function()
+  local client = open('conveyor_fx.il')
+  translating(client, nil)
+  vim.cmd('RungwiseForms')
+  assert(#vim.api.nvim_list_wins() == 1 and page_text() == '', 'something is shown without a translation')
+  local fake = translating(client, function(argument)
+    local line = argument.position and argument.position.line or 'range ' .. argument.range.start.line
+    return { forms = { { to = 'boolean', text = 'Y0 = line ' .. line .. '\n', certificate = 'proved', notes = { 'a note' } } } }
+  end)
+  vim.api.nvim_win_set_cursor(0, { 3, 0 })
+  vim.cmd('Rungwise forms')
+  assert(page_text() == '## Boolean form — proved equal\n\n```\nY0 = line 2\n```\n\n- a note\n', page_text())
+  assert(vim.bo.filetype == 'plc-il' and #vim.api.nvim_list_wins() == 2, 'the cursor has left the program')
+  vim.api.nvim_win_set_cursor(0, { 6, 0 })
+  vim.api.nvim_exec_autocmds('CursorMoved', {})
+  until_true('the other rung', function()
+    return page_text():find('line 5', 1, true)
+  end)
+  assert(vim.deep_equal(fake.asked[#fake.asked].argument.to, 'all'))
+  vim.cmd('normal! Vj')
+  vim.api.nvim_exec_autocmds('CursorMoved', {})
+  until_true('the selected rungs', function()
+    return page_text():find('line range 5', 1, true)
+  end)
+  type_keys('<Esc>')
+  -- Closed, nobody asks any more.
+  vim.cmd('bwipeout! rungwise://forms')
+  local before = #fake.asked
+  vim.api.nvim_exec_autocmds('CursorMoved', {})
+  vim.wait(300)
+  assert(#fake.asked == before, 'a page that is closed is asked for')
+  fake.restore()
+end)
+
+check('the forms of a rung that the cursor has left are not shown', function()
+  local client = open('conveyor_fx.il')
+  local fake = translating(client, 'late')
+  vim.api.nvim_win_set_cursor(0, { 3, 0 })
+  vim.cmd('RungwiseForms')
+  vim.api.nvim_win_set_cursor(0, { 7, 0 })
+  vim.api.nvim_exec_autocmds('CursorMoved', {})
+  until_true('the second question', function()
+    return #fake.asked == 2
+  end)
+  assert(vim.deep_equal(fake.cancelled, { 1 }), vim.inspect(fake.cancelled))
+  fake.asked[2].callback(nil, { forms = { { to = 'fx', text = 'LD Y0', certificate = 'undecided', notes = {} } } })
+  fake.asked[1].callback(nil, { forms = { { to = 'fx', text = 'LD X0', certificate = 'proved', notes = {} } } })
+  assert(page_text() == '## Instruction list, FX — not decided\n\n```il\nLD Y0\n```\n', page_text())
+  vim.cmd('bwipeout! rungwise://forms')
+  fake.restore()
+end)
+
 check('code lenses come by a refresh, and follow the options', function()
   local client = open('conveyor_fx.il')
   local function titles()

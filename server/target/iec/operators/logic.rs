@@ -44,7 +44,7 @@ pub const ROWS: &[Operator] = &[
         name: "S",
         title: "set",
         modifiers: NONE,
-        role: OperatorRole::Latch,
+        role: OperatorRole::Latch { on: true },
         operand: Some(GenericType::AnyBit),
         page: Page {
             about: "Sets a BOOL variable to 1 if the current result is 1, and leaves it alone if it is 0; the current \
@@ -59,7 +59,7 @@ pub const ROWS: &[Operator] = &[
         name: "R",
         title: "reset",
         modifiers: NONE,
-        role: OperatorRole::Latch,
+        role: OperatorRole::Latch { on: false },
         operand: Some(GenericType::AnyBit),
         page: Page {
             about: "Resets a BOOL variable to 0 if the current result is 1, and leaves it alone if it is 0; the \

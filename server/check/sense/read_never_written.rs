@@ -1,0 +1,147 @@
+//! # read-never-written
+//!
+//! A relay, an output, a timer, a counter or a register is read, but nothing in the program ever writes it. Its contact
+//! never changes, its value is always 0. A number that is wrong by one looks like that, and so does a rung that was
+//! deleted although others still need it.
+//!
+//! What may be written from elsewhere is left out: inputs, special and latched devices, addresses in memory, and
+//! variables with an initial value. Where most relays or registers of a program are never written, a panel does it, and
+//! nothing is reported. A single relay that a panel writes looks like a mistake all the same; write
+//! `// rungwise: allow(read-never-written)` above the rung.
+//!
+//! ```fx
+//! LD M20
+//!    ^^^
+//! OUT Y0
+//! END
+//! ```
+//!
+//! ```fx
+//! LD X0
+//! OUT M20
+//! LD M20
+//! OUT Y0
+//! END
+//! ```
+//!
+//! ```lad
+//! |  T5        Y0  |
+//!    ^^
+//! +--| |-------( )-+
+//! ```
+//!
+//! ```lad
+//! |  X0     T5 K50 |
+//! +--| |-------( )-+
+//! |                |
+//! |  T5        Y0  |
+//! +--| |-------( )-+
+//! ```
+//!
+//! ```iec
+//! PROGRAM Saw
+//! VAR
+//!     Motor AT %QX0.0 : BOOL;
+//!     Ready : BOOL;
+//! END_VAR
+//!     LD Ready
+//!        ^^^^^
+//!     ST Motor
+//! END_PROGRAM
+//! ```
+//!
+//! ```iec
+//! PROGRAM Saw
+//! VAR
+//!     Start AT %IX0.0 : BOOL;
+//!     Motor AT %QX0.0 : BOOL;
+//!     Ready : BOOL;
+//! END_VAR
+//!     LD Start
+//!     ST Ready
+//!     LD Ready
+//!     ST Motor
+//! END_PROGRAM
+//! ```
+
+use super::relays::{Wiring, is_general};
+use super::uses::{Key, Name, Use, Uses};
+use crate::check::{ProgramContext, Rule, Run};
+use crate::document::{Act, Part};
+use crate::target::{Device, DeviceKind};
+use crate::text::{Diagnostic, Message, Severity};
+use rustc_hash::FxHashMap;
+
+pub(super) const RULE: Rule = Rule {
+    code: "read-never-written",
+    severity: Severity::Hint,
+    run: Run::Program(check),
+    source: include_str!("read_never_written.rs"),
+};
+
+/// So many relays or registers of a kind that nothing writes, and as many as the others, are a panel's.
+const MANY: usize = 3;
+
+fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
+    let uses = context.uses();
+    let mut unwritten: Vec<(Option<DeviceKind>, Diagnostic)> = Vec::new();
+    let mut written: FxHashMap<DeviceKind, usize> = FxHashMap::default();
+    let wiring = Wiring::of(context);
+    let is_own = |name: &Name<'_>| may_only_the_program_write(context, &wiring, name);
+    for (number, name) in uses.names().filter(|(_, name)| is_own(name)) {
+        let Some(read) = uses.of_name(number).find(is_read) else { continue };
+        let kind = match name.key {
+            Key::Device(device) => Some(device.kind),
+            _ => None,
+        };
+        if is_written(uses, number, name, &read) {
+            kind.into_iter().for_each(|kind| *written.entry(kind).or_default() += 1);
+            continue;
+        }
+        let message = Message::new(match kind {
+            Some(kind) if kind.has_preset() => "read-never-written.undriven",
+            _ => "read-never-written.found",
+        });
+        let message = message.with("name", uses.words(&read));
+        unwritten.push((kind, Diagnostic::new(RULE.code, read.span, message)));
+    }
+    // Where most relays or registers are never written, something outside of the program does it.
+    let is_panels = |kind: &Option<DeviceKind>| {
+        let count = unwritten.iter().filter(|(other, _)| other == kind).count();
+        let relay = kind.filter(|kind| matches!(kind, DeviceKind::M | DeviceKind::D));
+        relay.is_some_and(|kind| count >= MANY && count >= written.get(&kind).copied().unwrap_or(0))
+    };
+    let panels = [DeviceKind::M, DeviceKind::D].map(|kind| (Some(kind), is_panels(&Some(kind))));
+    let is_mistake = |kind: Option<DeviceKind>| !panels.contains(&(kind, true));
+    found.extend(unwritten.into_iter().filter(|(kind, _)| is_mistake(*kind)).map(|(_, found)| found));
+}
+
+fn is_read(one: &Use) -> bool {
+    let reads = matches!(one.access.act, Act::Read | Act::ReadEdge);
+    reads && (one.access.part == Part::Pair || one.access.count == 1)
+}
+
+fn is_written(uses: &Uses<'_>, number: u32, name: &Name<'_>, read: &Use) -> bool {
+    let writes = |act: Act| act.writes() || act == Act::DeclareValue;
+    if uses.of_name(number).any(|one| writes(one.access.act)) {
+        return true;
+    }
+    let Key::Device(device) = name.key else { return false };
+    let second = Device::new(device.kind, device.number.saturating_add(1));
+    // Half of a pair may be written on its own.
+    let half = || uses.device(second).is_some_and(|other| !uses.written_at(other).is_empty());
+    uses.is_written_in_row(device) || (read.access.part == Part::Pair && half())
+}
+
+fn may_only_the_program_write(context: &ProgramContext<'_>, wiring: &Wiring, name: &Name<'_>) -> bool {
+    match name.key {
+        Key::Device(device) => match device.kind {
+            DeviceKind::Y | DeviceKind::T | DeviceKind::C | DeviceKind::V | DeviceKind::Z => {
+                device.range_on(context.target()).is_some()
+            }
+            DeviceKind::M | DeviceKind::D => is_general(device, context.target()),
+            _ => false,
+        },
+        _ => wiring.is_inside(name) && name.variable.is_some_and(|variable| !variable.constant),
+    }
+}

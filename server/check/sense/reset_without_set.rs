@@ -1,0 +1,99 @@
+//! # reset-without-set
+//!
+//! A relay or an output is switched off by `RST`, but nothing in the program ever switches it on; or a timer or a
+//! counter is reset that nothing drives. The `RST` has nothing to do. Often the number is wrong by one, and the relay
+//! that should be reset stays on.
+//!
+//! A relay that an operator panel or another PLC switches on looks the same; write
+//! `// rungwise: allow(reset-without-set)` above the rung.
+//!
+//! ```fx
+//! LD X0
+//! RST M10
+//!     ^^^
+//! LD M10
+//! OUT Y0
+//! END
+//! ```
+//!
+//! ```fx
+//! LD X1
+//! SET M10
+//! LD X0
+//! RST M10
+//! LD M10
+//! OUT Y0
+//! END
+//! ```
+//!
+//! ```lad
+//! |  X0        Y0  |
+//!              ^^
+//! +--| |-------(R)-+
+//! ```
+//!
+//! ```lad
+//! |  X1        Y0  |
+//! +--| |-------(S)-+
+//! |                |
+//! |  X0        Y0  |
+//! +--| |-------(R)-+
+//! ```
+//!
+//! ```iec
+//! PROGRAM Alarm
+//! VAR
+//!     Seen AT %IX0.1 : BOOL;
+//!     Horn AT %QX0.0 : BOOL;
+//! END_VAR
+//!     LD Seen
+//!     R Horn
+//!       ^^^^
+//! END_PROGRAM
+//! ```
+//!
+//! ```iec
+//! PROGRAM Alarm
+//! VAR
+//!     Hot  AT %IX0.0 : BOOL;
+//!     Seen AT %IX0.1 : BOOL;
+//!     Horn AT %QX0.0 : BOOL;
+//! END_VAR
+//!     LD Hot
+//!     S Horn
+//!     LD Seen
+//!     R Horn
+//! END_PROGRAM
+//! ```
+
+use super::relays::{first_of, is_latchable, is_written_in_row};
+use super::uses::Key;
+use crate::check::{ProgramContext, Rule, Run};
+use crate::document::Act;
+use crate::text::{Diagnostic, Message, Severity};
+
+pub(super) const RULE: Rule = Rule {
+    code: "reset-without-set",
+    severity: Severity::Hint,
+    run: Run::Program(check),
+    source: include_str!("reset_without_set.rs"),
+};
+
+fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
+    let uses = context.uses();
+    for (number, name) in uses.names() {
+        let all = || uses.of_name(number);
+        let Some(reset) = first_of(all(), Act::Reset) else { continue };
+        let counts = matches!(name.key, Key::Device(device) if device.kind.has_preset());
+        let switches_on = |act: Act| (act.writes() && act != Act::Reset) || act == Act::DeclareValue;
+        if all().any(|one| switches_on(one.access.act))
+            || is_written_in_row(name, uses)
+            || !(counts || is_latchable(name, context.regions().has_steps))
+        {
+            continue;
+        }
+        let key = if counts { "reset-without-set.undriven" } else { "reset-without-set.found" };
+        let message = Message::new(key).with("name", uses.words(&reset));
+        found.push(Diagnostic::new(RULE.code, reset.span, message));
+    }
+}
