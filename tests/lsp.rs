@@ -28,7 +28,7 @@ fn a_second_initialize_is_refused() {
     let answer = client.request("initialize", json!({"processId": null, "capabilities": {}}));
     assert_eq!(answer["error"]["code"], json!(-32600), "{answer}");
     client.open(URI, "plc-il", PROGRAM);
-    assert!(client.diagnostics(URI, 1).is_empty(), "the server lives on");
+    assert_eq!(codes(&client.diagnostics(URI, 1)), ["written-never-read"], "the server lives on");
 }
 
 #[test]
@@ -433,7 +433,7 @@ fn the_status_bar_is_told() {
 
 #[test]
 fn a_change_of_settings_reads_open_documents_anew() {
-    let mut client = opened("LD S2000\nOUT Y0\nEND\n");
+    let mut client = opened("LD S500\nOUT Y0\nEND\n");
     assert!(client.diagnostics(URI, 1).is_empty());
     client.notify("workspace/didChangeConfiguration", json!({"settings": {"rungwise": {"target": "fx1s"}}}));
     let message = client.wait_for("diagnostics for the FX1S", |message| {
@@ -449,12 +449,12 @@ fn settings_of_a_wrong_kind_do_not_spoil_the_others() {
     let options = json!({"target": "fx1s", "format": null, "inlayHints": {"enabled": null},
         "diagnostics": 7, "dialect": null});
     let mut client = Client::start_with(json!({}), options);
-    client.open(URI, "plc-il", "LD S2000\nOUT Y0\nEND\n");
+    client.open(URI, "plc-il", "LD S500\nOUT Y0\nEND\n");
     assert_eq!(codes(&client.diagnostics(URI, 1)), ["device-out-of-range"]);
     // A client without any settings says null; what `initialize` said stays in force.
     client.notify("workspace/didChangeConfiguration", json!({"settings": null}));
     client.notify("workspace/didChangeConfiguration", json!({"settings": {"rungwise": null}}));
-    client.change(URI, 2, (0, 4), (0, 8), "2001");
+    client.change(URI, 2, (0, 4), (0, 7), "501");
     assert_eq!(codes(&client.diagnostics(URI, 2)), ["device-out-of-range"]);
 }
 
@@ -494,7 +494,7 @@ fn project(manifest: &str) -> (tempfile::TempDir, String, String) {
 fn a_manifest_that_changes_on_disk_changes_what_is_found() {
     let (folder, program, _) = project("target = \"fx1s\"\n");
     let mut client = Client::start();
-    client.open(&program, "plc-il", "LD S2000\nOUT Y0\nEND\n");
+    client.open(&program, "plc-il", "LD S500\nOUT Y0\nEND\n");
     assert_eq!(codes(&client.diagnostics(&program, 1)), ["device-out-of-range"]);
     std::fs::write(folder.path().join("rungwise.toml"), "target = \"fx3u\"\n").expect("written");
     client.notify("workspace/didChangeWatchedFiles", json!({"changes": []}));

@@ -1,6 +1,8 @@
 //! Runs the rules and puts their findings together.
 
 use super::rule::ChunkJudge;
+use super::sense::unused;
+use super::suppression::Suppression;
 use super::{ChunkContext, ProgramContext, RULES, Rule, Run, program_around, programs};
 use crate::document::{Document, Found, LIMIT_BYTES, Page, ProjectView};
 use crate::text::{Diagnostic, Message, Severity, Span};
@@ -39,7 +41,32 @@ pub fn all(document: &Document, severities: &Severities) -> Vec<Diagnostic> {
 
 /// What the real-time tier finds. Chunks that kept their text and surroundings are not judged again.
 pub fn realtime(document: &Document, severities: &Severities) -> Vec<Diagnostic> {
-    judged(document, severities, true)
+    allowed(document, judged(document, true), severities)
+}
+
+/// What no comment allows, graded.
+fn allowed(document: &Document, found: Vec<Diagnostic>, severities: &Severities) -> Vec<Diagnostic> {
+    let suppression = Suppression::of(document);
+    with_severities(
+        match suppression {
+            Some(suppression) => suppression.filtered(found),
+            None => found,
+        },
+        severities,
+    )
+}
+
+/// What the batch tier found in `document`, without what comments allow and with the comments that allow nothing.
+fn finished(document: &Document, found: Vec<Diagnostic>, severities: &Severities) -> Vec<Diagnostic> {
+    let Some(suppression) = Suppression::of(document) else {
+        return with_severities(found, severities);
+    };
+    // Each chunk has kept what was found in it.
+    let realtime = judged(document, true);
+    let unused = unused(document, &suppression, realtime.iter().chain(&found));
+    let mut kept = suppression.filtered(found);
+    kept.extend(unused);
+    with_severities(kept, severities)
 }
 
 /// What both tiers find in a document about which nothing else will be asked, sorted by place.
@@ -53,14 +80,15 @@ pub fn once(document: &Document, severities: &Severities) -> Vec<Diagnostic> {
 /// at the mentions of all chunks.
 fn realtime_once(document: &Document, severities: &Severities) -> Vec<Diagnostic> {
     let scopes = document.scopes();
-    judged(document, severities, !scopes.pous.is_empty() || !scopes.globals.is_empty())
+    let with_mentions = !scopes.pous.is_empty() || !scopes.globals.is_empty();
+    allowed(document, judged(document, with_mentions), severities)
 }
 
-/// What the real-time tier finds; `with_mentions` says whether those of the chunks will be needed afterwards.
-fn judged(document: &Document, severities: &Severities, with_mentions: bool) -> Vec<Diagnostic> {
+/// All that the real-time tier finds; `with_mentions` says whether those of the chunks will be needed afterwards.
+fn judged(document: &Document, with_mentions: bool) -> Vec<Diagnostic> {
     if document.len() > LIMIT_BYTES {
         let message = Message::new("text-too-large.found").with("limit", LIMIT_BYTES >> 20);
-        return with_severities(vec![Diagnostic::new("text-too-large", Span::at(0), message)], severities);
+        return vec![Diagnostic::new("text-too-large", Span::at(0), message)];
     }
     let judged = judged_pages(document, with_mentions);
     let mut start = 0;
@@ -69,7 +97,7 @@ fn judged(document: &Document, severities: &Severities, with_mentions: bool) -> 
         diagnostics.extend(found.iter().map(|diagnostic| diagnostic.shifted(start)));
         start += page.bytes();
     }
-    with_severities(diagnostics, severities)
+    diagnostics
 }
 
 /// The findings in each page, from the page's start. Many pages are judged by several threads.
@@ -110,7 +138,7 @@ fn judged_pages(document: &Document, with_mentions: bool) -> Vec<Found> {
 /// What the batch tier finds in a document that stands alone.
 pub fn program(document: &Document, severities: &Severities) -> Vec<Diagnostic> {
     let found = judge_program(&ProgramContext::new([(0, document)], None));
-    with_severities(found.into_iter().map(|(_, diagnostic)| diagnostic).collect(), severities)
+    finished(document, found.into_iter().map(|(_, diagnostic)| diagnostic).collect(), severities)
 }
 
 /// What the batch tier finds in the file of the project that is looked at. Other files are seen, and named by their
@@ -118,7 +146,7 @@ pub fn program(document: &Document, severities: &Severities) -> Vec<Diagnostic> 
 pub fn within_project(view: &ProjectView<'_>, severities: &Severities) -> Vec<Diagnostic> {
     let files = program_around(view).into_iter().map(|number| (number, view.members()[number].document));
     let found = judge_program(&ProgramContext::new(files, Some(view.here_number())));
-    with_severities(found.into_iter().map(|(_, diagnostic)| diagnostic).collect(), severities)
+    finished(view.here(), found.into_iter().map(|(_, diagnostic)| diagnostic).collect(), severities)
 }
 
 /// What both tiers find in each file of a project, in their order, sorted by place.
@@ -126,11 +154,15 @@ pub fn project(view: &ProjectView<'_>, severities: &Severities) -> Vec<Vec<Diagn
     let document = |number: usize| view.members()[number].document;
     let mut by_file: Vec<Vec<Diagnostic>> =
         (0..view.members().len()).map(|number| realtime_once(document(number), severities)).collect();
+    let mut of_programs: Vec<Vec<Diagnostic>> = vec![Vec::new(); by_file.len()];
     for program in programs(view).into_iter().take_while(|_| !view.is_cancelled()) {
         let files = program.into_iter().map(|number| (number, document(number)));
         for (number, diagnostic) in judge_program(&ProgramContext::new(files, None)) {
-            by_file[number].extend(with_severities(vec![diagnostic], severities));
+            of_programs[number].push(diagnostic);
         }
+    }
+    for (number, found) in of_programs.into_iter().enumerate() {
+        by_file[number].extend(finished(document(number), found, severities));
     }
     by_file.into_iter().map(sorted).collect()
 }

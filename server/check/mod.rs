@@ -18,6 +18,9 @@ pub use surface::surface;
 mod engine;
 pub use engine::{Severities, all, once, program, project, realtime, sorted, within_project};
 
+mod suppression;
+pub use suppression::is_suppressible;
+
 mod statements;
 
 mod iec;
@@ -29,7 +32,6 @@ mod sense;
 mod words;
 
 /// All rules, in the order of the catalogue.
-pub static RULES: std::sync::LazyLock<Vec<&'static Rule>> =
-    std::sync::LazyLock::new(|| {
-        [drawing::RULES, words::RULES, order::RULES, declarations::RULES, sense::RULES].concat()
-    });
+pub static RULES: std::sync::LazyLock<Vec<&'static Rule>> = std::sync::LazyLock::new(|| {
+    [drawing::RULES, words::RULES, order::RULES, declarations::RULES, sense::RULES].concat()
+});

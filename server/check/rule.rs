@@ -28,6 +28,8 @@ pub enum Run {
     Chunk(fn(&ChunkContext<'_>, &mut Vec<Diagnostic>)),
     /// On the whole program, when typing stops. Batch tier.
     Program(fn(&ProgramContext<'_>, &mut Vec<Diagnostic>)),
+    /// On what all others have found.
+    Last,
     /// On each chunk, and on the whole program: each tier sees a part of it.
     Both(fn(&ChunkContext<'_>, &mut Vec<Diagnostic>), fn(&ProgramContext<'_>, &mut Vec<Diagnostic>)),
 }

@@ -2,7 +2,7 @@
 
 use super::ProgramContext;
 use super::statements::{StatementKind, is_fx_program};
-use crate::document::{Document, Exports, Symbol, Tree};
+use crate::document::{Access, Document, Exports, Symbol, Tree};
 use crate::target::Flow;
 use rustc_hash::FxHasher;
 use std::hash::{Hash, Hasher};
@@ -19,22 +19,51 @@ pub fn surface(document: &Document) -> u64 {
     hasher.finish()
 }
 
-/// Labels, and what the PLC does about the order of execution.
+/// Labels, what the PLC does about the order of execution, and between them who reads and who drives what.
 fn of_fx(document: &Document, hasher: &mut FxHasher) {
     let context = ProgramContext::new([(0, document)], None);
     let mut is_empty = true;
+    let mut accesses = accesses(document).peekable();
     for statement in context.statements() {
         is_empty &= statement.flow() == Some(Flow::Nothing);
+        let mut hash_before = |hasher: &mut FxHasher| {
+            while let Some((_, name, access)) = accesses.next_if(|one| one.0 < statement.span.start as usize)
+            {
+                (&name.1, access.act, access.part, access.count).hash(hasher);
+            }
+        };
         match statement.kind {
-            StatementKind::Label(device) => (true, device).hash(hasher),
+            StatementKind::Label(device) => {
+                hash_before(hasher);
+                (true, device).hash(hasher);
+            }
             StatementKind::Instruction(Flow::Nothing | Flow::Straight) | StatementKind::Unknown => {}
-            StatementKind::Instruction(flow) => (flow, statement.text()).hash(hasher),
+            StatementKind::Instruction(flow) => {
+                hash_before(hasher);
+                (flow, statement.text()).hash(hasher);
+            }
         }
     }
+    accesses.for_each(|(_, name, access)| (&name.1, access.act, access.part, access.count).hash(hasher));
     is_empty.hash(hasher);
 }
 
-/// What it declares for others, which shared names it uses, and what lies at an address.
+/// The accesses of all pages with their offsets in the document and what they name.
+fn accesses(document: &Document) -> impl Iterator<Item = (usize, &(u32, Symbol), &Access)> {
+    let mut end = 0;
+    document.pages().iter().flat_map(move |page| {
+        let start = end;
+        end += page.bytes();
+        let accesses = page.accesses();
+        let at = move |access: &'_ Access| start + access.span.start as usize;
+        accesses
+            .all
+            .iter()
+            .filter_map(move |access| Some((at(access), accesses.names.get(access.name as usize)?, access)))
+    })
+}
+
+/// What it declares for others, which shared names it uses and how, and what lies at an address.
 fn of_iec(document: &Document, hasher: &mut FxHasher) {
     let scopes = document.scopes();
     Exports::of(document).key.hash(hasher);
@@ -49,6 +78,23 @@ fn of_iec(document: &Document, hasher: &mut FxHasher) {
                 symbol.hash(hasher);
             }
         }
+    }
+    let mut pous = 0;
+    for page in document.pages() {
+        let accesses = page.accesses();
+        for access in &accesses.all {
+            let Some((pou, symbol)) = accesses.names.get(access.name as usize) else { continue };
+            let variable = match symbol {
+                Symbol::Variable(name) => scopes.variable((pous + *pou as usize).checked_sub(1), name),
+                _ => None,
+            };
+            let address = variable.and_then(|variable| variable.address);
+            let is_global = variable.is_some_and(|variable| variable.section.is_global());
+            if is_global || address.is_some() || matches!(symbol, Symbol::Direct(_)) {
+                (symbol, address, access.act, access.part).hash(hasher);
+            }
+        }
+        pous += page.pou_starts();
     }
     for at in document.chunks().filter(|at| at.chunk.is_iec()) {
         let Tree::Iec(tree) = at.chunk.tree() else { continue };

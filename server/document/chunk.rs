@@ -1,6 +1,7 @@
 //! A chunk: a piece of text with what it says, shared by all snapshots that contain it.
 
 use super::access::{self, OwnAccesses};
+use super::allowance::{self, OwnAllowance};
 use super::milestone::{self, Milestone};
 use super::{Mention, Notation, Size, Token, exported, mention, tokens};
 use crate::il::{fx, iec};
@@ -71,6 +72,8 @@ struct Outline {
     size: Size,
     milestones: Box<[Milestone]>,
     accesses: OwnAccesses,
+    allowances: Vec<OwnAllowance>,
+    is_only_comments: bool,
 }
 
 /// A chunk for reading: its own tree is kept if it has one, else it goes away with this.
@@ -260,6 +263,16 @@ impl Chunk {
         &self.outline().accesses
     }
 
+    /// The comments in it that allow something.
+    pub(super) fn allowances(&self) -> &[OwnAllowance] {
+        &self.outline().allowances
+    }
+
+    /// Whether nothing is in it but comments and blank lines.
+    pub(super) fn is_only_comments(&self) -> bool {
+        self.outline().is_only_comments
+    }
+
     fn outline(&self) -> &Outline {
         self.known.outline.get_or_init(|| {
             let reading = self.reading();
@@ -267,6 +280,8 @@ impl Chunk {
                 size: Size::of(&reading),
                 milestones: milestone::of_chunk(&reading).into_boxed_slice(),
                 accesses: access::of_chunk(&reading),
+                allowances: allowance::of_chunk(&reading),
+                is_only_comments: allowance::is_only_comments(reading.tree()),
             }
         })
     }

@@ -37,6 +37,9 @@ pub use milestone::{Milestone, MilestoneKind};
 mod access;
 pub use access::{Access, Accesses, Act, Joint, JointKind, Part};
 
+mod allowance;
+pub use allowance::{Allowance, DIRECTIVE};
+
 mod tokens;
 pub use tokens::{Token, TokenKind};
 

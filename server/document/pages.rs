@@ -1,6 +1,7 @@
 //! The sequence of chunks: pages of some dozens each, so that a snapshot copies one pointer a page and an edit
 //! rebuilds one page.
 
+use super::allowance::{self, OwnAllowance};
 use super::{Accesses, Chunk, Found, Milestone, Names, Size, access, chunk, milestone};
 use crate::ladder::NameHabit;
 use crate::text::Diagnostic;
@@ -21,6 +22,7 @@ pub struct Page {
     pou_starts: OnceLock<usize>,
     milestones: OnceLock<Arc<[Milestone]>>,
     accesses: OnceLock<Arc<Accesses>>,
+    allowances: OnceLock<Arc<[(usize, OwnAllowance)]>>,
     found: chunk::Kept,
 }
 
@@ -40,6 +42,7 @@ impl Page {
             pou_starts: OnceLock::new(),
             milestones: OnceLock::new(),
             accesses: OnceLock::new(),
+            allowances: OnceLock::new(),
             found: Mutex::new(None),
         })
     }
@@ -88,6 +91,11 @@ impl Page {
     /// What its chunks read and drive, offsets from its start.
     pub fn accesses(&self) -> &Accesses {
         self.accesses.get_or_init(|| Arc::new(access::of_page(&self.chunks)))
+    }
+
+    /// The comments that allow something, each with the number of its chunk.
+    pub(super) fn allowances(&self) -> &[(usize, OwnAllowance)] {
+        self.allowances.get_or_init(|| allowance::of_page(&self.chunks).into())
     }
 
     /// Whether there are diagnostics under `key`.
@@ -145,6 +153,7 @@ impl Pages {
                 pou_starts: page.pou_starts.clone(),
                 milestones: page.milestones.clone(),
                 accesses: page.accesses.clone(),
+                allowances: page.allowances.clone(),
                 found: Mutex::new(None),
             }),
         };

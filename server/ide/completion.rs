@@ -12,6 +12,8 @@ mod ladder;
 
 mod iec;
 
+mod allowed;
+
 pub(super) fn at(view: &ProjectView<'_>, offset: usize, language: Language) -> Vec<Completion> {
     let document = view.here();
     let offset = offset.min(document.len());
@@ -19,9 +21,7 @@ pub(super) fn at(view: &ProjectView<'_>, offset: usize, language: Language) -> V
     let start = chunk.map_or(0, |at| at.start);
     let text = chunk.map_or("", |at| at.chunk.text());
     let Some(head) = text.get(..offset - start) else { return Vec::new() };
-    if chunk.is_some_and(|at| in_comment(at.chunk, offset - start)) {
-        return Vec::new();
-    }
+    let in_comment = chunk.is_some_and(|at| in_comment(at.chunk, offset - start));
     let line_start = head.rfind('\n').map_or(0, |end| end + 1);
     let mut place = Place {
         view,
@@ -35,6 +35,7 @@ pub(super) fn at(view: &ProjectView<'_>, offset: usize, language: Language) -> V
         found: Vec::new(),
     };
     match document.notation() {
+        _ if in_comment => allowed::complete(&mut place),
         Notation::FxIl => instructions::complete(&mut place),
         Notation::Ladder if place.is_drawing() => ladder::complete(&mut place),
         Notation::Ladder | Notation::IecIl => iec::complete(&mut place),

@@ -2,7 +2,7 @@
 
 use crate::document::{ChunkRef, Document};
 pub use crate::document::{Token, TokenKind};
-use crate::text::{Diagnostic, Language, Message, Span, TextEdit};
+use crate::text::{Diagnostic, Fix, Language, Message, Span, TextEdit};
 
 mod answer;
 pub use answer::{
@@ -72,6 +72,8 @@ pub use format::Style;
 
 mod fixes;
 pub use fixes::FixOf;
+
+mod allowing;
 
 mod status;
 
@@ -345,6 +347,16 @@ pub fn refactorings(view: &ProjectView<'_>, span: Span, style: Style) -> Vec<Ref
 /// The fixes of `diagnostics` that touch `span`.
 pub fn fixes(diagnostics: &[Diagnostic], span: Span) -> Vec<FixOf<'_>> {
     fixes::within(diagnostics, span)
+}
+
+/// For each of `diagnostics` that touches `span` and that comments may allow, the fixes that write such a comment:
+/// above its rung, and at the top of the file.
+pub fn allowing<'d>(
+    document: &Document,
+    diagnostics: &'d [Diagnostic],
+    span: Span,
+) -> Vec<(&'d Diagnostic, Fix)> {
+    allowing::within(document, diagnostics, span)
 }
 
 /// What the status bar shows.

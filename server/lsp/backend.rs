@@ -320,6 +320,10 @@ impl LanguageServer for Backend {
             let fixes = fixes.map(|fix| features::quick_fix(around, place, &fix));
             let edits = editing::actions(open, place, &params, settings.style(&open.manifest), resolves);
             let rewrites = features::rewrites(around.here(), place, &params);
+            let allowing = ide::allowing(place.document, &found, place.span(params.range));
+            let allow = allowing.iter().map(|(diagnostic, fix)| {
+                features::quick_fix(around, place, &ide::FixOf { diagnostic, fix, is_preferred: false })
+            });
             let style = settings.style(&open.manifest);
             let refactorings = features::refactorings(around, place, &params, style);
             let translations = translating::actions(around, place, &params, &settings);
@@ -328,6 +332,7 @@ impl LanguageServer for Backend {
                 .chain(rewrites)
                 .chain(refactorings)
                 .chain(translations)
+                .chain(allow)
                 .map(|action| across::code_action(action, place.abilities))
                 .collect()
         })

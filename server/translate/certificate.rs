@@ -1,7 +1,7 @@
 //! The proof that comes with a translation: the result is read again, as a file would be, and compared rung by rung.
 
 use super::source::{self, Source};
-use super::{To, Translation, page};
+use super::{To, Translation, from_boolean, page};
 use crate::document::Document;
 use crate::logic::{Comparison, Formulas, Path, compare};
 use crate::text::Message;
@@ -42,22 +42,18 @@ pub(super) fn add(
     translation: &mut Translation,
     is_cancelled: &dyn Fn() -> bool,
 ) -> Option<()> {
-    let Some(notation) = page::notation(to) else { return Some(()) };
-    let again = Document::frugal(&translation.text, notation, document.target());
-    let written = source::rungs(&again, None);
-    let mut written = written.iter().peekable();
+    let mut written = read_again(document, to, &translation.text).into_iter().peekable();
     for (source, translated) in sources.iter().zip(&mut translation.rungs) {
         if is_cancelled() {
             return None;
         }
-        let mut paths = Vec::new();
-        let mut is_readable = true;
-        while let Some(rung) = written.next_if(|rung| (rung.span().start as usize) < translated.result.end) {
-            match &rung.rung.path {
-                Ok(path) => paths.extend(path),
-                Err(_) => is_readable = false,
-            }
-        }
+        let own = std::iter::from_fn(|| written.next_if(|rung| rung.start < translated.result.end));
+        let paths: Option<Vec<Path>> = own
+            .filter_map(|rung| match rung.path {
+                Some(None) => None,
+                path => Some(path.flatten()),
+            })
+            .collect();
         if translated.note.is_some() {
             // A list is carried along word by word; a drawing in a list is but a comment.
             let carried = source.rung.is_list && to != To::Boolean;
@@ -65,15 +61,41 @@ pub(super) fn add(
             translated.certificate = Some(certificate);
             continue;
         }
-        let own: Vec<&Path> = source.rung.path.iter().flatten().collect();
-        let (certificate, note) = match is_readable {
-            true => judge(&own, &paths),
-            false => (Certificate::Undecided, Some("translate.unreadable")),
+        let sources: Vec<&Path> = source.rung.path.iter().flatten().collect();
+        let (certificate, note) = match paths {
+            Some(paths) => judge(&sources, &paths.iter().collect::<Vec<_>>()),
+            None => (Certificate::Undecided, Some("translate.unreadable")),
         };
         translated.certificate = Some(certificate);
         translated.note = note.map(Message::new);
     }
     Some(())
+}
+
+/// A rung of the result.
+struct Written {
+    /// Where it starts.
+    start: usize,
+    /// What it does; nothing inside if it does nothing, nothing at all if it cannot be read.
+    path: Option<Option<Path>>,
+}
+
+fn read_again(document: &Document, to: To, text: &str) -> Vec<Written> {
+    let Some(notation) = page::notation(to) else {
+        let (equations, problems) = from_boolean::read(text, document.reader());
+        let equations = equations.into_iter();
+        let read = equations.map(|equation| (equation.span, Some(equation.path)));
+        let mut written: Vec<_> =
+            read.chain(problems.into_iter().map(|problem| (problem.span, None))).collect();
+        written.sort_by_key(|(span, _)| *span);
+        return written
+            .into_iter()
+            .map(|(span, path)| Written { start: span.start as usize, path })
+            .collect();
+    };
+    let again = Document::frugal(text, notation, document.target());
+    let rungs = source::rungs(&again, None).into_iter();
+    rungs.map(|rung| Written { start: rung.span().start as usize, path: rung.rung.path.ok() }).collect()
 }
 
 fn judge(own: &[&Path], written: &[&Path]) -> (Certificate, Option<&'static str>) {

@@ -21,6 +21,8 @@ pub mod to_ladder;
 
 pub mod to_boolean;
 
+pub mod from_boolean;
+
 use crate::document::Document;
 use crate::ladder::Style;
 use crate::text::{Message, Span};

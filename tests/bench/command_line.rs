@@ -11,14 +11,19 @@ const BYTES: usize = 10_000_000;
 
 pub fn measure(table: &Table) {
     let folder = std::env::temp_dir().join(format!("rungwise-bench-{}", std::process::id()));
-    std::fs::create_dir_all(folder.join("many")).expect("a folder for programs");
+    for name in ["one", "many"] {
+        std::fs::create_dir_all(folder.join(name)).expect("a folder for programs");
+        // No model has the memory for so much.
+        let manifest = "target = \"fx3u\"\n[rules]\nprogram-too-large = \"off\"\n";
+        std::fs::write(folder.join(name).join("rungwise.toml"), manifest).expect("a manifest is written");
+    }
     let text = programs::program_of_bytes(BYTES);
-    std::fs::write(folder.join("one.il"), &text).expect("a program is written");
+    std::fs::write(folder.join("one/one.il"), &text).expect("a program is written");
     let share = programs::program_of_bytes(BYTES / 20);
     for number in 0..20 {
         std::fs::write(folder.join(format!("many/{number}.il")), &share).expect("a program is written");
     }
-    check(table, "check of 10 MB of il in one file", &folder.join("one.il"));
+    check(table, "check of 10 MB of il in one file", &folder.join("one/one.il"));
     check(table, "check of 10 MB of il in 20 files", &folder.join("many"));
     std::fs::remove_dir_all(&folder).expect("the folder is removed");
     let name = "size of the program";

@@ -61,7 +61,8 @@ fn server() -> PathBuf {
 /// A server after the handshake with a client that counts columns in UTF-16, as most do.
 fn client() -> Client {
     let mut client = Client::spawn_program(&server(), &[]);
-    client.initialise(json!({}), Value::Null);
+    // The largest model has room for the relays of long programs.
+    client.initialise(json!({}), json!({"target": "fx3u"}));
     client
 }
 

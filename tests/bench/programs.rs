@@ -44,28 +44,39 @@ pub fn program_of_bytes(bytes: usize) -> String {
     text + "END\n"
 }
 
+/// The relays that get a coil, on an FX3U. The rungs behind them count instead, as no program has that many.
+const COILS: usize = 7_680;
+
 /// Instruction list of so many rungs.
 pub fn rungs(count: usize) -> String {
     (0..count).map(|number| il_rung(number, false)).collect::<String>() + "END\n"
 }
 
+/// A rung of a program in which no rule finds anything: each coil, timer and latch is there once, and read.
 fn il_rung(number: usize, marked: bool) -> String {
-    let relay = number % 1500;
     let input = if marked { "X10".to_string() } else { format!("X{:o}", number % 128) };
+    let (block, register) = (number / 4, number % 500);
+    let counted = format!("INC D{}", block % 125 * 4 + 3);
     match number % 4 {
-        0 => format!("// Rung {number}: seal-in\nLD {input}\nOR M{relay}\nANI X1\nOUT M{relay}\n"),
-        1 => format!(
-            "LD {input}\nLD M3\nOR M4\nANB\nMPS\nAND M5\nOUT M{relay}\nMPP\nANI M6\nSET S{}\n",
-            number % 900
-        ),
-        2 => format!("LD {input}\nOUT T{} K{}\n", number % 200, number % 1000 + 1),
-        _ => format!("LD> D{} K{}\nAND {input}\nMOV K{relay} D{relay}\n", number % 500, number % 1000),
+        0 if block < COILS => {
+            format!("// Rung {number}: seal-in\nLD {input}\nOR M{block}\nANI X1\nOUT M{block}\n")
+        }
+        0 => format!("// Rung {number}: count\nLD {input}\nOR M3\nANI X1\n{counted}\n"),
+        1 => {
+            let output = if block < 128 { format!("OUT Y{block:o}") } else { counted };
+            let latch = if block % 2 == 0 { "SET" } else { "RST" };
+            let state = block / 2 % 450;
+            format!("LD {input}\nLD M3\nOR M4\nANB\nMPS\nAND M5\n{output}\nMPP\nANI M6\n{latch} S{state}\n")
+        }
+        2 if block < 200 => format!("LD {input}\nOUT T{block} K{}\n", number % 1000 + 1),
+        2 => format!("LD {input}\n{counted}\n"),
+        _ => format!("LD> D{register} K{}\nAND T{}\nMOV K5 D{register}\n", number % 1000, block % 200),
     }
 }
 
 fn ladder_rung(number: usize, marked: bool) -> String {
     let input = if marked { "X10".to_string() } else { format!("X{:o}", number % 128) };
-    let relay = format!("M{}", number % 1500);
+    let relay = if number < COILS { format!("M{number}") } else { format!("S{}", number - COILS) };
     let mut rung = format!("(* Rung {number} *)\n");
     rung += &format!("|   {input:<8}  X1                         {relay:<5}|\n");
     rung += "+---| |---+---|/|------------------------( )-+\n";

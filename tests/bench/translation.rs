@@ -25,7 +25,7 @@ pub fn measure(table: &Table) {
 }
 
 fn open(text: &str, notation: Notation) -> Document {
-    Document::new(text, notation, Target::of(Model::Fx2n))
+    Document::new(text, notation, Target::of(Model::Fx3u))
 }
 
 fn without_proof() -> Options {

@@ -8,7 +8,7 @@ use crate::text::{Span, TextEdit};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The pointer that always means END.
-pub(super) const END_POINTER: Device = Device::new(DeviceKind::P, 63);
+pub(in crate::check) const END_POINTER: Device = Device::new(DeviceKind::P, 63);
 
 /// The labels that see each other: those of an FX program, or of one POU.
 #[derive(Default)]

@@ -15,6 +15,7 @@ mod branch_stack;
 mod nesting_too_deep;
 
 mod labels;
+pub(super) use labels::END_POINTER;
 
 mod duplicate_label;
 

@@ -3,7 +3,7 @@
 use super::Regions;
 use super::uses::{Key, Name, Use, Uses};
 use crate::check::ProgramContext;
-use crate::document::{DeclaredType, Notation};
+use crate::document::DeclaredType;
 use crate::il::iec::SectionKind;
 use crate::target::iec::ElementaryType;
 use crate::target::{DeviceKind, Location, Width};
@@ -15,20 +15,31 @@ const COMPARED: usize = 16;
 pub(super) struct Coils<'c, 'a> {
     uses: &'c Uses<'a>,
     regions: &'c Regions,
-    context: &'c ProgramContext<'a>,
 }
 
 /// A relay or an output with all that is done with it, in the order of execution.
 pub(super) struct Driven {
     /// Everything.
     pub all: Vec<Use>,
+    /// How often it is read before each of them, and before the end.
+    reads: Vec<u32>,
     /// Whether what it is at the end of the scan goes out of the program.
     is_output: bool,
 }
 
+impl Driven {
+    fn new(all: Vec<Use>, is_output: bool) -> Driven {
+        let mut reads = vec![0; all.len() + 1];
+        for (place, one) in all.iter().enumerate() {
+            reads[place + 1] = reads[place] + u32::from(one.access.act.reads());
+        }
+        Driven { all, reads, is_output }
+    }
+}
+
 impl<'c, 'a> Coils<'c, 'a> {
     pub fn of(context: &'c ProgramContext<'a>) -> Coils<'c, 'a> {
-        Coils { uses: context.uses(), regions: context.regions(), context }
+        Coils { uses: context.uses(), regions: context.regions() }
     }
 
     /// The relays and outputs of which `wanted` are more than one, by a first quick look.
@@ -36,7 +47,7 @@ impl<'c, 'a> Coils<'c, 'a> {
         self.uses.names().filter_map(move |(number, name)| {
             let is_many = self.uses.of_name(number).filter(|one| wanted(one)).take(2).count() == 2;
             (is_many && self.is_relay(number, name))
-                .then(|| Driven { all: self.uses.of_name(number).collect(), is_output: is_output(name) })
+                .then(|| Driven::new(self.uses.of_name(number).collect(), is_output(name)))
         })
     }
 
@@ -52,14 +63,9 @@ impl<'c, 'a> Coils<'c, 'a> {
             Key::Global(_) | Key::Local(..) => match name.variable {
                 Some(variable) => variable.declared == DeclaredType::Elementary(ElementaryType::Bool),
                 // In a drawing without declarations the coil says it.
-                None => self.uses.of_name(number).all(|one| self.is_drawn(&one)),
+                None => self.uses.of_name(number).all(|one| !self.uses.is_list(&one)),
             },
         }
-    }
-
-    fn is_drawn(&self, one: &Use) -> bool {
-        let file = self.context.files().get(one.file);
-        file.is_some_and(|file| file.document.notation() == Notation::Ladder)
     }
 
     /// Whether what `driven.all[one]` writes is undone by `driven.all[other]`, which comes later, before it matters.
@@ -73,8 +79,8 @@ impl<'c, 'a> Coils<'c, 'a> {
         }
         // In Instruction List of IEC 61131-3 a variable is often used for one result after another, and given a value
         // that a later statement may change.
-        let is_read = || driven.all[one + 1..other].iter().any(|between| between.access.act.reads());
-        !self.regions.may_skip(second, first) && (driven.is_output || !is_read())
+        let is_read = driven.reads[other] > driven.reads[one + 1];
+        !self.regions.may_skip(second, first) && (driven.is_output || !is_read)
     }
 
     /// The last of `later`, places in `driven.all`, that undoes what `one` writes.

@@ -73,8 +73,10 @@
 //! ```
 
 use super::coils::Coils;
+use super::rungs::{MOST_MENDED, PlainRung};
+use super::uses::{Use, Uses};
 use crate::check::{ProgramContext, Rule, Run};
-use crate::text::{Diagnostic, Message, Severity};
+use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
 
 pub(super) const RULE: Rule = Rule {
     code: "double-coil",
@@ -85,7 +87,8 @@ pub(super) const RULE: Rule = Rule {
 
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let coils = Coils::of(context);
-    let is_coil = |one: &super::uses::Use| one.access.act.is_coil() && one.is_whole();
+    let is_coil = |one: &Use| one.access.act.is_coil() && one.is_whole();
+    let mut mended = 0;
     for driven in coils.driven(is_coil) {
         let places: Vec<usize> = (0..driven.all.len()).filter(|place| is_coil(&driven.all[*place])).collect();
         for (number, one) in places.iter().enumerate() {
@@ -97,10 +100,37 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
                 false => Message::new("double-coil.elsewhere"),
             };
             let related = Message::new("double-coil.winner").with("name", &name);
-            found.push(
-                Diagnostic::new(RULE.code, loser.span, message.with("name", &name))
-                    .related(winner.span, related),
-            );
+            let diagnostic = Diagnostic::new(RULE.code, loser.span, message.with("name", &name))
+                .related(winner.span, related);
+            let is_pair = places.len() == 2 && loser.access.act == winner.access.act && mended < MOST_MENDED;
+            let joined = is_pair.then(|| joined(context.uses(), loser, winner)).flatten();
+            mended += usize::from(joined.is_some());
+            found.push(match joined {
+                Some(edits) => {
+                    let title = Message::new("double-coil.join").with("name", name).with("rung", winner.rung);
+                    diagnostic.fix(title, edits)
+                }
+                None => diagnostic,
+            });
         }
     }
+}
+
+/// So many blocks may wait, and the conditions of the other rung are one more.
+const MOST_LOADS: usize = 6;
+
+/// Leads the conditions of both rungs to the coil of `winner`, in parallel.
+fn joined(uses: &Uses<'_>, loser: &Use, winner: &Use) -> Option<Vec<TextEdit>> {
+    let (first, second) = (PlainRung::of(uses, loser)?, PlainRung::of(uses, winner)?);
+    if loser.file != winner.file || first.loads.max(second.loads) > MOST_LOADS {
+        return None;
+    }
+    let newline = if first.words.ends_with("\r\n") { "\r\n" } else { "\n" };
+    let conditions = format!("{}{}ORB{newline}", first.words, indent(&first.words));
+    let behind = Span::at(second.conditions.end as usize);
+    Some(vec![TextEdit::new(first.all, ""), TextEdit::new(behind, conditions)])
+}
+
+fn indent(text: &str) -> &str {
+    &text[..text.len() - text.trim_start_matches([' ', '\t']).len()]
 }

@@ -8,6 +8,8 @@ pub(super) use uses::Uses;
 mod regions;
 pub(super) use regions::Regions;
 
+mod rungs;
+
 mod coils;
 
 mod double_coil;
@@ -45,6 +47,9 @@ mod special_device_written;
 mod program_too_large;
 pub(super) use program_too_large::WITH_CASSETTE;
 
+mod unused_suppression;
+pub(super) use unused_suppression::unused;
+
 /// The rules of this group.
 pub(super) const RULES: &[&Rule] = &[
     &double_coil::RULE,
@@ -62,4 +67,5 @@ pub(super) const RULES: &[&Rule] = &[
     &latched_range::RULE,
     &special_device_written::RULE,
     &program_too_large::RULE,
+    &unused_suppression::RULE,
 ];

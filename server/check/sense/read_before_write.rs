@@ -73,13 +73,15 @@
 //! END_PROGRAM
 //! ```
 
-use super::relays::{is_latched, is_private};
+use super::relays::{is_general, is_private};
+use super::rungs::{MOST_MENDED, movable};
 use super::uses::{Key, Name, Use, Uses};
 use crate::check::{ProgramContext, Rule, Run};
 use crate::document::{Act, DeclaredType};
 use crate::target::DeviceKind;
 use crate::target::iec::ElementaryType;
-use crate::text::{Diagnostic, Message, Severity};
+use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
+use rustc_hash::FxHashSet;
 
 pub(super) const RULE: Rule = Rule {
     code: "read-before-write",
@@ -90,6 +92,7 @@ pub(super) const RULE: Rule = Rule {
 
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let uses = context.uses();
+    let mut mended = 0;
     for (number, name) in uses.names().filter(|(_, name)| is_passing_relay(context, name)) {
         let Some((read, coil)) = late(uses, number) else { continue };
         let is_always_executed = |one: &Use| {
@@ -108,15 +111,32 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
         let message =
             Message::new("read-before-write.found").with("name", uses.words(&read)).with("rung", coil.rung);
         let related = Message::new("read-before-write.coil").with("name", uses.words(&coil));
-        found.push(Diagnostic::new(RULE.code, read.span, message).related(coil.span, related));
+        let diagnostic = Diagnostic::new(RULE.code, read.span, message).related(coil.span, related);
+        let moved = (mended < MOST_MENDED).then(|| moved(uses, &read, &coil)).flatten();
+        mended += usize::from(moved.is_some());
+        found.push(match moved {
+            Some(edits) => {
+                diagnostic.fix(Message::new("read-before-write.move").with("rung", coil.rung), edits)
+            }
+            None => diagnostic,
+        });
     }
+}
+
+/// Puts the rung of `coil` before that of `read`.
+fn moved(uses: &Uses<'_>, read: &Use, coil: &Use) -> Option<Vec<TextEdit>> {
+    let ((before, reader), (own, text)) = (movable(uses, read)?, movable(uses, coil)?);
+    let newline = if reader.contains("\r\n") { "\r\n" } else { "\n" };
+    let is_list = uses.is_list(coil);
+    let body = text.trim_end_matches(['\n', '\r']);
+    // Rungs of a drawing are parted by a blank line.
+    let text = format!("{body}{newline}{}", if is_list { "" } else { newline });
+    Some(vec![TextEdit::new(Span::at(before.start as usize), text), TextEdit::new(own, "")])
 }
 
 fn is_passing_relay(context: &ProgramContext<'_>, name: &Name<'_>) -> bool {
     match name.key {
-        Key::Device(device) => {
-            device.kind == DeviceKind::M && !device.is_special() && !is_latched(device, context.target())
-        }
+        Key::Device(device) => device.kind == DeviceKind::M && is_general(device, context.target()),
         _ => {
             let is_bit = |variable: &&crate::document::Variable| {
                 variable.declared == DeclaredType::Elementary(ElementaryType::Bool)
@@ -146,16 +166,23 @@ fn late(uses: &Uses<'_>, number: u32) -> Option<(Use, Use)> {
     (rest_is_late && is_late(&first)).then_some((first, coil))
 }
 
+/// What so many places of a rung need is not looked for.
+const LARGEST_RUNG: usize = 500;
+
 /// Whether the rung of `coil` needs what the rungs from `read` on make, or keeps for the next scan what the rung of
 /// `read` looks at itself.
 fn needs_it(uses: &Uses<'_>, own: u32, read: &Use, coil: &Use) -> bool {
+    if uses.in_rung(coil).take(LARGEST_RUNG).count() == LARGEST_RUNG {
+        return true;
+    }
     let start = uses.in_rung(read).map(|(_, one)| one.span.start).min().unwrap_or(read.span.start);
     let conditions = uses.in_rung(coil).filter(|(name, one)| *name != own && one.access.act.reads());
-    let reader = || uses.in_rung(read).filter(|(_, one)| one.access.act.reads()).map(|(name, _)| name);
+    let reader = uses.in_rung(read).filter(|(_, one)| one.access.act.reads());
+    let reader: FxHashSet<u32> = reader.map(|(name, _)| name).collect();
     conditions.into_iter().any(|(name, _)| {
         let written = uses.written_at(name);
         let behind = written.partition_point(|offset| *offset < start);
         let is_made = written.get(behind).is_some_and(|offset| *offset < coil.span.start);
-        is_made || reader().any(|other| other == name)
+        is_made || reader.contains(&name)
     })
 }

@@ -64,7 +64,7 @@
 //! END_PROGRAM
 //! ```
 
-use super::relays::{Wiring, is_latched};
+use super::relays::{Wiring, is_general};
 use super::uses::{Key, Name, Use, Uses};
 use crate::check::{ProgramContext, Rule, Run};
 use crate::document::{Act, Part};
@@ -136,8 +136,10 @@ fn is_written(uses: &Uses<'_>, number: u32, name: &Name<'_>, read: &Use) -> bool
 fn may_only_the_program_write(context: &ProgramContext<'_>, wiring: &Wiring, name: &Name<'_>) -> bool {
     match name.key {
         Key::Device(device) => match device.kind {
-            DeviceKind::Y | DeviceKind::T | DeviceKind::C | DeviceKind::V | DeviceKind::Z => true,
-            DeviceKind::M | DeviceKind::D => !device.is_special() && !is_latched(device, context.target()),
+            DeviceKind::Y | DeviceKind::T | DeviceKind::C | DeviceKind::V | DeviceKind::Z => {
+                device.range_on(context.target()).is_some()
+            }
+            DeviceKind::M | DeviceKind::D => is_general(device, context.target()),
             _ => false,
         },
         _ => wiring.is_inside(name) && name.variable.is_some_and(|variable| !variable.constant),

@@ -2,6 +2,7 @@
 
 use super::uses::{Use, Uses};
 use crate::check::ProgramContext;
+use crate::check::order::END_POINTER;
 use crate::check::statements::{Statement, StatementKind};
 use crate::document::JointKind;
 use crate::target::{Device, DeviceKind, Flow};
@@ -88,7 +89,8 @@ impl Regions {
             }
         }
         let behind = |(start, label): (u32, Device)| {
-            let end = *labels.get(&label)?;
+            // END needs no label; what stands behind the main program is another part anyway.
+            let end = if label == END_POINTER { u32::MAX } else { *labels.get(&label)? };
             (start < end).then_some((start, end))
         };
         regions.skips = jumps.into_iter().filter_map(behind).collect();

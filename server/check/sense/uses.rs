@@ -3,7 +3,7 @@
 
 use crate::check::ProgramContext;
 use crate::check::statements::is_fx_program;
-use crate::document::{Access, Page, Part, Symbol, Variable};
+use crate::document::{Access, Chunk, Notation, Page, Part, Symbol, Variable};
 use crate::target::{Device, DeviceKind, DirectAddress, Flow};
 use crate::text::Span;
 use rustc_hash::FxHashMap;
@@ -21,6 +21,8 @@ pub struct Uses<'a> {
     /// Devices that are read, and devices that are written, as parts of rows of several.
     read_rows: Rows,
     written_rows: Rows,
+    /// Which files are lists.
+    lists: Vec<bool>,
     /// Where each name is written.
     written: OnceCell<Vec<Vec<u32>>>,
     /// Whether it is a program for an FX.
@@ -107,6 +109,7 @@ impl<'a> Uses<'a> {
             order: Vec::new(),
             read_rows: Rows::default(),
             written_rows: Rows::default(),
+            lists: context.files().iter().map(|file| file.document.notation() != Notation::Ladder).collect(),
             written: OnceCell::new(),
             is_fx: context.files().first().is_some_and(|file| is_fx_program(file.document)),
         };
@@ -236,17 +239,25 @@ impl<'a> Uses<'a> {
             .map(move |(place, access)| (page.table[access.name as usize], self.at(number, first + place)))
     }
 
+    /// The chunk of `one`, with its start in the program.
+    pub fn chunk(&self, one: &Use) -> Option<(usize, &'a Chunk)> {
+        let page = self.pages.get(one.page)?;
+        let chunks = page.page.chunks();
+        let before = chunks.iter().take(one.access.chunk as usize).map(|chunk| chunk.len()).sum::<usize>();
+        Some((page.start + before, chunks.get(one.access.chunk as usize)?))
+    }
+
+    /// Whether `one` stands in a list and not in a drawing.
+    pub fn is_list(&self, one: &Use) -> bool {
+        self.lists.get(one.file).copied().unwrap_or(false)
+    }
+
     /// The words of the name at `one`.
     pub fn words(&self, one: &Use) -> String {
-        let page = &self.pages[one.page];
-        let mut start = 0;
-        for chunk in page.page.chunks().iter().take(one.access.chunk as usize) {
-            start += chunk.len();
-        }
-        let chunk = page.page.chunks().get(one.access.chunk as usize);
-        let text = chunk.map_or("", |chunk| chunk.text());
-        let span = one.access.span;
-        text.get(span.start as usize - start..span.end as usize - start).unwrap_or("").to_string()
+        let words = self.chunk(one).and_then(|(start, chunk)| {
+            chunk.text().get(one.span.start as usize - start..one.span.end as usize - start)
+        });
+        words.unwrap_or_default().to_string()
     }
 
     /// Whether `device` is read as a part of a row of several.

@@ -61,12 +61,13 @@
 //! END_PROGRAM
 //! ```
 
-use super::relays::{Wiring, is_latched};
+use super::relays::{Wiring, is_general};
+use super::rungs::{MOST_MENDED, PlainRung};
 use super::uses::{Key, Name, Use};
 use crate::check::{ProgramContext, Rule, Run};
 use crate::document::{Act, Part};
 use crate::target::{Device, DeviceKind};
-use crate::text::{Diagnostic, Message, Severity};
+use crate::text::{Diagnostic, Message, Severity, TextEdit};
 
 pub(super) const RULE: Rule = Rule {
     code: "written-never-read",
@@ -77,6 +78,7 @@ pub(super) const RULE: Rule = Rule {
 
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let (uses, wiring) = (context.uses(), Wiring::of(context));
+    let mut mended = 0;
     for (number, name) in uses.names() {
         let all = || uses.of_name(number);
         let is_written = |one: &Use| {
@@ -98,15 +100,26 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
             }
         }
         let message = Message::new("written-never-read.found").with("name", uses.words(&written));
-        found.push(Diagnostic::new(RULE.code, written.span, message));
+        let diagnostic = Diagnostic::new(RULE.code, written.span, message);
+        // A rung that does nothing else may go.
+        let is_alone = uses.of_name(number).len() == 1 && mended < MOST_MENDED;
+        let rung = is_alone.then(|| PlainRung::of(uses, &written)).flatten();
+        mended += usize::from(rung.is_some());
+        found.push(match rung {
+            Some(rung) => {
+                let title = Message::new("written-never-read.remove").with("rung", written.rung);
+                diagnostic.fix(title, vec![TextEdit::new(rung.all, "")])
+            }
+            None => diagnostic,
+        });
     }
 }
 
 fn may_only_the_program_read(context: &ProgramContext<'_>, wiring: &Wiring, name: &Name<'_>) -> bool {
     match name.key {
         Key::Device(device) => match device.kind {
-            DeviceKind::T | DeviceKind::C => true,
-            DeviceKind::M | DeviceKind::D => !device.is_special() && !is_latched(device, context.target()),
+            DeviceKind::T | DeviceKind::C => device.range_on(context.target()).is_some(),
+            DeviceKind::M | DeviceKind::D => is_general(device, context.target()),
             _ => false,
         },
         _ => wiring.is_inside(name),
