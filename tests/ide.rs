@@ -200,6 +200,8 @@ fn hover_on_devices() {
         fx,
         &expect![[r#"
             2:5 `M500`
+            `M500 = X0`
+
             **M500** auxiliary relay, latched (M500–M1023)
 
             Keeps its value without power.
@@ -366,6 +368,8 @@ fn hover_in_ladder() {
         ladder,
         &expect![[r#"
             8:43 `T0`
+            `T0 K50 = Y0`
+
             **T0** timer, 100 ms (T0–T191)
 
             Preset `K50` = 5 s

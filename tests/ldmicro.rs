@@ -1,7 +1,7 @@
 //! Texts of LDmicro: its export as a drawing, in both generations, and its own file.
 
-use crate::rules_sense::without_sense;
 use crate::ladder_read::{chunks, dump};
+use crate::rules_sense::without_sense;
 use proptest::prelude::*;
 use rungwise::document::{DeclaredType, Document, Notation, Tree, detect_ladder_target};
 use rungwise::ide::{self, Style};

@@ -6,6 +6,7 @@ use rungwise::document::{Document, Notation, Tree};
 use rungwise::ladder::{ContactKind, ElementKind, Graph, VertexId, VertexKind};
 use rungwise::target::{Model, Target};
 use rungwise::translate::{Certificate, Options, Proof, To, Value, prove, translate};
+use rungwise::translate::{from_boolean, to_boolean};
 use std::collections::{HashSet, VecDeque};
 
 fn list(text: &str) -> Document {
@@ -23,7 +24,7 @@ fn certain(document: &Document, to: To) -> String {
         let certificate = rung.certificate;
         let source = document.slice(rung.span);
         assert!(
-            to == To::Boolean || certificate.is_some_and(Certificate::is_certain),
+            certificate.is_some_and(Certificate::is_certain),
             "{certificate:?} {:?}\n{source}\n{}",
             rung.note,
             translation.text
@@ -344,7 +345,11 @@ fn worked_examples_of_the_field() {
         let (again, drawn) = there_and_back(text);
         assert_eq!(again, text);
         assert_eq!(certain(&list(text), To::Boolean), equation);
-        assert_eq!(certain(&drawing(&drawn), To::Boolean).replace("+--[END]--", ""), equation);
+        assert_eq!(certain(&drawing(&drawn), To::Boolean), equation);
+        assert_eq!(from_boolean::list(equation, Target::of(Model::Fx2n)), Ok(text.to_string()));
+        let symbols = Options { notation: to_boolean::Notation::Symbols, ..Options::default() };
+        let symbols = translate(&list(text), None, To::Boolean, &symbols).text;
+        assert_eq!(from_boolean::list(&symbols, Target::of(Model::Fx2n)), Ok(text.to_string()));
     }
 }
 
@@ -425,4 +430,33 @@ fn every_wrong_translation_is_found() {
         }
     }
     assert!(mutants > 30, "{mutants}");
+}
+
+/// What cannot be read in `text`, drawn under it.
+fn check_equation(text: &str, marks: &str) {
+    let problems = from_boolean::list(text, Target::of(Model::Fx2n)).expect_err("a problem");
+    let mut drawn: Vec<char> = vec![' '; text.chars().count()];
+    for problem in problems {
+        let start = text[..problem.span.start as usize].chars().count();
+        let end = text[..problem.span.end as usize].chars().count();
+        drawn.resize(drawn.len().max(end + 1), ' ');
+        (start..end.max(start + 1)).for_each(|column| drawn[column] = '^');
+    }
+    assert_eq!(drawn.iter().collect::<String>().trim_end(), marks, "{text}");
+}
+
+#[test]
+fn equations_that_cannot_be_read_say_where() {
+    check_equation("Y0 = X0 +", "         ^");
+    check_equation("Y0 = (X0 + X1", "             ^");
+    check_equation("Y0 = [X0", "        ^");
+    check_equation("Y0 = X0 X1", "        ^");
+    check_equation("Y0", "  ^");
+    check_equation("Y0 = X9", "     ^^");
+    check_equation("Y0 = (D0 >= K10 + X0)", "                ^");
+    check_equation("Y9 = X0", "^^");
+    check_equation("= X0", "^");
+    let deep = format!("Y0 = {}X0", "(".repeat(100_000));
+    let problems = from_boolean::list(&deep, Target::of(Model::Fx2n)).expect_err("a problem");
+    assert_eq!(problems[0].message.key(), "boolean.depth");
 }

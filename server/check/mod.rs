@@ -32,7 +32,6 @@ mod sense;
 mod words;
 
 /// All rules, in the order of the catalogue.
-pub static RULES: std::sync::LazyLock<Vec<&'static Rule>> =
-    std::sync::LazyLock::new(|| {
-        [drawing::RULES, words::RULES, order::RULES, declarations::RULES, sense::RULES].concat()
-    });
+pub static RULES: std::sync::LazyLock<Vec<&'static Rule>> = std::sync::LazyLock::new(|| {
+    [drawing::RULES, words::RULES, order::RULES, declarations::RULES, sense::RULES].concat()
+});

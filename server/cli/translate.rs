@@ -4,15 +4,18 @@ use super::Outcome;
 use super::fmt::style_of;
 use super::input::{Program, complain, remark, say};
 use super::prove;
+use crate::document::{Document, Notation};
+use crate::target::{Model, Target};
 use crate::text::{Encoding, Language, Message};
-use crate::translate::to_boolean::Notation;
-use crate::translate::{Certificate, Options, To, Translation, translate};
+use crate::translate::to_boolean::Notation as Equations;
+use crate::translate::{Certificate, Options, To, Translation, from_boolean, translate};
 use clap::ValueEnum;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 #[derive(clap::Args)]
 pub(super) struct Arguments {
-    /// The program.
+    /// The program: a .lad or .il file, or equations in a .bool file.
     file: PathBuf,
     /// The form to translate it to.
     #[arg(long, value_enum)]
@@ -35,21 +38,24 @@ enum Form {
     Ladder,
     /// FX instruction list.
     Fx,
+    /// Instruction list of IEC 61131-3.
+    Iec,
     /// Equations, one for each output.
     Boolean,
 }
 
 pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
-    let Some(program) = prove::read(&arguments.file, language) else { return Outcome::Unusable };
+    let Some(program) = read(&arguments.file, language) else { return Outcome::Unusable };
     let program = &program;
     let to = match arguments.to {
         Form::Ladder => To::Ladder,
         Form::Fx => To::Fx,
+        Form::Iec => To::Iec,
         Form::Boolean => To::Boolean,
     };
     let options = Options {
         style: style_of(program, None).ladder(),
-        notation: if arguments.symbols { Notation::Symbols } else { Notation::Algebra },
+        notation: if arguments.symbols { Equations::Symbols } else { Equations::Algebra },
         ..Options::default()
     };
     let translation = translate(&program.document, None, to, &options);
@@ -68,10 +74,45 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
             }
         }
     }
-    // Equations are not read again, so nothing is proved of them.
-    let is_whole =
-        is_certain || (to == To::Boolean && translation.rungs.iter().all(|rung| rung.note.is_none()));
-    if is_whole { Outcome::Clean } else { Outcome::Findings }
+    if is_certain { Outcome::Clean } else { Outcome::Findings }
+}
+
+/// The program at `path`: a list, a drawing, or equations, which stand for a list.
+fn read(path: &Path, language: Language) -> Option<Program> {
+    let is_equations = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("bool"));
+    if !is_equations {
+        return prove::read(path, language);
+    }
+    let unusable = |reason: &str, help: &'static str| {
+        let reason = format!("{}: {reason}", path.display());
+        complain("unreadable-input", &reason, &Message::new(help).render(language), language);
+        None
+    };
+    let text = match std::fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(error) => return unusable(&error.to_string(), "cli.check-path"),
+    };
+    let target = Target::of(Model::Fx2n);
+    match from_boolean::list(&text, target) {
+        Ok(list) => Some(Program {
+            path: path.to_path_buf(),
+            document: Document::new(&list, Notation::FxIl, target),
+            manifest: Arc::default(),
+            beside: Arc::default(),
+            encoding: None,
+            fence: None,
+        }),
+        Err(problems) => {
+            for problem in problems {
+                let before = &text[..problem.span.start as usize];
+                let line = before.matches('\n').count() + 1;
+                let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
+                let reason = format!("{line}:{column}: {}", problem.message.render(language));
+                unusable(&reason, "cli.equation-form");
+            }
+            None
+        }
+    }
 }
 
 /// Notes about rungs, and with `--prove` how many are proved.

@@ -71,6 +71,11 @@ impl Book {
         self.devices.contains_key(&device) || self.in_runs.contains(&device)
     }
 
+    /// Whether `device` is used as a part of a run, as M3 in K4M0.
+    pub(super) fn is_in_run(&self, device: Device) -> bool {
+        self.in_runs.contains(&device)
+    }
+
     /// The first run of `count` devices of `range` that are neither used nor `taken`.
     pub(super) fn free(
         &self,

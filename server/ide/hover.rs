@@ -10,6 +10,8 @@ use crate::target::iec::{Function, FunctionBlock, LiteralValue, Operator};
 use crate::target::{Constant, Device, DirectAddress, Location, Operand, Width};
 use crate::text::{Language, Message, Span, Spanned, phrase};
 
+mod boolean;
+
 mod element;
 
 /// So many writers and readers are listed.
@@ -32,6 +34,8 @@ pub(super) fn at(
         Tree::Ladder(tree) => view.ladder(tree, inside),
         Tree::Iec(tree) => view.iec(tree, inside),
     }?;
+    let equation = boolean::of_output(chunk, inside, document.target(), language);
+    let markdown = equation.into_iter().chain([markdown]).collect::<Vec<_>>().join("\n\n");
     Some(Hover { span: span.shifted(found.start), markdown })
 }
 

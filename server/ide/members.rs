@@ -57,7 +57,10 @@ impl Search<'_> {
         for item in &tree.items {
             match item.kind {
                 ItemKind::Operation { operation, operand: Some(id) }
-                    if matches!(operation.operator.role, OperatorRole::Store | OperatorRole::Latch { .. }) =>
+                    if matches!(
+                        operation.operator.role,
+                        OperatorRole::Store | OperatorRole::Latch { .. }
+                    ) =>
                 {
                     written.insert(id);
                 }

@@ -89,6 +89,12 @@ mod typing;
 
 mod linked_editing;
 
+mod forms;
+pub use forms::{ProgramPart, TranslatedForm, form_of, form_steps, forms, part_at};
+
+mod refactor;
+pub use refactor::Refactoring;
+
 mod manifest;
 pub use manifest::{FileKind, manifest_completions, manifest_hover};
 
@@ -331,6 +337,11 @@ pub fn selection_ranges(document: &Document, offset: usize) -> Vec<Span> {
 /// The places of the name at `offset` in its rung that can be typed at once; none if it is alone.
 pub fn linked_places(document: &Document, offset: usize) -> Vec<Span> {
     linked_editing::of(document, offset)
+}
+
+/// The refactorings of the rung at the cursor or selection `span` that are proved to keep what the program does.
+pub fn refactorings(view: &ProjectView<'_>, span: Span, style: Style) -> Vec<Refactoring> {
+    refactor::at(view, span, style)
 }
 
 /// The fixes of `diagnostics` that touch `span`.

@@ -50,16 +50,17 @@ pub fn is_never(formulas: &mut Formulas, formula: Formula) -> Option<bool> {
 }
 
 /// The diagrams of formulas and of what can occur together.
-struct Diagrams {
+pub(super) struct Diagrams {
     variables: BddVariableSet,
     /// The atom of each variable, in order.
-    atoms: Vec<u32>,
-    of: FxHashMap<Formula, Bdd>,
+    pub atoms: Vec<u32>,
+    /// That of each formula that was wanted, and of its parts.
+    pub of: FxHashMap<Formula, Bdd>,
     possible: Bdd,
 }
 
 impl Diagrams {
-    fn of(formulas: &mut Formulas, wanted: &[Formula]) -> Option<Diagrams> {
+    pub fn of(formulas: &mut Formulas, wanted: &[Formula]) -> Option<Diagrams> {
         let axioms = axioms(formulas, wanted);
         let all: Vec<Formula> = wanted.iter().copied().chain(axioms.iter().copied()).collect();
         let parts = formulas.parts_of(all);
@@ -134,7 +135,7 @@ fn in_order_of_use(formulas: &Formulas, wanted: &[Formula], parts: &[Formula]) -
 
 /// What is true of the atoms of `wanted` among each other: a bit that just came on is on, a word that reaches 10
 /// reaches 5, and of two words one is at least as large as the other.
-fn axioms(formulas: &mut Formulas, wanted: &[Formula]) -> Vec<Formula> {
+pub(super) fn axioms(formulas: &mut Formulas, wanted: &[Formula]) -> Vec<Formula> {
     let atoms = formulas.atoms_of(wanted.iter().copied());
     let mut axioms = Vec::new();
     let mut numbers: BTreeMap<Moment, Vec<i64>> = BTreeMap::new();

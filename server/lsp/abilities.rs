@@ -1,5 +1,6 @@
 //! What the client can show and do, as it said in `initialize`.
 
+use super::translating;
 use serde_json::Value;
 use tower_lsp::ls_types::*;
 
@@ -27,6 +28,12 @@ pub(super) struct Abilities {
     pub related_information: bool,
     /// Definitions with the range of the name that was asked about.
     pub links: bool,
+    /// Edits that make files.
+    pub makes_files: bool,
+    /// The command that opens a translation as a new document.
+    pub opens_translations: bool,
+    /// The command that puts a translation on the clipboard.
+    pub copies_translations: bool,
 }
 
 /// What the server may ask of the client. Here silence means no.
@@ -44,6 +51,8 @@ pub(super) struct Requests {
     pub refresh_diagnostics: bool,
     /// `workspace/inlayHint/refresh`.
     pub refresh_hints: bool,
+    /// `window/showDocument`.
+    pub show_document: bool,
     /// Parts of LSP 3.18 that the protocol's types do not know yet.
     pub newer: Newer,
 }
@@ -84,6 +93,9 @@ impl Default for Abilities {
             label_details: false,
             related_information: true,
             links: false,
+            makes_files: false,
+            opens_translations: false,
+            copies_translations: false,
         }
     }
 }
@@ -94,7 +106,17 @@ impl Abilities {
         if let Some(workspace) = &client.workspace {
             let edit = workspace.workspace_edit.as_ref();
             abilities.document_changes = edit.is_some_and(|edit| edit.document_changes == Some(true));
+            let operations = edit.and_then(|edit| edit.resource_operations.as_deref()).unwrap_or_default();
+            abilities.makes_files =
+                abilities.document_changes && operations.contains(&ResourceOperationKind::Create);
         }
+        let commands = client.experimental.as_ref().map(|more| &more["commands"]["commands"]);
+        let has = |name: &str| {
+            let names = commands.and_then(Value::as_array).into_iter().flatten();
+            names.into_iter().any(|command| command == name)
+        };
+        abilities.opens_translations = has(translating::OPEN);
+        abilities.copies_translations = has(translating::COPY);
         let Some(text) = &client.text_document else { return abilities };
         let has_markdown = |kinds: Option<&Vec<MarkupKind>>| {
             kinds.is_some_and(|kinds| kinds.contains(&MarkupKind::Markdown))
@@ -128,8 +150,10 @@ impl Requests {
     pub(super) fn of(client: &ClientCapabilities) -> Requests {
         let window = client.window.as_ref();
         let progress = window.is_some_and(|window| window.work_done_progress == Some(true));
+        let show_document =
+            window.and_then(|window| window.show_document.as_ref()).is_some_and(|show| show.support);
         let Some(workspace) = &client.workspace else {
-            return Requests { progress, ..Requests::default() };
+            return Requests { progress, show_document, ..Requests::default() };
         };
         let watched = workspace.did_change_watched_files.as_ref();
         let configuration = workspace.did_change_configuration.as_ref();
@@ -139,6 +163,7 @@ impl Requests {
             watch_configuration: configuration.is_some_and(|one| one.dynamic_registration == Some(true)),
             configuration: workspace.configuration == Some(true),
             progress,
+            show_document,
             refresh_diagnostics: diagnostics.is_some_and(|one| one.refresh_support == Some(true)),
             refresh_hints: workspace.inlay_hint.as_ref().is_some_and(|one| one.refresh_support == Some(true)),
             newer: Newer::default(),

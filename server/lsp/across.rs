@@ -109,6 +109,10 @@ pub(super) fn code_action(action: CodeAction, abilities: Abilities) -> CodeActio
             command: capabilities::APPLY.to_string(),
             arguments: Some(vec![json!(edit)]),
         }),
+        (false, None) if action.command.is_some() => {
+            let command = action.command.unwrap_or_default();
+            CodeActionOrCommand::Command(command)
+        }
         _ => CodeActionOrCommand::CodeAction(action),
     }
 }

@@ -11,7 +11,7 @@ use super::tokens;
 use super::typed;
 use super::workspace::{SNAPSHOT, Snapshot, Workspace};
 use super::written::{given, write};
-use super::{capabilities, features, usage};
+use super::{capabilities, features, translating, usage};
 use crate::ide;
 use crate::text::Message;
 use serde_json::{Value, json};
@@ -324,9 +324,14 @@ impl LanguageServer for Backend {
             let allow = allowing.iter().map(|(diagnostic, fix)| {
                 features::quick_fix(around, place, &ide::FixOf { diagnostic, fix, is_preferred: false })
             });
+            let style = settings.style(&open.manifest);
+            let refactorings = features::refactorings(around, place, &params, style);
+            let translations = translating::actions(around, place, &params, &settings);
             fixes
                 .chain(edits)
                 .chain(rewrites)
+                .chain(refactorings)
+                .chain(translations)
                 .chain(allow)
                 .map(|action| across::code_action(action, place.abilities))
                 .collect()
@@ -415,6 +420,9 @@ impl LanguageServer for Backend {
         if params.command == capabilities::APPLY {
             return self.apply(params.arguments);
         }
+        if [translating::TRANSLATE, translating::BESIDE].contains(&params.command.as_str()) {
+            return self.translate(&params.command, params.arguments.first()).await;
+        }
         let Some(uri) =
             params.arguments.first().and_then(|value| value.as_str()).and_then(|text| text.parse().ok())
         else {
@@ -483,6 +491,35 @@ impl Backend {
                 tracing::warn!("the client did not apply the edits: {reason}");
             }
         });
+    }
+
+    /// `rungwise.translate` and `rungwise.translateBeside`
+    async fn translate(&self, command: &str, argument: Option<&Value>) -> Result<Option<LSPAny>> {
+        let settings = settings();
+        let wanted = translating::Wanted::of(command, argument).map_err(refused)?;
+        let unknown = || refused(Message::new("translating.not-open").with("command", command));
+        let uri = wanted.asked.uri.clone();
+        if command == translating::TRANSLATE {
+            let answer = whole(uri, move |around, place| wanted.answer(around, place, &settings)).await?;
+            return answer.ok_or_else(unknown);
+        }
+        let made = whole(uri, move |around, place| wanted.beside(around, place, &settings)).await?;
+        let Some((edit, uri)) = made.ok_or_else(unknown)?.transpose().map_err(refused)? else {
+            return Ok(None);
+        };
+        let client = self.workspace.client.clone();
+        let shown =
+            ShowDocumentParams { uri: uri.clone(), external: None, take_focus: Some(true), selection: None };
+        let shows = self.workspace.requests().show_document;
+        // The client may answer late or never; no handler waits for it.
+        tokio::spawn(async move {
+            match client.apply_edit(edit).await {
+                Ok(answer) if answer.applied && shows => drop(client.show_document(shown).await),
+                Ok(_) => {}
+                Err(reason) => tracing::warn!("the client did not make the file: {reason}"),
+            }
+        });
+        Ok(Some(json!({"uri": uri})))
     }
 
     /// `rungwise/edit`

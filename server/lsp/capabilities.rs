@@ -1,13 +1,20 @@
 //! What the server offers, and what the client can do.
 
 use super::abilities::{Abilities, Requests};
-use super::{editing, manifest_help, to_proto, usage};
+use super::{editing, manifest_help, to_proto, translating, usage};
 use crate::text::Encoding;
 use serde_json::json;
 use tower_lsp::ls_types::*;
 
 /// The commands of `workspace/executeCommand`.
-pub(super) const COMMANDS: &[&str] = &["rungwise.check", "rungwise.format", "rungwise.usage", APPLY];
+pub(super) const COMMANDS: &[&str] = &[
+    "rungwise.check",
+    "rungwise.format",
+    "rungwise.usage",
+    translating::TRANSLATE,
+    translating::BESIDE,
+    APPLY,
+];
 
 /// Applies the `WorkspaceEdit` that is its argument: what a code action does where clients know commands alone.
 pub(super) const APPLY: &str = "rungwise.applyEdit";
@@ -124,7 +131,13 @@ pub(super) fn offered(
             false => OneOf::Left(true),
         }),
         code_action_provider: Some(CodeActionProviderCapability::Options(CodeActionOptions {
-            code_action_kinds: Some(vec![CodeActionKind::QUICKFIX, CodeActionKind::REFACTOR_REWRITE]),
+            code_action_kinds: Some(vec![
+                CodeActionKind::QUICKFIX,
+                CodeActionKind::REFACTOR_REWRITE,
+                CodeActionKind::REFACTOR_EXTRACT,
+                CodeActionKind::REFACTOR_INLINE,
+                CodeActionKind::SOURCE,
+            ]),
             resolve_provider: Some(true),
             ..CodeActionOptions::default()
         })),

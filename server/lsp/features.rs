@@ -136,6 +136,33 @@ pub(super) fn rewrites(open: &Open, place: Place<'_>, params: &CodeActionParams)
     rewrites.map(action).collect()
 }
 
+/// The refactorings of the rung at a range as code actions.
+pub(super) fn refactorings(
+    around: &Around,
+    place: Place<'_>,
+    params: &CodeActionParams,
+    style: ide::Style,
+) -> Vec<CodeAction> {
+    let only = params.context.only.as_deref();
+    let groups = ["refactor.rewrite.rung", "refactor.extract.relay", "refactor.inline.relay"];
+    let is_asked = |only: &&[CodeActionKind]| {
+        let own = only.iter().any(|kind| kind.as_str().starts_with(groups[0]));
+        own || groups.iter().any(|group| editing::is_wanted(&(*group).into(), Some(only)))
+    };
+    if only.is_some_and(|only| !is_asked(&only)) {
+        return Vec::new();
+    }
+    let refactorings = ide::refactorings(&around.view(), place.span(params.range), style).into_iter();
+    let wanted = refactorings.filter(|refactoring| editing::is_wanted(&refactoring.kind.into(), only));
+    let action = |refactoring: ide::Refactoring| CodeAction {
+        title: refactoring.title.render(place.language),
+        kind: Some(refactoring.kind.into()),
+        edit: Some(editing::changes(around.here(), place.edits(&refactoring.edits))),
+        ..CodeAction::default()
+    };
+    wanted.map(action).collect()
+}
+
 /// A fix as a code action.
 pub(super) fn quick_fix(around: &Around, place: Place<'_>, fix: &ide::FixOf<'_>) -> CodeAction {
     CodeAction {

@@ -118,8 +118,7 @@ impl State {
     fn translate(&mut self, message: &Value) -> Option<Vec<Value>> {
         let method = message["method"].as_str()?;
         let params = &message["params"];
-        let uri =
-            params["textDocument"]["uri"].as_str().or_else(|| params["arguments"][0].as_str())?.to_string();
+        let uri = params["textDocument"]["uri"].as_str().or_else(|| named_by_command(params))?.to_string();
         if method == "textDocument/didOpen" {
             let item = &params["textDocument"];
             if item["languageId"] != "markdown" {
@@ -159,10 +158,17 @@ impl State {
         let document = self.documents.get(uri)?;
         if !WHOLE.contains(&method) {
             let params = &message["params"];
-            let places = [&params["position"], &params["positions"][0], &params["range"]["start"]];
+            let argument = &params["arguments"][0];
+            let places = [
+                &params["position"],
+                &params["positions"][0],
+                &params["range"]["start"],
+                &argument["position"],
+                &argument["range"]["start"],
+            ];
             let line = places.iter().find_map(|place| place["line"].as_u64());
             let mut opens = document.fences.iter();
-            // A command has no place; it is for the first program.
+            // A command without a place is for the first program.
             let open = match line {
                 Some(line) => opens.find(|open| within(&open.fence, line)),
                 None => opens.next(),
@@ -337,6 +343,12 @@ fn tokens<'v>(lists: impl Iterator<Item = &'v Value>) -> Vec<u64> {
     data
 }
 
+/// The document that the first argument of a command is, or names.
+fn named_by_command(params: &Value) -> Option<&str> {
+    let argument = &params["arguments"][0];
+    argument.as_str().or_else(|| argument["uri"].as_str())
+}
+
 fn lines_of(fence: &Fence) -> (u64, u64) {
     (fence.lines_before as u64, (fence.lines_before + fence.lines) as u64)
 }
@@ -353,7 +365,11 @@ fn notice(method: &str, uri: &str) -> Value {
 /// `message` about the document `new` instead of `old`.
 fn renamed(message: &Value, old: &str, new: &str) -> Value {
     let mut message = message.clone();
-    let places = [&["params", "textDocument", "uri"][..], &["params", "arguments", "0"]];
+    let places = [
+        &["params", "textDocument", "uri"][..],
+        &["params", "arguments", "0"],
+        &["params", "arguments", "0", "uri"],
+    ];
     for place in places {
         let pointer = format!("/{}", place.join("/"));
         if let Some(value) = message.pointer_mut(&pointer).filter(|value| **value == old) {

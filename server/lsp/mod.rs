@@ -30,6 +30,7 @@ mod sheets;
 mod status;
 mod to_proto;
 mod tokens;
+mod translating;
 mod typed;
 mod usage;
 mod workspace;

@@ -212,6 +212,7 @@ macro_rules! catalogue_in {
                 include_str!(concat!("messages/", $tag, "/ldmicro.toml")),
                 include_str!(concat!("messages/", $tag, "/editing.toml")),
                 include_str!(concat!("messages/", $tag, "/translate.toml")),
+                include_str!(concat!("messages/", $tag, "/refactor.toml")),
             ])
         })
     };

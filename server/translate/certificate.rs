@@ -1,10 +1,12 @@
 //! The proof that comes with a translation: the result is read again, as a file would be, and compared rung by rung.
 
 use super::source::{self, Source};
-use super::{To, Translation, page};
+use super::{To, Translation, from_boolean, page};
 use crate::document::Document;
-use crate::logic::{Comparison, Formulas, Path, compare};
-use crate::text::Message;
+use crate::logic::{Comparison, Formulas, Path, compare_but};
+use crate::text::{Message, folded};
+use rustc_hash::FxHashSet;
+use smol_str::SmolStr;
 
 /// What is known of a translated rung.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -34,21 +36,27 @@ impl Certificate {
     }
 }
 
-/// Certifies each rung of `translation`, which was made of `sources`.
-pub(super) fn add(document: &Document, sources: &[Source], to: To, translation: &mut Translation) {
-    let Some(notation) = page::notation(to) else { return };
-    let again = Document::frugal(&translation.text, notation, document.target());
-    let written = source::rungs(&again, None);
-    let mut written = written.iter().peekable();
+/// Certifies each rung of `translation`, which was made of `sources`; nothing if it was cancelled on the way.
+pub(super) fn add(
+    document: &Document,
+    sources: &[Source],
+    to: To,
+    translation: &mut Translation,
+    is_cancelled: &dyn Fn() -> bool,
+) -> Option<()> {
+    let mut written = read_again(document, to, &translation.text).into_iter().peekable();
+    let helpers: FxHashSet<SmolStr> = translation.helpers.iter().map(|name| folded(name)).collect();
     for (source, translated) in sources.iter().zip(&mut translation.rungs) {
-        let mut paths = Vec::new();
-        let mut is_readable = true;
-        while let Some(rung) = written.next_if(|rung| (rung.span().start as usize) < translated.result.end) {
-            match &rung.rung.path {
-                Ok(path) => paths.extend(path),
-                Err(_) => is_readable = false,
-            }
+        if is_cancelled() {
+            return None;
         }
+        let own = std::iter::from_fn(|| written.next_if(|rung| rung.start < translated.result.end));
+        let paths: Option<Vec<Path>> = own
+            .filter_map(|rung| match rung.path {
+                Some(None) => None,
+                path => Some(path.flatten()),
+            })
+            .collect();
         if translated.note.is_some() {
             // A list is carried along word by word; a drawing in a list is but a comment.
             let carried = source.rung.is_list && to != To::Boolean;
@@ -56,18 +64,49 @@ pub(super) fn add(document: &Document, sources: &[Source], to: To, translation: 
             translated.certificate = Some(certificate);
             continue;
         }
-        let own: Vec<&Path> = source.rung.path.iter().flatten().collect();
-        let (certificate, note) = match is_readable {
-            true => judge(&own, &paths),
-            false => (Certificate::Undecided, Some("translate.unreadable")),
+        let sources: Vec<&Path> = source.rung.path.iter().flatten().collect();
+        let (certificate, note) = match paths {
+            Some(paths) => judge(&sources, &paths.iter().collect::<Vec<_>>(), &helpers),
+            None => (Certificate::Undecided, Some("translate.unreadable")),
         };
         translated.certificate = Some(certificate);
         translated.note = note.map(Message::new);
     }
+    Some(())
 }
 
-fn judge(own: &[&Path], written: &[&Path]) -> (Certificate, Option<&'static str>) {
-    match compare(own, written, &mut Formulas::default()) {
+/// A rung of the result.
+struct Written {
+    /// Where it starts.
+    start: usize,
+    /// What it does; nothing inside if it does nothing, nothing at all if it cannot be read.
+    path: Option<Option<Path>>,
+}
+
+fn read_again(document: &Document, to: To, text: &str) -> Vec<Written> {
+    let Some(notation) = page::notation(to) else {
+        let (equations, problems) = from_boolean::read(text, document.reader());
+        let equations = equations.into_iter();
+        let read = equations.map(|equation| (equation.span, Some(equation.path)));
+        let mut written: Vec<_> =
+            read.chain(problems.into_iter().map(|problem| (problem.span, None))).collect();
+        written.sort_by_key(|(span, _)| *span);
+        return written
+            .into_iter()
+            .map(|(span, path)| Written { start: span.start as usize, path })
+            .collect();
+    };
+    let again = Document::frugal(text, notation, document.target());
+    let rungs = source::rungs(&again, None).into_iter();
+    rungs.map(|rung| Written { start: rung.span().start as usize, path: rung.rung.path.ok() }).collect()
+}
+
+fn judge(
+    own: &[&Path],
+    written: &[&Path],
+    helpers: &FxHashSet<SmolStr>,
+) -> (Certificate, Option<&'static str>) {
+    match compare_but(own, written, helpers, &mut Formulas::default()) {
         Comparison::Same { is_boolean: true } => (Certificate::Proved, None),
         Comparison::Same { is_boolean: false } => (Certificate::Construction, None),
         Comparison::Different { .. } | Comparison::Unlike => {

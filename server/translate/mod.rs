@@ -15,15 +15,22 @@ mod stack;
 mod prove;
 pub use prove::{Counterexample, Proof, Value, prove};
 
+mod header;
+
 pub mod to_fx;
+
+pub mod to_iec;
 
 pub mod to_ladder;
 
 pub mod to_boolean;
 
+pub mod from_boolean;
+
 use crate::document::Document;
 use crate::ladder::Style;
 use crate::text::{Message, Span};
+use smol_str::SmolStr;
 use std::ops::Range;
 
 /// A form of a program.
@@ -33,19 +40,22 @@ pub enum To {
     Ladder,
     /// FX instruction list.
     Fx,
+    /// Instruction list of IEC 61131-3.
+    Iec,
     /// Equations, one for each output.
     Boolean,
 }
 
 impl To {
     /// All of them.
-    pub const ALL: [To; 3] = [To::Ladder, To::Fx, To::Boolean];
+    pub const ALL: [To; 4] = [To::Ladder, To::Fx, To::Iec, To::Boolean];
 
     /// The name on the command line and in requests.
     pub fn name(self) -> &'static str {
         match self {
             To::Ladder => "ladder",
             To::Fx => "fx",
+            To::Iec => "iec",
             To::Boolean => "boolean",
         }
     }
@@ -76,12 +86,14 @@ impl Default for Options {
 }
 
 /// A program in another form.
-#[derive(Clone, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Translation {
     /// The text, lines ended by line feeds.
     pub text: String,
     /// What became of each rung of the source, in order.
     pub rungs: Vec<Translated>,
+    /// The variables that the result declares beyond those of the source.
+    pub helpers: Vec<SmolStr>,
 }
 
 /// What became of a rung.
@@ -106,10 +118,21 @@ impl Translation {
 
 /// `document` in another form; with `part` only the rungs that touch these bytes.
 pub fn translate(document: &Document, part: Option<Span>, to: To, options: &Options) -> Translation {
-    let sources = source::rungs(document, part);
-    let mut translation = page::write(document, &sources, to, options);
+    translate_unless(document, part, to, options, &|| false).unwrap_or_default()
+}
+
+/// The same; nothing if `is_cancelled` says on the way that nobody waits for it any more.
+pub fn translate_unless(
+    document: &Document,
+    part: Option<Span>,
+    to: To,
+    options: &Options,
+    is_cancelled: &dyn Fn() -> bool,
+) -> Option<Translation> {
+    let program = source::program(document, part);
+    let mut translation = page::write(document, &program, to, options, part.is_none(), is_cancelled)?;
     if options.proves {
-        certificate::add(document, &sources, to, &mut translation);
+        certificate::add(document, &program.rungs, to, &mut translation, is_cancelled)?;
     }
-    translation
+    Some(translation)
 }

@@ -1,7 +1,9 @@
 //! Puts translated rungs together to a text, with their comments and labels.
 
-use super::source::Source;
+use super::header;
+use super::source::{Program, Source};
 use super::to_fx::Line;
+use super::to_iec::{self, Helpers};
 use super::{Options, To, Translated, Translation, to_boolean, to_fx, to_ladder};
 use crate::document::{Document, Notation};
 use crate::ladder::{Drawing, Style};
@@ -15,6 +17,8 @@ enum Body {
     Nothing,
     /// Instructions.
     Lines(Vec<Line>),
+    /// Instructions of IEC 61131-3 as they are laid out.
+    Text(String),
     /// A drawing that has no right rail yet.
     Drawing(Box<Drawing>),
     /// Equations.
@@ -23,20 +27,43 @@ enum Body {
     Kept(String, Message),
 }
 
-/// The text of `sources` in another form, without certificates.
-pub(super) fn write(document: &Document, sources: &[Source], to: To, options: &Options) -> Translation {
-    let bodies: Vec<Body> = sources.iter().map(|source| body(document, source, to, options)).collect();
+/// The text of `program` in another form, without certificates; nothing if it was cancelled on the way. A whole one
+/// gets the declarations that it lacks.
+pub(super) fn write(
+    document: &Document,
+    program: &Program,
+    to: To,
+    options: &Options,
+    is_whole: bool,
+    is_cancelled: &dyn Fn() -> bool,
+) -> Option<Translation> {
+    let sources = &program.rungs;
+    let mut helpers = match to {
+        To::Iec => Helpers::beside(header::names(document, sources.iter())),
+        _ => Helpers::default(),
+    };
+    let mut unless_cancelled =
+        |source| (!is_cancelled()).then(|| body(document, source, to, options, &mut helpers));
+    let bodies: Vec<Body> = sources.iter().map(&mut unless_cancelled).collect::<Option<_>>()?;
     let rails = bodies.iter().filter_map(|body| match body {
         Body::Drawing(drawing) => Some(drawing.rail_column_min()),
         _ => None,
     });
     let rail = rails.max().unwrap_or(0).max(options.style.width.clamp(1, Style::WIDTH_MAX) - 1);
     let mut page = Page { text: String::new(), to, rail };
+    let needs_header = to == To::Iec && is_whole && !sources.is_empty() && !header::has_units(document);
+    if needs_header {
+        page.declare(document, &header::header(document, sources, &helpers.declared));
+    }
     let mut rungs = Vec::with_capacity(sources.len());
     for (source, body) in sources.iter().zip(bodies) {
+        if !source.declarations.is_empty() {
+            page.declare(document, &source.declarations);
+            page.declare(document, &header::helpers_of(&helpers.declared, source.pou));
+        }
         page.head(source);
         let start = page.text.len();
-        let note = page.body(body, source);
+        let note = page.body(document, body, source);
         rungs.push(Translated {
             span: source.span(),
             result: start..page.text.len(),
@@ -44,13 +71,21 @@ pub(super) fn write(document: &Document, sources: &[Source], to: To, options: &O
             note,
         });
     }
+    page.declare(document, &program.tail);
+    if needs_header {
+        page.declare(document, "END_PROGRAM\n");
+    }
     if to == To::Fx && options.is_whole && !sources.iter().any(ends_program) {
         page.text.push_str("END\n");
     }
-    Translation { text: page.text, rungs }
+    if to == To::Iec {
+        page.lay_out(document, &mut rungs);
+    }
+    let helpers = helpers.declared.into_iter().map(|helper| helper.name).collect();
+    Some(Translation { text: page.text, rungs, helpers })
 }
 
-fn body(document: &Document, source: &Source, to: To, options: &Options) -> Body {
+fn body(document: &Document, source: &Source, to: To, options: &Options, helpers: &mut Helpers) -> Body {
     let kept = |reason: Message| Body::Kept(source.rung.span.of(source.chunk.text()).to_string(), reason);
     let path = match &source.rung.path {
         Ok(None) => return Body::Nothing,
@@ -59,6 +94,11 @@ fn body(document: &Document, source: &Source, to: To, options: &Options) -> Body
     };
     let written = match to {
         To::Fx => to_fx::lines(path, document.target()).map(Body::Lines),
+        To::Iec => {
+            helpers.pou = source.pou;
+            to_iec::lines(path, helpers)
+                .map(|lines| Body::Text(header::laid_out(document, &(lines.join("\n") + "\n"))))
+        }
         To::Boolean => to_boolean::equations(path, options.notation).map(Body::Equations),
         To::Ladder => drawing(path, document, options),
     };
@@ -98,7 +138,10 @@ impl Page {
             self.text.push('\n');
         }
         for comment in source.comments().filter(|comment| !is_network(comment)) {
-            self.line(comment);
+            match self.to {
+                To::Iec => self.line(&header::comment(comment)),
+                _ => self.line(comment),
+            }
         }
         let mut networks: Vec<String> = rung.network.iter().map(network_text).collect();
         networks.extend(
@@ -110,6 +153,7 @@ impl Page {
         for network in networks {
             match self.to {
                 To::Ladder => self.line(&network),
+                To::Iec => self.line(&format!("(* {network} *)")),
                 _ => self.line(&format!("; {network}")),
             }
         }
@@ -122,26 +166,32 @@ impl Page {
     }
 
     /// Writes the rung; the note says why it could not be written.
-    fn body(&mut self, body: Body, source: &Source) -> Option<Message> {
+    fn body(&mut self, document: &Document, body: Body, source: &Source) -> Option<Message> {
         match body {
             Body::Nothing => {}
             Body::Lines(lines) => lines.iter().for_each(|line| self.line(&line.to_string())),
+            Body::Text(text) => self.text.push_str(&text),
             Body::Equations(equations) => equations.iter().for_each(|equation| self.line(equation)),
             Body::Drawing(drawing) => match drawing.paint(self.rail) {
                 Some(lines) => lines.iter().for_each(|line| self.line(line)),
                 None => {
                     let text = source.rung.span.of(source.chunk.text());
-                    return self.kept(text, source.rung.is_list, Message::new("translate.no-drawing"));
+                    return self.kept(
+                        document,
+                        text,
+                        source.rung.is_list,
+                        Message::new("translate.no-drawing"),
+                    );
                 }
             },
-            Body::Kept(text, reason) => return self.kept(&text, source.rung.is_list, reason),
+            Body::Kept(text, reason) => return self.kept(document, &text, source.rung.is_list, reason),
         }
         None
     }
 
     /// What cannot be translated is carried along as it is: a list in a box that the drawing does not look into, a
     /// drawing as comments.
-    fn kept(&mut self, text: &str, is_list: bool, reason: Message) -> Option<Message> {
+    fn kept(&mut self, document: &Document, text: &str, is_list: bool, reason: Message) -> Option<Message> {
         match self.to {
             To::Fx if is_list => text.lines().for_each(|line| self.line(line.trim())),
             To::Ladder if is_list => {
@@ -149,11 +199,54 @@ impl Page {
                 text.lines().for_each(|line| self.line(line.trim_end()));
                 self.line("}");
             }
+            To::Iec if is_list => {
+                let laid_out = header::laid_out(document, &format!("{}\n", text.trim_end()));
+                self.text += &laid_out;
+            }
+            To::Iec => text.lines().for_each(|line| self.line(&header::comment(&format!("; {line}")))),
             _ => {
                 text.lines().for_each(|line| self.line(format!("; {line}").trim_end()));
             }
         }
         Some(reason)
+    }
+
+    /// Comments are indented like what they stand above.
+    fn lay_out(&mut self, document: &Document, rungs: &mut [Translated]) {
+        let laid_out = header::laid_out(document, &self.text);
+        let starts = |text: &str| -> Vec<usize> {
+            let ends = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at + 1);
+            std::iter::once(0).chain(ends).collect()
+        };
+        let (before, after) = (starts(&self.text), starts(&laid_out));
+        if before.len() != after.len() {
+            return;
+        }
+        for rung in rungs {
+            let place = |at: usize| before.binary_search(&at).map(|line| after[line]);
+            if let (Ok(start), Ok(end)) = (place(rung.result.start), place(rung.result.end)) {
+                rung.result = start..end;
+            }
+        }
+        self.text = laid_out;
+    }
+
+    /// Declarations, which stand in instruction list as in drawings.
+    fn declare(&mut self, document: &Document, text: &str) {
+        let text = text.trim_matches(['\r', '\n']);
+        if text.is_empty() || !matches!(self.to, To::Iec | To::Ladder) {
+            return;
+        }
+        if !self.text.is_empty() && !self.text.ends_with("\n\n") {
+            self.text.push('\n');
+        }
+        match self.to {
+            To::Iec => self.text += &header::laid_out(document, &format!("{text}\n")),
+            _ => text.lines().for_each(|line| self.line(line.trim_end())),
+        }
+        if !self.text.ends_with("\n\n") {
+            self.text.push('\n');
+        }
     }
 
     fn line(&mut self, line: &str) {
@@ -186,6 +279,7 @@ pub(super) fn notation(to: To) -> Option<Notation> {
     match to {
         To::Ladder => Some(Notation::Ladder),
         To::Fx => Some(Notation::FxIl),
+        To::Iec => Some(Notation::IecIl),
         To::Boolean => None,
     }
 }

@@ -171,8 +171,9 @@ impl<'a> View<'a> {
     pub fn written(&self) -> impl Iterator<Item = OperandId> + 'a {
         let tree = self.tree;
         let stores = tree.items.iter().filter_map(|item| match item.kind {
-            ItemKind::Operation { operation, operand } => operand
-                .filter(|_| matches!(operation.operator.role, OperatorRole::Store | OperatorRole::Latch { .. })),
+            ItemKind::Operation { operation, operand } => operand.filter(|_| {
+                matches!(operation.operator.role, OperatorRole::Store | OperatorRole::Latch { .. })
+            }),
             _ => None,
         });
         let lists = tree.items.iter().filter_map(|item| match item.kind {

@@ -13,6 +13,7 @@ mod operation;
 mod parts;
 mod proof;
 pub(super) mod ranges;
+pub(super) mod redrawn;
 mod rungs;
 mod site;
 pub(super) mod typing;

@@ -26,7 +26,8 @@ pub const RELAYS: &[Row] = &[
     relay(8020, "Zero flag: the result of the last arithmetic or compare instruction is 0"),
     relay(8021, "Borrow flag: the result fell below the smallest number"),
     // A rotation through the carry begins with what the program puts there.
-    relay(8022, "Carry flag: the result exceeded the largest number, or a rotation shifted out a 1").writable(),
+    relay(8022, "Carry flag: the result exceeded the largest number, or a rotation shifted out a 1")
+        .writable(),
     relay(8024, "Direction of BMOV: while on, BMOV copies from D to S").fx2n_up().writable(),
     relay(8025, "High-speed compare instructions also act on an external reset").fx2n_up().writable(),
     relay(8026, "RAMP stops at its end value instead of starting over").fx1n_up().writable(),

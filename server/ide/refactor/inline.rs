@@ -1,0 +1,160 @@
+//! The condition of a relay in the place of its contacts, and the relay gone.
+
+use super::neighbourhood::{Neighbourhood, Placed};
+use super::{Change, Proposal};
+use crate::document::{ProjectView, Symbol};
+use crate::ide::bookkeeping::Book;
+use crate::ladder::{CoilKind, ContactKind};
+use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Test};
+use crate::target::{Device, DeviceKind, Flow};
+use crate::text::Message;
+use smol_str::SmolStr;
+
+pub(super) fn propose(around: &Neighbourhood<'_>, view: &ProjectView<'_>) -> Option<Proposal> {
+    let path = around.path();
+    let (place, relay) = driven_relay(path)?;
+    let head = &around.rung().rung;
+    if relay.is_special(around.document) || !head.labels.is_empty() || head.network.is_some() {
+        return None;
+    }
+    let condition = condition_of(&path.gates)?;
+    let book = Book::of(view);
+    let tally = book.devices.get(&relay.device).filter(|_| !book.is_in_run(relay.device))?;
+    let others = around.rungs.get(around.here + 1..)?;
+    // Every other place that names it reads it further down, as far as one can see.
+    let mut left = tally.mentions.checked_sub(1).filter(|reads| *reads > 0 && tally.writes == 1)?;
+    if relay.mentions(around.rung()) != 1 {
+        return None;
+    }
+    let mut rest = path.clone();
+    rest.drives.remove(place);
+    let paths = if rest.drives.is_empty() { Vec::new() } else { vec![rest] };
+    let mut changes = vec![Change { first: around.here, count: 1, paths }];
+    for (number, placed) in (around.here + 1..).zip(others) {
+        if left == 0 {
+            break;
+        }
+        if !runs_straight(placed) {
+            return None;
+        }
+        let found = relay.mentions(placed);
+        if found > 0 {
+            let path = placed.path().and_then(|path| relay.replaced(path, &condition))?;
+            changes.push(Change { first: number, count: 1, paths: vec![path] });
+            left = left.checked_sub(found)?;
+        }
+    }
+    (left == 0).then(|| Proposal {
+        kind: "refactor.inline.relay",
+        title: Message::new("refactor.inline").with("relay", relay.device),
+        changes,
+        relay: Some(relay.key),
+        must_save: false,
+    })
+}
+
+struct Relay {
+    device: Device,
+    key: SmolStr,
+}
+
+/// The first plain coil of a relay that a path drives itself, and its place among the drives.
+fn driven_relay(path: &Path) -> Option<(usize, Relay)> {
+    path.drives.iter().enumerate().find_map(|(place, drive)| {
+        let Drive::Action(Action { deed: Deed::Coil(CoilKind::Plain), terms, .. }) = drive else {
+            return None;
+        };
+        let [term] = &terms[..] else { return None };
+        let device = term.operand.device().filter(|device| device.kind == DeviceKind::M)?;
+        Some((place, Relay { device, key: term.key() }))
+    })
+}
+
+/// What leads to the drives; nothing if power goes through something on the way.
+fn condition_of(gates: &[Gate]) -> Option<Expression> {
+    let mut condition = None;
+    for gate in gates {
+        condition = Some(match (gate, condition) {
+            (Gate::Pass(more), None) => more.clone(),
+            (Gate::Pass(more), Some(before)) => Expression::and([before, more.clone()]),
+            (Gate::Invert, Some(before)) => Expression::Not(Box::new(before)),
+            (Gate::Invert, None) | (Gate::Through(_), _) => return None,
+        });
+    }
+    condition
+}
+
+/// Whether each scan comes through the rung, and nothing jumps to it.
+fn runs_straight(placed: &Placed) -> bool {
+    let Some(path) = placed.path() else { return matches!(placed.rung.path, Ok(None)) };
+    let is_straight = |action: &&Action| match action.deed {
+        Deed::Coil(_) => true,
+        Deed::Instruction(form) => form.instruction.flow() == Flow::Straight,
+        Deed::Call(_) => true,
+        Deed::Jump | Deed::Return => false,
+    };
+    placed.rung.labels.is_empty() && path.actions().iter().all(is_straight)
+}
+
+impl Relay {
+    /// Whether the PLC itself reads or writes it, or keeps it while it is off.
+    fn is_special(&self, document: &crate::document::Document) -> bool {
+        let target = document.target();
+        let is_latched = self.device.range_on(target).is_none_or(|range| range.latched);
+        is_latched || self.device.special_on(target).is_some()
+    }
+
+    /// How often the rung names it.
+    fn mentions(&self, placed: &Placed) -> u32 {
+        let own = placed.rung.span;
+        let mentions = placed.chunk.mentions().iter().filter(|mention| {
+            mention.symbol == Symbol::Device(self.device)
+                && own.start <= mention.span.start
+                && mention.span.end <= own.end
+        });
+        mentions.count() as u32
+    }
+
+    /// `path` with the condition in the place of its contacts; nothing if it asks for an edge of the relay, which
+    /// remembers the last scan.
+    fn replaced(&self, path: &Path, condition: &Expression) -> Option<Path> {
+        let mut replaced = Path::default();
+        for gate in &path.gates {
+            replaced.gates.push(match gate {
+                Gate::Pass(expression) => Gate::Pass(self.within(expression, condition)?),
+                other => other.clone(),
+            });
+        }
+        for drive in &path.drives {
+            replaced.drives.push(match drive {
+                Drive::Path(inner) => Drive::Path(self.replaced(inner, condition)?),
+                Drive::Action(action) if action.terms.iter().any(|term| term.key() == self.key) => {
+                    return None;
+                }
+                other => other.clone(),
+            });
+        }
+        Some(replaced)
+    }
+
+    fn within(&self, expression: &Expression, condition: &Expression) -> Option<Expression> {
+        let all = |parts: &[Expression]| -> Option<Vec<Expression>> {
+            parts.iter().map(|part| self.within(part, condition)).collect()
+        };
+        Some(match expression {
+            Expression::Contact(contact) if self.is_of(contact) => match contact.test {
+                Test::Bit(ContactKind::NormallyOpen) => condition.clone(),
+                Test::Bit(ContactKind::NormallyClosed) => condition.negated(),
+                _ => return None,
+            },
+            Expression::And(parts) => Expression::and(all(parts)?),
+            Expression::Or(parts) => Expression::or(all(parts)?),
+            Expression::Not(part) => Expression::Not(Box::new(self.within(part, condition)?)),
+            leaf => leaf.clone(),
+        })
+    }
+
+    fn is_of(&self, contact: &Contact) -> bool {
+        contact.terms.iter().any(|term| term.key() == self.key)
+    }
+}

@@ -1,0 +1,175 @@
+//! Refactorings of rungs, in drawings and in FX lists: other words for what the program does already.
+//!
+//! Each looks at the paths of power around the cursor and proposes others. What is proposed is written, applied to a
+//! copy of the document, read again and compared with what stood there; only what is proved equal is offered. So the
+//! refactorings themselves need not know what depends on the order of reading and writing.
+
+mod neighbourhood;
+
+mod writing;
+
+mod proof;
+
+mod algebra;
+
+mod shorten;
+
+mod wide_first;
+
+mod factor;
+
+mod split;
+
+mod merge;
+
+mod de_morgan;
+
+mod extract;
+
+mod inline;
+
+use super::Style;
+use crate::document::{Document, ProjectView};
+use crate::logic::{Expression, Path};
+use crate::text::{Message, Span, TextEdit};
+use crate::translate::to_fx;
+use neighbourhood::Neighbourhood;
+use smol_str::SmolStr;
+
+/// A change of rungs that keeps what the program does.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Refactoring {
+    /// Its name in the protocol, with its group: `refactor.rewrite.rung.factor`.
+    pub kind: &'static str,
+    /// What it does, and what it costs or saves.
+    pub title: Message,
+    /// In order, none overlapping.
+    pub edits: Vec<TextEdit>,
+}
+
+/// Rungs in the place of others.
+struct Change {
+    /// The first rung that is replaced, by its number in the neighbourhood.
+    first: usize,
+    /// How many are.
+    count: usize,
+    /// What comes instead.
+    paths: Vec<Path>,
+}
+
+/// A refactoring that is not written yet.
+struct Proposal {
+    kind: &'static str,
+    title: Message,
+    /// In order of their rungs.
+    changes: Vec<Change>,
+    /// The key of the relay that only one side has; nothing else reads it.
+    relay: Option<SmolStr>,
+    /// Whether it is of use only if it saves steps.
+    must_save: bool,
+}
+
+impl Proposal {
+    /// `paths` for the rung at the cursor.
+    fn here(
+        kind: &'static str,
+        title: &'static str,
+        around: &Neighbourhood<'_>,
+        paths: Vec<Path>,
+    ) -> Proposal {
+        let change = Change { first: around.here, count: 1, paths };
+        Proposal { kind, title: Message::new(title), changes: vec![change], relay: None, must_save: false }
+    }
+
+    fn if_it_saves(self) -> Proposal {
+        Proposal { must_save: true, ..self }
+    }
+}
+
+/// Rungs with more contacts and actions are left alone: a menu that opens late helps nobody.
+const PARTS_MAX: usize = 400;
+
+/// The refactorings of the rung at the cursor, or of what is selected of it, that are proved.
+pub(super) fn at(view: &ProjectView<'_>, span: Span, style: Style) -> Vec<Refactoring> {
+    let document = view.here();
+    let Some(around) = Neighbourhood::at(document, span.start as usize) else { return Vec::new() };
+    if !is_bearable(around.path()) {
+        return Vec::new();
+    }
+    let proposals = [
+        shorten::propose(&around),
+        wide_first::propose(&around),
+        factor::propose(&around),
+        split::propose(&around),
+        merge::propose(&around),
+        extract::propose(&around, view, span),
+        inline::propose(&around, view),
+    ];
+    let proposals = proposals.into_iter().flatten().chain(de_morgan::propose(&around));
+    let mut refactorings: Vec<Refactoring> = Vec::new();
+    for proposal in proposals {
+        let Some(refactoring) = finished(&around, proposal, style) else { continue };
+        if refactorings.iter().all(|other| other.edits != refactoring.edits) {
+            refactorings.push(refactoring);
+        }
+    }
+    refactorings
+}
+
+fn finished(around: &Neighbourhood<'_>, proposal: Proposal, style: Style) -> Option<Refactoring> {
+    let steps = steps_saved(around, &proposal);
+    if proposal.must_save && steps.is_some_and(|saved| saved <= 0) {
+        return None;
+    }
+    let edits = writing::edits(around, &proposal.changes, style)?;
+    let is_proved = !edits.is_empty() && proof::holds(around, &proposal, &edits);
+    let title = || match steps {
+        None | Some(0) => proposal.title.clone(),
+        Some(saved) => Message::new("translating.detailed")
+            .with_messages("title", vec![proposal.title.clone()])
+            .with_messages("details", vec![saving(saved)]),
+    };
+    is_proved.then(|| Refactoring { kind: proposal.kind, title: title(), edits })
+}
+
+fn saving(saved: i64) -> Message {
+    let message = Message::new(match saved {
+        1 => "refactor.saves-step",
+        -1 => "refactor.costs-step",
+        2.. => "refactor.saves-steps",
+        _ => "refactor.costs-steps",
+    });
+    message.with("steps", saved.abs())
+}
+
+/// The program steps that a proposal saves; nothing where steps have no meaning.
+fn steps_saved(around: &Neighbourhood<'_>, proposal: &Proposal) -> Option<i64> {
+    let mut saved = 0;
+    for change in &proposal.changes {
+        for number in change.first..change.first + change.count {
+            saved += i64::from(around.steps(number)?);
+        }
+        for path in &change.paths {
+            saved -= i64::from(steps_of(path, around.document)?);
+        }
+    }
+    Some(saved)
+}
+
+/// The steps of a path in the shortest list.
+fn steps_of(path: &Path, document: &Document) -> Option<u32> {
+    if !document.target().is_fx() {
+        return None;
+    }
+    let lines = to_fx::lines(path, document.target()).ok()?;
+    Some(lines.iter().map(to_fx::Line::steps).fold(0, u32::saturating_add))
+}
+
+fn is_bearable(path: &Path) -> bool {
+    let mut conditions: Vec<&Expression> = Vec::new();
+    let mut actions = 0;
+    path.visit(&mut |_| actions += 1, &mut |condition| conditions.push(condition));
+    let mut contacts = 0;
+    conditions.iter().for_each(|condition| condition.visit(&mut |_| contacts += 1));
+    actions + contacts <= PARTS_MAX
+}

@@ -1,0 +1,127 @@
+//! The law of refactorings: what was written is read again, and does the same; everything around it stands as before.
+
+use super::Proposal;
+use super::neighbourhood::{Neighbourhood, Placed};
+use crate::document::{Document, Edit};
+use crate::ladder::CoilKind;
+use crate::logic::{Comparison, Deed, Effect, Formulas, Path, Run, Verdict, compare, equal};
+use crate::text::{Span, TextEdit};
+use smol_str::SmolStr;
+
+/// Whether the document with `edits` is the one without, but for the changed rungs, and these do the same.
+pub(super) fn holds(around: &Neighbourhood<'_>, proposal: &Proposal, edits: &[TextEdit]) -> bool {
+    proved(around, proposal, edits).is_some()
+}
+
+fn proved(around: &Neighbourhood<'_>, proposal: &Proposal, edits: &[TextEdit]) -> Option<()> {
+    let mut after = around.document.clone();
+    let reversed = edits.iter().rev();
+    let applied = reversed.map(|edit| Edit { range: Some(edit.span.range()), text: edit.text.clone() });
+    after.apply(&applied.collect::<Vec<_>>());
+    let (first, last) = (proposal.changes.first()?, proposal.changes.last()?);
+    let window = window(around, first.first, last.first + last.count)?;
+    let grown = after.len() as i64 - around.document.len() as i64;
+    let new_window = Span { start: window.start, end: u32::try_from(i64::from(window.end) + grown).ok()? };
+    let old = Placed::within(around.document, window);
+    let new = Placed::within(&after, new_window);
+    if !ends_chunk(&after, new_window) || !same_comments(&old, &new) {
+        return None;
+    }
+    // The numbers of changed rungs, counted from the window's first.
+    let skipped = around.rungs.iter().take_while(|placed| placed.start < window.start as usize).count();
+    let changes =
+        proposal.changes.iter().map(|change| (change.first - skipped, change.count, change.paths.len()));
+    let (mut old_at, mut new_at) = (0, 0);
+    for (first, count, instead) in changes.chain([(old.len(), 0, 0)]) {
+        while old_at < first {
+            same_rung(old.get(old_at)?, new.get(new_at)?)?;
+            (old_at, new_at) = (old_at + 1, new_at + 1);
+        }
+        if let (Some(before), Some(then)) = (old.get(old_at), new.get(new_at).filter(|_| instead > 0)) {
+            same_head(before, then)?;
+        }
+        (old_at, new_at) = (old_at + count, new_at + instead);
+    }
+    if new_at != new.len() {
+        return None;
+    }
+    let behind = old.len() - (last.first + last.count - skipped);
+    let changed = |placed: &[Placed]| -> Option<Vec<Path>> {
+        let rungs = placed.get(first.first - skipped..placed.len().checked_sub(behind)?)?;
+        let paths = rungs.iter().map(|placed| placed.rung.path.clone().ok());
+        Some(paths.collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
+    };
+    let (left, right) = (changed(&old)?, changed(&new)?);
+    let (left, right): (Vec<&Path>, Vec<&Path>) = (left.iter().collect(), right.iter().collect());
+    match &proposal.relay {
+        None => matches!(compare(&left, &right, &mut Formulas::default()), Comparison::Same { .. }),
+        Some(relay) => same_but_for(relay, &left, &right),
+    }
+    .then_some(())
+}
+
+/// The bytes of the chunks of these rungs, with a chunk before and one behind.
+fn window(around: &Neighbourhood<'_>, first: usize, end: usize) -> Option<Span> {
+    let (first, last) = (around.rungs.get(first)?, around.rungs.get(end.checked_sub(1)?)?);
+    let before = around.document.chunk_before(first.start).filter(|before| before.start < first.start);
+    let end = last.start + last.chunk.len();
+    let behind = around.document.chunk_at(end).filter(|behind| behind.start == end);
+    let end = behind.map_or(end, |behind| end + behind.chunk.len());
+    Some(Span::new(before.map_or(first.start, |before| before.start), end))
+}
+
+/// Whether chunks start where the window does and where it ends.
+fn ends_chunk(document: &Document, window: Span) -> bool {
+    let starts = |offset: u32| {
+        let at = document.chunk_at(offset as usize);
+        offset as usize == document.len() || at.is_some_and(|at| at.start == offset as usize)
+    };
+    starts(window.start) && starts(window.end)
+}
+
+fn same_rung(left: &Placed, right: &Placed) -> Option<()> {
+    same_head(left, right)?;
+    (left.text() == right.text()).then_some(())
+}
+
+/// The labels and the network of a rung.
+fn same_head(left: &Placed, right: &Placed) -> Option<()> {
+    (left.rung.labels == right.rung.labels && left.rung.network == right.rung.network).then_some(())
+}
+
+fn same_comments(left: &[Placed], right: &[Placed]) -> bool {
+    let comments = |placed: &[Placed]| {
+        let all = placed.iter().flat_map(|placed| {
+            let comments = placed.rung.comments.iter();
+            comments.map(|comment| comment.of(placed.chunk.text()).trim_end().to_string())
+        });
+        let mut all: Vec<String> = all.collect();
+        // Comments behind lines go with their lines.
+        all.sort_unstable();
+        all
+    };
+    comments(left) == comments(right)
+}
+
+/// Whether both do the same if nobody looks at the relay with this key, which one of them drives.
+fn same_but_for(relay: &SmolStr, left: &[&Path], right: &[&Path]) -> bool {
+    let mut formulas = Formulas::default();
+    let [left, right] = [left, right].map(|paths| {
+        let mut run = Run::new();
+        paths.iter().for_each(|path| run.path(path, &mut formulas));
+        run.effects.retain(|effect| !drives(effect, relay));
+        run
+    });
+    if left.effects.len() != right.effects.len() {
+        return false;
+    }
+    let mut pairs = left.effects.iter().zip(&right.effects);
+    pairs.all(|(left, right)| {
+        left.is_like(right) && equal(&mut formulas, left.guard, right.guard) == Verdict::Equal
+    })
+}
+
+fn drives(effect: &Effect<'_>, relay: &SmolStr) -> bool {
+    let [term] = &effect.action.terms[..] else { return false };
+    effect.action.deed == Deed::Coil(CoilKind::Plain) && term.key() == *relay
+}
