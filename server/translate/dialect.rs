@@ -22,7 +22,7 @@ mod to_devices;
 mod to_variables;
 
 use super::source::Program;
-use crate::logic::Refusal;
+use crate::logic::{Path, Refusal};
 use crate::target::{Device, DeviceKind, DirectAddress, Location, Model, Target, Width};
 use crate::document::Document;
 use super::To;
@@ -44,14 +44,20 @@ pub(super) fn target(document: &Document, to: To) -> &'static Target {
 }
 
 /// Puts the rungs of `program` into the words of `target`. Those that have none there are refused.
-pub(super) fn convert(document: &Document, target: &'static Target, program: &mut Program) {
+pub(super) fn convert(document: &Document, (to, target): (To, &'static Target), program: &mut Program) {
+    for source in &mut program.rungs {
+        let is_end = |path: &Path| to == To::Iec && to_variables::is_end(path);
+        if matches!(&source.rung.path, Ok(Some(path)) if is_end(path)) {
+            source.rung.path = Ok(None);
+        }
+    }
     if document.target().is_fx() == target.is_fx() {
         return;
     }
     let labels = to_devices::Labels::of(program);
     for source in &mut program.rungs {
         let converted = match (&source.rung.path, target.is_fx()) {
-            (Ok(Some(path)), false) => to_variables::path(path, document.target()),
+            (Ok(Some(path)), false) => to_variables::path(path, document.target()).map(Some),
             (Ok(Some(path)), true) => {
                 to_devices::path(path, target, document.scopes(), source.pou, &labels).map(Some)
             }

@@ -488,6 +488,10 @@ fn inverted(mut block: Block) -> Result<Block, Refusal> {
     {
         return Ok(Block::of(Contact { test, ..contact.clone() }));
     }
+    if let Expression::Not(inner) = block.condition {
+        block.condition = *inner;
+        return Ok(block);
+    }
     block.invert()?;
     Ok(block)
 }
