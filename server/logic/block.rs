@@ -53,7 +53,8 @@ impl Block {
         }
         let [left, right] = sides.map(Expression::clone);
         let [not_left, not_right] = sides.map(Expression::negated);
-        self.condition = Expression::or([Expression::and([left, not_right]), Expression::and([not_left, right])]);
+        self.condition =
+            Expression::or([Expression::and([left, not_right]), Expression::and([not_left, right])]);
         Ok(())
     }
 

@@ -28,7 +28,9 @@ pub(super) fn rungs(text: &str, tree: &LadderTree, target: &Target, declared: De
         let end = drawn.peek().map_or(u32::MAX, |rung| rung.span.end);
         match above.next_if(|comment| comment.start < end) {
             Some(comment) => match boxed(comment.of(text)) {
-                Some(list) => rungs.push(list_rung(list, comment, std::mem::take(&mut comments), target, declared)),
+                Some(list) => {
+                    rungs.push(list_rung(list, comment, std::mem::take(&mut comments), target, declared))
+                }
                 None => comments.push(comment),
             },
             None => {

@@ -370,7 +370,8 @@ fn is_lone(term: &Term) -> bool {
         Operand::Direct(address) => address.width == Width::Bit,
         // `T1.Q` is a bit by itself, `Word.3` is not.
         Operand::Variable => {
-            let is_part = |(_, last): (&str, &str)| last.starts_with(|c: char| c.is_ascii_digit() || c == '%');
+            let is_part =
+                |(_, last): (&str, &str)| last.starts_with(|c: char| c.is_ascii_digit() || c == '%');
             !term.text.contains(['[', '^']) && !term.text.rsplit_once('.').is_some_and(is_part)
         }
         _ => false,

@@ -3,8 +3,8 @@
 use super::source::{self, Source};
 use super::{To, Translation, from_boolean, page};
 use crate::document::Document;
-use crate::target::Target;
 use crate::logic::{Comparison, Formulas, Path, compare_but};
+use crate::target::Target;
 use crate::text::{Message, folded};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;

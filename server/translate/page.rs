@@ -85,12 +85,7 @@ pub(super) fn write(
     Some(Translation { text: page.text, rungs, helpers })
 }
 
-fn body(
-    source: &Source,
-    (to, target): (To, &Target),
-    options: &Options,
-    helpers: &mut Helpers,
-) -> Body {
+fn body(source: &Source, (to, target): (To, &Target), options: &Options, helpers: &mut Helpers) -> Body {
     let kept = |reason: Message| Body::Kept(source.rung.span.of(source.chunk.text()).to_string(), reason);
     let path = match &source.rung.path {
         Ok(None) => return Body::Nothing,

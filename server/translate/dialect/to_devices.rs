@@ -11,6 +11,11 @@ use crate::text::{Span, folded};
 use rustc_hash::FxHashMap;
 use smol_str::{SmolStr, ToSmolStr, format_smolstr};
 
+/// The instance and the member that a variable such as `T0.Q` names.
+fn member(term: &Term) -> Option<(&str, &str)> {
+    (term.operand == Operand::Variable).then(|| term.text.split_once('.')).flatten()
+}
+
 /// The pointers of the FX family for the labels of a program, by folded name.
 pub(super) struct Labels(FxHashMap<SmolStr, SmolStr>);
 
@@ -65,12 +70,14 @@ struct Converter<'a> {
 impl Converter<'_> {
     /// A path from the left rail. Behind a timer or counter the power is its contact, which begins a path of its own.
     fn whole(&self, path: &Path) -> Result<Path, Refusal> {
-        let through = path.gates.iter().rposition(|gate| {
-            matches!(gate, Gate::Through(action) if self.pulsed(action, path).is_none())
-        });
+        let through = path
+            .gates
+            .iter()
+            .rposition(|gate| matches!(gate, Gate::Through(action) if self.pulsed(action, path).is_none()));
         let Some(through) = through else { return self.path(path) };
         let Gate::Through(action) = &path.gates[through] else { return Err(Refusal::NoCounterpart) };
-        let before = Path { gates: path.gates[..through].to_vec(), drives: vec![Drive::Action(action.clone())] };
+        let before =
+            Path { gates: path.gates[..through].to_vec(), drives: vec![Drive::Action(action.clone())] };
         let output = without(action.power_out())?;
         let contact =
             Contact { test: Test::Bit(ContactKind::NormallyOpen), terms: vec![output], span: action.span };
@@ -108,7 +115,9 @@ impl Converter<'_> {
 
     /// The coil of PLS or PLF that the detector at the end of the gates of `path` and the output behind it are.
     fn pulsed(&self, detector: &Action, path: &Path) -> Option<Action> {
-        let (Deed::Call(call), [Drive::Action(coil)]) = (detector.deed, &path.drives[..]) else { return None };
+        let (Deed::Call(call), [Drive::Action(coil)]) = (detector.deed, &path.drives[..]) else {
+            return None;
+        };
         let (kind, prefix) = match call.block.name {
             "R_TRIG" => (CoilKind::Rising, "PLS_"),
             "F_TRIG" => (CoilKind::Falling, "PLF_"),
@@ -120,7 +129,7 @@ impl Converter<'_> {
         let named = instance.text.get(..prefix.len())?.eq_ignore_ascii_case(prefix)
             && instance.text[prefix.len()..].eq_ignore_ascii_case(&relay.text);
         let terms = vec![self.bit(relay).ok()?];
-        (is_last && named).then(|| Action { deed: Deed::Coil(kind), terms, span: coil.span })
+        (is_last && named).then_some(Action { deed: Deed::Coil(kind), terms, span: coil.span })
     }
 
     fn expression(&self, expression: &Expression) -> Result<Expression, Refusal> {
@@ -158,7 +167,7 @@ impl Converter<'_> {
 
     fn bit(&self, term: &Term) -> Result<Term, Refusal> {
         use DeviceKind::{C, M, S, T, X, Y};
-        if let Some((instance, member)) = term.text.split_once('.') {
+        if let Some((instance, member)) = member(term) {
             let device = without(self.named(instance).filter(|device| matches!(device.kind, T | C)))?;
             return without(member.eq_ignore_ascii_case("Q").then(|| self.term(device, term.span)));
         }
@@ -171,7 +180,7 @@ impl Converter<'_> {
             let LiteralValue::Integer(value) = literal.value else { return Err(Refusal::NoCounterpart) };
             return self.constant(without(i16::try_from(value).ok())?.into(), term.span);
         }
-        if let Some((instance, member)) = term.text.split_once('.') {
+        if let Some((instance, member)) = member(term) {
             let device = without(self.named(instance).filter(|device| device.kind == DeviceKind::C))?;
             return without(member.eq_ignore_ascii_case("CV").then(|| self.term(device, term.span)));
         }
@@ -191,9 +200,9 @@ impl Converter<'_> {
     fn device(&self, term: &Term) -> Option<Device> {
         let device = match term.operand {
             Operand::Direct(address) => device_at(address),
-            Operand::Variable => self.named(&term.text).or_else(|| {
-                device_at(self.scopes.variable(self.pou, &term.text)?.address?)
-            }),
+            Operand::Variable => self
+                .named(&term.text)
+                .or_else(|| device_at(self.scopes.variable(self.pou, &term.text)?.address?)),
             _ => None,
         };
         device.filter(|device| device.range_on(self.target).is_some())
@@ -229,13 +238,17 @@ impl Converter<'_> {
         let own = self.term(device, instance.span);
         let arguments = call.arguments(terms);
         match (call.block.name, device.kind, call.power_in(), &arguments[..]) {
-            ("CTU", DeviceKind::C, "R", []) if device.number < 200 => Ok((Deed::Coil(CoilKind::Reset), vec![own])),
+            ("CTU", DeviceKind::C, "R", []) if device.number < 200 => {
+                Ok((Deed::Coil(CoilKind::Reset), vec![own]))
+            }
             ("CTU", DeviceKind::C, "CU", [preset]) if preset.name == "PV" && device.number < 200 => {
                 Ok((Deed::Coil(CoilKind::Plain), vec![own, self.word(&preset.term)?]))
             }
             ("TON", DeviceKind::T, "IN", [preset]) if preset.name == "PT" => {
                 let range = without(device.range_on(self.target).filter(|range| !range.latched))?;
-                let Operand::Literal(literal) = preset.term.operand else { return Err(Refusal::NoCounterpart) };
+                let Operand::Literal(literal) = preset.term.operand else {
+                    return Err(Refusal::NoCounterpart);
+                };
                 let LiteralValue::Time(time) = literal.value else { return Err(Refusal::NoCounterpart) };
                 let unit = i64::from(range.timer_unit_ms) * 1_000_000;
                 let steps = without((unit > 0 && time % unit == 0).then(|| time / unit))?;

@@ -124,7 +124,9 @@ impl Converter<'_> {
     fn action(&self, action: &Action) -> Result<Drive, Refusal> {
         let span = action.span;
         match (action.deed, &action.terms[..]) {
-            (Deed::Coil(CoilKind::Plain), [timed, preset]) => self.preset(timed, preset, span).map(Drive::Action),
+            (Deed::Coil(CoilKind::Plain), [timed, preset]) => {
+                self.preset(timed, preset, span).map(Drive::Action)
+            }
             (Deed::Coil(kind), [term]) => {
                 let Operand::Device(device) = term.operand else { return Err(Refusal::NoCounterpart) };
                 match (kind, device.kind) {
@@ -150,7 +152,9 @@ impl Converter<'_> {
     fn preset(&self, device: &Term, preset: &Term, span: Span) -> Result<Action, Refusal> {
         let Operand::Device(device) = device.operand else { return Err(Refusal::NoCounterpart) };
         match (device.kind, preset.operand) {
-            (DeviceKind::T, Operand::Constant { value: Constant::Decimal(steps), index: None }) if steps >= 0 => {
+            (DeviceKind::T, Operand::Constant { value: Constant::Decimal(steps), index: None })
+                if steps >= 0 =>
+            {
                 let time = duration(without(steps.checked_mul(self.timer_unit(device)?))?);
                 let preset = Term::new(Operand::read(&time, Model::Iec), &time, preset.span);
                 call("TON", "IN", &device.to_smolstr(), Some(("PT", preset)), span)

@@ -1,8 +1,8 @@
 //! Draws a function block on the power line.
 
 use super::Planner;
-use crate::ladder::{Block, Element, ElementKind, Pin, PinWire};
 use crate::ladder::reduce::Shape;
+use crate::ladder::{Block, Element, ElementKind, Pin, PinWire};
 use crate::logic::{Action, Call};
 use crate::target::iec::Parameter;
 use crate::text::{Message, Span, Spanned};
