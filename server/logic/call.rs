@@ -45,9 +45,9 @@ impl fmt::Debug for Call {
 }
 
 impl Call {
-    /// A call of `instance` with its terms in order, where power drives the input called `power`. `arguments` gives for each pin its formal name in any letter
-    /// case, whether it is an output, and its operand. Nothing if the block has no such pin, or one is there twice, or
-    /// one of them is the input or output of the power.
+    /// A call of `instance` with its terms in order, where power drives the input called `power`. `arguments` gives
+    /// for each other pin its formal name in any letter case, whether it is an output, and its operand. Nothing if the
+    /// block has no such pin, or one is there twice, or power drives it.
     pub fn new(
         block: &'static FunctionBlock,
         power: &str,

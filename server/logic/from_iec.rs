@@ -2,28 +2,42 @@
 //!
 //! A rung begins with a load outside of parentheses, with an unconditional call, jump or return, or with a label before
 //! one of these, and goes on for as long as its current result is used: `LD a / ST y / AND b / ST z` is one rung with
-//! two outputs. A chunk of the document can hold several, for it goes on up to the next load. A call of a function
-//! block and the load of its output behind it are one rung, `--[TON]--( )`, unless a comment or a blank line stands between them
-//! or the output is used in another way than to go on from it. Calls of R_TRIG and F_TRIG are a part of the rung behind
-//! them if nobody else asks for their output: an edge contact.
+//! two outputs. A chunk of the document can hold several, for it goes on up to the next load. Three things make one
+//! rung of several loads, unless a comment or a blank line stands between them:
+//!
+//! - A call of a function block and the load of its output, `--[TON]--( )`, if the output is only gone on from.
+//! - Calls of R_TRIG and F_TRIG and the rung behind them, if nobody else asks for their output: edge contacts.
+//! - A helper `Held1` that is stored and loaded again: the rung branches there.
 
 mod reader;
 
 use self::reader::Reader;
-use super::{Declared, Path, Refusal, Rung};
+use super::{Declared, Path, Refusal, Rung, Term};
 use crate::document::{DeclaredType, Scopes};
-use crate::il::iec::{Condition, IecTree, Item, ItemKind, ListForm};
+use crate::il::iec::{Condition, IecTree, Item, ItemKind, ListForm, SectionKind};
 use crate::target::Operand;
 use crate::target::Width;
 use crate::target::iec::{ElementaryType, FunctionBlock, LiteralValue, OperatorRole};
 use crate::text::{Severity, Span, folded};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 use std::ops::Range;
 
 /// The rungs of a piece of a file.
 pub(super) fn rungs(text: &str, tree: &IecTree, declared: Declared<'_>) -> Vec<Rung> {
-    let source = Source::new(text, tree, declared.scopes, declared.pous);
+    let mut source = Source::new(text, tree, declared.scopes, declared.pous);
+    let found = read_all(&source);
+    let shown = source.shown_helpers(&found);
+    if shown.is_empty() {
+        return found.into_iter().map(|(_, rung)| rung).collect();
+    }
+    source.shown.extend(shown);
+    read_all(&source).into_iter().map(|(_, rung)| rung).collect()
+}
+
+/// All rungs, each with its program unit.
+fn read_all(source: &Source<'_>) -> Vec<(Option<usize>, Rung)> {
+    let (text, tree) = (source.text, source.tree);
     let mut comments = Comments::of(text, tree);
     let mut rungs = Vec::new();
     let mut first = 0;
@@ -36,14 +50,9 @@ pub(super) fn rungs(text: &str, tree: &IecTree, declared: Declared<'_>) -> Vec<R
     let rest = comments.rest();
     if !source.ends_declared && !rest.is_empty() {
         let span = Span::at(text.len());
-        rungs.push(Rung {
-            labels: Vec::new(),
-            network: None,
-            comments: rest,
-            span,
-            is_list: true,
-            path: Ok(None),
-        });
+        let path = Ok(None);
+        let rung = Rung { labels: Vec::new(), network: None, comments: rest, span, is_list: true, path };
+        rungs.push((None, rung));
     }
     rungs
 }
@@ -165,6 +174,8 @@ struct Source<'a> {
     detectors: FxHashMap<(Option<usize>, SmolStr), Detector>,
     /// The places of mistakes, in order.
     mistakes: Vec<u32>,
+    /// Helpers that are used in other ways than to keep the power of a rung, by program unit and folded name.
+    shown: FxHashSet<(Option<usize>, SmolStr)>,
 }
 
 impl<'a> Source<'a> {
@@ -185,6 +196,7 @@ impl<'a> Source<'a> {
             ends_declared: tree.items.last().is_some_and(|item| declares(&item.kind)),
             detectors: FxHashMap::default(),
             mistakes,
+            shown: FxHashSet::default(),
         };
         let starts = source.cut(pous);
         source.find_detectors(&starts, pous);
@@ -265,12 +277,24 @@ impl<'a> Source<'a> {
     fn may_go_on(&self, index: usize, pou: Option<usize>) -> bool {
         let [before, item] = [index.wrapping_sub(1), index].map(|index| self.tree.items.get(index));
         let (Some(before), Some(item)) = (before, item) else { return false };
+        let helper = self.helper_loaded(index);
+        if let Some(name) = &helper
+            && !self.is_helper(pou, name)
+        {
+            return false;
+        }
         let between = Span { start: before.span.end, end: item.span.start.max(before.span.end) };
         let is_commented = {
             let after = self.tree.comments.partition_point(|comment| comment.start < between.start);
             self.tree.comments.get(after).is_some_and(|comment| comment.start < between.end)
                 || between.of(self.text).matches('\n').count() > 1
         };
+        if is_commented {
+            return false;
+        }
+        if helper.is_some() {
+            return true;
+        }
         let ItemKind::Call { condition: Condition::Always, callee: Some(callee), .. } = before.kind else {
             return false;
         };
@@ -291,7 +315,53 @@ impl<'a> Source<'a> {
         };
         let is_load = matches!(item.kind, ItemKind::Operation { .. });
         let is_call = matches!(item.kind, ItemKind::Call { .. });
-        !is_commented && (asks || detects && (is_load || is_call))
+        asks || detects && (is_load || is_call)
+    }
+
+    /// The helper, by its folded name, that is loaded at `index`, or behind the calls there.
+    fn helper_loaded(&self, index: usize) -> Option<SmolStr> {
+        let rest = self.tree.items.get(index..)?.iter().take(JOINED_MAX);
+        let load = rest.into_iter().find(|item| !matches!(item.kind, ItemKind::Call { .. }))?;
+        let ItemKind::Operation { operation, operand: Some(id) } = load.kind else { return None };
+        let name = self.tree.operand(id).span.of(self.text);
+        let loads = operation.operator.role == OperatorRole::Load && !operation.negated && load.depth == 0;
+        (loads && is_helper_name(name)).then(|| folded(name))
+    }
+
+    /// Whether the variable with this folded name keeps the power of a rung and nothing else: a translation from a
+    /// drawing made it.
+    fn is_helper(&self, pou: Option<usize>, name: &str) -> bool {
+        is_helper_name(name)
+            && self.scopes.variable(pou, name).is_some_and(|variable| {
+                variable.declared == DeclaredType::Elementary(ElementaryType::Bool)
+                    && variable.section == SectionKind::Local
+                    && variable.address.is_none()
+            })
+            && !self.shown.contains(&(pou, SmolStr::from(name)))
+    }
+
+    /// The helpers that `rungs` show as variables although they also keep power: for these nothing is left out.
+    fn shown_helpers(&self, rungs: &[(Option<usize>, Rung)]) -> Vec<(Option<usize>, SmolStr)> {
+        let mut shown = Vec::new();
+        for (pou, rung) in rungs {
+            let Ok(Some(path)) = &rung.path else { continue };
+            let found = std::cell::RefCell::new(&mut shown);
+            let mut look = |term: &Term| {
+                if is_helper_name(&term.text) && self.is_helper(*pou, &folded(&term.text)) {
+                    found.borrow_mut().push((*pou, folded(&term.text)));
+                }
+            };
+            let look = std::cell::RefCell::new(&mut look);
+            path.visit(
+                &mut |action| action.terms.iter().for_each(|term| (look.borrow_mut())(term)),
+                &mut |part| {
+                    part.visit(&mut |contact| {
+                        contact.terms.iter().for_each(|term| (look.borrow_mut())(term))
+                    });
+                },
+            );
+        }
+        shown
     }
 
     /// Whether item `index` stores the power of the call that follows it: `ST T1.IN` before `CAL T1`.
@@ -373,7 +443,7 @@ impl<'a> Source<'a> {
     }
 
     /// Reads segments, joined where they make one rung.
-    fn read(&self, segments: &[Segment], comments: &mut Comments, rungs: &mut Vec<Rung>) {
+    fn read(&self, segments: &[Segment], comments: &mut Comments, rungs: &mut Vec<(Option<usize>, Rung)>) {
         let mut at = 0;
         while let Some(first) = segments.get(at) {
             let more =
@@ -387,14 +457,15 @@ impl<'a> Source<'a> {
             let items = &self.tree.items[first.items.start..segments[at + count - 1].items.end];
             let label = || first.labels.last().copied().unwrap_or_default();
             let span = items.iter().map(|item| item.span).reduce(Span::to).unwrap_or_else(label);
-            rungs.push(Rung {
+            let rung = Rung {
                 labels: first.labels.iter().map(|label| label.of(self.text).into()).collect(),
                 network: None,
                 comments: comments.up_to(end_of_line(self.text, span.end as usize)),
                 span,
                 is_list: true,
                 path,
-            });
+            };
+            rungs.push((first.pou, rung));
             at += count;
         }
     }
@@ -415,7 +486,18 @@ impl<'a> Source<'a> {
 }
 
 /// So many segments are tried as one rung.
-const JOINED_MAX: usize = 16;
+const JOINED_MAX: usize = 64;
+
+/// `Held1`: so the translation from drawings names the helpers that keep power.
+fn is_helper_name(name: &str) -> bool {
+    let number = name.get(..HELPER.len()).filter(|stem| stem.eq_ignore_ascii_case(HELPER));
+    number.is_some()
+        && name.len() > HELPER.len()
+        && name[HELPER.len()..].bytes().all(|byte| byte.is_ascii_digit())
+}
+
+/// What the names of helpers begin with that keep the power of a rung.
+pub const HELPER: &str = "Held";
 
 /// What an operand can be.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

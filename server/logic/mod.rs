@@ -25,7 +25,7 @@ mod builder;
 mod from_fx;
 
 mod from_iec;
-pub use from_iec::declarations;
+pub use from_iec::{HELPER, declarations};
 
 mod from_ladder;
 pub use from_ladder::of_graph;

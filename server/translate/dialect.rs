@@ -7,8 +7,8 @@
 //! | `M20` | `M20 AT %MX2.4 : BOOL` |
 //! | `S20` | `S20 AT %MX1102.4 : BOOL`, from byte 1,100 on, behind the auxiliary relays |
 //! | `D20` | `D20 AT %MW1020 : INT`, from word 1,000 on, behind the states |
-//! | `T0` with `OUT T0 K50` | the instance `T0 : TON`, called with `PT := T#5s` by the unit of the timer; its contact is `T0.Q` |
-//! | `C0` with `OUT C0 K10` | the instance `C0 : CTU`, called with `PV := 10`; its contact is `C0.Q`, its value `C0.CV` |
+//! | `OUT T0 K50` | the instance `T0 : TON`, called with `PT := T#5s` by the unit of the timer; contact `T0.Q` |
+//! | `OUT C0 K10` | the instance `C0 : CTU`, called with `PV := 10`; contact `C0.Q`, value `C0.CV` |
 //! | `RST C0` | `R C0`, a call of the block with this input alone |
 //! | `PLS M0`, `PLF M0` | the instance `PLS_M0 : R_TRIG`, `PLF_M0 : F_TRIG`, whose output is stored in `M0` |
 //! | `CJ P0` | `JMPC P0` |
@@ -24,7 +24,7 @@ mod to_variables;
 use super::To;
 use super::source::Program;
 use crate::document::Document;
-use crate::logic::Refusal;
+use crate::logic::{Path, Refusal};
 use crate::target::{Device, DeviceKind, DirectAddress, Location, Model, Target, Width};
 
 /// The first byte of the states, in bits, and the first word of the data registers.
@@ -44,14 +44,20 @@ pub(super) fn target(document: &Document, to: To) -> &'static Target {
 }
 
 /// Puts the rungs of `program` into the words of `target`. Those that have none there are refused.
-pub(super) fn convert(document: &Document, target: &'static Target, program: &mut Program) {
+pub(super) fn convert(document: &Document, (to, target): (To, &'static Target), program: &mut Program) {
+    for source in &mut program.rungs {
+        let is_end = |path: &Path| to == To::Iec && to_variables::is_end(path);
+        if matches!(&source.rung.path, Ok(Some(path)) if is_end(path)) {
+            source.rung.path = Ok(None);
+        }
+    }
     if document.target().is_fx() == target.is_fx() {
         return;
     }
     let labels = to_devices::Labels::of(program);
     for source in &mut program.rungs {
         let converted = match (&source.rung.path, target.is_fx()) {
-            (Ok(Some(path)), false) => to_variables::path(path, document.target()),
+            (Ok(Some(path)), false) => to_variables::path(path, document.target()).map(Some),
             (Ok(Some(path)), true) => {
                 to_devices::path(path, target, document.scopes(), source.pou, &labels).map(Some)
             }

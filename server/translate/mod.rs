@@ -133,7 +133,7 @@ pub fn translate_unless(
 ) -> Option<Translation> {
     let mut program = source::program(document, part);
     let target = dialect::target(document, to);
-    dialect::convert(document, target, &mut program);
+    dialect::convert(document, (to, target), &mut program);
     let is_whole = part.is_none();
     let mut translation = page::write(document, &program, (to, target), options, is_whole, is_cancelled)?;
     if options.proves {

@@ -7,7 +7,7 @@
 //! block is called with its first input stored, and its first output is loaded.
 
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
-use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
+use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, HELPER, Path, Term, Test};
 use crate::text::{Message, folded};
 use rustc_hash::FxHashSet;
 use smol_str::{SmolStr, format_smolstr};
@@ -58,7 +58,7 @@ impl Helpers {
     fn held(&mut self, depth: usize) -> SmolStr {
         let own = |helper: &&Helper| helper.type_name == "BOOL" && helper.pou == self.pou;
         let known = self.declared.iter().filter(own).nth(depth).map(|helper| helper.name.clone());
-        known.unwrap_or_else(|| self.declare("Held", "BOOL"))
+        known.unwrap_or_else(|| self.declare(HELPER, "BOOL"))
     }
 }
 
@@ -68,7 +68,7 @@ pub fn lines(path: &Path, helpers: &mut Helpers) -> Result<Vec<String>, Message>
     let leaves = |action: &&Action| matches!(action.deed, Deed::Jump | Deed::Return);
     // A drawing does first what stands beside a jump, a list does not.
     if let Some((_, before)) = actions.split_last()
-        && before.iter().any(|action| leaves(action))
+        && before.iter().any(leaves)
     {
         return Err(Message::new("translate.jump-first"));
     }

@@ -11,7 +11,7 @@ use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, R
 use crate::target::Role;
 use crate::target::iec::{FunctionBlock, OperatorRole};
 use crate::text::{Span, folded};
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 use std::ops::Range;
 
@@ -32,6 +32,15 @@ struct Frame {
     before: Value,
 }
 
+/// A detector that is an edge contact.
+#[derive(Clone, Copy)]
+struct Edge {
+    operand: OperandId,
+    kind: ContactKind,
+    /// The call.
+    called_at: usize,
+}
+
 pub(super) struct Reader<'s, 'a> {
     source: &'s Source<'a>,
     pou: Option<usize>,
@@ -40,14 +49,19 @@ pub(super) struct Reader<'s, 'a> {
     value: Value,
     frames: Vec<Frame>,
     /// Detectors that are edge contacts here, by folded name.
-    edges: FxHashMap<SmolStr, (OperandId, ContactKind)>,
-    /// The keys of what was driven.
-    driven: FxHashSet<SmolStr>,
+    edges: FxHashMap<SmolStr, Edge>,
+    /// The keys of what was driven, with the number of the last instruction that did it.
+    driven: FxHashMap<SmolStr, usize>,
+    /// The places whose power is kept, by the folded names of the helpers that keep it.
+    held: FxHashMap<SmolStr, usize>,
+    /// The instruction that is read, and the end of those of the rung.
+    at: usize,
+    end: usize,
     /// The instance whose power was just stored, folded.
     fed: Option<SmolStr>,
     /// Whether the current result is the inverse of the power.
     is_inverted: bool,
-    /// Whether a jump or a call ends the rung.
+    /// Whether a jump ends the rung.
     has_ended: bool,
 }
 
@@ -62,7 +76,10 @@ impl<'s, 'a> Reader<'s, 'a> {
             value: Value::Nothing,
             frames: Vec::new(),
             edges: FxHashMap::default(),
-            driven: FxHashSet::default(),
+            driven: FxHashMap::default(),
+            held: FxHashMap::default(),
+            at: 0,
+            end: 0,
             fed: None,
             is_inverted: false,
             has_ended: false,
@@ -71,11 +88,13 @@ impl<'s, 'a> Reader<'s, 'a> {
 
     pub(super) fn read(mut self, items: Range<usize>) -> Result<Path, Refusal> {
         let mut index = items.start;
+        self.end = items.end;
         while index < items.end {
             if self.has_ended {
                 return Err(Refusal::NotBoolean);
             }
             let item = self.source.item(index);
+            self.at = index;
             index += 1;
             match item.kind {
                 ItemKind::Operation { operation, operand } => {
@@ -135,13 +154,17 @@ impl<'s, 'a> Reader<'s, 'a> {
         let id = operand.ok_or(Refusal::Unreadable)?;
         let kind = if operation.negated { ContactKind::NormallyClosed } else { ContactKind::NormallyOpen };
         match operator.role {
-            OperatorRole::Load if matches!(self.value, Value::Nothing) => {
+            OperatorRole::Load if self.frames.is_empty() && self.goes_back(id)? => Ok(()),
+            OperatorRole::Load
+                if matches!(self.value, Value::Nothing)
+                    && (self.builder.is_empty() || !self.frames.is_empty()) =>
+            {
                 self.value = Value::Loaded(id, kind);
                 Ok(())
             }
             OperatorRole::Combine { comparison: true } => self.compare(operator.name, id, item.span),
             OperatorRole::Combine { comparison: false } => {
-                let contact = Block::of(self.contact(id, kind)?);
+                let contact = self.condition(id, kind)?;
                 self.combine(operator.name, contact)
             }
             OperatorRole::Store | OperatorRole::Latch { .. } if self.frames.is_empty() => {
@@ -157,6 +180,9 @@ impl<'s, 'a> Reader<'s, 'a> {
                 if self.source.feeds(index) {
                     return self.feed(id, operation.negated);
                 }
+                if operator.role == OperatorRole::Store && self.holds(id, operation.negated)? {
+                    return Ok(());
+                }
                 let coil = match operator.role {
                     OperatorRole::Latch { on: true } => CoilKind::Set,
                     OperatorRole::Latch { on: false } => CoilKind::Reset,
@@ -168,7 +194,7 @@ impl<'s, 'a> Reader<'s, 'a> {
                     self.invert()?;
                 }
                 let term = self.bit(id)?;
-                self.driven.insert(term.key());
+                self.driven.insert(term.key(), self.at);
                 let action = Action { deed: Deed::Coil(coil), terms: vec![term], span: item.span };
                 self.builder.drive(action);
                 Ok(())
@@ -192,7 +218,7 @@ impl<'s, 'a> Reader<'s, 'a> {
         let call = Call::new(block, input, term, std::iter::empty::<(&str, bool, Term)>());
         let (call, terms) = call.filter(|(call, _)| call.is_input_operator()).ok_or(Refusal::NotBoolean)?;
         self.builder.drive(Action { deed: Deed::Call(call), terms, span });
-        self.has_ended = true;
+        self.value = Value::Nothing;
         Ok(())
     }
 
@@ -291,7 +317,7 @@ impl<'s, 'a> Reader<'s, 'a> {
     fn block(&self, value: Value) -> Result<Block, Refusal> {
         match value {
             Value::Block(block) => Ok(block),
-            Value::Loaded(id, kind) => self.contact(id, kind).map(Block::of),
+            Value::Loaded(id, kind) => self.condition(id, kind),
             Value::Nothing | Value::Power => Err(Refusal::NotBoolean),
         }
     }
@@ -359,6 +385,9 @@ impl<'s, 'a> Reader<'s, 'a> {
         let block = self.source.block(self.pou, instance).ok_or(Refusal::Element)?;
         let parameters = parameters.of(&self.source.tree.parameters);
         let fed = self.fed.take();
+        if fed.is_none() && self.is_edge(instance, parameters)? {
+            return Ok(false);
+        }
         if fed.as_ref().is_some_and(|fed| *fed != folded(instance)) || fed.is_none() && !self.is_fresh() {
             return Err(Refusal::NotBoolean);
         }
@@ -375,12 +404,6 @@ impl<'s, 'a> Reader<'s, 'a> {
         }
         match (power, fed) {
             (Some(id), None) => {
-                let is_edge = arguments.is_empty() && self.source.is_edge(self.pou, instance, self.span);
-                if is_edge && let Some(kind) = edge_kind(block.name) {
-                    self.bit(id)?;
-                    self.edges.insert(folded(instance), (id, kind));
-                    return Ok(false);
-                }
                 let contact = self.contact(id, ContactKind::NormallyOpen)?;
                 self.builder.pass(Expression::Contact(contact)).ok_or(Refusal::TooDeep)?;
             }
@@ -390,12 +413,12 @@ impl<'s, 'a> Reader<'s, 'a> {
         let power_in = block.inputs.first().map_or("", |pin| pin.name);
         let instance_term = Term::new(called.value, instance, called.span);
         let (call, terms) = Call::new(block, power_in, instance_term, arguments).ok_or(Refusal::Element)?;
-        self.driven.extend(call.changes(&terms).iter().map(Term::key));
+        self.driven.extend(call.changes(&terms).iter().map(|term| (term.key(), self.at)));
         let action = Action { deed: Deed::Call(call), terms, span: item.span };
         match next.and_then(|next| self.loads(next, &output_of(block, instance))) {
             None => {
                 self.builder.drive(action);
-                self.has_ended = true;
+                self.value = Value::Nothing;
                 Ok(false)
             }
             Some(negated) => {
@@ -409,6 +432,69 @@ impl<'s, 'a> Reader<'s, 'a> {
         }
     }
 
+    /// Whether a call is that of a detector which is an edge contact here.
+    fn is_edge(&mut self, instance: &str, parameters: &[Parameter]) -> Result<bool, Refusal> {
+        let block = self.source.block(self.pou, instance).ok_or(Refusal::Element)?;
+        let ([parameter], Some(kind)) = (parameters, edge_kind(block.name)) else { return Ok(false) };
+        if !self.frames.is_empty() || !self.source.is_edge(self.pou, instance, self.span) {
+            return Ok(false);
+        }
+        let (name, is_output, operand) = argument(parameter, self.source.text, || Some("CLK"))?;
+        if is_output || !name.eq_ignore_ascii_case("CLK") {
+            return Ok(false);
+        }
+        self.bit(operand)?;
+        self.edges.insert(folded(instance), Edge { operand, kind, called_at: self.at });
+        Ok(true)
+    }
+
+    /// Keeps the power in a helper that a load in the same rung gives back; tells whether it was that.
+    fn holds(&mut self, id: OperandId, negated: bool) -> Result<bool, Refusal> {
+        let name = folded(self.source.tree.operand(id).span.of(self.source.text));
+        if negated || !self.source.is_helper(self.pou, &name) || !self.is_loaded_later(&name) {
+            return Ok(false);
+        }
+        self.invert()?;
+        self.builder.keep();
+        self.held.insert(name, self.builder.place());
+        Ok(true)
+    }
+
+    /// Goes back to the power that a helper keeps; tells whether it was that.
+    fn goes_back(&mut self, id: OperandId) -> Result<bool, Refusal> {
+        let name = folded(self.source.tree.operand(id).span.of(self.source.text));
+        let ItemKind::Operation { operation, .. } = self.source.item(self.at).kind else { return Ok(false) };
+        let Some(place) = self.held.get(&name).copied().filter(|_| !operation.negated) else {
+            return Ok(false);
+        };
+        let for_good = !self.is_loaded_later(&name);
+        if for_good {
+            self.held.remove(&name);
+        }
+        if matches!(self.value, Value::Loaded(..) | Value::Block(_)) {
+            return Err(Refusal::WithoutOutput);
+        }
+        self.builder.back_to(place, for_good).ok_or(Refusal::WithoutOutput)?;
+        self.is_inverted = false;
+        self.value = Value::Power;
+        Ok(true)
+    }
+
+    /// Whether the next mention of a helper in the rung loads it.
+    fn is_loaded_later(&self, name: &str) -> bool {
+        let rest = (self.at + 1..self.end).map(|index| self.source.item(index));
+        let mut mentions = rest.filter_map(|item| match item.kind {
+            ItemKind::Operation { operation, operand: Some(id) } => {
+                let operand = self.source.tree.operand(id).span.of(self.source.text);
+                operand.eq_ignore_ascii_case(name).then_some((operation, item.depth))
+            }
+            _ => None,
+        });
+        mentions.next().is_some_and(|(operation, depth)| {
+            operation.operator.role == OperatorRole::Load && !operation.negated && depth == 0
+        })
+    }
+
     /// Whether `item` loads `word`, and if so whether negated.
     fn loads(&self, item: &Item, word: &str) -> Option<bool> {
         let ItemKind::Operation { operation, operand: Some(id) } = item.kind else { return None };
@@ -417,16 +503,29 @@ impl<'s, 'a> Reader<'s, 'a> {
         is_it.then_some(operation.negated)
     }
 
+    /// The condition that an operand is, or its inverse.
+    fn condition(&self, id: OperandId, kind: ContactKind) -> Result<Block, Refusal> {
+        let contact = self.contact(id, kind)?;
+        let is_edge = contact.test.opposite().is_none();
+        let mut block = Block::of(contact);
+        if is_edge && kind == ContactKind::NormallyClosed {
+            block.invert()?;
+        }
+        Ok(block)
+    }
+
+    /// The contact that an operand is; that of an edge has no opposite.
     fn contact(&self, id: OperandId, kind: ContactKind) -> Result<Contact, Refusal> {
         let operand = self.source.tree.operand(id);
         let word = operand.span.of(self.source.text);
         if let Some((instance, _)) = word.rsplit_once('.')
-            && let Some((id, edge)) = self.edges.get(&folded(instance))
+            && let Some(edge) = self.edges.get(&folded(instance))
         {
-            let term = self.bit(*id)?;
-            // The detector saw its variable before this rung drove anything.
-            return match kind == ContactKind::NormallyOpen && !self.driven.contains(&term.key()) {
-                true => Ok(Contact { test: Test::Bit(*edge), terms: vec![term], span: operand.span }),
+            let term = self.bit(edge.operand)?;
+            // What drives the variable behind the call of the detector, it did not see.
+            let is_late = self.driven.get(&term.key()).is_some_and(|driven| *driven > edge.called_at);
+            return match !is_late {
+                true => Ok(Contact { test: Test::Bit(edge.kind), terms: vec![term], span: operand.span }),
                 false => Err(Refusal::NotBoolean),
             };
         }
@@ -505,6 +604,10 @@ fn inverted(mut block: Block) -> Result<Block, Refusal> {
         && let (Test::Bit(_), Some(test)) = (contact.test, contact.test.opposite())
     {
         return Ok(Block::of(Contact { test, ..contact.clone() }));
+    }
+    if let Expression::Not(inner) = block.condition {
+        block.condition = *inner;
+        return Ok(block);
     }
     block.invert()?;
     Ok(block)

@@ -11,6 +11,11 @@ use crate::text::{Span, folded};
 use rustc_hash::FxHashMap;
 use smol_str::{SmolStr, ToSmolStr, format_smolstr};
 
+/// The instance and the member that a variable such as `T0.Q` names.
+fn member(term: &Term) -> Option<(&str, &str)> {
+    (term.operand == Operand::Variable).then(|| term.text.split_once('.')).flatten()
+}
+
 /// The pointers of the FX family for the labels of a program, by folded name.
 pub(super) struct Labels(FxHashMap<SmolStr, SmolStr>);
 
@@ -124,7 +129,7 @@ impl Converter<'_> {
         let named = instance.text.get(..prefix.len())?.eq_ignore_ascii_case(prefix)
             && instance.text[prefix.len()..].eq_ignore_ascii_case(&relay.text);
         let terms = vec![self.bit(relay).ok()?];
-        (is_last && named).then(|| Action { deed: Deed::Coil(kind), terms, span: coil.span })
+        (is_last && named).then_some(Action { deed: Deed::Coil(kind), terms, span: coil.span })
     }
 
     fn expression(&self, expression: &Expression) -> Result<Expression, Refusal> {
@@ -162,7 +167,7 @@ impl Converter<'_> {
 
     fn bit(&self, term: &Term) -> Result<Term, Refusal> {
         use DeviceKind::{C, M, S, T, X, Y};
-        if let Some((instance, member)) = term.text.split_once('.') {
+        if let Some((instance, member)) = member(term) {
             let device = without(self.named(instance).filter(|device| matches!(device.kind, T | C)))?;
             return without(member.eq_ignore_ascii_case("Q").then(|| self.term(device, term.span)));
         }
@@ -175,7 +180,7 @@ impl Converter<'_> {
             let LiteralValue::Integer(value) = literal.value else { return Err(Refusal::NoCounterpart) };
             return self.constant(without(i16::try_from(value).ok())?.into(), term.span);
         }
-        if let Some((instance, member)) = term.text.split_once('.') {
+        if let Some((instance, member)) = member(term) {
             let device = without(self.named(instance).filter(|device| device.kind == DeviceKind::C))?;
             return without(member.eq_ignore_ascii_case("CV").then(|| self.term(device, term.span)));
         }

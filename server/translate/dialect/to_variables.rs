@@ -8,15 +8,16 @@ use crate::target::{Constant, Device, DeviceKind, Flow, Form, Model, Operand, Ta
 use crate::text::Span;
 use smol_str::{SmolStr, ToSmolStr, format_smolstr};
 
-/// `path`, written for `target`, with variables for devices; nothing if it is but END.
-pub(super) fn path(path: &Path, target: &Target) -> Result<Option<Path>, Refusal> {
-    if let [Drive::Action(action)] = &path.drives[..]
-        && path.gates.is_empty()
+/// Whether a rung is but END, which IEC 61131-3 does not write.
+pub(super) fn is_end(path: &Path) -> bool {
+    let [Drive::Action(action)] = &path.drives[..] else { return false };
+    path.gates.is_empty()
         && matches!(action.deed, Deed::Instruction(form) if form.instruction.flow() == Flow::ProgramEnd)
-    {
-        return Ok(None);
-    }
-    Converter { target }.path(path).map(Some)
+}
+
+/// `path`, written for `target`, with variables for devices.
+pub(super) fn path(path: &Path, target: &Target) -> Result<Path, Refusal> {
+    Converter { target }.path(path)
 }
 
 struct Converter<'t> {
