@@ -258,3 +258,30 @@ fn a_file_beside_a_program_in_a_fence_is_named_after_the_document() {
     let made = format!("file://{}/notes-boolean.txt", folder.path().display());
     assert_eq!(answer["result"]["uri"], json!(made), "{answer}");
 }
+
+#[test]
+fn the_header_of_a_network_is_all_of_it_and_a_comment_the_rung_below() {
+    let rung = |contact: &str, output: &str| {
+        format!(
+            "|   {contact}                                       {output}  |\n+---| |--------------------------------------( )-+\n"
+        )
+    };
+    let text = format!(
+        "NETWORK 1 'Start'\n{}; second\n{}\nNETWORK 2\n{}",
+        rung("X0", "Y0"),
+        rung("X1", "Y1"),
+        rung("X2", "Y2")
+    );
+    let commands = json!(["rungwise.openTranslation"]);
+    let mut client =
+        Client::start_with(json!({"experimental": {"commands": {"commands": commands}}}), json!({}));
+    client.open(DRAWING, "ladder", &text);
+    let network = form(&mut client, json!({"uri": DRAWING, "position": position(0, 3), "to": "boolean"}));
+    let words = network["text"].as_str().unwrap();
+    assert!(words.contains("Y0 = X0\n") && words.contains("Y1 = X1\n") && !words.contains("Y2"), "{words}");
+    let offered = actions(&mut client, DRAWING, (0, 3), Some("refactor.rewrite.translate.boolean"));
+    assert_eq!(titles(&offered), ["Translate network to boolean form (proved equal)"]);
+    let below = form(&mut client, json!({"uri": DRAWING, "position": position(3, 3), "to": "boolean"}));
+    let words = below["text"].as_str().unwrap();
+    assert!(words.contains("Y1 = X1\n") && !words.contains("Y0"), "{words}");
+}
