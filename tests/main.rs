@@ -62,4 +62,5 @@ mod target_iec;
 mod tidy;
 mod token_scopes;
 mod translate;
+mod translate_iec;
 mod usage;

@@ -38,6 +38,8 @@ enum Form {
     Ladder,
     /// FX instruction list.
     Fx,
+    /// Instruction list of IEC 61131-3.
+    Iec,
     /// Equations, one for each output.
     Boolean,
 }
@@ -48,6 +50,7 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     let to = match arguments.to {
         Form::Ladder => To::Ladder,
         Form::Fx => To::Fx,
+        Form::Iec => To::Iec,
         Form::Boolean => To::Boolean,
     };
     let options = Options {

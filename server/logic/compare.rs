@@ -3,6 +3,8 @@
 use super::decide::{Verdict, equal};
 use super::{Action, Deed, Effect, Formula, Formulas, Path, Run, Term};
 use crate::target::{Flow, Operand};
+use rustc_hash::FxHashSet;
+use smol_str::SmolStr;
 use std::collections::BTreeMap;
 
 /// What comes of a comparison.
@@ -32,7 +34,23 @@ pub enum Comparison {
 /// Compares what is done by paths run one after the other from the same state, step by step: the same things in the
 /// same order under equal conditions.
 pub fn compare(left: &[&Path], right: &[&Path], formulas: &mut Formulas) -> Comparison {
-    let [left, right] = [run(left, formulas), run(right, formulas)];
+    compare_but(left, right, &FxHashSet::default(), formulas)
+}
+
+/// The same, where the right side may drive further bits of its own, `helpers` by their keys.
+pub fn compare_but(
+    left: &[&Path],
+    right: &[&Path],
+    helpers: &FxHashSet<SmolStr>,
+    formulas: &mut Formulas,
+) -> Comparison {
+    let [left, mut right] = [run(left, formulas), run(right, formulas)];
+    if !helpers.is_empty() {
+        right.effects.retain(|effect| {
+            let mut terms = effect.action.terms.iter();
+            effect.event.is_some() || !terms.next().is_some_and(|term| helpers.contains(&term.key()))
+        });
+    }
     let pairs = left.effects.iter().zip(&right.effects);
     if left.effects.len() != right.effects.len() || pairs.clone().any(|(left, right)| !left.is_like(right)) {
         return Comparison::Unlike;

@@ -1,7 +1,8 @@
 //! Reads a rung of FX instruction list: runs it with paths in place of bits.
 
+use super::block::Block;
 use super::builder::Builder;
-use super::{Action, Contact, Deed, Expression, Gate, Path, Refusal, Rung, Term, Test};
+use super::{Action, Contact, Deed, Gate, Path, Refusal, Rung, Term, Test};
 use crate::il::fx::{FxLine, FxTree, LineKind};
 use crate::target::{Flow, Form, Operand, Role};
 use crate::text::{Span, Spanned};
@@ -49,45 +50,6 @@ struct Reader<'a> {
     blocks: Vec<Block>,
     /// The branch stack: the places whose power is kept.
     kept: Vec<usize>,
-}
-
-/// A block that waits to be joined.
-struct Block {
-    condition: Expression,
-    /// At least as deep as `condition` nests.
-    depth: usize,
-}
-
-impl Block {
-    fn of(contact: Contact) -> Block {
-        Block { condition: Expression::Contact(contact), depth: 1 }
-    }
-
-    fn invert(&mut self) -> Result<(), Refusal> {
-        self.depth += 1;
-        if self.depth > Expression::DEPTH_MAX {
-            return Err(Refusal::TooDeep);
-        }
-        let condition = std::mem::replace(&mut self.condition, Expression::Constant(true));
-        self.condition = Expression::Not(Box::new(condition));
-        Ok(())
-    }
-
-    fn join(&mut self, other: Block, role: Role) -> Result<(), Refusal> {
-        let is_nested = match role {
-            Role::Series | Role::BlockSeries => !matches!(self.condition, Expression::And(_)),
-            _ => !matches!(self.condition, Expression::Or(_)),
-        };
-        self.depth = (self.depth + usize::from(is_nested)).max(other.depth + 1);
-        if self.depth > Expression::DEPTH_MAX {
-            return Err(Refusal::TooDeep);
-        }
-        match role {
-            Role::Series | Role::BlockSeries => self.condition.and_with(other.condition),
-            _ => self.condition.or_with(other.condition),
-        }
-        Ok(())
-    }
 }
 
 impl Reader<'_> {

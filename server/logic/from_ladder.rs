@@ -1,16 +1,19 @@
 //! Reads a drawn rung: its series-parallel shape with words for cells.
 
+mod block;
+
 use super::builder::Builder;
 use super::from_fx;
-use super::{Action, Contact, Deed, Expression, Gate, Network, Path, Refusal, Rung, Term, Test};
-use crate::il::fx;
+use super::from_iec;
+use super::{Action, Contact, Declared, Deed, Expression, Gate, Network, Path, Refusal, Rung, Term, Test};
+use crate::il::{fx, iec};
 use crate::ladder::reduce::{NotSeriesParallel, Shape, reduce};
-use crate::ladder::{self, Element, ElementId, ElementKind, Graph, LadderTree};
-use crate::target::{Operand, Target};
+use crate::ladder::{self, Element, ElementKind, Graph, LadderTree};
+use crate::target::{Model, Operand, Target};
 use crate::text::{Diagnostic, Span, Spanned};
 
 /// The rungs of a chunk of a drawing.
-pub(super) fn rungs(text: &str, tree: &LadderTree, target: &Target) -> Vec<Rung> {
+pub(super) fn rungs(text: &str, tree: &LadderTree, target: &Target, declared: Declared<'_>) -> Vec<Rung> {
     let header = tree.header.as_ref();
     let label = header.and_then(|header| header.label).map(|label| label.of(text).into());
     let network = header.filter(|header| header.label.is_none()).map(|header| Network {
@@ -25,7 +28,9 @@ pub(super) fn rungs(text: &str, tree: &LadderTree, target: &Target) -> Vec<Rung>
         let end = drawn.peek().map_or(u32::MAX, |rung| rung.span.end);
         match above.next_if(|comment| comment.start < end) {
             Some(comment) => match boxed(comment.of(text)) {
-                Some(list) => rungs.push(list_rung(list, comment, std::mem::take(&mut comments), target)),
+                Some(list) => {
+                    rungs.push(list_rung(list, comment, std::mem::take(&mut comments), target, declared))
+                }
                 None => comments.push(comment),
             },
             None => {
@@ -71,23 +76,53 @@ fn boxed(comment: &str) -> Option<(&str, usize)> {
 }
 
 /// The rung that such a list is.
-fn list_rung((list, start): (&str, usize), comment: Span, comments: Vec<Span>, target: &Target) -> Rung {
-    let rung = from_fx::rung(list, &fx::parse(list, target));
+fn list_rung(
+    (list, start): (&str, usize),
+    comment: Span,
+    comments: Vec<Span>,
+    target: &Target,
+    declared: Declared<'_>,
+) -> Rung {
+    let rung = match target.model {
+        Model::Iec => iec_rung(list, target, declared),
+        _ => from_fx::rung(list, &fx::parse(list, target)),
+    };
     let span = rung.span.shifted(comment.start as usize + start);
     // Its own spans would be places in the list alone.
     Rung { comments, span, path: rung.path, ..rung }
+}
+
+/// The rung that a list of IEC 61131-3 is as a whole.
+fn iec_rung(list: &str, target: &Target, declared: Declared<'_>) -> Rung {
+    let mut rungs = from_iec::rungs(list, &iec::parse(list, target), declared);
+    match rungs.pop() {
+        Some(rung) if rungs.is_empty() => rung,
+        _ => Rung {
+            labels: Vec::new(),
+            network: None,
+            comments: Vec::new(),
+            span: Span::new(0, list.len()),
+            is_list: true,
+            path: Err(Refusal::NotBoolean),
+        },
+    }
 }
 
 fn path(text: &str, tree: &LadderTree, rung: &ladder::Rung) -> Result<Path, Refusal> {
     if tree.problems.iter().any(|problem| is_grave(problem, rung.span)) {
         return Err(Refusal::Unreadable);
     }
-    let shape = reduce(&rung.graph).map_err(|reason| match reason {
+    of_graph(text, &rung.graph)
+}
+
+/// The path of a drawn rung whose words stand in `text`.
+pub fn of_graph(text: &str, graph: &Graph) -> Result<Path, Refusal> {
+    let shape = reduce(graph).map_err(|reason| match reason {
         NotSeriesParallel::OpenCircuit(_) | NotSeriesParallel::Empty => Refusal::OpenCircuit,
         NotSeriesParallel::Bridge(_) | NotSeriesParallel::SharedPin(_) => Refusal::Bridge,
         NotSeriesParallel::TooDeep => Refusal::TooDeep,
     })?;
-    let mut reader = Reader { text, graph: &rung.graph, builder: Builder::new() };
+    let mut reader = Reader { text, graph, builder: Builder::new() };
     reader.shape(&shape, true)?;
     reader.builder.finish().ok_or(Refusal::WithoutOutput)
 }
@@ -134,7 +169,7 @@ impl Reader<'_> {
                 }
                 Ok(())
             }
-            Shape::Element(id) => self.element(self.graph.element(*id)),
+            Shape::Element(id) => self.element(self.graph.element(*id), is_last),
             Shape::Block(_) => Err(Refusal::Element),
             Shape::Wire => Err(Refusal::ShortCircuit),
         }
@@ -173,48 +208,61 @@ impl Reader<'_> {
                 let branches: Result<Vec<_>, _> = parts.iter().map(|part| self.condition(part)).collect();
                 branches.map(Expression::or)
             }
-            Shape::Element(id) => self.contact(*id).map(Expression::Contact),
+            Shape::Element(id) => contact(self.text, self.graph.element(*id)).map(Expression::Contact),
             Shape::Block(_) => Err(Refusal::Element),
             Shape::Wire => Err(Refusal::ShortCircuit),
         }
     }
 
-    fn contact(&self, id: ElementId) -> Result<Contact, Refusal> {
-        let element = self.graph.element(id);
-        let test = match &element.kind {
-            ElementKind::Contact(kind) => Test::Bit(*kind),
-            ElementKind::Compare(operator) => Test::Compare(*operator),
-            _ => return Err(Refusal::Element),
-        };
-        Ok(Contact { test, terms: self.terms(element), span: element.span })
-    }
-
-    fn element(&mut self, element: &Element) -> Result<(), Refusal> {
-        let deed = match &element.kind {
-            ElementKind::Coil(kind) => Deed::of_coil(*kind),
-            ElementKind::Instruction { form: Some(form), .. } => Deed::of_form(*form),
-            ElementKind::Instruction { form: None, .. } => return Err(Refusal::Unreadable),
-            ElementKind::Jump(_) => Deed::Jump,
-            ElementKind::Return => Deed::Return,
-            _ => return Err(Refusal::Element),
-        };
-        let mut action = Action { deed, terms: self.terms(element), span: element.span };
-        if let ElementKind::Jump(label) = &element.kind {
-            let operand = Operand::Variable;
-            action.terms.push(Term::new(operand, label.of(self.text), *label));
+    fn element(&mut self, element: &Element, is_last: bool) -> Result<(), Refusal> {
+        if let ElementKind::Block(block) = &element.kind {
+            let (action, goes_on) = block::call(self.text, element, block)?;
+            match goes_on && !is_last {
+                true => return self.builder.gate(Gate::Through(action)).ok_or(Refusal::TooDeep),
+                false => self.builder.drive(action),
+            }
+            return Ok(());
         }
+        let action = action(self.text, element)?;
         match element.is_output() {
             true => self.builder.drive(action),
             false => self.builder.gate(Gate::Through(action)).ok_or(Refusal::TooDeep)?,
         }
         Ok(())
     }
+}
 
-    fn terms(&self, element: &Element) -> Vec<Term> {
-        let operands = element.operands.iter().enumerate();
-        let term = |(index, operand): (usize, &Spanned<Operand>)| {
-            Term::new(operand.value, &element.operand_text(index, self.text), operand.span)
-        };
-        operands.map(term).collect()
+/// The contact or comparison that an element is.
+pub(super) fn contact(text: &str, element: &Element) -> Result<Contact, Refusal> {
+    let test = match &element.kind {
+        ElementKind::Contact(kind) => Test::Bit(*kind),
+        ElementKind::Compare(operator) => Test::Compare(*operator),
+        _ => return Err(Refusal::Element),
+    };
+    Ok(Contact { test, terms: terms(text, element), span: element.span })
+}
+
+/// What an element does that is no contact.
+pub(super) fn action(text: &str, element: &Element) -> Result<Action, Refusal> {
+    let deed = match &element.kind {
+        ElementKind::Coil(kind) => Deed::of_coil(*kind),
+        ElementKind::Instruction { form: Some(form), .. } => Deed::of_form(*form),
+        ElementKind::Instruction { form: None, .. } => return Err(Refusal::Unreadable),
+        ElementKind::Jump(_) => Deed::Jump,
+        ElementKind::Return => Deed::Return,
+        _ => return Err(Refusal::Element),
+    };
+    let mut action = Action { deed, terms: terms(text, element), span: element.span };
+    if let ElementKind::Jump(label) = &element.kind {
+        action.terms.push(Term::new(Operand::Variable, label.of(text), *label));
     }
+    Ok(action)
+}
+
+fn terms(text: &str, element: &Element) -> Vec<Term> {
+    let operands = element.operands.iter().enumerate();
+    let term = |(index, operand): (usize, &Spanned<Operand>)| {
+        Term::new(operand.value, &element.operand_text(index, text), operand.span)
+    };
+    operands.map(term).collect()
 }

@@ -15,11 +15,23 @@ pub use path::{Action, Deed, Drive, Gate, Path};
 mod rung;
 pub use rung::{Network, Refusal, Rung};
 
+mod call;
+pub use call::{Argument, Call};
+
+mod block;
+
 mod builder;
 
 mod from_fx;
 
+mod from_iec;
+pub use from_iec::declarations;
+
 mod from_ladder;
+pub use from_ladder::of_graph;
+
+mod apart;
+pub use apart::apart;
 
 mod formula;
 pub use formula::{Atom, Formula, Formulas, Moment};
@@ -34,16 +46,32 @@ mod minimal;
 pub use minimal::{Sum, sum_of_products};
 
 mod compare;
-pub use compare::{Comparison, compare, compare_outcome, touches_bits};
+pub use compare::{Comparison, compare, compare_but, compare_outcome, touches_bits};
 
-use crate::document::{Chunk, Tree};
+use crate::document::{Chunk, Scopes, Tree};
 use crate::target::Target;
 
 /// The rungs of a chunk written for `target`, in the order of execution. Spans are offsets into the chunk.
+///
+/// What IEC instruction list means depends on declarations elsewhere; with them there is [`rungs_with`].
 pub fn rungs(chunk: &Chunk, target: &Target) -> Vec<Rung> {
+    rungs_with(chunk, target, Declared { scopes: &Scopes::default(), pous: 0 })
+}
+
+/// What is declared where a chunk stands.
+#[derive(Clone, Copy)]
+pub struct Declared<'a> {
+    /// The declarations of the document.
+    pub scopes: &'a Scopes,
+    /// How many program units start before the chunk.
+    pub pous: usize,
+}
+
+/// The rungs of a chunk written for `target`, as declarations around it have them.
+pub fn rungs_with(chunk: &Chunk, target: &Target, declared: Declared<'_>) -> Vec<Rung> {
     match chunk.tree() {
         Tree::Fx(tree) => vec![from_fx::rung(chunk.text(), tree)],
-        Tree::Ladder(tree) => from_ladder::rungs(chunk.text(), tree, target),
-        Tree::Iec(_) => Vec::new(),
+        Tree::Ladder(tree) => from_ladder::rungs(chunk.text(), tree, target, declared),
+        Tree::Iec(tree) => from_iec::rungs(chunk.text(), tree, declared),
     }
 }

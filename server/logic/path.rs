@@ -1,6 +1,6 @@
 //! What power does in a rung: conditions that it passes, and what it drives behind them.
 
-use super::{Expression, Term};
+use super::{Call, Expression, Term};
 use crate::document::coil_form;
 use crate::ladder::CoilKind;
 use crate::target::{Form, Role};
@@ -56,6 +56,8 @@ pub enum Deed {
     Coil(CoilKind),
     /// Any other instruction of the FX family.
     Instruction(Form),
+    /// Calls a function block; the operands are the instance and those of its pins.
+    Call(Call),
     /// Goes on at a network of the same program; the label is the operand.
     Jump,
     /// Leaves the program unit.
@@ -88,6 +90,16 @@ impl Deed {
 /// Coils that one instruction drives.
 const COILS: [CoilKind; 5] =
     [CoilKind::Plain, CoilKind::Set, CoilKind::Reset, CoilKind::Rising, CoilKind::Falling];
+
+impl Action {
+    /// The variable from which power goes on behind the call of a function block.
+    pub fn power_out(&self) -> Option<Term> {
+        match self.deed {
+            Deed::Call(call) => call.output(&self.terms),
+            _ => None,
+        }
+    }
+}
 
 impl Path {
     /// A path that drives this alone, as it stands.

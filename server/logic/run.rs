@@ -128,7 +128,10 @@ impl<'p> Run<'p> {
                 Gate::Invert => formulas.not(power),
                 Gate::Through(action) => {
                     self.act(action, power, formulas);
-                    formulas.atom(Atom::Behind(self.events))
+                    match action.power_out() {
+                        Some(output) => self.bit(&output, formulas),
+                        None => formulas.atom(Atom::Behind(self.events)),
+                    }
                 }
             };
         }
@@ -159,7 +162,8 @@ impl<'p> Run<'p> {
         }
     }
 
-    fn contact(&self, contact: &Contact, formulas: &mut Formulas) -> Formula {
+    /// Whether a contact conducts where the run stands.
+    pub fn contact(&self, contact: &Contact, formulas: &mut Formulas) -> Formula {
         match (contact.test, &contact.terms[..]) {
             (Test::Bit(kind), [term]) => match kind {
                 ContactKind::NormallyOpen => self.bit(term, formulas),
@@ -306,6 +310,12 @@ impl<'p> Run<'p> {
                 }
                 self.flags = self.events;
             }
+            Deed::Call(call) => {
+                self.touched[VARIABLES] = number;
+                for changed in call.changes(&action.terms) {
+                    self.changed.insert(changed.key(), self.events);
+                }
+            }
             // What is done meanwhile elsewhere, nobody knows here.
             Deed::Instruction(_) => {
                 self.kinds = [self.events; KINDS];
@@ -359,7 +369,12 @@ fn is_lone(term: &Term) -> bool {
     match &term.operand {
         Operand::Device(device) => matches!(device.kind, DeviceKind::X | DeviceKind::Y | DeviceKind::M),
         Operand::Direct(address) => address.width == Width::Bit,
-        Operand::Variable => !term.text.contains(['.', '[', '^']),
+        // `T1.Q` is a bit by itself, `Word.3` is not.
+        Operand::Variable => {
+            let is_part =
+                |(_, last): (&str, &str)| last.starts_with(|c: char| c.is_ascii_digit() || c == '%');
+            !term.text.contains(['[', '^']) && !term.text.rsplit_once('.').is_some_and(is_part)
+        }
         _ => false,
     }
 }

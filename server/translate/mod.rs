@@ -15,7 +15,13 @@ mod stack;
 mod prove;
 pub use prove::{Counterexample, Proof, Value, prove};
 
+mod dialect;
+
+mod header;
+
 pub mod to_fx;
+
+pub mod to_iec;
 
 pub mod to_ladder;
 
@@ -26,6 +32,7 @@ pub mod from_boolean;
 use crate::document::Document;
 use crate::ladder::Style;
 use crate::text::{Message, Span};
+use smol_str::SmolStr;
 use std::ops::Range;
 
 /// A form of a program.
@@ -35,19 +42,22 @@ pub enum To {
     Ladder,
     /// FX instruction list.
     Fx,
+    /// Instruction list of IEC 61131-3.
+    Iec,
     /// Equations, one for each output.
     Boolean,
 }
 
 impl To {
     /// All of them.
-    pub const ALL: [To; 3] = [To::Ladder, To::Fx, To::Boolean];
+    pub const ALL: [To; 4] = [To::Ladder, To::Fx, To::Iec, To::Boolean];
 
     /// The name on the command line and in requests.
     pub fn name(self) -> &'static str {
         match self {
             To::Ladder => "ladder",
             To::Fx => "fx",
+            To::Iec => "iec",
             To::Boolean => "boolean",
         }
     }
@@ -84,6 +94,8 @@ pub struct Translation {
     pub text: String,
     /// What became of each rung of the source, in order.
     pub rungs: Vec<Translated>,
+    /// The variables that the result declares beyond those of the source.
+    pub helpers: Vec<SmolStr>,
 }
 
 /// What became of a rung.
@@ -119,10 +131,13 @@ pub fn translate_unless(
     options: &Options,
     is_cancelled: &dyn Fn() -> bool,
 ) -> Option<Translation> {
-    let sources = source::rungs(document, part);
-    let mut translation = page::write(document, &sources, to, options, is_cancelled)?;
+    let mut program = source::program(document, part);
+    let target = dialect::target(document, to);
+    dialect::convert(document, target, &mut program);
+    let is_whole = part.is_none();
+    let mut translation = page::write(document, &program, (to, target), options, is_whole, is_cancelled)?;
     if options.proves {
-        certificate::add(document, &sources, to, &mut translation, is_cancelled)?;
+        certificate::add((document, target), &program.rungs, to, &mut translation, is_cancelled)?;
     }
     Some(translation)
 }

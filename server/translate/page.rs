@@ -1,12 +1,14 @@
 //! Puts translated rungs together to a text, with their comments and labels.
 
-use super::source::Source;
+use super::header;
+use super::source::{Program, Source};
 use super::to_fx::Line;
+use super::to_iec::{self, Helpers};
 use super::{Options, To, Translated, Translation, to_boolean, to_fx, to_ladder};
 use crate::document::{Document, Notation};
 use crate::ladder::{Drawing, Style};
 use crate::logic::{Deed, Network, Path};
-use crate::target::{Flow, Form};
+use crate::target::{Flow, Form, Target};
 use crate::text::Message;
 
 /// A rung in its new form.
@@ -15,6 +17,8 @@ enum Body {
     Nothing,
     /// Instructions.
     Lines(Vec<Line>),
+    /// Instructions of IEC 61131-3 as they are laid out.
+    Text(String),
     /// A drawing that has no right rail yet.
     Drawing(Box<Drawing>),
     /// Equations.
@@ -23,24 +27,40 @@ enum Body {
     Kept(String, Message),
 }
 
-/// The text of `sources` in another form, without certificates; nothing if it was cancelled on the way.
+/// The text of `program` in another form, without certificates; nothing if it was cancelled on the way. A whole one
+/// gets the declarations that it lacks.
 pub(super) fn write(
     document: &Document,
-    sources: &[Source],
-    to: To,
+    program: &Program,
+    (to, target): (To, &'static Target),
     options: &Options,
+    is_whole: bool,
     is_cancelled: &dyn Fn() -> bool,
 ) -> Option<Translation> {
-    let unless_cancelled = |source| (!is_cancelled()).then(|| body(document, source, to, options));
-    let bodies: Vec<Body> = sources.iter().map(unless_cancelled).collect::<Option<_>>()?;
+    let sources = &program.rungs;
+    let mut helpers = match to {
+        To::Iec => Helpers::beside(header::names(document, sources.iter())),
+        _ => Helpers::default(),
+    };
+    let mut unless_cancelled =
+        |source| (!is_cancelled()).then(|| body(source, (to, target), options, &mut helpers));
+    let bodies: Vec<Body> = sources.iter().map(&mut unless_cancelled).collect::<Option<_>>()?;
     let rails = bodies.iter().filter_map(|body| match body {
         Body::Drawing(drawing) => Some(drawing.rail_column_min()),
         _ => None,
     });
     let rail = rails.max().unwrap_or(0).max(options.style.width.clamp(1, Style::WIDTH_MAX) - 1);
     let mut page = Page { text: String::new(), to, rail };
+    let needs_header = to == To::Iec && is_whole && !sources.is_empty() && !header::has_units(document);
+    if needs_header {
+        page.declare(&header::header(document, sources, &helpers.declared));
+    }
     let mut rungs = Vec::with_capacity(sources.len());
     for (source, body) in sources.iter().zip(bodies) {
+        if !source.declarations.is_empty() {
+            page.declare(&source.declarations);
+            page.declare(&header::helpers_of(&helpers.declared, source.pou));
+        }
         page.head(source);
         let start = page.text.len();
         let note = page.body(body, source);
@@ -51,13 +71,21 @@ pub(super) fn write(
             note,
         });
     }
+    page.declare(&program.tail);
+    if needs_header {
+        page.declare("END_PROGRAM\n");
+    }
     if to == To::Fx && options.is_whole && !sources.iter().any(ends_program) {
         page.text.push_str("END\n");
     }
-    Some(Translation { text: page.text, rungs })
+    if to == To::Iec {
+        page.lay_out(&mut rungs);
+    }
+    let helpers = helpers.declared.into_iter().map(|helper| helper.name).collect();
+    Some(Translation { text: page.text, rungs, helpers })
 }
 
-fn body(document: &Document, source: &Source, to: To, options: &Options) -> Body {
+fn body(source: &Source, (to, target): (To, &Target), options: &Options, helpers: &mut Helpers) -> Body {
     let kept = |reason: Message| Body::Kept(source.rung.span.of(source.chunk.text()).to_string(), reason);
     let path = match &source.rung.path {
         Ok(None) => return Body::Nothing,
@@ -65,15 +93,19 @@ fn body(document: &Document, source: &Source, to: To, options: &Options) -> Body
         Err(refusal) => return kept(refusal.message()),
     };
     let written = match to {
-        To::Fx => to_fx::lines(path, document.target()).map(Body::Lines),
+        To::Fx => to_fx::lines(path, target).map(Body::Lines),
+        To::Iec => {
+            helpers.pou = source.pou;
+            to_iec::lines(path, helpers).map(|lines| Body::Text(header::laid_out(&(lines.join("\n") + "\n"))))
+        }
         To::Boolean => to_boolean::equations(path, options.notation).map(Body::Equations),
-        To::Ladder => drawing(path, document, options),
+        To::Ladder => drawing(path, target, options),
     };
     written.unwrap_or_else(kept)
 }
 
-fn drawing(path: &Path, document: &Document, options: &Options) -> Result<Body, Message> {
-    let plan = to_ladder::plan(path, document.target().model)?;
+fn drawing(path: &Path, target: &Target, options: &Options) -> Result<Body, Message> {
+    let plan = to_ladder::plan(path, target.model)?;
     let drawing = Drawing::new(&plan.shape, &plan.graph, &plan.source, options.style.kind);
     let drawing = drawing.ok_or_else(|| Message::new("translate.no-drawing"))?;
     Ok(Body::Drawing(Box::new(drawing)))
@@ -101,11 +133,17 @@ impl Page {
         let rung = &source.rung;
         let has_head = !rung.comments.is_empty() || rung.network.is_some();
         // Rungs that are drawn need a blank line between them; lists breathe only where there is something to say.
-        if !self.text.is_empty() && (self.to == To::Ladder || has_head) && !self.text.ends_with("\n\n") {
+        // The load behind a call would go on with its rung.
+        let is_called = self.to == To::Iec && self.text.ends_with(")\n");
+        let parts = self.to == To::Ladder || has_head || is_called;
+        if !self.text.is_empty() && parts && !self.text.ends_with("\n\n") {
             self.text.push('\n');
         }
         for comment in source.comments().filter(|comment| !is_network(comment)) {
-            self.line(comment);
+            match self.to {
+                To::Iec => self.line(&header::comment(comment)),
+                _ => self.line(comment),
+            }
         }
         let mut networks: Vec<String> = rung.network.iter().map(network_text).collect();
         networks.extend(
@@ -117,6 +155,7 @@ impl Page {
         for network in networks {
             match self.to {
                 To::Ladder => self.line(&network),
+                To::Iec => self.line(&format!("(* {network} *)")),
                 _ => self.line(&format!("; {network}")),
             }
         }
@@ -133,6 +172,7 @@ impl Page {
         match body {
             Body::Nothing => {}
             Body::Lines(lines) => lines.iter().for_each(|line| self.line(&line.to_string())),
+            Body::Text(text) => self.text.push_str(&text),
             Body::Equations(equations) => equations.iter().for_each(|equation| self.line(equation)),
             Body::Drawing(drawing) => match drawing.paint(self.rail) {
                 Some(lines) => lines.iter().for_each(|line| self.line(line)),
@@ -156,11 +196,58 @@ impl Page {
                 text.lines().for_each(|line| self.line(line.trim_end()));
                 self.line("}");
             }
+            To::Iec if is_list => {
+                let laid_out = header::laid_out(&format!("{}\n", text.trim_end()));
+                self.text += &laid_out;
+            }
+            To::Iec => text.lines().for_each(|line| self.line(&header::comment(&format!("; {line}")))),
             _ => {
                 text.lines().for_each(|line| self.line(format!("; {line}").trim_end()));
             }
         }
         Some(reason)
+    }
+
+    /// Comments are indented like what they stand above.
+    fn lay_out(&mut self, rungs: &mut [Translated]) {
+        let laid_out = header::laid_out(&self.text);
+        let starts = |text: &str| -> Vec<usize> {
+            let ends = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at + 1);
+            std::iter::once(0).chain(ends).collect()
+        };
+        let (before, after) = (starts(&self.text), starts(&laid_out));
+        if before.len() != after.len() {
+            return;
+        }
+        for rung in rungs {
+            let place = |at: usize| before.binary_search(&at).map(|line| after[line]);
+            if let (Ok(start), Ok(end)) = (place(rung.result.start), place(rung.result.end)) {
+                rung.result = start..end;
+            }
+        }
+        self.text = laid_out;
+    }
+
+    /// Declarations, which stand in instruction list as in drawings.
+    fn declare(&mut self, text: &str) {
+        let text = text.trim_matches(['\r', '\n']);
+        if text.is_empty() {
+            return;
+        }
+        if !matches!(self.to, To::Iec | To::Ladder) {
+            // Devices need no declarations, but what is said of them stays.
+            return header::comments(text).iter().for_each(|comment| self.line(comment));
+        }
+        if !self.text.is_empty() && !self.text.ends_with("\n\n") {
+            self.text.push('\n');
+        }
+        match self.to {
+            To::Iec => self.text += &header::laid_out(&format!("{text}\n")),
+            _ => text.lines().for_each(|line| self.line(line.trim_end())),
+        }
+        if !self.text.ends_with("\n\n") {
+            self.text.push('\n');
+        }
     }
 
     fn line(&mut self, line: &str) {
@@ -193,6 +280,7 @@ pub(super) fn notation(to: To) -> Option<Notation> {
     match to {
         To::Ladder => Some(Notation::Ladder),
         To::Fx => Some(Notation::FxIl),
+        To::Iec => Some(Notation::IecIl),
         To::Boolean => None,
     }
 }

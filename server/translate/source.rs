@@ -1,7 +1,9 @@
 //! The rungs of a document that are to be translated.
 
-use crate::document::{Chunk, Document};
-use crate::logic::{self, Rung};
+use crate::document::{Chunk, Document, Notation, Tree};
+use crate::il::iec::{IecTree, ItemKind};
+use crate::ladder;
+use crate::logic::{self, Declared, Rung};
 use crate::text::Span;
 use std::sync::Arc;
 
@@ -13,6 +15,19 @@ pub(super) struct Source {
     pub chunk: Arc<Chunk>,
     /// The rung.
     pub rung: Rung,
+    /// The declarations that stand before it, as written.
+    pub declarations: String,
+    /// The number of the program unit that it belongs to.
+    pub pou: Option<usize>,
+}
+
+/// A program, or a part of one.
+#[derive(Default)]
+pub(super) struct Program {
+    /// The rungs.
+    pub rungs: Vec<Source>,
+    /// The declarations behind the last rung, as written.
+    pub tail: String,
 }
 
 impl Source {
@@ -35,19 +50,77 @@ impl Source {
 
 /// The rungs of `document`; with `part` only those that touch these bytes.
 pub(super) fn rungs(document: &Document, part: Option<Span>) -> Vec<Source> {
-    let touches = |span: Span| part.is_none_or(|part| span.start <= part.end && part.start <= span.end);
-    let mut rungs = Vec::new();
+    program(document, part).rungs
+}
+
+/// `document` in rungs and declarations; with `part` only the rungs that touch these bytes.
+pub(super) fn program(document: &Document, part: Option<Span>) -> Program {
+    let mut reader = Reader { document, part, pous: 0, program: Program::default() };
+    if document.notation() == Notation::IecIl {
+        // A rung of instruction list may reach over several chunks: the calls before it belong to it.
+        let whole = Arc::new(document.chunk_of(&document.text()));
+        reader.chunk(0, &whole);
+        return reader.program;
+    }
     for at in document.chunks() {
-        if !touches(Span::new(at.start, at.start + at.chunk.len())) {
-            continue;
-        }
-        let reading = at.chunk.reading();
-        for rung in logic::rungs(&reading, document.reader()) {
-            let source = Source { start: at.start, chunk: at.chunk.clone(), rung };
-            if !source.is_blank() && touches(source.span()) {
-                rungs.push(source);
-            }
+        let span = Span::new(at.start, at.start + at.chunk.len());
+        if at.chunk.is_iec() || reader.touches(span) {
+            reader.chunk(at.start, at.chunk);
         }
     }
-    rungs
+    reader.program
+}
+
+struct Reader<'a> {
+    document: &'a Document,
+    part: Option<Span>,
+    /// How many program units have started.
+    pous: usize,
+    program: Program,
+}
+
+impl Reader<'_> {
+    fn touches(&self, span: Span) -> bool {
+        self.part.is_none_or(|part| span.start <= part.end && part.start <= span.end)
+    }
+
+    fn chunk(&mut self, start: usize, chunk: &Arc<Chunk>) {
+        let reading = chunk.reading();
+        let declared = match reading.tree() {
+            Tree::Iec(tree) => logic::declarations(reading.text(), tree),
+            _ => Vec::new(),
+        };
+        let mut declared = declared.into_iter().peekable();
+        let context = Declared { scopes: self.document.scopes(), pous: self.pous };
+        for rung in logic::rungs_with(&reading, self.document.reader(), context) {
+            while let Some(span) = declared.next_if(|span| span.start <= rung.span.start) {
+                self.declare(&reading, span);
+            }
+            let declarations = std::mem::take(&mut self.program.tail);
+            let pou = self.pous.checked_sub(1);
+            let source = Source { start, chunk: chunk.clone(), rung, declarations, pou };
+            match !source.is_blank() && self.touches(source.span()) {
+                true => self.program.rungs.push(source),
+                false => self.program.tail = source.declarations,
+            }
+        }
+        declared.for_each(|span| self.declare(&reading, span));
+    }
+
+    fn declare(&mut self, chunk: &Chunk, span: Span) {
+        // The tables of an LDmicro export mean nothing without its head.
+        let is_table = ladder::kind_of(chunk.text()) == ladder::ChunkKind::Ldmicro;
+        if self.part.is_none() && !is_table {
+            self.program.tail += span.of(chunk.text());
+        }
+        if let Tree::Iec(tree) = chunk.tree() {
+            self.pous += pous_within(tree, span);
+        }
+    }
+}
+
+fn pous_within(tree: &IecTree, span: Span) -> usize {
+    let inside = |at: u32| span.start <= at && at < span.end;
+    let starts = tree.items.iter().filter(|item| matches!(item.kind, ItemKind::Pou { .. }));
+    starts.filter(|item| inside(item.span.start)).count()
 }

@@ -71,6 +71,7 @@ impl Writer {
                 crate::document::coil_form(kind).map(|form| form.mnemonic()).unwrap_or_default()
             }
             Deed::Instruction(form) => form.mnemonic(),
+            Deed::Call(call) => call.block.name.to_string(),
             Deed::Jump => "JMP".to_string(),
             Deed::Return => "RET".to_string(),
         };

@@ -1,5 +1,7 @@
 //! Draws a path of power: its shape with elements, for the printer of drawings.
 
+mod block;
+
 use crate::ladder::reduce::Shape;
 use crate::ladder::{ContactKind, Element, ElementId, ElementKind, Graph};
 use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
@@ -45,13 +47,13 @@ impl Planner {
                     parts.extend(self.condition(expression, starts)?);
                 }
                 Gate::Invert => parts.push(self.invert()),
-                Gate::Through(action) => parts.push(self.action(action)?),
+                Gate::Through(action) => parts.push(self.action(action, true)?),
             }
         }
         let mut branches = Vec::with_capacity(path.drives.len());
         for drive in &path.drives {
             branches.push(match drive {
-                Drive::Action(action) => vec![self.action(action)?],
+                Drive::Action(action) => vec![self.action(action, false)?],
                 Drive::Path(path) => self.path(path, is_first && parts.is_empty())?,
             });
         }
@@ -115,13 +117,15 @@ impl Planner {
         self.element(ElementKind::Invert, &[])
     }
 
-    fn action(&mut self, action: &Action) -> Result<Shape, Message> {
+    /// `goes_on` if there is more behind it on its line.
+    fn action(&mut self, action: &Action, goes_on: bool) -> Result<Shape, Message> {
         let kind = match action.deed {
             Deed::Coil(kind) => ElementKind::Coil(kind),
             Deed::Instruction(form) => {
                 let mnemonic = self.word(&form.mnemonic());
                 ElementKind::Instruction { form: Some(form), mnemonic }
             }
+            Deed::Call(call) => return self.block(action, call, goes_on),
             Deed::Jump => {
                 let label = action.terms.first().ok_or_else(|| Message::new("translate.no-instruction"))?;
                 let label = self.word(&label.text);
@@ -138,6 +142,10 @@ impl Planner {
             let span = self.word(&term.text);
             element.operands.push(Spanned::new(term.operand, span));
         }
+        self.add(element)
+    }
+
+    fn add(&mut self, element: Element) -> Shape {
         self.graph.elements.push(element);
         Shape::Element(ElementId(self.graph.elements.len() as u32 - 1))
     }

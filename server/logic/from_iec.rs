@@ -1,0 +1,435 @@
+//! Reads instruction list of IEC 61131-3 as rungs.
+//!
+//! A rung begins with a load outside of parentheses, with an unconditional call, jump or return, or with a label before
+//! one of these, and goes on for as long as its current result is used: `LD a / ST y / AND b / ST z` is one rung with
+//! two outputs. A chunk of the document can hold several, for it goes on up to the next load. A call of a function
+//! block and the load of its output behind it are one rung, `--[TON]--( )`, unless a comment or a blank line stands between them
+//! or the output is used in another way than to go on from it. Calls of R_TRIG and F_TRIG are a part of the rung behind
+//! them if nobody else asks for their output: an edge contact.
+
+mod reader;
+
+use self::reader::Reader;
+use super::{Declared, Path, Refusal, Rung};
+use crate::document::{DeclaredType, Scopes};
+use crate::il::iec::{Condition, IecTree, Item, ItemKind, ListForm};
+use crate::target::Operand;
+use crate::target::Width;
+use crate::target::iec::{ElementaryType, FunctionBlock, LiteralValue, OperatorRole};
+use crate::text::{Severity, Span, folded};
+use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
+use std::ops::Range;
+
+/// The rungs of a piece of a file.
+pub(super) fn rungs(text: &str, tree: &IecTree, declared: Declared<'_>) -> Vec<Rung> {
+    let source = Source::new(text, tree, declared.scopes, declared.pous);
+    let mut comments = Comments::of(text, tree);
+    let mut rungs = Vec::new();
+    let mut first = 0;
+    for region in &source.regions {
+        comments.skip_to(region.start);
+        let segments = &source.segments[first..region.segments];
+        first = region.segments;
+        source.read(segments, &mut comments, &mut rungs);
+    }
+    let rest = comments.rest();
+    if !source.ends_declared && !rest.is_empty() {
+        let span = Span::at(text.len());
+        rungs.push(Rung {
+            labels: Vec::new(),
+            network: None,
+            comments: rest,
+            span,
+            is_list: true,
+            path: Ok(None),
+        });
+    }
+    rungs
+}
+
+/// The declarations of a piece of a file: each with what stands around it up to whole lines, comments among them.
+/// Between them are the rungs.
+pub fn declarations(text: &str, tree: &IecTree) -> Vec<Span> {
+    let mut spans: Vec<Span> = Vec::new();
+    // Where the last rung ends, and whether the last item is a declaration.
+    let (mut end, mut is_open) = (0, false);
+    for item in &tree.items {
+        let line_end = end_of_line(text, item.span.end as usize);
+        match (declares(&item.kind), spans.last_mut()) {
+            (true, Some(last)) if is_open => last.end = last.end.max(line_end as u32),
+            (true, _) => spans.push(Span::new(end, line_end)),
+            (false, _) => end = end.max(line_end),
+        }
+        is_open = declares(&item.kind);
+    }
+    if is_open && let Some(last) = spans.last_mut() {
+        last.end = text.len() as u32;
+    }
+    spans
+}
+
+/// Where the line of `offset` ends, its line feed included.
+fn end_of_line(text: &str, offset: usize) -> usize {
+    let rest = text.as_bytes().get(offset..).unwrap_or(&[]);
+    rest.iter().position(|byte| *byte == b'\n').map_or(text.len(), |length| offset + length + 1)
+}
+
+fn declares(kind: &ItemKind) -> bool {
+    use ItemKind::*;
+    matches!(
+        kind,
+        Pou { .. }
+            | PouEnd(_)
+            | Section { .. }
+            | Types { .. }
+            | Configuration { .. }
+            | Resource { .. }
+            | Task(_)
+            | Instance(_)
+            | End(_)
+    )
+}
+
+/// Comments and pragmas that wait for their rung.
+struct Comments {
+    spans: Vec<Span>,
+    next: usize,
+}
+
+impl Comments {
+    fn of(text: &str, tree: &IecTree) -> Comments {
+        let own = |span: &Span| !span.of(text).is_empty();
+        let mut spans: Vec<Span> = tree.comments.iter().chain(&tree.pragmas).copied().filter(own).collect();
+        spans.sort_unstable();
+        Comments { spans, next: 0 }
+    }
+
+    /// Those that start before `offset` belong to declarations.
+    fn skip_to(&mut self, offset: usize) {
+        self.up_to(offset);
+    }
+
+    /// The next ones, as far as they start before `offset`.
+    fn up_to(&mut self, offset: usize) -> Vec<Span> {
+        let rest = &self.spans[self.next..];
+        let count = rest.partition_point(|comment| (comment.start as usize) < offset);
+        self.next += count;
+        rest[..count].to_vec()
+    }
+
+    fn rest(&mut self) -> Vec<Span> {
+        self.up_to(usize::MAX)
+    }
+}
+
+/// A stretch of instructions that may be a rung, or the beginning or end of one.
+struct Segment {
+    labels: Vec<Span>,
+    /// Its instructions; empty where only labels stand before a declaration.
+    items: Range<usize>,
+    /// The program unit.
+    pou: Option<usize>,
+    /// Whether it may go on with the rung of the segment before.
+    goes_on: bool,
+}
+
+/// Segments between two declarations.
+struct Region {
+    /// Where the declarations before it end.
+    start: usize,
+    /// How many segments there are up to its end.
+    segments: usize,
+}
+
+/// How the instance of an edge detector is used.
+#[derive(Default)]
+struct Detector {
+    /// Its name standing alone: in a call, or handed over.
+    bare: u32,
+    /// Its output read: first and last place.
+    reads: Option<Span>,
+    /// Whether another part of it is used.
+    is_opened: bool,
+}
+
+struct Source<'a> {
+    text: &'a str,
+    tree: &'a IecTree,
+    scopes: &'a Scopes,
+    segments: Vec<Segment>,
+    regions: Vec<Region>,
+    /// Whether the last item is a declaration.
+    ends_declared: bool,
+    /// By program unit and folded name.
+    detectors: FxHashMap<(Option<usize>, SmolStr), Detector>,
+    /// The places of mistakes, in order.
+    mistakes: Vec<u32>,
+}
+
+impl<'a> Source<'a> {
+    fn new(text: &'a str, tree: &'a IecTree, scopes: &'a Scopes, pous: usize) -> Source<'a> {
+        let mut mistakes: Vec<u32> = tree
+            .problems
+            .iter()
+            .filter(|problem| problem.severity == Severity::Error)
+            .map(|problem| problem.span.start)
+            .collect();
+        mistakes.sort_unstable();
+        let mut source = Source {
+            text,
+            tree,
+            scopes,
+            segments: Vec::new(),
+            regions: Vec::new(),
+            ends_declared: tree.items.last().is_some_and(|item| declares(&item.kind)),
+            detectors: FxHashMap::default(),
+            mistakes,
+        };
+        let starts = source.cut(pous);
+        source.find_detectors(&starts, pous);
+        source
+    }
+
+    /// Cuts the items into segments. Gives the offsets at which program units start.
+    fn cut(&mut self, pous: usize) -> Vec<u32> {
+        let mut starts = Vec::new();
+        let mut is_open = false;
+        let mut region = 0;
+        for (index, item) in self.tree.items.iter().enumerate() {
+            if declares(&item.kind) {
+                if self.regions.last().is_none_or(|last| last.segments < self.segments.len()) {
+                    self.regions.push(Region { start: region, segments: self.segments.len() });
+                }
+                region = end_of_line(self.text, item.span.end as usize);
+                starts.extend(matches!(item.kind, ItemKind::Pou { .. }).then_some(item.span.start));
+                is_open = false;
+                continue;
+            }
+            let pou = (pous + starts.len()).checked_sub(1);
+            let label = match item.kind {
+                ItemKind::Label { name } if item.depth == 0 && !self.needs_result(index) => Some(name),
+                _ => None,
+            };
+            let last = self.segments.last().filter(|_| is_open);
+            let only_labels = last.is_some_and(|last| last.items.is_empty());
+            let begins = match last {
+                None => true,
+                Some(_) if only_labels => false,
+                Some(last) => label.is_some() || item.depth == 0 && self.begins(last, index),
+            };
+            if begins {
+                let goes_on = is_open && label.is_none() && self.may_go_on(index, pou);
+                self.segments.push(Segment { labels: Vec::new(), items: index..index, pou, goes_on });
+                is_open = true;
+            }
+            let Some(segment) = self.segments.last_mut() else { continue };
+            match label {
+                Some(name) => segment.labels.push(name),
+                None if segment.items.is_empty() => segment.items = index..index + 1,
+                None => segment.items.end = index + 1,
+            }
+        }
+        self.regions.push(Region { start: region, segments: self.segments.len() });
+        starts
+    }
+
+    /// Whether the instruction behind the label at `index` uses a current result that comes from before.
+    fn needs_result(&self, index: usize) -> bool {
+        let rest = &self.tree.items[index..];
+        let next = rest.iter().find(|item| !matches!(item.kind, ItemKind::Label { .. }));
+        next.is_some_and(|next| !declares(&next.kind) && !self.starts_afresh(&next.kind))
+    }
+
+    /// Whether an instruction needs no current result.
+    fn starts_afresh(&self, kind: &ItemKind) -> bool {
+        match kind {
+            ItemKind::Operation { operation, .. } => operation.operator.role == OperatorRole::Load,
+            ItemKind::Call { condition, .. }
+            | ItemKind::Jump { condition, .. }
+            | ItemKind::Return { condition, .. } => *condition == Condition::Always,
+            ItemKind::Function { form, .. } => *form != ListForm::None,
+            _ => false,
+        }
+    }
+
+    /// Whether item `index`, outside of parentheses, begins a segment behind `last`.
+    fn begins(&self, last: &Segment, index: usize) -> bool {
+        let is_fed =
+            index.checked_sub(1).is_some_and(|before| last.items.contains(&before) && self.feeds(before));
+        self.starts_afresh(&self.tree.items[index].kind) && !is_fed
+    }
+
+    /// Whether the segment that begins with item `index` may go on with the rung before: it asks for the output of a
+    /// block that was just called, or detectors of edges were.
+    fn may_go_on(&self, index: usize, pou: Option<usize>) -> bool {
+        let [before, item] = [index.wrapping_sub(1), index].map(|index| self.tree.items.get(index));
+        let (Some(before), Some(item)) = (before, item) else { return false };
+        let between = Span { start: before.span.end, end: item.span.start.max(before.span.end) };
+        let is_commented = {
+            let after = self.tree.comments.partition_point(|comment| comment.start < between.start);
+            self.tree.comments.get(after).is_some_and(|comment| comment.start < between.end)
+                || between.of(self.text).matches('\n').count() > 1
+        };
+        let ItemKind::Call { condition: Condition::Always, callee: Some(callee), .. } = before.kind else {
+            return false;
+        };
+        let instance = self.tree.operand(callee).span.of(self.text);
+        let Some(block) = self.block(pou, instance) else { return false };
+        let detects = matches!(block.name, "R_TRIG" | "F_TRIG");
+        let asks = match item.kind {
+            ItemKind::Operation { operation, operand: Some(id) } => {
+                operation.operator.role == OperatorRole::Load
+                    && self
+                        .tree
+                        .operand(id)
+                        .span
+                        .of(self.text)
+                        .eq_ignore_ascii_case(&output_of(block, instance))
+            }
+            _ => false,
+        };
+        let is_load = matches!(item.kind, ItemKind::Operation { .. });
+        let is_call = matches!(item.kind, ItemKind::Call { .. });
+        !is_commented && (asks || detects && (is_load || is_call))
+    }
+
+    /// Whether item `index` stores the power of the call that follows it: `ST T1.IN` before `CAL T1`.
+    fn feeds(&self, index: usize) -> bool {
+        let item = &self.tree.items[index];
+        let (ItemKind::Operation { operation, operand: Some(id) }, Some(next)) =
+            (item.kind, self.tree.items.get(index + 1))
+        else {
+            return false;
+        };
+        let ItemKind::Call { condition: Condition::Always, callee: Some(callee), .. } = next.kind else {
+            return false;
+        };
+        let [stored, called] = [id, callee].map(|id| self.tree.operand(id).span.of(self.text));
+        operation.operator.role == OperatorRole::Store
+            && item.depth == 0
+            && stored.rsplit_once('.').is_some_and(|(instance, _)| instance.eq_ignore_ascii_case(called))
+    }
+
+    /// Counts the uses of instances that may be detectors of edges.
+    fn find_detectors(&mut self, starts: &[u32], pous: usize) {
+        for operand in &self.tree.operands {
+            if operand.value != Operand::Variable {
+                continue;
+            }
+            let before = starts.partition_point(|start| *start <= operand.span.start);
+            let pou = (pous + before).checked_sub(1);
+            let path = operand.span.of(self.text);
+            let (instance, member) =
+                path.split_once('.').map_or((path, None), |(root, rest)| (root, Some(rest)));
+            if !self.block(pou, instance).is_some_and(|block| matches!(block.name, "R_TRIG" | "F_TRIG")) {
+                continue;
+            }
+            let detector = self.detectors.entry((pou, folded(instance))).or_default();
+            match member {
+                None => detector.bare += 1,
+                Some(member) if member.eq_ignore_ascii_case("Q") => {
+                    detector.reads =
+                        Some(detector.reads.map_or(operand.span, |reads| reads.to(operand.span)));
+                }
+                Some(_) => detector.is_opened = true,
+            }
+        }
+    }
+
+    /// The standard function block that a variable is an instance of.
+    fn block(&self, pou: Option<usize>, instance: &str) -> Option<&'static FunctionBlock> {
+        match self.scopes.type_of(pou, instance)? {
+            DeclaredType::Named(name) => FunctionBlock::named(&name),
+            _ => None,
+        }
+    }
+
+    /// Whether nobody but the instructions in `span` asks for the output of this detector, which is called once.
+    fn is_edge(&self, pou: Option<usize>, instance: &str, span: Span) -> bool {
+        self.detectors.get(&(pou, folded(instance))).is_some_and(|detector| {
+            let inside = |reads: Span| span.start <= reads.start && reads.end <= span.end;
+            detector.bare == 1 && !detector.is_opened && detector.reads.is_some_and(inside)
+        })
+    }
+
+    /// What an operand can be, as far as it is declared.
+    fn value_kind(&self, pou: Option<usize>, operand: &Operand, word: &str) -> ValueKind {
+        match operand {
+            Operand::Literal(literal) => match literal.value {
+                LiteralValue::Bool(_) => ValueKind::Bit,
+                LiteralValue::Integer(0 | 1) if literal.named_type.is_none() => ValueKind::Unknown,
+                _ => ValueKind::Word,
+            },
+            Operand::Direct(address) if address.width == Width::Bit => ValueKind::Bit,
+            Operand::Direct(_) => ValueKind::Word,
+            Operand::Variable => match self.scopes.type_of(pou, word) {
+                Some(DeclaredType::Elementary(ElementaryType::Bool)) => ValueKind::Bit,
+                Some(DeclaredType::Unknown) | None => ValueKind::Unknown,
+                Some(_) => ValueKind::Word,
+            },
+            _ => ValueKind::Invalid,
+        }
+    }
+
+    /// Reads segments, joined where they make one rung.
+    fn read(&self, segments: &[Segment], comments: &mut Comments, rungs: &mut Vec<Rung>) {
+        let mut at = 0;
+        while let Some(first) = segments.get(at) {
+            let more =
+                segments[at + 1..].iter().take(JOINED_MAX).take_while(|segment| segment.goes_on).count();
+            let joined =
+                (more > 0).then(|| self.path(first.pou, first.items.start..segments[at + more].items.end));
+            let (count, path) = match joined {
+                Some(Ok(path)) => (more + 1, Ok(path)),
+                _ => (1, self.path(first.pou, first.items.clone())),
+            };
+            let items = &self.tree.items[first.items.start..segments[at + count - 1].items.end];
+            let label = || first.labels.last().copied().unwrap_or_default();
+            let span = items.iter().map(|item| item.span).reduce(Span::to).unwrap_or_else(label);
+            rungs.push(Rung {
+                labels: first.labels.iter().map(|label| label.of(self.text).into()).collect(),
+                network: None,
+                comments: comments.up_to(end_of_line(self.text, span.end as usize)),
+                span,
+                is_list: true,
+                path,
+            });
+            at += count;
+        }
+    }
+
+    fn path(&self, pou: Option<usize>, items: Range<usize>) -> Result<Option<Path>, Refusal> {
+        let Some((first, rest)) = self.tree.items[items.clone()].split_first() else { return Ok(None) };
+        let span = rest.iter().fold(first.span, |span, item| span.to(item.span));
+        let mistake = self.mistakes.partition_point(|mistake| *mistake < span.start);
+        if self.mistakes.get(mistake).is_some_and(|mistake| *mistake <= span.end) {
+            return Err(Refusal::Unreadable);
+        }
+        Reader::new(self, pou, span).read(items).map(Some)
+    }
+
+    fn item(&self, index: usize) -> &'a Item {
+        &self.tree.items[index]
+    }
+}
+
+/// So many segments are tried as one rung.
+const JOINED_MAX: usize = 16;
+
+/// What an operand can be.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum ValueKind {
+    Bit,
+    /// Anything else with a type.
+    Word,
+    /// It is not declared; what is done with it tells.
+    Unknown,
+    /// No operand at all.
+    Invalid,
+}
+
+/// The output of an instance from which power goes on.
+fn output_of(block: &FunctionBlock, instance: &str) -> String {
+    format!("{instance}.{}", block.outputs.first().map_or("", |pin| pin.name))
+}

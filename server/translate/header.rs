@@ -1,0 +1,204 @@
+//! What a translation to instruction list of IEC 61131-3 declares: a program around the rungs where the source has
+//! none, and the helpers that it needs.
+
+use super::dialect;
+use super::source::Source;
+use super::to_iec::Helper;
+use crate::document::{DeclaredType, Document, Scopes, Tree};
+use crate::il::iec;
+use crate::logic::{Action, Deed, Expression, Path, Term, Test};
+use crate::target::iec::{LiteralValue, ParameterType};
+use crate::target::{Model, Operand, Target};
+use crate::text::folded;
+use rustc_hash::FxHashSet;
+use smol_str::{SmolStr, format_smolstr};
+
+/// The name of a program that has none.
+const PROGRAM: &str = "Main";
+
+/// All names that a program uses or declares.
+pub(super) fn names<'s>(document: &Document, sources: impl Iterator<Item = &'s Source>) -> Vec<SmolStr> {
+    let scopes = document.scopes();
+    let mut names: Vec<SmolStr> = vec![PROGRAM.into()];
+    for pou in &scopes.pous {
+        names.push(pou.name.clone());
+        names.extend(pou.variables.iter().map(|variable| variable.name.clone()));
+    }
+    names.extend(scopes.globals.values().map(|variable| variable.name.clone()));
+    for source in sources {
+        names.extend(source.rung.labels.iter().cloned());
+        for path in source.rung.path.iter().flatten() {
+            visit(path, &mut |term, _| names.push(root(term).into()));
+        }
+    }
+    names
+}
+
+/// What the use of a variable says about its type.
+#[derive(Clone)]
+enum Use {
+    Bit,
+    /// Compared with this.
+    Beside(Term),
+    /// An instance of this block, or a value of this type.
+    Type(SmolStr),
+    Label,
+}
+
+/// Calls `found` with each operand of a path and what it is used for.
+fn visit<'p>(path: &'p Path, found: &mut impl FnMut(&'p Term, Use)) {
+    let found = std::cell::RefCell::new(found);
+    let action = |action: &'p Action| match action.deed {
+        Deed::Call(call) => {
+            let arguments = call.arguments(&action.terms);
+            for (number, term) in action.terms.iter().enumerate() {
+                let kind = match number.checked_sub(1).and_then(|number| arguments.get(number)) {
+                    None => call.block.name.into(),
+                    Some(argument) => {
+                        let pins = call.block.inputs.iter().chain(call.block.outputs);
+                        let mut pins = pins.filter(|pin| pin.name == argument.name);
+                        match pins.next().map(|pin| pin.kind) {
+                            Some(ParameterType::Elementary(kind)) => kind.name().into(),
+                            _ => "INT".into(),
+                        }
+                    }
+                };
+                found.borrow_mut()(term, Use::Type(kind));
+            }
+        }
+        Deed::Jump => action.terms.iter().for_each(|term| found.borrow_mut()(term, Use::Label)),
+        _ => action.terms.iter().for_each(|term| found.borrow_mut()(term, Use::Bit)),
+    };
+    let condition = |expression: &'p Expression| {
+        expression.visit(&mut |contact| match (contact.test, &contact.terms[..]) {
+            (Test::Compare(_), [left, right]) => {
+                found.borrow_mut()(left, Use::Beside(right.clone()));
+                found.borrow_mut()(right, Use::Beside(left.clone()));
+            }
+            _ => contact.terms.iter().for_each(|term| found.borrow_mut()(term, Use::Bit)),
+        });
+    };
+    path.visit(&mut { action }, &mut { condition });
+}
+
+fn root(term: &Term) -> &str {
+    let end = term.text.find(['.', '[', '^']).unwrap_or(term.text.len());
+    &term.text[..end]
+}
+
+/// The header of a program without one: its variables, typed by the declarations of the source if there are any, else
+/// by their use, and the helpers.
+pub(super) fn header(document: &Document, sources: &[Source], helpers: &[Helper]) -> String {
+    let scopes = document.scopes();
+    let mut known: FxHashSet<SmolStr> = FxHashSet::default();
+    let mut variables: Vec<(SmolStr, SmolStr)> = Vec::new();
+    let paths = || sources.iter().filter_map(|source| source.rung.path.as_ref().ok()?.as_ref());
+    // Instances first, for a member of one says nothing of its type.
+    for is_instance in [true, false] {
+        for path in paths() {
+            visit(path, &mut |term, usage| {
+                let name = root(term);
+                let is_whole = name.len() == term.text.len();
+                let declared = declared_type(scopes, name);
+                let by_use = type_by_use(&usage).filter(|_| is_whole);
+                let calls = matches!(usage, Use::Type(_));
+                let type_name = if calls { by_use.or(declared) } else { declared.or(by_use) };
+                let Some(type_name) = type_name else { return };
+                if term.operand == Operand::Variable && calls == is_instance && known.insert(folded(name)) {
+                    variables.push((name.into(), type_name));
+                }
+            });
+        }
+    }
+    if document.target().is_fx() {
+        for (name, _) in &mut variables {
+            let Operand::Device(device) = Operand::read(name, document.target().model) else { continue };
+            if let Some(address) = dialect::address(device) {
+                *name = format_smolstr!("{name} AT {address}");
+            }
+        }
+    }
+    variables.extend(helpers.iter().map(|helper| (helper.name.clone(), helper.type_name.into())));
+    format!("PROGRAM {PROGRAM}\n{}\n", section(&variables))
+}
+
+/// The declarations of the helpers of a program unit; empty if it has none.
+pub(super) fn helpers_of(helpers: &[Helper], pou: Option<usize>) -> String {
+    let own = helpers.iter().filter(|helper| helper.pou == pou);
+    section(&own.map(|helper| (helper.name.clone(), helper.type_name.into())).collect::<Vec<_>>())
+}
+
+fn section(variables: &[(SmolStr, SmolStr)]) -> String {
+    if variables.is_empty() {
+        return String::new();
+    }
+    let lines: String = variables.iter().map(|(name, kind)| format!("{name} : {kind};\n")).collect();
+    format!("VAR\n{lines}END_VAR\n")
+}
+
+/// The type with which tables of the source declare a variable.
+fn declared_type(scopes: &Scopes, name: &str) -> Option<SmolStr> {
+    match scopes.type_of(None, name)? {
+        DeclaredType::Elementary(kind) => Some(kind.name().into()),
+        DeclaredType::Named(name) => Some(name.to_uppercase().into()),
+        _ => None,
+    }
+}
+
+fn type_by_use(usage: &Use) -> Option<SmolStr> {
+    match usage {
+        Use::Bit => Some("BOOL".into()),
+        Use::Type(name) => Some(name.clone()),
+        Use::Beside(other) => Some(match other.operand {
+            Operand::Literal(literal) => match literal.value {
+                LiteralValue::Time(_) => "TIME".into(),
+                LiteralValue::Real(_) => "REAL".into(),
+                _ => literal.named_type.map_or("INT".into(), |kind| kind.name().into()),
+            },
+            _ => "INT".into(),
+        }),
+        Use::Label => None,
+    }
+}
+
+/// The comments of declarations.
+pub(super) fn comments(text: &str) -> Vec<String> {
+    let tree = iec::parse(text, Target::of(Model::Iec));
+    tree.comments.iter().map(|comment| comment.of(text).trim_end().to_string()).collect()
+}
+
+/// The canonical layout of a piece of instruction list, as the formatter has it.
+pub(super) fn laid_out(text: &str) -> String {
+    let target = Target::of(Model::Iec);
+    let options = iec::FormatOptions::default();
+    let mut start = 0;
+    let mut laid_out = String::with_capacity(text.len());
+    for end in iec::split(text) {
+        let piece = &text[std::mem::replace(&mut start, end)..end];
+        let tree = iec::parse(piece, target);
+        laid_out += &iec::format_chunk(piece, &tree, &options);
+    }
+    laid_out
+}
+
+/// Whether a document declares program units of its own, around its rungs.
+pub(super) fn has_units(document: &Document) -> bool {
+    document.chunks().any(|at| {
+        let Some(tree) = at.chunk.is_iec().then(|| at.chunk.tree()) else { return false };
+        matches!(tree, Tree::Iec(tree) if tree.items.iter().any(|item| matches!(item.kind, iec::ItemKind::Pou { .. })))
+    })
+}
+
+/// A comment as instruction list of IEC 61131-3 has it.
+pub(super) fn comment(comment: &str) -> String {
+    if comment.starts_with('{') {
+        // Braces may nest in a drawing.
+        return format!("(* {} *)", comment.replace("(*", "( *").replace("*)", "* )"));
+    }
+    let line = comment.strip_prefix("//").or_else(|| comment.strip_prefix(';'));
+    match line {
+        Some(text) if !text.contains("*)") && !text.contains("(*") => format!("(* {} *)", text.trim()),
+        Some(text) => format!("(* {} *)", text.replace("(*", "( *").replace("*)", "* )").trim()),
+        None => comment.to_string(),
+    }
+}

@@ -1,0 +1,496 @@
+//! Instruction list of IEC 61131-3 to drawings and back. What a list does is told by a small machine of its own, which
+//! owes nothing to the translator.
+
+use crate::corpus::say_skipped;
+use proptest::prelude::*;
+use rungwise::document::{Document, Notation};
+use rungwise::ide::{self, Style};
+use rungwise::target::{Model, Target};
+use rungwise::translate::{Certificate, Options, To, Translation, translate};
+use std::collections::HashMap;
+use std::path::Path;
+use std::process::Command;
+
+fn list(text: &str) -> Document {
+    Document::new(text, Notation::IecIl, Target::of(Model::Iec))
+}
+
+fn drawing(text: &str) -> Document {
+    Document::new(text, Notation::Ladder, Target::of(Model::Iec))
+}
+
+fn to(document: &Document, to: To) -> Translation {
+    translate(document, None, to, &Options::default())
+}
+
+/// The text of a translation of which nothing is kept and everything is proved.
+fn certain(document: &Document, form: To) -> String {
+    let translation = to(document, form);
+    for rung in &translation.rungs {
+        let said = (rung.certificate, rung.note.as_ref().map(|note| note.key()));
+        let is_certain = rung.certificate.is_some_and(Certificate::is_certain) && rung.note.is_none();
+        assert!(is_certain, "{said:?}\n{}\n--\n{}", document.slice(rung.span), translation.text);
+    }
+    translation.text
+}
+
+/// A program with these variables and this body.
+fn program(variables: &str, body: &str) -> String {
+    format!("PROGRAM Test\nVAR\n{variables}\nEND_VAR\n{body}\nEND_PROGRAM\n")
+}
+
+const BITS: &str = "a, b, c, d, e : BOOL; x, y, z, w : BOOL; n, k : INT;";
+
+/// The instructions of the body of a list, one a line with single blanks.
+fn body(text: &str) -> Vec<String> {
+    let from = text.rfind("END_VAR").map_or(0, |at| at + "END_VAR".len());
+    let end = text.find("END_PROGRAM").unwrap_or(text.len());
+    let lines = text[from..end].lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "));
+    lines.filter(|line| !line.is_empty()).collect()
+}
+
+/// There, back, and there once more: the drawing and the list stay as they became.
+fn round(text: &str) -> (String, String) {
+    let drawn = certain(&list(text), To::Ladder);
+    let back = certain(&drawing(&drawn), To::Iec);
+    assert_eq!(certain(&list(&back), To::Ladder).replace(" : ", ":"), drawn_again(&drawn), "{back}");
+    (drawn, back)
+}
+
+/// A drawing with the layout of declarations that a list gives them.
+fn drawn_again(drawn: &str) -> String {
+    let back = certain(&drawing(drawn), To::Iec);
+    certain(&list(&back), To::Ladder).replace(" : ", ":")
+}
+
+/// The state of a program: bits as 0 and 1, and words.
+type State = HashMap<String, i64>;
+
+/// Runs the body of a list once.
+fn scan(text: &str, state: &mut State) {
+    let lines = body(text);
+    let value = |state: &State, word: &str| match word {
+        "TRUE" => 1,
+        "FALSE" => 0,
+        _ => word.parse().unwrap_or_else(|_| state.get(&word.to_lowercase()).copied().unwrap_or(0)),
+    };
+    let mut stack: Vec<(String, i64)> = Vec::new();
+    let (mut current, mut at) = (0, 0);
+    while let Some(line) = lines.get(at) {
+        at += 1;
+        let (word, operand) = line.split_once(' ').unwrap_or((line, ""));
+        if let Some(operator) = word.strip_suffix('(') {
+            stack.push((operator.to_string(), current));
+            current = value(state, operand);
+            continue;
+        }
+        let jump =
+            |at: &mut usize| *at = lines.iter().position(|line| *line == format!("{operand}:")).unwrap();
+        match word {
+            "CAL" => {
+                let instance = operand.trim_end_matches('(').to_lowercase();
+                let clk = value(state, lines[at].trim_start_matches("CLK := "));
+                at += 2;
+                let before = state.insert(format!("{instance}.m"), clk).unwrap_or(0);
+                let rising = instance.starts_with("rise");
+                let edge = if rising { clk > before } else { clk < before };
+                state.insert(format!("{instance}.q"), i64::from(edge));
+            }
+            ")" => {
+                let (operator, before) = stack.pop().unwrap();
+                current = combine(&operator, before, current);
+            }
+            "LD" => current = value(state, operand),
+            "LDN" => current = 1 - value(state, operand),
+            "NOT" => current = 1 - current,
+            "ST" => _ = state.insert(operand.to_lowercase(), current),
+            "STN" => _ = state.insert(operand.to_lowercase(), 1 - current),
+            "S" if current == 1 => _ = state.insert(operand.to_lowercase(), 1),
+            "R" if current == 1 => _ = state.insert(operand.to_lowercase(), 0),
+            "S" | "R" => {}
+            "JMP" => jump(&mut at),
+            "JMPC" if current == 1 => jump(&mut at),
+            "JMPCN" if current == 0 => jump(&mut at),
+            "RET" => return,
+            "RETC" if current == 1 => return,
+            "RETCN" if current == 0 => return,
+            "JMPC" | "JMPCN" | "RETC" | "RETCN" => {}
+            label if label.ends_with(':') => {}
+            operator => current = combine(operator, current, value(state, operand)),
+        }
+    }
+}
+
+fn combine(operator: &str, left: i64, right: i64) -> i64 {
+    match operator {
+        "AND" | "&" => left & right,
+        "ANDN" => left & (1 - right),
+        "OR" => left | right,
+        "ORN" => left | (1 - right),
+        "XOR" => left ^ right,
+        "XORN" => left ^ (1 - right),
+        "GT" => i64::from(left > right),
+        "GE" => i64::from(left >= right),
+        "EQ" => i64::from(left == right),
+        "NE" => i64::from(left != right),
+        "LE" => i64::from(left <= right),
+        "LT" => i64::from(left < right),
+        other => panic!("{other}"),
+    }
+}
+
+/// Two lists do the same with the given variables, from all states of `inputs` and through some scans of changing ones.
+fn same(one: &str, other: &str, inputs: &[&str], outputs: &[&str]) {
+    let mut states = [State::new(), State::new()];
+    for pattern in (0..1u32 << inputs.len()).chain((0..1 << inputs.len()).rev()) {
+        for (text, state) in [one, other].into_iter().zip(&mut states) {
+            for (number, input) in inputs.iter().enumerate() {
+                state.insert(input.to_string(), i64::from(pattern >> number & 1));
+            }
+            scan(text, state);
+        }
+        for output in outputs {
+            let [left, right] =
+                [&states[0], &states[1]].map(|state| state.get(*output).copied().unwrap_or(0));
+            assert_eq!(left, right, "{output} for {pattern:b}\n{one}\n--\n{other}");
+        }
+    }
+}
+
+const INPUTS: &[&str] = &["a", "b", "c", "d", "e"];
+const OUTPUTS: &[&str] = &["x", "y", "z", "w"];
+
+#[test]
+fn conditions_go_there_and_back() {
+    let text = program(BITS, "LD a\nOR( b\nANDN c\n)\nANDN d\nORN e\nST y\nAND b\nSTN z\nS w\nR x");
+    let (drawn, back) = round(&text);
+    same(&text, &back, INPUTS, OUTPUTS);
+    assert_eq!(
+        body(&back),
+        ["LD a", "OR( b", "ANDN c", ")", "ANDN d", "ORN e", "ST y", "AND b", "STN z", "S w", "R x"],
+        "{drawn}"
+    );
+}
+
+#[test]
+fn what_is_loaded_from_words_is_compared() {
+    let text = program(BITS, "LD n\nGE 10\nAND a\nOR( k\nLT n\n)\nST y");
+    let (drawn, back) = round(&text);
+    assert!(drawn.contains("[>= n 10]") && drawn.contains("[< k n]"), "{drawn}");
+    assert_eq!(body(&back), body(&text));
+}
+
+#[test]
+fn exclusive_or_is_drawn_and_complements_are_moved_in() {
+    let text = program(BITS, "LD a\nXOR( b\nAND c\n)\nXORN d\nST y\nLD a\nAND b\nNOT\nST z");
+    let (_, back) = round(&text);
+    same(&text, &back, INPUTS, OUTPUTS);
+    assert!(body(&back).contains(&"NOT".to_string()) || body(&back).contains(&"STN z".to_string()), "{back}");
+}
+
+#[test]
+fn jumps_returns_and_labels_keep_their_places() {
+    let text = program(
+        BITS,
+        "LD a\nJMPC over\nLD b\nST y\nover:\nLD c\nRETCN\nLD d\nAND e\nJMPCN last\nLD b\nST z\nJMP last\nlast:\nLD b\nST w\nRET",
+    );
+    let (drawn, back) = round(&text);
+    assert!(drawn.contains("over:\n|") && drawn.contains(">>last") && drawn.contains("<RETURN>"), "{drawn}");
+    same(&text, &back, INPUTS, OUTPUTS);
+}
+
+#[test]
+fn a_jump_between_outputs_is_kept_as_it_is() {
+    for body in ["LD a\nJMPC over\nST y\nover:\nLD b\nST z", "LD a\nST y\nover:\nAND b\nST z"] {
+        let translation = to(&list(&program(BITS, body)), To::Ladder);
+        let kept = translation.rungs.first().unwrap();
+        assert_eq!(
+            kept.note.as_ref().map(|note| note.key()),
+            Some("logic.not-boolean"),
+            "{}",
+            translation.text
+        );
+        assert!(translation.text.contains("{il\n"), "{}", translation.text);
+        // And it comes back as it was.
+        let back = to(&drawing(&translation.text), To::Iec).text;
+        same(&program(BITS, body), &back, INPUTS, OUTPUTS);
+    }
+}
+
+#[test]
+fn detectors_of_edges_are_contacts() {
+    let variables = format!("{BITS} up : R_TRIG; down : F_TRIG;");
+    let calls = "CAL up(\nCLK := a\n)\nCAL down(\nCLK := b\n)\n";
+    let (drawn, back) = round(&program(&variables, &format!("{calls}LD up.Q\nAND c\nOR down.Q\nS y")));
+    assert!(drawn.contains("|P|") && drawn.contains("|N|"), "{drawn}");
+    let expected =
+        format!("{calls}LD up.Q\nAND c\nOR down.Q\nS y").replace("up", "Rise1").replace("down", "Fall1");
+    assert_eq!(body(&back).join("\n"), expected);
+    let declared = back.contains("Rise1 : R_TRIG;") && back.contains("Fall1 : F_TRIG;");
+    assert!(declared, "{back}");
+    // Who else asks for the output gets it from the block.
+    let (drawn, back) = round(&program(&variables, "CAL up(\nCLK := a\n)\nLD up.Q\nST y\nLD up.Q\nST z"));
+    assert!(drawn.contains("R_TRIG") && !drawn.contains("|P|"), "{drawn}");
+    assert_eq!(body(&back), ["CAL up(", "CLK := a", ")", "LD up.Q", "ST y", "LD up.Q", "ST z"]);
+}
+
+#[test]
+fn function_blocks_stand_on_the_power_line() {
+    let variables = format!("{BITS} T1 : TON; C1 : CTU;");
+    let text = program(
+        &variables,
+        "LD a\nAND b\nST T1.IN\nCAL T1(\nPT := T#5s\n)\nLD T1.Q\nANDN c\nST y\nCAL C1(\nCU := d,\nR := e,\nPV := 10,\nCV => n\n)\nLD C1.Q\nOR a\nST z",
+    );
+    let (drawn, back) = round(&text);
+    assert!(drawn.contains("| TON  |") && drawn.contains("|IN   Q|") && drawn.contains("CV|--n"), "{drawn}");
+    assert_eq!(body(&back), body(&text));
+    // A box that is not the standard's, or is called otherwise, is kept.
+    for call in ["CALC T1", "CAL T1", "CAL n(\nIN := a\n)", "CAL T1(\nIN := a,\nXX := b\n)"] {
+        let translation = to(&list(&program(&variables, &format!("LD a\n{call}"))), To::Ladder);
+        assert!(
+            translation.text.contains(&format!("{{il\nLD a\n{call}\n}}")) || translation.text.contains(call),
+            "{}",
+            translation.text
+        );
+        assert!(translation.rungs.iter().any(|rung| rung.note.is_some()), "{call}");
+    }
+}
+
+#[test]
+fn power_that_is_wanted_again_is_loaded_again() {
+    // A single contact that nothing changes is loaded once more.
+    let text = "
+|   a        b                 y |
++--| |---+--| |---------------( )+
+|        |  c                  z |
+|        +--| |---------------( )+
+";
+    let single = certain(&drawing(text), To::Iec);
+    assert_eq!(body(&single), ["LD a", "AND b", "ST y", "LD a", "AND c", "ST z"]);
+    assert!(!single.contains("Held"), "{single}");
+    // One that is driven meanwhile, or more than one, is kept in a helper.
+    let driven = text.replace("y |", "a |");
+    let compared = text.replace("|   a     ", "|         ").replace("--| |---+--", "[> n 5]-+--");
+    for (text, list) in [
+        (driven, "LD a\nST Held1\nAND b\nST a\nLD Held1\nAND c\nST z"),
+        (compared, "LD n\nGT 5\nST Held1\nAND b\nST y\nLD Held1\nAND c\nST z"),
+    ] {
+        let held = certain(&drawing(&text), To::Iec);
+        assert_eq!(body(&held).join("\n"), list, "{text}");
+        assert!(held.contains("Held1 : BOOL;"), "{held}");
+    }
+}
+
+#[test]
+fn a_drawing_without_declarations_gets_a_program() {
+    let drawn = "
+(* Seal-in *)
+|   Start     Stop                                Motor |
++---| |---+---|/|---[> Level 300]----------------( )----+
+|   Motor |                                             |
++---| |---+                                             |
+";
+    let written = certain(&drawing(drawn), To::Iec);
+    for line in
+        ["PROGRAM Main", "Start : BOOL;", "Stop  : BOOL;", "Motor : BOOL;", "Level : INT;", "(* Seal-in *)"]
+    {
+        assert!(written.contains(line), "{line}\n{written}");
+    }
+    assert!(written.trim_end().ends_with("END_PROGRAM"), "{written}");
+    let found = problems(&written);
+    assert!(found.is_empty(), "{found:?}\n{written}");
+    assert_eq!(formatted(&list(&written)), written);
+}
+
+/// What the check has against a list.
+fn problems(text: &str) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("program.il");
+    std::fs::write(&path, text).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_rungwise")).arg("check").arg(&path).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    said.lines()
+        .filter(|line| line.contains("error") || line.contains("warning"))
+        .map(str::to_string)
+        .collect()
+}
+
+/// The document as `rungwise fmt` has it.
+fn formatted(document: &Document) -> String {
+    let style = Style { kind: Default::default(), width: 48 };
+    let mut text = document.text();
+    for edit in ide::format(document, style).into_iter().rev() {
+        text.replace_range(edit.span.range(), &edit.text);
+    }
+    text
+}
+
+#[test]
+fn a_hundred_thousand_parentheses_are_refused() {
+    let deep = format!("LD a\n{}{}ST y", "AND( b\n".repeat(100_000), ")\n".repeat(100_000));
+    let wide = format!("LD a\n{}ST y", "OR( b\nAND c\n)\n".repeat(20_000));
+    let unclosed = format!("LD a\n{}ST y", "AND( b\n".repeat(100_000));
+    for (body, note) in [(deep, Some("logic.too-deep")), (wide, None), (unclosed, Some("logic.unreadable"))] {
+        let text = program(BITS, &body);
+        let options = Options { proves: false, ..Options::default() };
+        let translation = translate(&list(&text), None, To::Boolean, &options);
+        let rung = translation.rungs.first().unwrap();
+        assert_eq!(rung.note.as_ref().map(|note| note.key()), note);
+    }
+}
+
+/// A list of random instructions, which may make sense or not.
+fn instructions() -> impl Strategy<Value = Vec<String>> {
+    let operand = prop::sample::select(vec!["a", "b", "c", "d", "e"]);
+    let output = prop::sample::select(vec!["x", "y", "z", "w", "a"]);
+    let word = prop::sample::select(vec![
+        "LD", "LDN", "AND", "ANDN", "OR", "ORN", "XOR", "AND(", "OR(", "ANDN(", "ORN(",
+    ]);
+    let store = prop::sample::select(vec!["ST", "STN", "S", "R", "ST"]);
+    let line = prop_oneof![
+        5 => (word, operand).prop_map(|(word, operand)| format!("{word} {operand}")),
+        3 => (store, output).prop_map(|(word, operand)| format!("{word} {operand}")),
+        2 => Just(")".to_string()),
+        1 => Just("NOT".to_string()),
+    ];
+    prop::collection::vec(line, 1..24)
+}
+
+/// The same with parentheses that pair, loads first and outputs last.
+fn mended(lines: Vec<String>) -> String {
+    let mut open = 0;
+    let mut mended = vec!["LD a".to_string()];
+    for line in lines {
+        let stores = ["ST", "STN", "S ", "R "].iter().any(|word| line.starts_with(word));
+        match line.as_str() {
+            ")" if open == 0 => continue,
+            ")" => open -= 1,
+            _ if open > 0 && (stores || line.starts_with("LD")) => continue,
+            line if line.contains('(') => open += 1,
+            line if line.starts_with("LD") => mended.push("ST w".into()),
+            _ => {}
+        }
+        mended.push(line);
+    }
+    mended.extend(std::iter::repeat_n(")".to_string(), open));
+    mended.push("ST x".to_string());
+    mended.join("\n")
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(250))]
+
+    #[test]
+    fn lists_do_the_same_when_they_come_back(lines in instructions()) {
+        let text = program(BITS, &mended(lines));
+        let drawn = to(&list(&text), To::Ladder);
+        for rung in &drawn.rungs {
+            prop_assert!(rung.certificate.is_some_and(Certificate::is_certain), "{:?}\n{}\n{}", rung, text, drawn.text);
+        }
+        let back = to(&drawing(&drawn.text), To::Iec);
+        for rung in &back.rungs {
+            prop_assert!(rung.certificate.is_some_and(Certificate::is_certain), "{:?}\n{}\n{}", rung, drawn.text, back.text);
+        }
+        same(&text, &back.text, INPUTS, OUTPUTS);
+        let again = to(&drawing(&to(&list(&back.text), To::Ladder).text), To::Iec);
+        prop_assert_eq!(&again.text, &back.text);
+        prop_assert_eq!(formatted(&list(&back.text)), back.text);
+    }
+
+    #[test]
+    fn lists_of_any_words_come_to_an_end(lines in instructions()) {
+        let text = lines.join("\n");
+        for form in To::ALL {
+            to(&list(&text), form);
+        }
+    }
+}
+
+#[test]
+fn the_command_line_writes_iec() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("motor.lad");
+    std::fs::write(&path, "|  Start        Motor |\n+--| |---------( )---+\n").unwrap();
+    let output = translated(&path, "iec");
+    assert!(output.contains("LD      Start\n    ST      Motor\n"), "{output}");
+}
+
+/// What `rungwise translate --prove` writes.
+fn translated(path: &Path, form: &str) -> String {
+    let program = env!("CARGO_BIN_EXE_rungwise");
+    let output =
+        Command::new(program).args(["translate", "--prove", "--to", form]).arg(path).output().unwrap();
+    let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{complaint}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The rungs of programs by other people that stay as they are, with the reason; all others go there and back.
+const KEPT: &[(&str, &[&str])] = &[
+    // `dbg 1` prints the current result, and `jmpcn down` before it leaves it standing.
+    ("echidna-x-blink", &[THERE_NOT_BOOLEAN, THERE_NOT_BOOLEAN, BACK_NOT_BOOLEAN, BACK_NOT_BOOLEAN]),
+    ("echidna-x-ctu", &[THERE_NOT_BOOLEAN, BACK_NOT_BOOLEAN]),
+    // Blocks that are declared in the program, or called without their first input.
+    ("echidna-x-fb", &[THERE_BLOCK, BACK_BLOCK]),
+    ("echidna-x-rtc", &[THERE_BLOCK, BACK_BLOCK]),
+    // XOR of a byte, and its conversion.
+    ("echidna-x-tutorial-example1", &[THERE_NOT_BOOLEAN, BACK_NOT_BOOLEAN]),
+    ("echidna-x-tutorial-example2", &[THERE_NOT_BOOLEAN, BACK_NOT_BOOLEAN]),
+    ("echidna-x-tutorial-example3", &[THERE_BLOCK, BACK_BLOCK]),
+    // Open wires and prose, which the check reports.
+    ("vdorr-negative-test01", &["there undecided logic.open-circuit"]),
+    ("vdorr-readme", &["there undecided logic.unreadable", "there undecided logic.unreadable"]),
+];
+const THERE_NOT_BOOLEAN: &str = "there construction logic.not-boolean";
+const BACK_NOT_BOOLEAN: &str = "back construction logic.not-boolean";
+const THERE_BLOCK: &str = "there construction logic.element";
+const BACK_BLOCK: &str = "back construction logic.element";
+
+#[test]
+fn programs_of_others_go_there_and_back() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = ["../shared/corpus", "../../shared/corpus"]
+        .iter()
+        .map(|place| root.join(place))
+        .find(|at| at.exists());
+    let Some(folder) = folder else { return say_skipped("no folder ../shared/corpus") };
+    let mut kept = Vec::new();
+    for (part, notation) in [("iec", Notation::IecIl), ("ladder", Notation::Ladder)] {
+        let mut files: Vec<_> =
+            std::fs::read_dir(folder.join(part)).unwrap().map(|file| file.unwrap().path()).collect();
+        files.sort();
+        for path in files {
+            let text = std::fs::read_to_string(&path).unwrap();
+            let text = &text[text.find('\n').unwrap() + 1..];
+            let document = Document::new(text, notation, Target::of(Model::Iec));
+            let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+            kept.extend(there_and_back(&name, &document));
+        }
+    }
+    let expected: Vec<String> = KEPT
+        .iter()
+        .flat_map(|(name, notes)| notes.iter().map(move |note| format!("{name}: {note}")))
+        .collect();
+    assert_eq!(kept, expected, "{kept:#?}");
+}
+
+/// What is not proved of a program on its way to the other form and back.
+fn there_and_back(name: &str, document: &Document) -> Vec<String> {
+    let other = if document.notation() == Notation::Ladder { To::Iec } else { To::Ladder };
+    let first = to(document, other);
+    let back = match other {
+        To::Ladder => to(&drawing(&first.text), To::Iec),
+        _ => to(&list(&first.text), To::Ladder),
+    };
+    let mut said = Vec::new();
+    for (direction, translation) in [("there", &first), ("back", &back)] {
+        for rung in &translation.rungs {
+            let certificate = rung.certificate.map_or("none", Certificate::word);
+            let note = rung.note.as_ref().map_or("", |note| note.key());
+            if !note.is_empty() || certificate == "undecided" {
+                said.push(format!("{name}: {direction} {certificate} {note}"));
+            }
+        }
+    }
+    said
+}
