@@ -119,6 +119,24 @@ fn a_bridge_is_drawn_apart_and_says_the_same() {
 }
 
 #[test]
+fn ways_to_several_outputs_are_drawn_apart_each() {
+    let bridge = [
+        BRIDGES[0],
+        "\
+|                   |                              Y1  |
+|                   +------------------------------( )-+
+",
+    ]
+    .concat();
+    let (drawing, _) = fixed(&bridge, "mixed-connection");
+    assert_eq!(table(&drawing), table(&bridge), "{drawing}");
+    // An edge is a contact as any other, asked once in a scan wherever it is drawn.
+    let edge = BRIDGES[0].replacen("| |---+---", "|P|---+---", 1);
+    let (drawing, _) = fixed(&edge, "mixed-connection");
+    assert_eq!(table(&drawing), table(&edge), "{drawing}");
+}
+
+#[test]
 fn what_cannot_be_proved_is_not_drawn_apart() {
     // An inverter, and an output that changes what the other is driven by.
     let inverter = BRIDGES[0].replace("-| |-----+----------------( )-+", "-| |-----+-[INV]----------( )-+");

@@ -6,7 +6,7 @@ use crate::target::iec::FunctionBlock;
 use smol_str::format_smolstr;
 use std::fmt;
 
-/// A call of a standard function block: power drives its first input, and goes on from its first output.
+/// A call of a standard function block: power drives an input, and goes on from its first output.
 ///
 /// The terms of its action are the instance, then the operands of the other inputs and outputs in the order of their
 /// declaration, as far as they have any.
@@ -14,6 +14,9 @@ use std::fmt;
 pub struct Call {
     /// The block.
     pub block: &'static FunctionBlock,
+    /// The place of the input that power drives, mostly the first; another one where an input operator such as `R C1`
+    /// calls the block.
+    power: u8,
     /// Which pins have operands: a bit for each input in order, then one for each output.
     given: u32,
 }
@@ -31,31 +34,33 @@ pub struct Argument {
 
 impl PartialEq for Call {
     fn eq(&self, other: &Call) -> bool {
-        self.block.name == other.block.name && self.given == other.given
+        (self.block.name, self.power, self.given) == (other.block.name, other.power, other.given)
     }
 }
 
 impl fmt::Debug for Call {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}/{:b}", self.block.name, self.given)
+        write!(f, "{}.{}/{:b}", self.block.name, self.power_in(), self.given)
     }
 }
 
 impl Call {
-    /// A call of `instance` with its terms in order. `arguments` gives for each pin its formal name in any letter
+    /// A call of `instance` with its terms in order, where power drives the input called `power`. `arguments` gives for each pin its formal name in any letter
     /// case, whether it is an output, and its operand. Nothing if the block has no such pin, or one is there twice, or
     /// one of them is the input or output of the power.
     pub fn new(
         block: &'static FunctionBlock,
+        power: &str,
         instance: Term,
         arguments: impl IntoIterator<Item = (impl AsRef<str>, bool, Term)>,
     ) -> Option<(Call, Vec<Term>)> {
-        let mut call = Call { block, given: 0 };
+        let power = block.inputs.iter().position(|pin| pin.name.eq_ignore_ascii_case(power))?;
+        let mut call = Call { block, power: power as u8, given: 0 };
         let mut placed: Vec<(usize, Term)> = Vec::new();
         for (name, is_output, term) in arguments {
             let pins = if is_output { block.outputs } else { block.inputs };
             let number = pins.iter().position(|pin| pin.name.eq_ignore_ascii_case(name.as_ref()))?;
-            if number == 0 && !is_output {
+            if number == power && !is_output {
                 return None;
             }
             let place = number + if is_output { block.inputs.len() } else { 0 };
@@ -72,7 +77,12 @@ impl Call {
 
     /// The input that power drives.
     pub fn power_in(self) -> &'static str {
-        self.block.inputs.first().map_or("", |pin| pin.name)
+        self.block.inputs.get(self.power as usize).map_or("", |pin| pin.name)
+    }
+
+    /// Whether an input operator of instruction list is the whole of it: `R C1`.
+    pub fn is_input_operator(self) -> bool {
+        self.power != 0 && self.given == 0 && self.block.has_input_operator(self.power_in())
     }
 
     /// The output from which power goes on.

@@ -3,8 +3,8 @@
 //! A rung begins with a load outside of parentheses, with an unconditional call, jump or return, or with a label before
 //! one of these, and goes on for as long as its current result is used: `LD a / ST y / AND b / ST z` is one rung with
 //! two outputs. A chunk of the document can hold several, for it goes on up to the next load. A call of a function
-//! block and the load of its output behind it are one rung, `--[TON]--( )`, unless a comment stands between them or the
-//! output is used in another way than to go on from it. Calls of R_TRIG and F_TRIG are a part of the rung behind
+//! block and the load of its output behind it are one rung, `--[TON]--( )`, unless a comment or a blank line stands between them
+//! or the output is used in another way than to go on from it. Calls of R_TRIG and F_TRIG are a part of the rung behind
 //! them if nobody else asks for their output: an edge contact.
 
 mod reader;
@@ -269,6 +269,7 @@ impl<'a> Source<'a> {
         let is_commented = {
             let after = self.tree.comments.partition_point(|comment| comment.start < between.start);
             self.tree.comments.get(after).is_some_and(|comment| comment.start < between.end)
+                || between.of(self.text).matches('\n').count() > 1
         };
         let ItemKind::Call { condition: Condition::Always, callee: Some(callee), .. } = before.kind else {
             return false;

@@ -59,6 +59,8 @@ pub enum Refusal {
     Element,
     /// Arithmetic on the current result, a jump into a block, and what else has no drawing.
     NotBoolean,
+    /// It has a device or an instruction for which the other language has nothing.
+    NoCounterpart,
 }
 
 impl Refusal {
@@ -78,6 +80,7 @@ impl Refusal {
             Refusal::BehindOutput => "logic.behind-output",
             Refusal::Element => "logic.element",
             Refusal::NotBoolean => "logic.not-boolean",
+            Refusal::NoCounterpart => "logic.no-counterpart",
         })
     }
 }

@@ -4,6 +4,7 @@ use super::source::{self, Source};
 use super::{To, Translation, from_boolean, page};
 use crate::document::Document;
 use crate::logic::{Comparison, Formulas, Path, compare_but};
+use crate::target::Target;
 use crate::text::{Message, folded};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
@@ -36,15 +37,16 @@ impl Certificate {
     }
 }
 
-/// Certifies each rung of `translation`, which was made of `sources`; nothing if it was cancelled on the way.
+/// Certifies each rung of `translation`, which was made of `sources` for `target`; nothing if it was cancelled on the
+/// way.
 pub(super) fn add(
-    document: &Document,
+    (document, target): (&Document, &'static Target),
     sources: &[Source],
     to: To,
     translation: &mut Translation,
     is_cancelled: &dyn Fn() -> bool,
 ) -> Option<()> {
-    let mut written = read_again(document, to, &translation.text).into_iter().peekable();
+    let mut written = read_again((document, target), to, &translation.text).into_iter().peekable();
     let helpers: FxHashSet<SmolStr> = translation.helpers.iter().map(|name| folded(name)).collect();
     for (source, translated) in sources.iter().zip(&mut translation.rungs) {
         if is_cancelled() {
@@ -83,7 +85,7 @@ struct Written {
     path: Option<Option<Path>>,
 }
 
-fn read_again(document: &Document, to: To, text: &str) -> Vec<Written> {
+fn read_again((document, target): (&Document, &'static Target), to: To, text: &str) -> Vec<Written> {
     let Some(notation) = page::notation(to) else {
         let (equations, problems) = from_boolean::read(text, document.reader());
         let equations = equations.into_iter();
@@ -96,7 +98,7 @@ fn read_again(document: &Document, to: To, text: &str) -> Vec<Written> {
             .map(|(span, path)| Written { start: span.start as usize, path })
             .collect();
     };
-    let again = Document::frugal(text, notation, document.target());
+    let again = Document::frugal(text, notation, target);
     let rungs = source::rungs(&again, None).into_iter();
     rungs.map(|rung| Written { start: rung.span().start as usize, path: rung.rung.path.ok() }).collect()
 }

@@ -1,16 +1,17 @@
 //! What a translation to instruction list of IEC 61131-3 declares: a program around the rungs where the source has
 //! none, and the helpers that it needs.
 
+use super::dialect;
 use super::source::Source;
 use super::to_iec::Helper;
 use crate::document::{DeclaredType, Document, Scopes, Tree};
 use crate::il::iec;
 use crate::logic::{Action, Deed, Expression, Path, Term, Test};
-use crate::target::Operand;
 use crate::target::iec::{LiteralValue, ParameterType};
+use crate::target::{Model, Operand, Target};
 use crate::text::folded;
 use rustc_hash::FxHashSet;
-use smol_str::SmolStr;
+use smol_str::{SmolStr, format_smolstr};
 
 /// The name of a program that has none.
 const PROGRAM: &str = "Main";
@@ -100,12 +101,21 @@ pub(super) fn header(document: &Document, sources: &[Source], helpers: &[Helper]
                 let is_whole = name.len() == term.text.len();
                 let declared = declared_type(scopes, name);
                 let by_use = type_by_use(&usage).filter(|_| is_whole);
-                let Some(type_name) = declared.or(by_use) else { return };
                 let calls = matches!(usage, Use::Type(_));
+                let type_name = if calls { by_use.or(declared) } else { declared.or(by_use) };
+                let Some(type_name) = type_name else { return };
                 if term.operand == Operand::Variable && calls == is_instance && known.insert(folded(name)) {
                     variables.push((name.into(), type_name));
                 }
             });
+        }
+    }
+    if document.target().is_fx() {
+        for (name, _) in &mut variables {
+            let Operand::Device(device) = Operand::read(name, document.target().model) else { continue };
+            if let Some(address) = dialect::address(device) {
+                *name = format_smolstr!("{name} AT {address}");
+            }
         }
     }
     variables.extend(helpers.iter().map(|helper| (helper.name.clone(), helper.type_name.into())));
@@ -151,14 +161,21 @@ fn type_by_use(usage: &Use) -> Option<SmolStr> {
     }
 }
 
+/// The comments of declarations.
+pub(super) fn comments(text: &str) -> Vec<String> {
+    let tree = iec::parse(text, Target::of(Model::Iec));
+    tree.comments.iter().map(|comment| comment.of(text).trim_end().to_string()).collect()
+}
+
 /// The canonical layout of a piece of instruction list, as the formatter has it.
-pub(super) fn laid_out(document: &Document, text: &str) -> String {
+pub(super) fn laid_out(text: &str) -> String {
+    let target = Target::of(Model::Iec);
     let options = iec::FormatOptions::default();
     let mut start = 0;
     let mut laid_out = String::with_capacity(text.len());
     for end in iec::split(text) {
         let piece = &text[std::mem::replace(&mut start, end)..end];
-        let tree = iec::parse(piece, document.target());
+        let tree = iec::parse(piece, target);
         laid_out += &iec::format_chunk(piece, &tree, &options);
     }
     laid_out

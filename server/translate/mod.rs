@@ -15,6 +15,8 @@ mod stack;
 mod prove;
 pub use prove::{Counterexample, Proof, Value, prove};
 
+mod dialect;
+
 mod header;
 
 pub mod to_fx;
@@ -129,10 +131,13 @@ pub fn translate_unless(
     options: &Options,
     is_cancelled: &dyn Fn() -> bool,
 ) -> Option<Translation> {
-    let program = source::program(document, part);
-    let mut translation = page::write(document, &program, to, options, part.is_none(), is_cancelled)?;
+    let mut program = source::program(document, part);
+    let target = dialect::target(document, to);
+    dialect::convert(document, target, &mut program);
+    let is_whole = part.is_none();
+    let mut translation = page::write(document, &program, (to, target), options, is_whole, is_cancelled)?;
     if options.proves {
-        certificate::add(document, &program.rungs, to, &mut translation, is_cancelled)?;
+        certificate::add((document, target), &program.rungs, to, &mut translation, is_cancelled)?;
     }
     Some(translation)
 }

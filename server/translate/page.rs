@@ -8,7 +8,7 @@ use super::{Options, To, Translated, Translation, to_boolean, to_fx, to_ladder};
 use crate::document::{Document, Notation};
 use crate::ladder::{Drawing, Style};
 use crate::logic::{Deed, Network, Path};
-use crate::target::{Flow, Form};
+use crate::target::{Flow, Form, Target};
 use crate::text::Message;
 
 /// A rung in its new form.
@@ -32,7 +32,7 @@ enum Body {
 pub(super) fn write(
     document: &Document,
     program: &Program,
-    to: To,
+    (to, target): (To, &'static Target),
     options: &Options,
     is_whole: bool,
     is_cancelled: &dyn Fn() -> bool,
@@ -43,7 +43,7 @@ pub(super) fn write(
         _ => Helpers::default(),
     };
     let mut unless_cancelled =
-        |source| (!is_cancelled()).then(|| body(document, source, to, options, &mut helpers));
+        |source| (!is_cancelled()).then(|| body(source, (to, target), options, &mut helpers));
     let bodies: Vec<Body> = sources.iter().map(&mut unless_cancelled).collect::<Option<_>>()?;
     let rails = bodies.iter().filter_map(|body| match body {
         Body::Drawing(drawing) => Some(drawing.rail_column_min()),
@@ -53,17 +53,17 @@ pub(super) fn write(
     let mut page = Page { text: String::new(), to, rail };
     let needs_header = to == To::Iec && is_whole && !sources.is_empty() && !header::has_units(document);
     if needs_header {
-        page.declare(document, &header::header(document, sources, &helpers.declared));
+        page.declare(&header::header(document, sources, &helpers.declared));
     }
     let mut rungs = Vec::with_capacity(sources.len());
     for (source, body) in sources.iter().zip(bodies) {
         if !source.declarations.is_empty() {
-            page.declare(document, &source.declarations);
-            page.declare(document, &header::helpers_of(&helpers.declared, source.pou));
+            page.declare(&source.declarations);
+            page.declare(&header::helpers_of(&helpers.declared, source.pou));
         }
         page.head(source);
         let start = page.text.len();
-        let note = page.body(document, body, source);
+        let note = page.body(body, source);
         rungs.push(Translated {
             span: source.span(),
             result: start..page.text.len(),
@@ -71,21 +71,21 @@ pub(super) fn write(
             note,
         });
     }
-    page.declare(document, &program.tail);
+    page.declare(&program.tail);
     if needs_header {
-        page.declare(document, "END_PROGRAM\n");
+        page.declare("END_PROGRAM\n");
     }
     if to == To::Fx && options.is_whole && !sources.iter().any(ends_program) {
         page.text.push_str("END\n");
     }
     if to == To::Iec {
-        page.lay_out(document, &mut rungs);
+        page.lay_out(&mut rungs);
     }
     let helpers = helpers.declared.into_iter().map(|helper| helper.name).collect();
     Some(Translation { text: page.text, rungs, helpers })
 }
 
-fn body(document: &Document, source: &Source, to: To, options: &Options, helpers: &mut Helpers) -> Body {
+fn body(source: &Source, (to, target): (To, &Target), options: &Options, helpers: &mut Helpers) -> Body {
     let kept = |reason: Message| Body::Kept(source.rung.span.of(source.chunk.text()).to_string(), reason);
     let path = match &source.rung.path {
         Ok(None) => return Body::Nothing,
@@ -93,20 +93,19 @@ fn body(document: &Document, source: &Source, to: To, options: &Options, helpers
         Err(refusal) => return kept(refusal.message()),
     };
     let written = match to {
-        To::Fx => to_fx::lines(path, document.target()).map(Body::Lines),
+        To::Fx => to_fx::lines(path, target).map(Body::Lines),
         To::Iec => {
             helpers.pou = source.pou;
-            to_iec::lines(path, helpers)
-                .map(|lines| Body::Text(header::laid_out(document, &(lines.join("\n") + "\n"))))
+            to_iec::lines(path, helpers).map(|lines| Body::Text(header::laid_out(&(lines.join("\n") + "\n"))))
         }
         To::Boolean => to_boolean::equations(path, options.notation).map(Body::Equations),
-        To::Ladder => drawing(path, document, options),
+        To::Ladder => drawing(path, target, options),
     };
     written.unwrap_or_else(kept)
 }
 
-fn drawing(path: &Path, document: &Document, options: &Options) -> Result<Body, Message> {
-    let plan = to_ladder::plan(path, document.target().model)?;
+fn drawing(path: &Path, target: &Target, options: &Options) -> Result<Body, Message> {
+    let plan = to_ladder::plan(path, target.model)?;
     let drawing = Drawing::new(&plan.shape, &plan.graph, &plan.source, options.style.kind);
     let drawing = drawing.ok_or_else(|| Message::new("translate.no-drawing"))?;
     Ok(Body::Drawing(Box::new(drawing)))
@@ -134,7 +133,10 @@ impl Page {
         let rung = &source.rung;
         let has_head = !rung.comments.is_empty() || rung.network.is_some();
         // Rungs that are drawn need a blank line between them; lists breathe only where there is something to say.
-        if !self.text.is_empty() && (self.to == To::Ladder || has_head) && !self.text.ends_with("\n\n") {
+        // The load behind a call would go on with its rung.
+        let is_called = self.to == To::Iec && self.text.ends_with(")\n");
+        let parts = self.to == To::Ladder || has_head || is_called;
+        if !self.text.is_empty() && parts && !self.text.ends_with("\n\n") {
             self.text.push('\n');
         }
         for comment in source.comments().filter(|comment| !is_network(comment)) {
@@ -166,7 +168,7 @@ impl Page {
     }
 
     /// Writes the rung; the note says why it could not be written.
-    fn body(&mut self, document: &Document, body: Body, source: &Source) -> Option<Message> {
+    fn body(&mut self, body: Body, source: &Source) -> Option<Message> {
         match body {
             Body::Nothing => {}
             Body::Lines(lines) => lines.iter().for_each(|line| self.line(&line.to_string())),
@@ -176,22 +178,17 @@ impl Page {
                 Some(lines) => lines.iter().for_each(|line| self.line(line)),
                 None => {
                     let text = source.rung.span.of(source.chunk.text());
-                    return self.kept(
-                        document,
-                        text,
-                        source.rung.is_list,
-                        Message::new("translate.no-drawing"),
-                    );
+                    return self.kept(text, source.rung.is_list, Message::new("translate.no-drawing"));
                 }
             },
-            Body::Kept(text, reason) => return self.kept(document, &text, source.rung.is_list, reason),
+            Body::Kept(text, reason) => return self.kept(&text, source.rung.is_list, reason),
         }
         None
     }
 
     /// What cannot be translated is carried along as it is: a list in a box that the drawing does not look into, a
     /// drawing as comments.
-    fn kept(&mut self, document: &Document, text: &str, is_list: bool, reason: Message) -> Option<Message> {
+    fn kept(&mut self, text: &str, is_list: bool, reason: Message) -> Option<Message> {
         match self.to {
             To::Fx if is_list => text.lines().for_each(|line| self.line(line.trim())),
             To::Ladder if is_list => {
@@ -200,7 +197,7 @@ impl Page {
                 self.line("}");
             }
             To::Iec if is_list => {
-                let laid_out = header::laid_out(document, &format!("{}\n", text.trim_end()));
+                let laid_out = header::laid_out(&format!("{}\n", text.trim_end()));
                 self.text += &laid_out;
             }
             To::Iec => text.lines().for_each(|line| self.line(&header::comment(&format!("; {line}")))),
@@ -212,8 +209,8 @@ impl Page {
     }
 
     /// Comments are indented like what they stand above.
-    fn lay_out(&mut self, document: &Document, rungs: &mut [Translated]) {
-        let laid_out = header::laid_out(document, &self.text);
+    fn lay_out(&mut self, rungs: &mut [Translated]) {
+        let laid_out = header::laid_out(&self.text);
         let starts = |text: &str| -> Vec<usize> {
             let ends = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at + 1);
             std::iter::once(0).chain(ends).collect()
@@ -232,16 +229,20 @@ impl Page {
     }
 
     /// Declarations, which stand in instruction list as in drawings.
-    fn declare(&mut self, document: &Document, text: &str) {
+    fn declare(&mut self, text: &str) {
         let text = text.trim_matches(['\r', '\n']);
-        if text.is_empty() || !matches!(self.to, To::Iec | To::Ladder) {
+        if text.is_empty() {
             return;
+        }
+        if !matches!(self.to, To::Iec | To::Ladder) {
+            // Devices need no declarations, but what is said of them stays.
+            return header::comments(text).iter().for_each(|comment| self.line(comment));
         }
         if !self.text.is_empty() && !self.text.ends_with("\n\n") {
             self.text.push('\n');
         }
         match self.to {
-            To::Iec => self.text += &header::laid_out(document, &format!("{text}\n")),
+            To::Iec => self.text += &header::laid_out(&format!("{text}\n")),
             _ => text.lines().for_each(|line| self.line(line.trim_end())),
         }
         if !self.text.ends_with("\n\n") {

@@ -2,6 +2,7 @@
 
 use crate::document::{Chunk, Document, Notation, Tree};
 use crate::il::iec::{IecTree, ItemKind};
+use crate::ladder;
 use crate::logic::{self, Declared, Rung};
 use crate::text::Span;
 use std::sync::Arc;
@@ -107,7 +108,9 @@ impl Reader<'_> {
     }
 
     fn declare(&mut self, chunk: &Chunk, span: Span) {
-        if self.part.is_none() {
+        // The tables of an LDmicro export mean nothing without its head.
+        let is_table = ladder::kind_of(chunk.text()) == ladder::ChunkKind::Ldmicro;
+        if self.part.is_none() && !is_table {
             self.program.tail += span.of(chunk.text());
         }
         if let Tree::Iec(tree) = chunk.tree() {

@@ -160,7 +160,7 @@ impl Writer<'_> {
         }
         match action.deed {
             Deed::Jump | Deed::Return => return self.leave(action, ""),
-            Deed::Call(_) => return self.call(action, Some("TRUE".into())),
+            Deed::Call(call) if !call.is_input_operator() => return self.call(action, Some("TRUE".into())),
             _ if is_loaded => {}
             _ => self.lines.push("LD TRUE".into()),
         }
@@ -336,10 +336,14 @@ impl Writer<'_> {
         let (Deed::Call(call), Some(instance)) = (action.deed, action.terms.first()) else {
             return Err(Message::new("translate.no-instruction"));
         };
-        if power.is_none() {
-            self.lines.push(format!("ST {instance}.{}", call.power_in()));
+        match power {
+            None if call.is_input_operator() => self.lines.push(format!("{} {instance}", call.power_in())),
+            None => {
+                self.lines.push(format!("ST {instance}.{}", call.power_in()));
+                self.lines.push(call_text(call, instance, None, &action.terms));
+            }
+            power => self.lines.push(call_text(call, instance, power, &action.terms)),
         }
-        self.lines.push(call_text(call, instance, power, &action.terms));
         self.driven.extend(call.changes(&action.terms).iter().map(Term::key));
         Ok(())
     }
@@ -399,7 +403,7 @@ fn called_next(path: &Path, number: usize) -> Option<&Action> {
         (Some(Gate::Through(action)), _) | (None, [Drive::Action(action)]) => action,
         _ => return None,
     };
-    matches!(next.deed, Deed::Call(_)).then_some(next)
+    matches!(next.deed, Deed::Call(call) if !call.is_input_operator()).then_some(next)
 }
 
 /// Whether an output has an instruction that wants the inverse of its power.

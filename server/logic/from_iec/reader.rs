@@ -9,7 +9,7 @@ use crate::logic::block::Block;
 use crate::logic::builder::Builder;
 use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Term, Test};
 use crate::target::Role;
-use crate::target::iec::OperatorRole;
+use crate::target::iec::{FunctionBlock, OperatorRole};
 use crate::text::{Span, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
@@ -96,6 +96,10 @@ impl<'s, 'a> Reader<'s, 'a> {
                 ItemKind::Return { condition, .. } => {
                     self.leave(Deed::Return, Vec::new(), condition, item.span)?
                 }
+                ItemKind::InputOperator { input, instance } if self.frames.is_empty() => {
+                    self.settle()?;
+                    self.input_operator(input.of(self.source.text), instance, item.span)?;
+                }
                 ItemKind::Call { condition: Condition::Always, callee: Some(callee), parameters, .. } => {
                     let next = (index < items.end).then(|| self.source.item(index));
                     index += usize::from(self.call(item, callee, parameters, next)?);
@@ -141,7 +145,12 @@ impl<'s, 'a> Reader<'s, 'a> {
                 self.combine(operator.name, contact)
             }
             OperatorRole::Store | OperatorRole::Latch { .. } if self.frames.is_empty() => {
-                if operation.word.of(self.source.text).ends_with('?') {
+                let word = operation.word.of(self.source.text);
+                let latches = matches!(operator.role, OperatorRole::Latch { .. });
+                if latches && self.block_of(id).is_some() {
+                    return self.input_operator(word, id, item.span);
+                }
+                if word.ends_with('?') {
                     return Err(Refusal::NotBoolean);
                 }
                 self.settle()?;
@@ -166,6 +175,25 @@ impl<'s, 'a> Reader<'s, 'a> {
             }
             _ => Err(Refusal::NotBoolean),
         }
+    }
+
+    fn block_of(&self, instance: OperandId) -> Option<&'static FunctionBlock> {
+        let name = self.source.tree.operand(instance).span.of(self.source.text);
+        self.source.block(self.pou, name)
+    }
+
+    /// `R C1`: calls the block with this input alone. Nothing is known of the current result behind it.
+    fn input_operator(&mut self, input: &str, instance: OperandId, span: Span) -> Result<(), Refusal> {
+        let block = self.block_of(instance).ok_or(Refusal::Element)?;
+        self.settle()?;
+        self.invert()?;
+        let called = self.source.tree.operand(instance);
+        let term = Term::new(called.value, called.span.of(self.source.text), called.span);
+        let call = Call::new(block, input, term, std::iter::empty::<(&str, bool, Term)>());
+        let (call, terms) = call.filter(|(call, _)| call.is_input_operator()).ok_or(Refusal::NotBoolean)?;
+        self.builder.drive(Action { deed: Deed::Call(call), terms, span });
+        self.has_ended = true;
+        Ok(())
     }
 
     /// Power is stored for the block that is called next.
@@ -359,8 +387,9 @@ impl<'s, 'a> Reader<'s, 'a> {
             (None, Some(_)) => {}
             _ => return Err(Refusal::Element),
         }
+        let power_in = block.inputs.first().map_or("", |pin| pin.name);
         let instance_term = Term::new(called.value, instance, called.span);
-        let (call, terms) = Call::new(block, instance_term, arguments).ok_or(Refusal::Element)?;
+        let (call, terms) = Call::new(block, power_in, instance_term, arguments).ok_or(Refusal::Element)?;
         self.driven.extend(call.changes(&terms).iter().map(Term::key));
         let action = Action { deed: Deed::Call(call), terms, span: item.span };
         match next.and_then(|next| self.loads(next, &output_of(block, instance))) {

@@ -7,14 +7,15 @@ use crate::target::iec::FunctionBlock;
 
 /// The call that a box is, and whether power goes on behind it.
 ///
-/// Power comes to the first input of a standard block and goes on from its first output; the other pins have operands
+/// Power comes to one input of a standard block and goes on from its first output; the other pins have operands
 /// or nothing. Anything else, such as a box with EN or a circle at a pin, is refused.
 pub(super) fn call(text: &str, element: &Element, block: &Block) -> Result<(Action, bool), Refusal> {
     let row = block.type_text(text).and_then(FunctionBlock::named).ok_or(Refusal::Element)?;
     let instance = block.instance.ok_or(Refusal::Element)?;
     let instance = Term::new(Operand::Variable, instance.of(text), instance);
     let mut arguments = Vec::new();
-    let mut powered = [false, false];
+    let mut power = None;
+    let mut goes_on = false;
     for (side, pins, own) in [(0, &block.inputs, row.inputs), (1, &block.outputs, row.outputs)] {
         let main = own.first().map_or("", |pin| pin.name);
         for pin in pins {
@@ -24,7 +25,12 @@ pub(super) fn call(text: &str, element: &Element, block: &Block) -> Result<(Acti
             }
             match pin.wire {
                 // A pin without a name is the main one.
-                PinWire::Power if name.is_empty() || name.eq_ignore_ascii_case(main) => powered[side] = true,
+                PinWire::Power if side == 0 && power.is_none() => {
+                    power = Some(if name.is_empty() { main } else { name });
+                }
+                PinWire::Power if side == 1 && (name.is_empty() || name.eq_ignore_ascii_case(main)) => {
+                    goes_on = true;
+                }
                 PinWire::Power => return Err(Refusal::Element),
                 PinWire::Open => {}
                 PinWire::Operand(index) => {
@@ -35,9 +41,7 @@ pub(super) fn call(text: &str, element: &Element, block: &Block) -> Result<(Acti
             }
         }
     }
-    if !powered[0] {
-        return Err(Refusal::Element);
-    }
-    let (call, terms) = Call::new(row, instance, arguments).ok_or(Refusal::Element)?;
-    Ok((Action { deed: Deed::Call(call), terms, span: element.span }, powered[1]))
+    let power = power.ok_or(Refusal::Element)?;
+    let (call, terms) = Call::new(row, power, instance, arguments).ok_or(Refusal::Element)?;
+    Ok((Action { deed: Deed::Call(call), terms, span: element.span }, goes_on))
 }

@@ -41,15 +41,16 @@ impl Planner {
         let argument = |name: &str| {
             arguments.iter().find(|argument| argument.is_output == is_output && argument.name == name)
         };
+        let power = if is_output { call.power_out() } else { call.power_in() };
         let mut pins = Vec::new();
-        for (number, parameter) in names.iter().enumerate() {
+        for parameter in names {
             let wire = match argument(parameter.name) {
                 Some(argument) => {
                     let span = self.word(&argument.term.text);
                     element.operands.push(Spanned::new(argument.term.operand, span));
                     PinWire::Operand(element.operands.len() - 1)
                 }
-                None if number == 0 && has_power => PinWire::Power,
+                None if has_power && parameter.name == power => PinWire::Power,
                 None => PinWire::Open,
             };
             let name = Some(self.word(parameter.name));

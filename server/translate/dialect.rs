@@ -1,0 +1,113 @@
+//! Between the FX family and IEC 61131-3: devices become located variables and back.
+//!
+//! | device | variable |
+//! |---|---|
+//! | `X12` (octal) | `X12 AT %IX1.2 : BOOL`: byte and bit of the number |
+//! | `Y12` (octal) | `Y12 AT %QX1.2 : BOOL` |
+//! | `M20` | `M20 AT %MX2.4 : BOOL` |
+//! | `S20` | `S20 AT %MX1102.4 : BOOL`, from byte 1,100 on, behind the auxiliary relays |
+//! | `D20` | `D20 AT %MW1020 : INT`, from word 1,000 on, behind the states |
+//! | `T0` with `OUT T0 K50` | the instance `T0 : TON`, called with `PT := T#5s` by the unit of the timer; its contact is `T0.Q` |
+//! | `C0` with `OUT C0 K10` | the instance `C0 : CTU`, called with `PV := 10`; its contact is `C0.Q`, its value `C0.CV` |
+//! | `RST C0` | `R C0`, a call of the block with this input alone |
+//! | `PLS M0`, `PLF M0` | the instance `PLS_M0 : R_TRIG`, `PLF_M0 : F_TRIG`, whose output is stored in `M0` |
+//! | `CJ P0` | `JMPC P0` |
+//! | `M8000`, `M8001` | `TRUE`, `FALSE` |
+//!
+//! `END` is dropped and put back. What has no counterpart keeps its words in a comment: retentive timers, counters of
+//! 32 bits, special relays, applied instructions, steps. The way back takes variables by their names where these are
+//! names of devices, others by their addresses.
+
+mod to_devices;
+mod to_variables;
+
+use super::To;
+use super::source::Program;
+use crate::document::Document;
+use crate::logic::Refusal;
+use crate::target::{Device, DeviceKind, DirectAddress, Location, Model, Target, Width};
+
+/// The first byte of the states, in bits, and the first word of the data registers.
+const STATES: u32 = 1100 * 8;
+const REGISTERS: u32 = 1000;
+/// From here on relays and registers are special.
+const FIRST_SPECIAL: u32 = 8000;
+
+/// What the result of a translation is written for: the document's target where it is of the same family.
+pub(super) fn target(document: &Document, to: To) -> &'static Target {
+    let own = document.target();
+    match to {
+        To::Iec => Target::of(Model::Iec),
+        To::Fx if !own.is_fx() => Target::of(Model::Fx2n),
+        _ => own,
+    }
+}
+
+/// Puts the rungs of `program` into the words of `target`. Those that have none there are refused.
+pub(super) fn convert(document: &Document, target: &'static Target, program: &mut Program) {
+    if document.target().is_fx() == target.is_fx() {
+        return;
+    }
+    let labels = to_devices::Labels::of(program);
+    for source in &mut program.rungs {
+        let converted = match (&source.rung.path, target.is_fx()) {
+            (Ok(Some(path)), false) => to_variables::path(path, document.target()),
+            (Ok(Some(path)), true) => {
+                to_devices::path(path, target, document.scopes(), source.pou, &labels).map(Some)
+            }
+            (other, _) => other.clone(),
+        };
+        if target.is_fx() {
+            source.rung.labels.iter_mut().for_each(|label| *label = labels.of_label(label));
+        }
+        // The words of the other language are no list in this one.
+        source.rung.is_list &= converted.is_ok();
+        source.rung.path = converted;
+    }
+}
+
+/// The address of the variable that stands for a device, if it is located.
+pub(super) fn address(device: Device) -> Option<DirectAddress> {
+    let bit = |location: Location, number: u32| DirectAddress {
+        location,
+        width: Width::Bit,
+        path: [Some(number / 8), Some(number % 8), None, None],
+    };
+    Some(match device.kind {
+        DeviceKind::X => bit(Location::Input, device.number),
+        DeviceKind::Y => bit(Location::Output, device.number),
+        DeviceKind::M if device.number < FIRST_SPECIAL => bit(Location::Memory, device.number),
+        DeviceKind::S => bit(Location::Memory, STATES + device.number),
+        DeviceKind::D if device.number < FIRST_SPECIAL => DirectAddress {
+            location: Location::Memory,
+            width: Width::Word,
+            path: [Some(REGISTERS + device.number), None, None, None],
+        },
+        _ => return None,
+    })
+}
+
+/// The device at an address: the way back from [`address`].
+pub(super) fn device_at(address: DirectAddress) -> Option<Device> {
+    let device = match (address.width, address.path) {
+        (Width::Bit, [Some(byte), Some(bit), None, None]) if bit < 8 => {
+            let number = byte.checked_mul(8)?.checked_add(bit)?;
+            match address.location {
+                Location::Input => Device::new(DeviceKind::X, number),
+                Location::Output => Device::new(DeviceKind::Y, number),
+                Location::Memory if number >= STATES => Device::new(DeviceKind::S, number - STATES),
+                Location::Memory => Device::new(DeviceKind::M, number),
+            }
+        }
+        (Width::Word, [Some(word), None, None, None]) if address.location == Location::Memory => {
+            Device::new(DeviceKind::D, word.checked_sub(REGISTERS)?)
+        }
+        _ => return None,
+    };
+    (self::address(device) == Some(address)).then_some(device)
+}
+
+/// A refusal where nothing stands for it in the other language.
+fn without<T>(counterpart: Option<T>) -> Result<T, Refusal> {
+    counterpart.ok_or(Refusal::NoCounterpart)
+}

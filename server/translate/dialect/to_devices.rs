@@ -1,0 +1,256 @@
+//! Paths of IEC 61131-3 in the words of the FX family.
+
+use super::super::source::Program;
+use super::{device_at, without};
+use crate::document::Scopes;
+use crate::ladder::{CoilKind, ContactKind};
+use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Term, Test};
+use crate::target::iec::LiteralValue;
+use crate::target::{Device, DeviceKind, Form, Operand, Target};
+use crate::text::{Span, folded};
+use rustc_hash::FxHashMap;
+use smol_str::{SmolStr, ToSmolStr, format_smolstr};
+
+/// The pointers of the FX family for the labels of a program, by folded name.
+pub(super) struct Labels(FxHashMap<SmolStr, SmolStr>);
+
+impl Labels {
+    /// Labels that are names of pointers keep them, the others get the next free ones.
+    pub(super) fn of(program: &Program) -> Labels {
+        let mut labels = FxHashMap::default();
+        let names = || program.rungs.iter().flat_map(|source| &source.rung.labels);
+        for name in names().filter(|name| pointer(name).is_some()) {
+            labels.insert(folded(name), name.to_uppercase().into());
+        }
+        let taken: Vec<SmolStr> = labels.values().cloned().collect();
+        let mut free = (0..).map(|number| format_smolstr!("P{number}")).filter(|name| !taken.contains(name));
+        for name in names() {
+            if !labels.contains_key(&folded(name))
+                && let Some(pointer) = free.next()
+            {
+                labels.insert(folded(name), pointer);
+            }
+        }
+        Labels(labels)
+    }
+
+    /// The pointer for a label; one that nobody has stays as it is.
+    pub(super) fn of_label(&self, label: &SmolStr) -> SmolStr {
+        self.0.get(&folded(label)).unwrap_or(label).clone()
+    }
+}
+
+fn pointer(name: &str) -> Option<u32> {
+    name.strip_prefix(['P', 'p'])?.parse().ok()
+}
+
+/// `path` with devices of `target` for variables, as seen from POU number `pou`.
+pub(super) fn path(
+    path: &Path,
+    target: &Target,
+    scopes: &Scopes,
+    pou: Option<usize>,
+    labels: &Labels,
+) -> Result<Path, Refusal> {
+    Converter { target, scopes, pou, labels }.whole(path)
+}
+
+struct Converter<'a> {
+    target: &'a Target,
+    scopes: &'a Scopes,
+    pou: Option<usize>,
+    labels: &'a Labels,
+}
+
+impl Converter<'_> {
+    /// A path from the left rail. Behind a timer or counter the power is its contact, which begins a path of its own.
+    fn whole(&self, path: &Path) -> Result<Path, Refusal> {
+        let through = path
+            .gates
+            .iter()
+            .rposition(|gate| matches!(gate, Gate::Through(action) if self.pulsed(action, path).is_none()));
+        let Some(through) = through else { return self.path(path) };
+        let Gate::Through(action) = &path.gates[through] else { return Err(Refusal::NoCounterpart) };
+        let before =
+            Path { gates: path.gates[..through].to_vec(), drives: vec![Drive::Action(action.clone())] };
+        let output = without(action.power_out())?;
+        let contact =
+            Contact { test: Test::Bit(ContactKind::NormallyOpen), terms: vec![output], span: action.span };
+        let mut gates = vec![Gate::Pass(Expression::Contact(contact))];
+        gates.extend_from_slice(&path.gates[through + 1..]);
+        let behind = Path { gates, drives: path.drives.clone() };
+        let drives = vec![Drive::Path(self.whole(&before)?), Drive::Path(self.path(&behind)?)];
+        Ok(Path { gates: Vec::new(), drives })
+    }
+
+    fn path(&self, path: &Path) -> Result<Path, Refusal> {
+        let mut converted = Path::default();
+        for gate in &path.gates {
+            match gate {
+                Gate::Pass(expression) => converted.gates.push(Gate::Pass(self.expression(expression)?)),
+                Gate::Invert => converted.gates.push(Gate::Invert),
+                Gate::Through(action) => {
+                    let coil = without(self.pulsed(action, path))?;
+                    converted.drives.push(Drive::Action(coil));
+                    return Ok(converted);
+                }
+            }
+        }
+        for drive in &path.drives {
+            converted.drives.push(match drive {
+                Drive::Path(path) => match &path.gates[..] {
+                    [Gate::Through(action)] => Drive::Action(without(self.pulsed(action, path))?),
+                    _ => Drive::Path(self.path(path)?),
+                },
+                Drive::Action(action) => Drive::Action(self.action(action)?),
+            });
+        }
+        Ok(converted)
+    }
+
+    /// The coil of PLS or PLF that the detector at the end of the gates of `path` and the output behind it are.
+    fn pulsed(&self, detector: &Action, path: &Path) -> Option<Action> {
+        let (Deed::Call(call), [Drive::Action(coil)]) = (detector.deed, &path.drives[..]) else {
+            return None;
+        };
+        let (kind, prefix) = match call.block.name {
+            "R_TRIG" => (CoilKind::Rising, "PLS_"),
+            "F_TRIG" => (CoilKind::Falling, "PLF_"),
+            _ => return None,
+        };
+        let relay = coil.terms.first().filter(|_| coil.deed == Deed::Coil(CoilKind::Plain))?;
+        let is_last = matches!(path.gates.last(), Some(Gate::Through(last)) if last == detector);
+        let instance = detector.terms.first()?;
+        let named = instance.text.get(..prefix.len())?.eq_ignore_ascii_case(prefix)
+            && instance.text[prefix.len()..].eq_ignore_ascii_case(&relay.text);
+        let terms = vec![self.bit(relay).ok()?];
+        (is_last && named).then(|| Action { deed: Deed::Coil(kind), terms, span: coil.span })
+    }
+
+    fn expression(&self, expression: &Expression) -> Result<Expression, Refusal> {
+        let all = |parts: &[Expression]| -> Result<Vec<Expression>, Refusal> {
+            parts.iter().map(|part| self.expression(part)).collect()
+        };
+        Ok(match expression {
+            Expression::Constant(value) => Expression::Constant(*value),
+            Expression::Contact(contact) => self.contact(contact)?,
+            Expression::Not(part) => Expression::Not(Box::new(self.expression(part)?)),
+            Expression::And(parts) => Expression::and(all(parts)?),
+            Expression::Or(parts) => Expression::or(all(parts)?),
+        })
+    }
+
+    fn contact(&self, contact: &Contact) -> Result<Expression, Refusal> {
+        let terms = match (contact.test, &contact.terms[..]) {
+            (Test::Bit(kind), [term]) => {
+                if let Operand::Literal(literal) = term.operand
+                    && let LiteralValue::Bool(value) = literal.value
+                {
+                    return match kind {
+                        ContactKind::NormallyOpen => Ok(Expression::Constant(value)),
+                        ContactKind::NormallyClosed => Ok(Expression::Constant(!value)),
+                        _ => Err(Refusal::NoCounterpart),
+                    };
+                }
+                vec![self.bit(term)?]
+            }
+            (Test::Compare(_), [left, right]) => vec![self.word(left)?, self.word(right)?],
+            _ => return Err(Refusal::NoCounterpart),
+        };
+        Ok(Expression::Contact(Contact { terms, ..contact.clone() }))
+    }
+
+    fn bit(&self, term: &Term) -> Result<Term, Refusal> {
+        use DeviceKind::{C, M, S, T, X, Y};
+        if let Some((instance, member)) = term.text.split_once('.') {
+            let device = without(self.named(instance).filter(|device| matches!(device.kind, T | C)))?;
+            return without(member.eq_ignore_ascii_case("Q").then(|| self.term(device, term.span)));
+        }
+        let device = without(self.device(term))?;
+        without(matches!(device.kind, X | Y | M | S).then(|| self.term(device, term.span)))
+    }
+
+    fn word(&self, term: &Term) -> Result<Term, Refusal> {
+        if let Operand::Literal(literal) = term.operand {
+            let LiteralValue::Integer(value) = literal.value else { return Err(Refusal::NoCounterpart) };
+            return self.constant(without(i16::try_from(value).ok())?.into(), term.span);
+        }
+        if let Some((instance, member)) = term.text.split_once('.') {
+            let device = without(self.named(instance).filter(|device| device.kind == DeviceKind::C))?;
+            return without(member.eq_ignore_ascii_case("CV").then(|| self.term(device, term.span)));
+        }
+        let device = without(self.device(term))?;
+        without((device.kind == DeviceKind::D).then(|| self.term(device, term.span)))
+    }
+
+    /// The device of this name that the target has.
+    fn named(&self, name: &str) -> Option<Device> {
+        match Operand::read(name, self.target.model) {
+            Operand::Device(device) => device.range_on(self.target).map(|_| device),
+            _ => None,
+        }
+    }
+
+    /// The device that a variable stands for: by its name, or by its address.
+    fn device(&self, term: &Term) -> Option<Device> {
+        let device = match term.operand {
+            Operand::Direct(address) => device_at(address),
+            Operand::Variable => self
+                .named(&term.text)
+                .or_else(|| device_at(self.scopes.variable(self.pou, &term.text)?.address?)),
+            _ => None,
+        };
+        device.filter(|device| device.range_on(self.target).is_some())
+    }
+
+    fn term(&self, device: Device, span: Span) -> Term {
+        Term::new(Operand::Device(device), &device.to_smolstr(), span)
+    }
+
+    fn constant(&self, value: i64, span: Span) -> Result<Term, Refusal> {
+        let text = format_smolstr!("K{value}");
+        Ok(Term::new(Operand::read(&text, self.target.model), &text, span))
+    }
+
+    fn action(&self, action: &Action) -> Result<Action, Refusal> {
+        let (deed, terms) = match (action.deed, &action.terms[..]) {
+            (Deed::Coil(_), [term]) => (action.deed, vec![self.bit(term)?]),
+            (Deed::Jump, [label]) => {
+                let pointer = self.labels.of_label(&label.text);
+                let operand = Operand::read(&pointer, self.target.model);
+                let form = without(Form::named("CJ").filter(|_| self::pointer(&pointer).is_some()))?;
+                (Deed::Instruction(form), vec![Term::new(operand, &pointer, label.span)])
+            }
+            (Deed::Call(call), [instance, ..]) => self.called(call, instance, &action.terms)?,
+            _ => return Err(Refusal::NoCounterpart),
+        };
+        Ok(Action { deed, terms, span: action.span })
+    }
+
+    /// The output that the call of a timer or counter is.
+    fn called(&self, call: Call, instance: &Term, terms: &[Term]) -> Result<(Deed, Vec<Term>), Refusal> {
+        let device = without(self.named(&instance.text))?;
+        let own = self.term(device, instance.span);
+        let arguments = call.arguments(terms);
+        match (call.block.name, device.kind, call.power_in(), &arguments[..]) {
+            ("CTU", DeviceKind::C, "R", []) if device.number < 200 => {
+                Ok((Deed::Coil(CoilKind::Reset), vec![own]))
+            }
+            ("CTU", DeviceKind::C, "CU", [preset]) if preset.name == "PV" && device.number < 200 => {
+                Ok((Deed::Coil(CoilKind::Plain), vec![own, self.word(&preset.term)?]))
+            }
+            ("TON", DeviceKind::T, "IN", [preset]) if preset.name == "PT" => {
+                let range = without(device.range_on(self.target).filter(|range| !range.latched))?;
+                let Operand::Literal(literal) = preset.term.operand else {
+                    return Err(Refusal::NoCounterpart);
+                };
+                let LiteralValue::Time(time) = literal.value else { return Err(Refusal::NoCounterpart) };
+                let unit = i64::from(range.timer_unit_ms) * 1_000_000;
+                let steps = without((unit > 0 && time % unit == 0).then(|| time / unit))?;
+                let steps = without((0..=i64::from(i16::MAX)).contains(&steps).then_some(steps))?;
+                Ok((Deed::Coil(CoilKind::Plain), vec![own, self.constant(steps, preset.term.span)?]))
+            }
+            _ => Err(Refusal::NoCounterpart),
+        }
+    }
+}
