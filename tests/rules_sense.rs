@@ -447,7 +447,7 @@ proptest! {
             let found = check::all(&edited, &Severities::default());
             prop_assert_eq!(&found, &check::once(&scratch, &Severities::default()));
             for one in found {
-                for (_, fix) in ide::allowing(&edited, &[one.clone()], Span::at(one.span.start as usize)) {
+                for (_, fix) in ide::allowing(&edited, std::slice::from_ref(&one), Span::at(one.span.start as usize)) {
                     let text = TextEdit::apply_all(&fix.edits, &lines.concat());
                     let left = judged(Notation::FxIl, &text);
                     let moved = one.span.start as usize + text.len() - lines.concat().len();
