@@ -490,7 +490,9 @@ fn branches_in_branches_are_counted_as_the_blocks_that_they_become() {
     let codes = |levels| {
         let text = branches_in_branches(levels);
         let found: Vec<String> = found(&text).iter().map(|finding| finding.code.to_string()).collect();
-        found.into_iter().filter(|code| code != "rung-too-large").collect::<Vec<_>>()
+        // The branches repeat each other, which is another matter.
+        let others = ["rung-too-large", "redundant-branch"];
+        found.into_iter().filter(|code| !others.contains(&code.as_str())).collect::<Vec<_>>()
     };
     assert_eq!(codes(6), Vec::<String>::new());
     assert_eq!(codes(7), ["nesting-too-deep"]);

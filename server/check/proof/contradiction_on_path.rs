@@ -1,7 +1,7 @@
 //! # contradiction-on-path
 //!
-//! Two contacts in series of which one is off whenever the other is on: `X0` and not `X0`, or `D0` above 10 and below 5.
-//! No power ever comes through. Often one of the two names a neighbour of the device that was meant, or the second
+//! Two contacts in series of which one is off whenever the other is on: `X0` and not `X0`, or `D0` above 10 and below
+//! 5. No power ever comes through. Often one of the two names a neighbour of the device that was meant, or the second
 //! belongs into a branch beside the first.
 //!
 //! The mark is on the contact that comes second, or on the one in the branch if the other stands before or behind the
@@ -145,7 +145,13 @@ impl<'p> Walk<'p> {
 
     /// Forgets what `action` may change.
     fn pass(&mut self, action: &Action) {
-        let is_lone = |term: &&Term| matches!(term.operand, Operand::Device(device) if matches!(device.kind, DeviceKind::Y | DeviceKind::M));
+        let is_lone = |term: &&Term| {
+            let kind = match term.operand {
+                Operand::Device(device) => Some(device.kind),
+                _ => None,
+            };
+            matches!(kind, Some(DeviceKind::Y | DeviceKind::M))
+        };
         let driven = action.terms.first().filter(|_| matches!(action.deed, Deed::Coil(_))).filter(is_lone);
         // Words may be made of the bit.
         let is_kept = |fact: &Fact<'_>| {

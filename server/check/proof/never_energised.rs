@@ -1,10 +1,11 @@
 //! # never-energised
 //!
-//! An output that no input can ever switch on, or an instruction that is never executed: the condition before it does not
-//! hold for any values of its devices. The machine stands still and nobody sees why, for each contact by itself is right.
+//! An output that no input can ever switch on, or an instruction that is never executed: the condition before it does
+//! not hold for any values of its devices. The machine stands still and nobody sees why, for each contact by itself is
+//! right.
 //!
-//! This is proved; the message says the reason in one line, such as two contacts in series that exclude each other. What
-//! is switched off by a contact that never conducts in any program, NOT M8000 or M8001, is meant so and not reported.
+//! This is proved; the message says the reason in one line, such as two contacts in series that exclude each other.
+//! What is switched off by a contact that never conducts in any program, NOT M8000 or M8001, is meant so and not reported.
 //!
 //! ```lad
 //! |  X0    X0     Y0  |
