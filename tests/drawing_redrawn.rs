@@ -119,11 +119,8 @@ fn a_bridge_is_drawn_apart_and_says_the_same() {
 }
 
 #[test]
-fn what_cannot_be_proved_is_not_drawn_apart() {
-    // An edge, an inverter, and ways to different outputs.
-    let edge = BRIDGES[0].replacen("| |---+---", "|P|---+---", 1);
-    let inverter = BRIDGES[0].replace("-| |-----+----------------( )-+", "-| |-----+-[INV]----------( )-+");
-    let outputs = [
+fn ways_to_several_outputs_are_drawn_apart_each() {
+    let bridge = [
         BRIDGES[0],
         "\
 |                   |                              Y1  |
@@ -131,7 +128,28 @@ fn what_cannot_be_proved_is_not_drawn_apart() {
 ",
     ]
     .concat();
-    for drawing in [edge.as_str(), inverter.as_str(), outputs.as_str()] {
+    let (drawing, _) = fixed(&bridge, "mixed-connection");
+    assert_eq!(table(&drawing), table(&bridge), "{drawing}");
+    // An edge is a contact as any other, asked once in a scan wherever it is drawn.
+    let edge = BRIDGES[0].replacen("| |---+---", "|P|---+---", 1);
+    let (drawing, _) = fixed(&edge, "mixed-connection");
+    assert_eq!(table(&drawing), table(&edge), "{drawing}");
+}
+
+#[test]
+fn what_cannot_be_proved_is_not_drawn_apart() {
+    // An inverter, and an output that changes what the other is driven by.
+    let inverter = BRIDGES[0].replace("-| |-----+----------------( )-+", "-| |-----+-[INV]----------( )-+");
+    let outputs = [
+        &BRIDGES[0].replace("X4", "Y1"),
+        "\
+|                   |                              Y1  |
+|                   +------------------------------( )-+
+",
+    ]
+    .concat();
+    let outputs = outputs.replacen("  Y0  |", "  X3  |", 1);
+    for drawing in [inverter.as_str(), outputs.as_str()] {
         let found = found(drawing, "mixed-connection");
         assert_eq!(found.len(), 1, "{drawing}");
         assert!(found[0].fixes.is_empty(), "{drawing}{:?}", found[0].fixes);

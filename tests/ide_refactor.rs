@@ -155,10 +155,10 @@ fn neighbouring_rungs_with_a_common_condition_are_merged() {
 fn an_inversion_has_two_forms() {
     let text = "LD X0\nOR X1\nINV\nOUT Y0\n";
     let (title, spread) = after(&list(text), "X0", "rung.invertContacts");
-    assert_eq!(title, "Move inversion into the contacts (De Morgan) (saves 1 step)");
+    assert_eq!(title, "De Morgan: invert the contacts instead of the whole (saves 1 step)");
     assert_eq!(spread, "LDI X0\nANI X1\nOUT Y0\n");
     let (title, whole) = after(&list(&spread), "X0", "rung.invertWhole");
-    assert_eq!(title, "Invert the whole instead of its contacts (De Morgan) (1 step more)");
+    assert_eq!(title, "De Morgan: invert the whole instead of its contacts (1 step more)");
     assert_eq!(whole, text);
     let drawn = drawn(text);
     assert_eq!(listed(&after(&drawn, "X0", "rung.invertContacts").1), spread);

@@ -243,3 +243,16 @@ fn a_rung_without_a_form_has_no_action_for_it() {
     client.open(LIST, "plc-il", "LD X1\nANB\nOUT Y1\nEND\n");
     assert!(actions(&mut client, LIST, (0, 0), None).is_empty());
 }
+
+#[test]
+fn a_file_beside_a_program_in_a_fence_is_named_after_the_document() {
+    let folder = tempfile::tempdir().unwrap();
+    let uri = format!("file://{}/notes.md", folder.path().display());
+    let mut client = Client::start();
+    client.open(&uri, "markdown", "```il\nLD X7\nOUT Y7\n```\n");
+    let argument = json!({"uri": uri, "position": position(1, 0), "to": "boolean"});
+    let params = json!({"command": "rungwise.translateBeside", "arguments": [argument]});
+    let answer = client.request("workspace/executeCommand", params);
+    let made = format!("file://{}/notes-boolean.txt", folder.path().display());
+    assert_eq!(answer["result"]["uri"], json!(made), "{answer}");
+}

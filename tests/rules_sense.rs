@@ -219,13 +219,14 @@ fn a_relay_of_the_latched_range_gets_a_general_one() {
 #[test]
 fn the_first_instruction_without_room_is_marked() {
     let target = |model: Model, rungs: usize| {
-        let text = format!("{}END\n", "LD X0\nAND X1\nINC D300\n".repeat(rungs));
+        // Four more steps, to meet the limit exactly.
+        let text = format!("{}{}END\n", "LD X0\nAND X1\nINC D300\n".repeat(rungs), "NOP\n".repeat(4));
         let document = Document::new(&text, Notation::FxIl, Target::of(model));
         let found = check::program(&document, &Severities::default());
         let found = found.iter().find(|one| one.code == "program-too-large");
         found.map(|one| (one.severity, text[..one.span.start as usize].matches('\n').count()))
     };
-    // Five steps a rung of three lines, and one for END.
+    // Five steps a rung of three lines.
     assert_eq!(target(Model::Fx1s, 399), None);
     assert_eq!(target(Model::Fx1s, 400), Some((Severity::Error, 1200)));
     assert_eq!(target(Model::Fx1s, 500), Some((Severity::Error, 1200)));

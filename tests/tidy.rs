@@ -10,12 +10,12 @@ const FLOORS: &[(&str, u8)] = &[
     ("ladder", 2),
     ("document", 3),
     ("logic", 4),
-    ("check", 5),
     ("translate", 5),
-    ("project", 6),
-    ("ide", 7),
-    ("lsp", 8),
-    ("cli", 9),
+    ("check", 6),
+    ("project", 7),
+    ("ide", 8),
+    ("lsp", 9),
+    ("cli", 10),
 ];
 
 /// Words that only some rooms may know.

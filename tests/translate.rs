@@ -2,6 +2,7 @@
 //! `stack_machine`, the drawing by following its wires.
 
 use crate::stack_machine::{self, Bits};
+use proptest::prelude::*;
 use rungwise::document::{Document, Notation, Tree};
 use rungwise::ladder::{ContactKind, ElementKind, Graph, VertexId, VertexKind};
 use rungwise::target::{Model, Target};
@@ -459,4 +460,170 @@ fn equations_that_cannot_be_read_say_where() {
     let deep = format!("Y0 = {}X0", "(".repeat(100_000));
     let problems = from_boolean::list(&deep, Target::of(Model::Fx2n)).expect_err("a problem");
     assert_eq!(problems[0].message.key(), "boolean.depth");
+}
+
+/// A rung made up for a property: how contacts are connected, what each asks, and what is driven behind them.
+#[derive(Clone, Debug)]
+struct MadeUp {
+    part: Part,
+    kinds: Vec<u8>,
+    drives: Vec<(u8, Option<Part>)>,
+}
+
+fn made_up(most: u32) -> impl Strategy<Value = MadeUp> {
+    let part = |size: u32| {
+        Just(Part::Contact).prop_recursive(6, size, 6, |inner| {
+            let several = proptest::collection::vec(inner, 2..6);
+            prop_oneof![several.clone().prop_map(Part::Series), several.prop_map(Part::Parallel)]
+        })
+    };
+    let drive = (0..8u8, proptest::option::of(part(most / 8)));
+    (part(most), proptest::collection::vec(0..8u8, 1..40), proptest::collection::vec(drive, 1..5))
+        .prop_map(|(part, kinds, drives)| MadeUp { part, kinds, drives })
+}
+
+impl MadeUp {
+    /// As a list that joins and branches as nobody would write it.
+    fn list(&self) -> String {
+        let mut text = String::new();
+        let mut next = 0;
+        self.block(&self.part, &mut next, &mut text);
+        for (number, (kind, part)) in self.drives.iter().enumerate() {
+            if self.drives.len() > 1 {
+                text += match number {
+                    0 => "MPS\n",
+                    _ if number + 1 == self.drives.len() => "MPP\n",
+                    _ => "MRD\n",
+                };
+            }
+            if let Some(part) = part {
+                self.block(part, &mut next, &mut text);
+                text += "ANB\n";
+            }
+            if kind & 4 != 0 {
+                text += "INV\n";
+            }
+            text += &format!("{} Y{number}\n", ["OUT", "SET", "RST", "OUT"][usize::from(kind & 3)]);
+        }
+        text
+    }
+
+    fn block(&self, part: &Part, next: &mut usize, text: &mut String) {
+        match part {
+            Part::Contact => {
+                let mnemonic = match self.kinds[*next % self.kinds.len()] {
+                    0..=3 => "LD",
+                    4 | 5 => "LDI",
+                    6 => "LDP",
+                    _ => "LDF",
+                };
+                *text += &format!("{mnemonic} M{next}\n");
+                *next += 1;
+            }
+            Part::Series(parts) | Part::Parallel(parts) => {
+                for (number, inner) in parts.iter().enumerate() {
+                    self.block(inner, next, text);
+                    if number > 0 {
+                        *text += if matches!(part, Part::Series(_)) { "ANB\n" } else { "ORB\n" };
+                    }
+                }
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(150))]
+
+    #[test]
+    fn large_rungs_go_there_and_back(rung in made_up(200), states in any::<[u64; 8]>()) {
+        let text = rung.list() + "END\n";
+        let (again, drawn) = there_and_back(&text);
+        prop_assert_eq!(certain(&list(&again), To::Ladder), drawn);
+        prop_assert_eq!(prove(&list(&text), &list(&again)), Proof::Equal { is_reordered: false });
+        for state in states {
+            // A bit for each relay, stretched over all of them.
+            let bits: Bits = (0..400).map(|n| (format!("M{n}"), state.rotate_left(n * 7) & 1 == 1)).collect();
+            let before: Bits = (0..400).map(|n| (format!("M{n}"), state.rotate_left(n * 5) & 2 == 2)).collect();
+            let [one, two] = [&text, &again].map(|text| stack_machine::scan(text, &mut bits.clone(), &before));
+            prop_assert_eq!(one, two, "{}\n{}", text, again);
+        }
+    }
+
+    #[test]
+    fn a_proof_says_what_all_inputs_say(one in made_up(5), two in made_up(5)) {
+        // Both drive the same outputs; few contacts, so that they are often equal.
+        let texts = [&one, &two].map(|rung| {
+            MadeUp { drives: vec![(0, None)], kinds: vec![0, 4], ..rung.clone() }.list()
+        });
+        let contacts = 8;
+        prop_assume!(texts.iter().all(|text| text.lines().filter(|line| line.contains('M')).count() <= contacts));
+        let differs = (0..1u32 << contacts).any(|state| {
+            let outputs = texts.each_ref().map(|text| {
+                let mut bits: Bits = (0..contacts).map(|n| (format!("M{n}"), state & 1 << n != 0)).collect();
+                stack_machine::scan(text, &mut bits, &Bits::new())
+            });
+            outputs[0] != outputs[1]
+        });
+        match prove(&list(&texts[0]), &list(&texts[1])) {
+            Proof::Equal { .. } => prop_assert!(!differs),
+            Proof::Different(_) => {
+                prop_assert!(differs);
+                found_different(&texts[0], &texts[1]);
+            }
+            Proof::Undecided { reason, .. } => prop_assert!(false, "{:?}", reason),
+        }
+    }
+}
+
+#[test]
+fn lists_beyond_all_measure_are_refused_and_carried_along() {
+    let many = 100_000;
+    let alternating: String = (0..many / 2).map(|_| "AND X1\nOR X2\n").collect();
+    for (what, body) in [
+        ("blocks", "LD X0\n".repeat(many) + &"ANB\n".repeat(many - 1)),
+        ("loads", "LD X0\n".repeat(many)),
+        ("branches", "LD X0\n".to_string() + &"MPS\nAND X1\n".repeat(many / 2)),
+        ("alternating contacts", "LD X0\n".to_string() + &alternating),
+        ("inverters", "LD X0\n".to_string() + &"INV\n".repeat(many)),
+        ("joins", "LD X0\n".to_string() + &"ORB\n".repeat(many)),
+    ] {
+        let text = body + "OUT Y0\nEND\n";
+        let document = list(&text);
+        for to in To::ALL {
+            let translation = translate(&document, None, to, &Options::default());
+            let told = translation.rungs.iter().any(|rung| rung.note.is_some());
+            // Inverters in a row are a list as any other.
+            assert!(told || translation.is_certain(), "{what} to {}", to.name());
+            assert!(translation.text.len() > 1_000, "{what} to {}: {}", to.name(), translation.text);
+        }
+        let proof = prove(&document, &document);
+        assert!(matches!(proof, Proof::Equal { .. }), "{what}: {proof:?}");
+    }
+    // 100,000 contacts in one rung, in series and in parallel, are read.
+    for mnemonic in ["AND", "OR"] {
+        let text = format!("LD X0\n{}OUT Y0\nEND\n", format!("{mnemonic} X1\n").repeat(many));
+        assert_eq!(certain(&list(&text), To::Fx), text);
+    }
+}
+
+#[test]
+fn a_question_too_large_is_not_decided() {
+    // The middle bit of a product has no small diagram in any order; sums of products over pairs far apart have none
+    // in the order of the text.
+    let pairs = 40;
+    let far: String = (0..pairs)
+        .map(|n| {
+            let load = format!("LD M{n}\nAND M{}\n", n + pairs);
+            if n == 0 { load } else { load + "ORB\n" }
+        })
+        .collect();
+    let order: String = (0..pairs).map(|n| format!("LD M{n}\nOR M{}\n", (n * 7) % pairs)).collect();
+    let left = format!("{far}OUT Y0\n");
+    let right = format!("{}OUT Y0\n", order + &"ANB\n".repeat(pairs - 1));
+    // Whatever the answer, it is no guess and it comes.
+    match prove(&list(&left), &list(&right)) {
+        Proof::Equal { .. } => panic!("they are not equal"),
+        Proof::Different(_) | Proof::Undecided { .. } => {}
+    }
 }

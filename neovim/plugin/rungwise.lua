@@ -5,6 +5,7 @@ vim.g.loaded_rungwise = true
 
 require('rungwise.commands').create()
 require('rungwise.mappings').define()
+require('rungwise.translations').register()
 
 vim.api.nvim_create_autocmd('LspAttach', {
   group = vim.api.nvim_create_augroup('rungwise_attach', { clear = true }),

@@ -47,15 +47,30 @@ pub enum Act {
 }
 
 impl Act {
+    /// Those that read or may read the value.
+    pub const READS: &[Act] = &[Act::Read, Act::ReadEdge, Act::Change, Act::Pass, Act::Call, Act::CallInput];
+
+    /// Those that write or may write it.
+    pub const WRITES: &[Act] = &[
+        Act::Coil,
+        Act::Pulse,
+        Act::Set,
+        Act::Reset,
+        Act::Write,
+        Act::Change,
+        Act::Pass,
+        Act::Call,
+        Act::CallInput,
+    ];
+
     /// Whether the value is or may be read.
     pub fn reads(self) -> bool {
-        matches!(self, Act::Read | Act::ReadEdge | Act::Change | Act::Pass | Act::Call | Act::CallInput)
+        Act::READS.contains(&self)
     }
 
     /// Whether the value is or may be written.
     pub fn writes(self) -> bool {
-        matches!(self, Act::Coil | Act::Pulse | Act::Set | Act::Reset | Act::Write | Act::Change)
-            || matches!(self, Act::Pass | Act::Call | Act::CallInput)
+        Act::WRITES.contains(&self)
     }
 
     /// Whether the place writes in each scan in which it is executed, on or off.

@@ -75,9 +75,6 @@ mod canvas;
 mod printer;
 pub use printer::{Drawing, Style, StyleKind, print};
 
-mod paths;
-pub use paths::drawn_apart;
-
 mod format;
 pub use format::{Kept, Page, format, format_chunk, kept_rungs};
 

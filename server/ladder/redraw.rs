@@ -1,8 +1,6 @@
 //! One rung drawn anew, as it reads or as it is meant, and everything else of its chunk left alone.
 
 use super::format::{Lines, Page, drawing, may_be_redrawn, same, same_but};
-use super::paths::same_ways;
-use super::reduce::Shape;
 use super::{Drawing, Graph, LadderTree, OperandPlace, Style, StyleKind, parse_with};
 use crate::target::Target;
 use crate::text::{Span, TextEdit};
@@ -18,24 +16,25 @@ pub fn redraw(chunk: &str, tree: &LadderTree, offset: u32, target: &Target) -> O
     same(chunk, tree, &formatted, target).then_some(edit)
 }
 
-/// The edit that draws rung `number` as `shape`, whose elements are those of `plan` with their words in `chunk`, and
-/// leaves the rest of the chunk as it is. Nothing unless, read again, power takes the same ways through it as
-/// through `plan`, and everything else says the same.
+/// The edit that puts another drawing in the place of rung `number` and leaves the rest of the chunk as it is. Nothing
+/// unless, read again, its graph with the words of the new text is what `is_meant` asks for, and everything else says
+/// the same.
 pub fn redraw_as(
     chunk: &str,
     tree: &LadderTree,
     number: usize,
-    (plan, shape): (&Graph, &Shape),
+    drawing: impl FnOnce(StyleKind) -> Option<Drawing>,
+    is_meant: impl FnOnce(&Graph, &str) -> bool,
     target: &Target,
 ) -> Option<TextEdit> {
     let lines = Lines::of(chunk);
     let rung = tree.rungs.get(number)?;
     may_be_redrawn(chunk, tree, rung, &lines).ok()?;
-    let (formatted, edit) = redrawn(chunk, tree, number, |kind| Drawing::new(shape, plan, chunk, kind))?;
+    let (formatted, edit) = redrawn(chunk, tree, number, drawing)?;
     let again = parse_with(&formatted, target, tree.names);
-    let is_meant = same_but((chunk, tree), (&formatted, &again), Some(number))
-        && same_ways((plan, chunk), (&again.rungs.get(number)?.graph, &formatted));
-    is_meant.then_some(edit)
+    let says_so = same_but((chunk, tree), (&formatted, &again), Some(number))
+        && is_meant(&again.rungs.get(number)?.graph, &formatted);
+    says_so.then_some(edit)
 }
 
 /// The chunk with a new drawing of one rung, and the edit that makes it; nothing if it is drawn so already.

@@ -8,7 +8,7 @@ use super::from_iec;
 use super::{Action, Contact, Declared, Deed, Expression, Gate, Network, Path, Refusal, Rung, Term, Test};
 use crate::il::{fx, iec};
 use crate::ladder::reduce::{NotSeriesParallel, Shape, reduce};
-use crate::ladder::{self, Element, ElementId, ElementKind, Graph, LadderTree};
+use crate::ladder::{self, Element, ElementKind, Graph, LadderTree};
 use crate::target::{Model, Operand, Target};
 use crate::text::{Diagnostic, Span, Spanned};
 
@@ -112,12 +112,17 @@ fn path(text: &str, tree: &LadderTree, rung: &ladder::Rung) -> Result<Path, Refu
     if tree.problems.iter().any(|problem| is_grave(problem, rung.span)) {
         return Err(Refusal::Unreadable);
     }
-    let shape = reduce(&rung.graph).map_err(|reason| match reason {
+    of_graph(text, &rung.graph)
+}
+
+/// The path of a drawn rung whose words stand in `text`.
+pub fn of_graph(text: &str, graph: &Graph) -> Result<Path, Refusal> {
+    let shape = reduce(graph).map_err(|reason| match reason {
         NotSeriesParallel::OpenCircuit(_) | NotSeriesParallel::Empty => Refusal::OpenCircuit,
         NotSeriesParallel::Bridge(_) | NotSeriesParallel::SharedPin(_) => Refusal::Bridge,
         NotSeriesParallel::TooDeep => Refusal::TooDeep,
     })?;
-    let mut reader = Reader { text, graph: &rung.graph, builder: Builder::new() };
+    let mut reader = Reader { text, graph, builder: Builder::new() };
     reader.shape(&shape, true)?;
     reader.builder.finish().ok_or(Refusal::WithoutOutput)
 }
@@ -203,20 +208,10 @@ impl Reader<'_> {
                 let branches: Result<Vec<_>, _> = parts.iter().map(|part| self.condition(part)).collect();
                 branches.map(Expression::or)
             }
-            Shape::Element(id) => self.contact(*id).map(Expression::Contact),
+            Shape::Element(id) => contact(self.text, self.graph.element(*id)).map(Expression::Contact),
             Shape::Block(_) => Err(Refusal::Element),
             Shape::Wire => Err(Refusal::ShortCircuit),
         }
-    }
-
-    fn contact(&self, id: ElementId) -> Result<Contact, Refusal> {
-        let element = self.graph.element(id);
-        let test = match &element.kind {
-            ElementKind::Contact(kind) => Test::Bit(*kind),
-            ElementKind::Compare(operator) => Test::Compare(*operator),
-            _ => return Err(Refusal::Element),
-        };
-        Ok(Contact { test, terms: self.terms(element), span: element.span })
     }
 
     fn element(&mut self, element: &Element, is_last: bool) -> Result<(), Refusal> {
@@ -228,31 +223,46 @@ impl Reader<'_> {
             }
             return Ok(());
         }
-        let deed = match &element.kind {
-            ElementKind::Coil(kind) => Deed::of_coil(*kind),
-            ElementKind::Instruction { form: Some(form), .. } => Deed::of_form(*form),
-            ElementKind::Instruction { form: None, .. } => return Err(Refusal::Unreadable),
-            ElementKind::Jump(_) => Deed::Jump,
-            ElementKind::Return => Deed::Return,
-            _ => return Err(Refusal::Element),
-        };
-        let mut action = Action { deed, terms: self.terms(element), span: element.span };
-        if let ElementKind::Jump(label) = &element.kind {
-            let operand = Operand::Variable;
-            action.terms.push(Term::new(operand, label.of(self.text), *label));
-        }
+        let action = action(self.text, element)?;
         match element.is_output() {
             true => self.builder.drive(action),
             false => self.builder.gate(Gate::Through(action)).ok_or(Refusal::TooDeep)?,
         }
         Ok(())
     }
+}
 
-    fn terms(&self, element: &Element) -> Vec<Term> {
-        let operands = element.operands.iter().enumerate();
-        let term = |(index, operand): (usize, &Spanned<Operand>)| {
-            Term::new(operand.value, &element.operand_text(index, self.text), operand.span)
-        };
-        operands.map(term).collect()
+/// The contact or comparison that an element is.
+pub(super) fn contact(text: &str, element: &Element) -> Result<Contact, Refusal> {
+    let test = match &element.kind {
+        ElementKind::Contact(kind) => Test::Bit(*kind),
+        ElementKind::Compare(operator) => Test::Compare(*operator),
+        _ => return Err(Refusal::Element),
+    };
+    Ok(Contact { test, terms: terms(text, element), span: element.span })
+}
+
+/// What an element does that is no contact.
+pub(super) fn action(text: &str, element: &Element) -> Result<Action, Refusal> {
+    let deed = match &element.kind {
+        ElementKind::Coil(kind) => Deed::of_coil(*kind),
+        ElementKind::Instruction { form: Some(form), .. } => Deed::of_form(*form),
+        ElementKind::Instruction { form: None, .. } => return Err(Refusal::Unreadable),
+        ElementKind::Jump(_) => Deed::Jump,
+        ElementKind::Return => Deed::Return,
+        _ => return Err(Refusal::Element),
+    };
+    let mut action = Action { deed, terms: terms(text, element), span: element.span };
+    if let ElementKind::Jump(label) = &element.kind {
+        action.terms.push(Term::new(Operand::Variable, label.of(text), *label));
     }
+    Ok(action)
+}
+
+fn terms(text: &str, element: &Element) -> Vec<Term> {
+    let operands = element.operands.iter().enumerate();
+    let term = |(index, operand): (usize, &Spanned<Operand>)| {
+        Term::new(operand.value, &element.operand_text(index, text), operand.span)
+    };
+    operands.map(term).collect()
 }

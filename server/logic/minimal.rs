@@ -11,6 +11,8 @@ pub type Sum = Vec<Vec<(u32, bool)>>;
 
 /// With more atoms, tables of values grow long.
 const EXACT_MAX: usize = 8;
+/// With more atoms, an answer may be long in coming.
+const ATOMS_MAX: usize = 32;
 /// With more products nobody reads the sum.
 const PRODUCTS_MAX: usize = 64;
 /// So many choices among the prime implicants are tried.
@@ -22,12 +24,15 @@ pub fn sum_of_products(formulas: &mut Formulas, formula: Formula) -> Option<Sum>
     let atoms = formulas.atoms_of([formula]);
     let sum = match atoms.len() <= EXACT_MAX {
         true => exact(formulas, formula, &atoms),
-        false => found(formulas, formula)?,
+        false => found(formulas, formula, atoms.len())?,
     };
     (sum.len() <= PRODUCTS_MAX).then_some(sum)
 }
 
-fn found(formulas: &mut Formulas, formula: Formula) -> Option<Sum> {
+fn found(formulas: &mut Formulas, formula: Formula, atoms: usize) -> Option<Sum> {
+    if atoms > ATOMS_MAX {
+        return None;
+    }
     let diagrams = Diagrams::of(formulas, &[formula])?;
     let diagram = diagrams.of.get(&formula)?;
     // The library's search is quadratic in the ways through the diagram.

@@ -28,6 +28,10 @@ mod from_iec;
 pub use from_iec::{HELPER, declarations};
 
 mod from_ladder;
+pub use from_ladder::of_graph;
+
+mod apart;
+pub use apart::apart;
 
 mod formula;
 pub use formula::{Atom, Formula, Formulas, Moment};

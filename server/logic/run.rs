@@ -162,7 +162,8 @@ impl<'p> Run<'p> {
         }
     }
 
-    fn contact(&self, contact: &Contact, formulas: &mut Formulas) -> Formula {
+    /// Whether a contact conducts where the run stands.
+    pub fn contact(&self, contact: &Contact, formulas: &mut Formulas) -> Formula {
         match (contact.test, &contact.terms[..]) {
             (Test::Bit(kind), [term]) => match kind {
                 ContactKind::NormallyOpen => self.bit(term, formulas),

@@ -504,9 +504,12 @@ impl Backend {
             return answer.ok_or_else(unknown);
         }
         let made = whole(uri, move |around, place| wanted.beside(around, place, &settings)).await?;
-        let Some((edit, uri)) = made.ok_or_else(unknown)?.transpose().map_err(refused)? else { return Ok(None) };
+        let Some((edit, uri)) = made.ok_or_else(unknown)?.transpose().map_err(refused)? else {
+            return Ok(None);
+        };
         let client = self.workspace.client.clone();
-        let shown = ShowDocumentParams { uri: uri.clone(), external: None, take_focus: Some(true), selection: None };
+        let shown =
+            ShowDocumentParams { uri: uri.clone(), external: None, take_focus: Some(true), selection: None };
         let shows = self.workspace.requests().show_document;
         // The client may answer late or never; no handler waits for it.
         tokio::spawn(async move {

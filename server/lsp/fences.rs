@@ -12,7 +12,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Between the name of a Markdown document and the number of a fence.
-const MARK: &str = ".fence-";
+pub(super) const MARK: &str = ".fence-";
 
 /// Requests about a whole document, whose answers are lists or can be joined as such.
 const WHOLE: &[&str] = &[

@@ -33,6 +33,7 @@
 //! puts it on the clipboard (`….<form>.copy`). Others get `rungwise.translateBeside` if they can make files.
 
 use super::editing::is_wanted;
+use super::fences;
 use super::projects::{Around, file_path};
 use super::settings::Settings;
 use super::to_proto::Place;
@@ -154,10 +155,12 @@ fn to_json(form: &TranslatedForm, place: Place<'_>) -> Value {
     })
 }
 
-/// A file that is not there yet: `motor-fx.il` beside `motor.lad`.
+/// A file that is not there yet: `motor-fx.il` beside `motor.lad`. A program in a fence is a part of its document.
 fn free_file(uri: &Uri, to: To) -> Option<Uri> {
     let path = file_path(uri)?;
-    let stem = path.file_stem()?.to_string_lossy().into_owned();
+    let name = path.file_name()?.to_string_lossy();
+    let name = name.split(fences::MARK).next()?;
+    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     let ending = match to.name() {
         "ladder" => "lad",
         "boolean" => "txt",

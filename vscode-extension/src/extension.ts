@@ -12,6 +12,7 @@ import { ServerController } from './server';
 import type { ProgramStatus, ServerState } from './status';
 import { StatusBar } from './statusBar';
 import { RungwiseTasks } from './tasks';
+import { registerTranslations } from './translations';
 import { UsageView } from './usageView';
 import { registerWalkthrough } from './walkthrough';
 import { useTranslations } from './words';
@@ -48,6 +49,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<Rungwi
     RungwiseTasks.register(controller),
     registerExample(context),
     registerWalkthrough(),
+    ...registerTranslations(controller),
   );
   context.subscriptions.push(
     vscode.workspace.onDidChangeConfiguration(async (event) => {

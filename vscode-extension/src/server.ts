@@ -24,6 +24,7 @@ import { configurationChange, type ServerSettings } from './settings';
 import { parseStatus } from './status';
 import type { ServerReport } from './statusPage';
 import type { StatusBar } from './statusBar';
+import { ANOTHER_DOCUMENT } from './translated';
 
 const STOP_TIMEOUT_MS = 2_000;
 const DOCUMENTS = [
@@ -226,6 +227,14 @@ export class ServerController implements vscode.Disposable {
     };
     // The identifier makes the client read the setting `rungwise.trace.server`.
     const client = new LanguageClient('rungwise', 'Rungwise', program, options);
+    client.registerFeature({
+      fillClientCapabilities: (capabilities) => {
+        capabilities.experimental = { commands: { commands: Object.values(ANOTHER_DOCUMENT) } };
+      },
+      initialize: () => undefined,
+      getState: () => ({ kind: 'static' }),
+      clear: () => undefined,
+    });
     client.onNotification('rungwise/status', (value: unknown) => {
       const status = parseStatus(value);
       if (status !== undefined) {

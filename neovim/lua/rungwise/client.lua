@@ -85,6 +85,7 @@ function M.config()
     root_markers = M.root_markers,
     init_options = settings,
     settings = { rungwise = settings },
+    capabilities = require('rungwise.translations').capabilities(),
     handlers = { ['rungwise/status'] = on_status },
   }
 end

@@ -7,9 +7,10 @@
 //! Instruction List has AND for series and OR for parallel and nothing for a bridge, so no PLC of this kind can run
 //! the rung; programming tools refuse it. Draw the paths apart: the contacts that they share are drawn twice.
 //!
-//! The fix does so where power goes through plain contacts and comparisons to the same outputs on at most twelve ways.
-//! It is offered only if power takes the same ways through the new drawing; with edges, inverters and function blocks,
-//! and where the ways lead to different outputs, the rung must be drawn by hand.
+//! The fix does so where power goes through contacts and comparisons to outputs on at most 64 ways. Contacts that
+//! several ways have in common are drawn once where that can be, and ways that others cover are left out. It is offered
+//! only if the new rung is proved to drive each output under the same condition; with inverters and function blocks,
+//! and where an output changes what another one is driven by, the rung must be drawn by hand.
 //!
 //! ```lad
 //! |   X0                    X1                       Y0  |
@@ -33,9 +34,11 @@
 
 use super::{Drawn, first_cell};
 use crate::check::{Rule, Run};
-use crate::ladder::reduce::{Bridge, NotSeriesParallel, Shape, may_be_mixed, reduce};
-use crate::ladder::{ElementId, Graph, drawn_apart, redraw_as};
+use crate::ladder::reduce::{Bridge, NotSeriesParallel, may_be_mixed, reduce};
+use crate::ladder::{Drawing, Element, ElementId, Graph, redraw_as};
+use crate::logic::{self, Path};
 use crate::text::{Diagnostic, Message, Severity, Span};
+use crate::translate::to_ladder;
 
 pub(super) const RULE: Rule = Rule {
     code: "mixed-connection",
@@ -73,22 +76,28 @@ pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
         relate(&bridge.elements, "across");
         relate(&bridge.beside, "beside");
         if drawn.can_try()
-            && let Some(shape) = drawn_apart(graph)
+            && let Some(path) = logic::apart(drawn.text, graph)
+            && let Ok(plan) = to_ladder::plan(&path, drawn.target.model)
         {
-            let edit = redraw_as(drawn.text, drawn.tree, number, (graph, &shape), drawn.target);
-            let title = Message::new("mixed-connection.redraw").with("elements", twice(drawn, graph, &shape));
+            let drawing = |kind| Drawing::new(&plan.shape, &plan.graph, &plan.source, kind);
+            let is_meant = |graph: &Graph, text: &str| super::does(&path, text, graph);
+            let edit = redraw_as(drawn.text, drawn.tree, number, drawing, is_meant, drawn.target);
+            let title = Message::new("mixed-connection.redraw").with("elements", twice(drawn, graph, &path));
             drawn.try_fix(&mut diagnostic, title, edit.map(|edit| vec![edit]));
         }
         found.push(diagnostic);
     }
 }
 
-/// The names of the elements that a shape has more than once.
-fn twice(drawn: &Drawn<'_>, graph: &Graph, shape: &Shape) -> String {
-    let mut all = shape.elements();
-    all.sort_unstable();
-    let several = all.chunk_by(|left, right| left == right).filter(|run| run.len() > 1);
-    several.map(|run| drawn.name(graph.element(run[0]))).collect::<Vec<_>>().join(", ")
+/// The names of the elements that are contacts of a path more than once.
+fn twice(drawn: &Drawn<'_>, graph: &Graph, path: &Path) -> String {
+    let mut spans = Vec::new();
+    path.visit(&mut |_| {}, &mut |condition| {
+        condition.visit(&mut |contact| spans.push(contact.span));
+    });
+    let is_double = |element: &&Element| spans.iter().filter(|span| **span == element.span).count() > 1;
+    let double = graph.elements.iter().filter(is_double);
+    double.map(|element| drawn.name(element)).collect::<Vec<_>>().join(", ")
 }
 
 /// The middle cell of the bridge's vertical wire.

@@ -36,6 +36,7 @@ mod upper_parallel;
 
 use super::{ChunkContext, Rule};
 use crate::ladder::{Graph, VertexId, VertexKind};
+use crate::logic::{Comparison, Formulas, Path, compare, of_graph};
 use crate::text::{Diagnostic, Span};
 
 pub(super) use contact_after_coil::ALLOWED as CONTACT_AFTER_COIL_ALLOWED;
@@ -80,6 +81,13 @@ fn run(find: Find, context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     if let Some(drawn) = Drawn::of(context) {
         find(&drawn, found);
     }
+}
+
+/// Whether the rung of `graph`, whose words stand in `text`, does what `path` does.
+fn does(path: &Path, text: &str, graph: &Graph) -> bool {
+    of_graph(text, graph).is_ok_and(|drawn| {
+        matches!(compare(&[path], &[&drawn], &mut Formulas::default()), Comparison::Same { .. })
+    })
 }
 
 /// The first cell of a vertex: the top of a vertical wire, an element's symbol.

@@ -33,7 +33,8 @@ use super::dead_end::{DeadEnd, dead_ends};
 use super::{Drawn, first_cell};
 use crate::check::{Rule, Run};
 use crate::ladder::reduce::reduce;
-use crate::ladder::{ArcId, Graph, VertexKind, redraw_as};
+use crate::ladder::{ArcId, Drawing, Graph, VertexKind, redraw_as};
+use crate::logic::of_graph;
 use crate::text::{Diagnostic, Message, Severity, Span};
 
 pub(super) const RULE: Rule = Rule {
@@ -71,7 +72,11 @@ pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
                 && let Some(plan) = turned(graph, &end, arc)
                 && let Ok(shape) = reduce(&plan)
             {
-                let edit = redraw_as(drawn.text, drawn.tree, number, (&plan, &shape), drawn.target);
+                let drawing = |kind| Drawing::new(&shape, &plan, drawn.text, kind);
+                let is_meant = |graph: &Graph, text: &str| {
+                    of_graph(drawn.text, &plan).is_ok_and(|path| super::does(&path, text, graph))
+                };
+                let edit = redraw_as(drawn.text, drawn.tree, number, drawing, is_meant, drawn.target);
                 drawn.try_fix(&mut diagnostic, title, edit.map(|edit| vec![edit]));
             }
             found.push(diagnostic);

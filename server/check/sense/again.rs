@@ -26,6 +26,9 @@ pub(super) fn driven_again(
             Key::Device(_) | Key::Direct(_) => continue,
             Key::Global(_) | Key::Local(..) => Act::Call,
         };
+        if !uses.acts(number).has(&[act]) {
+            continue;
+        }
         let drives = |one: &Use| one.access.act == act && one.is_whole();
         if uses.of_name(number).filter(drives).take(2).count() < 2
             || (act == Act::Call && !has_input(name, pin))

@@ -89,7 +89,7 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let coils = Coils::of(context);
     let is_coil = |one: &Use| one.access.act == Act::Coil && one.is_whole();
     let is_latch = |one: &Use| matches!(one.access.act, Act::Set | Act::Reset) && one.is_whole();
-    for driven in coils.driven(|one| is_coil(one) || is_latch(one)) {
+    for driven in coils.driven(&[Act::Coil], &[Act::Set, Act::Reset], |one| is_coil(one) || is_latch(one)) {
         let select = |wanted: &dyn Fn(&Use) -> bool| -> Vec<usize> {
             (0..driven.all.len()).filter(|place| wanted(&driven.all[*place])).collect()
         };

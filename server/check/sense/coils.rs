@@ -3,7 +3,7 @@
 use super::Regions;
 use super::uses::{Key, Name, Use, Uses};
 use crate::check::ProgramContext;
-use crate::document::DeclaredType;
+use crate::document::{Act, DeclaredType};
 use crate::il::iec::SectionKind;
 use crate::target::iec::ElementaryType;
 use crate::target::{DeviceKind, Location, Width};
@@ -42,11 +42,19 @@ impl<'c, 'a> Coils<'c, 'a> {
         Coils { uses: context.uses(), regions: context.regions() }
     }
 
-    /// The relays and outputs of which `wanted` are more than one, by a first quick look.
-    pub fn driven(&self, wanted: impl Fn(&Use) -> bool) -> impl Iterator<Item = Driven> {
+    /// The relays and outputs with which something of `acts` is done, and of `others` if there are any, in two places
+    /// at least that are `wanted`.
+    pub fn driven(
+        &self,
+        acts: &'static [Act],
+        others: &'static [Act],
+        wanted: impl Fn(&Use) -> bool,
+    ) -> impl Iterator<Item = Driven> {
         self.uses.names().filter_map(move |(number, name)| {
-            let is_many = self.uses.of_name(number).filter(|one| wanted(one)).take(2).count() == 2;
-            (is_many && self.is_relay(number, name))
+            let done = self.uses.acts(number);
+            let may_be = done.has(acts) && (others.is_empty() || done.has(others));
+            let is_many = || self.uses.of_name(number).filter(|one| wanted(one)).take(2).count() == 2;
+            (may_be && is_many() && self.is_relay(number, name))
                 .then(|| Driven::new(self.uses.of_name(number).collect(), is_output(name)))
         })
     }

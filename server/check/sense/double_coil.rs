@@ -76,6 +76,7 @@ use super::coils::Coils;
 use super::rungs::{MOST_MENDED, PlainRung};
 use super::uses::{Use, Uses};
 use crate::check::{ProgramContext, Rule, Run};
+use crate::document::Act;
 use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
 
 pub(super) const RULE: Rule = Rule {
@@ -89,7 +90,7 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let coils = Coils::of(context);
     let is_coil = |one: &Use| one.access.act.is_coil() && one.is_whole();
     let mut mended = 0;
-    for driven in coils.driven(is_coil) {
+    for driven in coils.driven(&[Act::Coil, Act::Pulse], &[], is_coil) {
         let places: Vec<usize> = (0..driven.all.len()).filter(|place| is_coil(&driven.all[*place])).collect();
         for (number, one) in places.iter().enumerate() {
             let Some(winner) = coils.undone_by(&driven, *one, &places[number + 1..]) else { continue };

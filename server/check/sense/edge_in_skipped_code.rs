@@ -53,6 +53,9 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
         return;
     }
     for (number, _) in uses.names() {
+        if !uses.acts(number).has(&[Act::ReadEdge, Act::Pulse]) {
+            continue;
+        }
         let is_edge = |act: Act| matches!(act, Act::ReadEdge | Act::Pulse);
         for one in uses.of_name(number).filter(|one| is_edge(one.access.act)) {
             let key = match () {

@@ -47,7 +47,7 @@
 use super::relays::is_latched;
 use super::uses::{Key, Use, Uses};
 use crate::check::{ProgramContext, Rule, Run};
-use crate::document::Part;
+use crate::document::{Act, Part};
 use crate::target::{Device, DeviceKind, Operand};
 use crate::text::{Diagnostic, Message, Severity, TextEdit};
 
@@ -67,6 +67,9 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     for (number, name) in uses.names() {
         let Key::Device(device) = name.key else { continue };
         if device.kind != DeviceKind::M || device.is_special() || !is_latched(device, target) {
+            continue;
+        }
+        if uses.acts(number).writes_but(&[Act::Coil, Act::Pulse]) {
             continue;
         }
         let mut writes = uses.of_name(number).filter(|one| one.access.act.writes());

@@ -59,6 +59,9 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let uses = context.uses();
     for (number, name) in uses.names() {
         let Key::Device(device) = name.key else { continue };
+        if !uses.acts(number).has_pair() {
+            continue;
+        }
         let is_pair = |one: &Use| one.access.part == Part::Pair;
         let Some(some_pair) = uses.of_name(number).find(is_pair) else { continue };
         let second = Device::new(device.kind, device.number.saturating_add(1));

@@ -148,6 +148,11 @@ fn is_passing_relay(context: &ProgramContext<'_>, name: &Name<'_>) -> bool {
 
 /// The first place that reads it, if all that do stand above the one coil that writes it, and in the same file.
 fn late(uses: &Uses<'_>, number: u32) -> Option<(Use, Use)> {
+    let acts = uses.acts(number);
+    let reads_and_coil = acts.has(&[Act::Coil]) && !acts.writes_but(&[Act::Coil]) && acts.reads();
+    if !reads_and_coil {
+        return None;
+    }
     let mut writes = uses.of_name(number).filter(|one| one.access.act.writes());
     let (coil, None) = (writes.next()?, writes.next()) else { return None };
     if coil.access.act != Act::Coil || !coil.is_whole() {

@@ -89,6 +89,9 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let wiring = Wiring::of(context);
     let is_own = |name: &Name<'_>| may_only_the_program_write(context, &wiring, name);
     for (number, name) in uses.names().filter(|(_, name)| is_own(name)) {
+        if !uses.acts(number).has(&[Act::Read, Act::ReadEdge]) {
+            continue;
+        }
         let Some(read) = uses.of_name(number).find(is_read) else { continue };
         let kind = match name.key {
             Key::Device(device) => Some(device.kind),
@@ -122,14 +125,14 @@ fn is_read(one: &Use) -> bool {
 }
 
 fn is_written(uses: &Uses<'_>, number: u32, name: &Name<'_>, read: &Use) -> bool {
-    let writes = |act: Act| act.writes() || act == Act::DeclareValue;
-    if uses.of_name(number).any(|one| writes(one.access.act)) {
+    let acts = uses.acts(number);
+    if acts.writes_but(&[]) || acts.has(&[Act::DeclareValue]) {
         return true;
     }
     let Key::Device(device) = name.key else { return false };
     let second = Device::new(device.kind, device.number.saturating_add(1));
     // Half of a pair may be written on its own.
-    let half = || uses.device(second).is_some_and(|other| !uses.written_at(other).is_empty());
+    let half = || uses.device(second).is_some_and(|other| uses.acts(other).writes_but(&[]));
     uses.is_written_in_row(device) || (read.access.part == Part::Pair && half())
 }
 

@@ -82,14 +82,14 @@ pub(super) const RULE: Rule = Rule {
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let uses = context.uses();
     for (number, name) in uses.names() {
-        let all = || uses.of_name(number);
-        let Some(reset) = first_of(all(), Act::Reset) else { continue };
+        let acts = uses.acts(number);
+        let is_switched_on = acts.writes_but(&[Act::Reset]) || acts.has(&[Act::DeclareValue]);
+        if !acts.has(&[Act::Reset]) || is_switched_on {
+            continue;
+        }
+        let Some(reset) = first_of(uses.of_name(number), Act::Reset) else { continue };
         let counts = matches!(name.key, Key::Device(device) if device.kind.has_preset());
-        let switches_on = |act: Act| (act.writes() && act != Act::Reset) || act == Act::DeclareValue;
-        if all().any(|one| switches_on(one.access.act))
-            || is_written_in_row(name, uses)
-            || !(counts || is_latchable(name, context.regions().has_steps))
-        {
+        if is_written_in_row(name, uses) || !(counts || is_latchable(name, context.regions().has_steps)) {
             continue;
         }
         let key = if counts { "reset-without-set.undriven" } else { "reset-without-set.found" };

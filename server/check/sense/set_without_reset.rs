@@ -75,11 +75,12 @@ pub(super) const RULE: Rule = Rule {
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let uses = context.uses();
     for (number, name) in uses.names() {
-        let all = || uses.of_name(number);
-        let Some(set) = first_of(all(), Act::Set) else { continue };
-        let is_written = all().any(|one| one.access.act.writes() && one.access.act != Act::Set);
-        if is_written
-            || is_written_in_row(name, uses)
+        let acts = uses.acts(number);
+        if !acts.has(&[Act::Set]) || acts.writes_but(&[Act::Set]) {
+            continue;
+        }
+        let Some(set) = first_of(uses.of_name(number), Act::Set) else { continue };
+        if is_written_in_row(name, uses)
             || !is_latchable(name, context.regions().has_steps)
             // What a jump passes over may be done once and never again on purpose.
             || context.regions().may_be_skipped(set.span.start)

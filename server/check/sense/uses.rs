@@ -3,7 +3,7 @@
 
 use crate::check::ProgramContext;
 use crate::check::statements::is_fx_program;
-use crate::document::{Access, Chunk, Notation, Page, Part, Symbol, Variable};
+use crate::document::{Access, Act, Chunk, Notation, Page, Part, Symbol, Variable};
 use crate::target::{Device, DeviceKind, DirectAddress, Flow};
 use crate::text::Span;
 use rustc_hash::FxHashMap;
@@ -14,6 +14,8 @@ pub struct Uses<'a> {
     pages: Vec<PageAt<'a>>,
     names: Vec<Name<'a>>,
     numbers: FxHashMap<Key<'a>, u32>,
+    /// What is done with each name.
+    acts: Vec<Acts>,
     /// Where the accesses of each name begin in `order`, and behind the last name where they end.
     starts: Vec<u32>,
     /// The page and the number in it of each access, those of a name in the order of execution.
@@ -96,6 +98,41 @@ impl Use {
     }
 }
 
+/// All that is done with a name, at one look.
+#[derive(Clone, Copy, Default)]
+pub struct Acts(u16);
+
+impl Acts {
+    const PAIR: u16 = 1 << 15;
+
+    fn add(&mut self, access: &Access) {
+        self.0 |= 1 << access.act as u16;
+        if access.part == Part::Pair {
+            self.0 |= Acts::PAIR;
+        }
+    }
+
+    /// Whether any of `acts` is done.
+    pub fn has(self, acts: &[Act]) -> bool {
+        acts.iter().any(|act| self.0 & (1 << *act as u16) != 0)
+    }
+
+    /// Whether it is or may be written in another way than by `acts`.
+    pub fn writes_but(self, acts: &[Act]) -> bool {
+        Act::WRITES.iter().any(|act| !acts.contains(act) && self.has(&[*act]))
+    }
+
+    /// Whether it is or may be read.
+    pub fn reads(self) -> bool {
+        self.has(Act::READS)
+    }
+
+    /// Whether a 32-bit instruction takes it with the next register.
+    pub fn has_pair(self) -> bool {
+        self.0 & Acts::PAIR != 0
+    }
+}
+
 impl<'a> Uses<'a> {
     /// The accesses of all files up to the end of the program.
     pub fn of(context: &ProgramContext<'a>) -> Uses<'a> {
@@ -105,6 +142,7 @@ impl<'a> Uses<'a> {
             pages: Vec::new(),
             names: Vec::new(),
             numbers: FxHashMap::default(),
+            acts: Vec::new(),
             starts: Vec::new(),
             order: Vec::new(),
             read_rows: Rows::default(),
@@ -147,6 +185,7 @@ impl<'a> Uses<'a> {
     /// Sorts the accesses before `end` by their names, and notes the rows among them.
     fn sort(&mut self, end: u32) {
         let mut counts = vec![0u32; self.names.len() + 1];
+        let mut acts = vec![Acts::default(); self.names.len()];
         let within = |page: &PageAt<'_>| {
             let local_end = (end as usize).saturating_sub(page.start);
             page.page.accesses().all.partition_point(|access| (access.span.start as usize) < local_end)
@@ -154,7 +193,9 @@ impl<'a> Uses<'a> {
         let lengths: Vec<usize> = self.pages.iter().map(within).collect();
         for (page, length) in self.pages.iter().zip(&lengths) {
             for access in &page.page.accesses().all[..*length] {
-                counts[page.table[access.name as usize] as usize + 1] += 1;
+                let name = page.table[access.name as usize] as usize;
+                counts[name + 1] += 1;
+                acts[name].add(access);
             }
         }
         for number in 1..counts.len() {
@@ -180,12 +221,17 @@ impl<'a> Uses<'a> {
                 }
             }
         }
-        (self.starts, self.order) = (counts, order);
+        (self.acts, self.starts, self.order) = (acts, counts, order);
     }
 
     /// Every name with its number, in the order in which they first occur.
     pub fn names(&self) -> impl Iterator<Item = (u32, &Name<'a>)> {
         self.names.iter().enumerate().map(|(number, name)| (number as u32, name))
+    }
+
+    /// All that is done with a name.
+    pub fn acts(&self, number: u32) -> Acts {
+        self.acts.get(number as usize).copied().unwrap_or_default()
     }
 
     /// The number of a device, if it is named.
@@ -205,6 +251,9 @@ impl<'a> Uses<'a> {
     pub fn written_at(&self, number: u32) -> &[u32] {
         let written = self.written.get_or_init(|| {
             let offsets = |number: u32| {
+                if !self.acts(number).writes_but(&[]) {
+                    return Vec::new();
+                }
                 let writes = self.of_name(number).filter(|one| one.access.act.writes());
                 writes.map(|one| one.span.start).collect()
             };

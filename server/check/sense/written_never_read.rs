@@ -80,6 +80,9 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let (uses, wiring) = (context.uses(), Wiring::of(context));
     let mut mended = 0;
     for (number, name) in uses.names() {
+        if uses.acts(number).reads() || !may_only_the_program_read(context, &wiring, name) {
+            continue;
+        }
         let all = || uses.of_name(number);
         let is_written = |one: &Use| {
             let writes = one.access.act.writes() && !one.access.act.reads();
@@ -87,14 +90,10 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
             writes && one.access.act != Act::Reset && (one.access.part == Part::Pair || one.access.count == 1)
         };
         let Some(written) = all().find(is_written) else { continue };
-        if all().any(|one| one.access.act.reads()) || !may_only_the_program_read(context, &wiring, name) {
-            continue;
-        }
         if let Key::Device(device) = name.key {
             let second = Device::new(device.kind, device.number.saturating_add(1));
-            let is_pair = all().any(|one| one.access.part == Part::Pair);
-            let half =
-                || uses.device(second).is_some_and(|other| uses.of_name(other).any(|o| o.access.act.reads()));
+            let is_pair = uses.acts(number).has_pair();
+            let half = || uses.device(second).is_some_and(|other| uses.acts(other).reads());
             if uses.is_read_in_row(device) || (is_pair && (uses.is_read_in_row(second) || half())) {
                 continue;
             }

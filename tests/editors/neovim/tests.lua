@@ -314,6 +314,80 @@ check('the uses of a device are listed in the quickfix list', function()
   assert(said:find('does not use "Y7"', 1, true), said)
 end)
 
+--- A list that the server knows.
+local function open_list(name)
+  vim.fn.writefile({ '// dialect: fx', 'LD X0', 'LD X1', 'OR X2', 'ANB', 'OUT Y0', 'LD X5', 'OUT Y5', 'END' }, name)
+  local client = open(name)
+  until_codes({})
+  return client
+end
+
+--- Does the code action of a kind at the cursor, as `gra` does with the one that is chosen.
+local function act(kind)
+  local done
+  vim.lsp.buf.code_action({
+    context = { only = { kind }, diagnostics = {} },
+    filter = function(action)
+      done = done or action.kind == kind
+      return action.kind == kind
+    end,
+    apply = true,
+  })
+  until_true('an action of the kind ' .. kind, function()
+    return done
+  end)
+end
+
+check('a rung is opened in another form beside the program, or copied', function()
+  open_list('translated.il')
+  put_cursor('OR X2')
+  act('refactor.rewrite.translate.boolean')
+  until_true('the boolean form', function()
+    return buffer_text() == 'Y0 = X0*(X1 + X2)'
+  end)
+  assert(vim.api.nvim_buf_get_name(0) == '' and #vim.api.nvim_list_wins() == 2)
+  vim.cmd('bwipeout!')
+  act('source.translate.ladder')
+  until_true('the drawing', function()
+    return vim.bo.filetype == 'ladder' and buffer_text():find('Y5', 1, true)
+  end)
+  vim.cmd('bwipeout!')
+  vim.fn.setreg('"', '')
+  act('refactor.rewrite.translate.boolean.copy')
+  until_true('the register', function()
+    return vim.fn.getreg('"') == 'Y0 = X0*(X1 + X2)\n'
+  end)
+end)
+
+check('a refactoring that saves steps is applied', function()
+  open_list('refactored.il')
+  put_cursor('LD X0')
+  act('refactor.rewrite.rung.wideFirst')
+  until_true('the shorter list', function()
+    return buffer_text():find('LD X1\nOR X2\nAND X0\nOUT Y0\n', 1, true)
+  end)
+end)
+
+check('the forms of a rung follow the cursor with the real server', function()
+  open_list('forms.il')
+  local function page()
+    local buffer = vim.fn.bufnr('rungwise://forms')
+    return buffer ~= -1 and table.concat(vim.api.nvim_buf_get_lines(buffer, 0, -1, false), '\n') or ''
+  end
+  put_cursor('OUT Y0')
+  vim.cmd('RungwiseForms')
+  until_true('all forms of the first rung', function()
+    local text = page()
+    return text:find('Y0 = X0*(X1 + X2)', 1, true) and text:find('proved equal', 1, true) and text:find('( )', 1, true)
+  end)
+  put_cursor('OUT Y5')
+  vim.api.nvim_exec_autocmds('CursorMoved', {})
+  until_true('the next rung', function()
+    return page():find('Y5 = X5', 1, true) and not page():find('X1 + X2', 1, true)
+  end)
+  vim.cmd('bwipeout! rungwise://forms')
+end)
+
 --- Has the server seem to know the translation, or not; answers what it is asked.
 local function translating(client, answers)
   local commands = vim.tbl_filter(function(command)

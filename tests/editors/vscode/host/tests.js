@@ -6,7 +6,7 @@
 const fs = require('node:fs');
 
 const SUITES = [
-  './extension_tests', './diagnostics_tests', './language_tests', './drawing_tests', './typing_tests', './pages_tests', './server_tests',
+  './extension_tests', './diagnostics_tests', './language_tests', './translate_tests', './drawing_tests', './typing_tests', './pages_tests', './server_tests',
 ];
 /** A part of the tests, while one works on it: a pattern for their names. */
 const CHOSEN = new RegExp(process.env.RUNGWISE_TESTS_NAMED ?? '');
