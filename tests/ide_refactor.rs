@@ -400,10 +400,10 @@ fn check_all(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn what_is_offered_in_a_list_changes_nothing(rungs in prop::collection::vec(rung(), 1..4)) {
+    fn what_is_offered_in_a_list_changes_nothing(rungs in prop::collection::vec(rung(), 1..3)) {
         let text = program(&rungs);
         check_all(&list(&text), &text, str::to_string)?;
     }

@@ -1,6 +1,7 @@
 //! The shortest sums of products.
 
 use rungwise::logic::{Atom, Formula, Formulas, Moment, Sum, Verdict, equal, sum_of_products};
+use std::collections::HashMap;
 
 fn atoms(formulas: &mut Formulas, count: usize) -> Vec<Formula> {
     let name = |number: usize| Moment { name: format!("X{number}").into(), since: 0 };
@@ -30,44 +31,63 @@ fn again(formulas: &mut Formulas, sum: &Sum, of: &[Formula]) -> Formula {
     formulas.or(products)
 }
 
+/// The rows of a table of four atoms in which a product holds, and how many contacts it has.
+fn products() -> Vec<(u16, usize)> {
+    let product = |number: u32| {
+        let digits = [number % 3, number / 3 % 3, number / 9 % 3, number / 27];
+        let asks = |row: u32| {
+            let bits = digits.iter().enumerate();
+            bits.into_iter().all(|(bit, digit)| *digit == 2 || row >> bit & 1 == *digit)
+        };
+        let rows = (0..16).filter(|row| asks(*row)).fold(0, |table, row| table | 1 << row);
+        (rows, digits.iter().filter(|digit| **digit != 2).count())
+    };
+    (0..81).map(product).collect()
+}
+
 #[test]
-fn every_function_of_three_atoms_has_its_shortest_sum() {
+fn functions_of_four_atoms_have_their_shortest_sums() {
     let mut formulas = Formulas::default();
-    let of = atoms(&mut formulas, 3);
-    let products: Vec<(usize, u8)> = (0..27u32)
-        .map(|number| {
-            let digits = [number % 3, number / 3 % 3, number / 9];
-            let rows = (0..8u8).filter(|row| {
-                digits
-                    .iter()
-                    .enumerate()
-                    .all(|(bit, digit)| *digit == 2 || u32::from(row >> bit & 1) == *digit)
-            });
-            let asked = digits.iter().filter(|digit| **digit != 2).count();
-            (asked, rows.fold(0, |table, row| table | 1 << row))
-        })
-        .collect();
-    // The fewest contacts for each table of values, by joining products until nothing gets shorter.
-    let mut fewest = [usize::MAX; 256];
-    fewest[0] = 0;
-    for _ in 0..8 {
-        for table in 0..256 {
-            let own = fewest[table];
-            for (asked, rows) in products.iter().filter(|_| own < usize::MAX) {
-                let joined = table | *rows as usize;
-                fewest[joined] = fewest[joined].min(own + asked);
-            }
-        }
-    }
-    for table in 0..256usize {
-        let rows = (0..8).filter(|row| table >> row & 1 == 1);
-        let sum: Sum = rows.map(|row| (0..3).map(|bit| (bit, row >> bit & 1 == 1)).collect()).collect();
+    let of = atoms(&mut formulas, 4);
+    let products = products();
+    for table in (0..1usize << 16).step_by(1009) {
+        let rows = (0..16).filter(|row| table >> row & 1 == 1);
+        let sum: Sum = rows.map(|row| (0..4).map(|bit| (bit, row >> bit & 1 == 1)).collect()).collect();
         let formula = again(&mut formulas, &sum, &of);
         let minimal = sum_of_products(&mut formulas, formula).unwrap();
         let same = again(&mut formulas, &minimal, &of);
         assert_eq!(equal(&mut formulas, formula, same), Verdict::Equal);
-        assert_eq!(contacts(&minimal), fewest[table], "{table:08b}: {minimal:?}");
+        assert_eq!(
+            contacts(&minimal),
+            covering(table, table, &products, &mut HashMap::new()),
+            "{table:016b}: {minimal:?}"
+        );
     }
+}
+
+/// The fewest contacts of products that cover the rows `left` and hold in no row but those of `table`.
+fn covering(
+    left: usize,
+    table: usize,
+    products: &[(u16, usize)],
+    known: &mut HashMap<usize, usize>,
+) -> usize {
+    if left == 0 {
+        return 0;
+    }
+    if let Some(contacts) = known.get(&left) {
+        return *contacts;
+    }
+    let first = left & left.wrapping_neg();
+    let mut fewest = usize::MAX;
+    for (rows, contacts) in products {
+        let rows = usize::from(*rows);
+        if rows & !table == 0 && rows & first != 0 {
+            fewest = fewest.min(contacts + covering(left & !rows, table, products, known));
+        }
+    }
+    known.insert(left, fewest);
+    fewest
 }
 
 #[test]

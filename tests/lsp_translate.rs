@@ -60,7 +60,7 @@ fn the_rung_at_the_cursor_is_translated_to_each_form() {
     assert!(text.contains("Y0") && !text.contains("D0") && !text.contains("END"), "{text}");
     let boolean = form(&mut client, json!({"uri": LIST, "position": position(1, 0), "to": "boolean"}));
     assert_eq!(boolean["text"], "; start\nY0 = (X0 + Y0)*[X1]\n");
-    assert_eq!(boolean["certificate"], Value::Null, "{boolean}");
+    assert_eq!(boolean["certificate"], "proved");
     let fx = form(&mut client, json!({"uri": LIST, "position": position(5, 3), "to": "fx"}));
     assert_eq!(fx["text"], "LD X2\nMOV K5 D0\n");
     assert_eq!(fx["certificate"], "construction");
@@ -190,12 +190,14 @@ fn a_client_with_commands_of_its_own_gets_them_with_titles_that_say_the_outcome(
     let found = titles(&offered);
     assert!(found.contains(&"Translate rung to FX list (4 steps, proved equal)"), "{found:?}");
     assert!(found.contains(&"Copy rung as FX list (4 steps)"), "{found:?}");
-    assert!(found.contains(&"Translate rung to boolean form"), "{found:?}");
+    assert!(found.contains(&"Translate rung to boolean form (proved equal)"), "{found:?}");
     assert!(!found.iter().any(|title| title.contains("ladder") || title.contains("file")), "{found:?}");
     let open = offered.iter().find(|action| action["kind"] == "refactor.rewrite.translate.fx").unwrap();
     assert_eq!(open["command"]["command"], "rungwise.openTranslation");
     let argument = open["command"]["arguments"][0].clone();
     assert_eq!(form(&mut client, argument)["text"], "LD X0\nOR Y0\nANI X1\nOUT Y0\n");
+    let copy = actions(&mut client, DRAWING, (1, 5), Some("refactor.rewrite.translate.fx.copy"));
+    assert_eq!(titles(&copy), ["Copy rung as FX list (4 steps)"]);
     let of_file = actions(&mut client, DRAWING, (1, 5), Some("source"));
     assert!(titles(&of_file).contains(&"Translate file to FX list"), "{of_file:?}");
     assert!(of_file.iter().all(|action| action["kind"].as_str().unwrap().starts_with("source.translate.")));
@@ -255,4 +257,31 @@ fn a_file_beside_a_program_in_a_fence_is_named_after_the_document() {
     let answer = client.request("workspace/executeCommand", params);
     let made = format!("file://{}/notes-boolean.txt", folder.path().display());
     assert_eq!(answer["result"]["uri"], json!(made), "{answer}");
+}
+
+#[test]
+fn the_header_of_a_network_is_all_of_it_and_a_comment_the_rung_below() {
+    let rung = |contact: &str, output: &str| {
+        format!(
+            "|   {contact}                                       {output}  |\n+---| |--------------------------------------( )-+\n"
+        )
+    };
+    let text = format!(
+        "NETWORK 1 'Start'\n{}; second\n{}\nNETWORK 2\n{}",
+        rung("X0", "Y0"),
+        rung("X1", "Y1"),
+        rung("X2", "Y2")
+    );
+    let commands = json!(["rungwise.openTranslation"]);
+    let mut client =
+        Client::start_with(json!({"experimental": {"commands": {"commands": commands}}}), json!({}));
+    client.open(DRAWING, "ladder", &text);
+    let network = form(&mut client, json!({"uri": DRAWING, "position": position(0, 3), "to": "boolean"}));
+    let words = network["text"].as_str().unwrap();
+    assert!(words.contains("Y0 = X0\n") && words.contains("Y1 = X1\n") && !words.contains("Y2"), "{words}");
+    let offered = actions(&mut client, DRAWING, (0, 3), Some("refactor.rewrite.translate.boolean"));
+    assert_eq!(titles(&offered), ["Translate network to boolean form (proved equal)"]);
+    let below = form(&mut client, json!({"uri": DRAWING, "position": position(3, 3), "to": "boolean"}));
+    let words = below["text"].as_str().unwrap();
+    assert!(words.contains("Y1 = X1\n") && !words.contains("Y0"), "{words}");
 }

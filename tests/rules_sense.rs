@@ -1,11 +1,13 @@
 //! Rules about the sense of programs, where a page is too small, and comments that allow what rules report.
 
+use crate::lsp_client::{Client, codes};
 use proptest::prelude::*;
 use rungwise::check::{self, RULES, Severities};
 use rungwise::document::{Document, Edit, Member, Notation, ProjectView};
 use rungwise::ide;
 use rungwise::target::{Model, Target};
 use rungwise::text::{Diagnostic, Severity, Span, TextEdit};
+use serde_json::json;
 
 /// The settings of a project that looks at fragments: what is read in them is written elsewhere.
 pub fn without_sense() -> Severities {
@@ -442,12 +444,10 @@ proptest! {
             edited.apply(&[Edit { range: Some(range), text: inserted.concat() }]);
             lines.splice(at..end, inserted);
             let scratch = document(Notation::FxIl, &lines.concat());
-            prop_assert_eq!(
-                check::all(&edited, &Severities::default()),
-                check::all(&scratch, &Severities::default())
-            );
-            for one in check::all(&edited, &Severities::default()) {
-                for (_, fix) in ide::allowing(&edited, &[one.clone()], Span::at(one.span.start as usize)) {
+            let found = check::all(&edited, &Severities::default());
+            prop_assert_eq!(&found, &check::once(&scratch, &Severities::default()));
+            for one in found {
+                for (_, fix) in ide::allowing(&edited, std::slice::from_ref(&one), Span::at(one.span.start as usize)) {
                     let text = TextEdit::apply_all(&fix.edits, &lines.concat());
                     let left = judged(Notation::FxIl, &text);
                     let moved = one.span.start as usize + text.len() - lines.concat().len();
@@ -529,4 +529,34 @@ fn codes_are_proposed_where_something_is_allowed() {
     for text in ["// rungwise: allow(double-coil) d$\n", "// double$\n", "// rungwise: allow(syntax-e$)\n"] {
         assert_eq!(labels(text), [""; 0], "{text}");
     }
+}
+
+#[test]
+fn the_server_offers_to_allow() {
+    const URI: &str = "file:///tmp/allowed.il";
+    let mut client = Client::start();
+    client.open(URI, "plc-il", TWICE);
+    assert_eq!(codes(&client.diagnostics(URI, 1)), ["double-coil", "double-coil"]);
+    let line = |line: u32, column: u32| json!({"line": line, "character": column});
+    let actions = client.request(
+        "textDocument/codeAction",
+        json!({"textDocument": {"uri": URI}, "range": {"start": line(1, 4), "end": line(1, 4)},
+            "context": {"diagnostics": []}}),
+    );
+    let actions = actions["result"].as_array().expect("actions").clone();
+    let allow = actions.iter().find(|action| action["title"] == json!("Allow double-coil for this rung"));
+    let edit = &allow.expect("offered")["edit"];
+    assert!(edit.to_string().contains("// rungwise: allow(double-coil)\\n"), "{edit}");
+    assert!(actions.iter().any(|action| action["title"] == json!("Allow double-coil in this file")));
+    // The rules about whole programs may follow the others in a message of their own.
+    let awaits = |version: i64, wanted: &[&str], client: &mut Client| {
+        client.wait_for(&format!("{wanted:?}"), |message| {
+            message["params"]["version"] == json!(version)
+                && message["params"]["diagnostics"].as_array().is_some_and(|found| codes(found) == wanted)
+        });
+    };
+    client.change(URI, 2, (0, 0), (0, 0), "// rungwise: allow(double-coil)\n");
+    awaits(2, &["double-coil"], &mut client);
+    client.change(URI, 3, (0, 19), (0, 30), "latched-range");
+    awaits(3, &["unused-suppression", "double-coil", "double-coil"], &mut client);
 }

@@ -185,7 +185,9 @@ impl Subject {
 /// Offsets are those of the page.
 pub(super) fn of_page(chunks: &[Arc<Chunk>]) -> Accesses {
     let mut names: Vec<(u32, Symbol)> = Vec::new();
-    let mut numbers: FxHashMap<(u32, Symbol), u32> = FxHashMap::default();
+    // Nearly all names are devices, which are quick to look up.
+    let mut devices: FxHashMap<Device, u32> = FxHashMap::default();
+    let mut others: FxHashMap<(u32, Symbol), u32> = FxHashMap::default();
     let mut all = Vec::with_capacity(chunks.iter().map(|chunk| chunk.accesses().all.len()).sum());
     let mut joints = Vec::new();
     let (mut start, mut rungs, mut pous) = (0, 0, 0);
@@ -193,12 +195,15 @@ pub(super) fn of_page(chunks: &[Arc<Chunk>]) -> Accesses {
         pous += chunk.pou_starts() as u32;
         let own = chunk.accesses();
         for access in &own.all {
-            let symbol = access.subject.symbol();
-            let pou = if matches!(symbol, Symbol::Device(_)) { 0 } else { pous };
-            let name = *numbers.entry((pou, symbol)).or_insert_with_key(|key| {
-                names.push(key.clone());
-                names.len() as u32 - 1
-            });
+            let next = names.len() as u32;
+            let name = match &access.subject {
+                Subject::Device(device) => *devices.entry(*device).or_insert(next),
+                Subject::Other(symbol) => *others.entry((pous, Symbol::clone(symbol))).or_insert(next),
+            };
+            if name == next {
+                let is_device = matches!(access.subject, Subject::Device(_));
+                names.push((if is_device { 0 } else { pous }, access.subject.symbol()));
+            }
             all.push(Access {
                 name,
                 act: access.act,

@@ -52,6 +52,15 @@ impl Builder {
         Some(())
     }
 
+    /// Power is inverted. Where it was inverted just before the last outputs, it is as it was before them.
+    pub(super) fn invert(&mut self) -> Option<()> {
+        let is_inverse = |open: &Open| open.path.gates == [Gate::Invert] && open.kept == 0;
+        if self.open.len() > 1 && self.open.last().is_some_and(is_inverse) {
+            return self.close_last();
+        }
+        self.gate(Gate::Invert)
+    }
+
     /// Power drives `action`.
     pub(super) fn drive(&mut self, action: Action) {
         if let Some(open) = self.open.last_mut() {

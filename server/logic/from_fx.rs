@@ -142,8 +142,11 @@ impl Reader<'_> {
             return top.invert();
         }
         self.settle()?;
-        let gate = if inverts { Gate::Invert } else { Gate::Through(self.action(form, line)) };
-        self.builder.gate(gate).ok_or(Refusal::TooDeep)
+        let done = match inverts {
+            true => self.builder.invert(),
+            false => self.builder.gate(Gate::Through(self.action(form, line))),
+        };
+        done.ok_or(Refusal::TooDeep)
     }
 
     fn contact(&self, form: Form, line: &FxLine) -> Result<Contact, Refusal> {

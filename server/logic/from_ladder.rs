@@ -145,7 +145,7 @@ impl Reader<'_> {
     /// Goes through `shape`; behind the last one of the rung nothing follows but the right rail.
     fn shape(&mut self, shape: &Shape, is_last: bool) -> Result<(), Refusal> {
         if self.is_invert(shape) {
-            return self.builder.gate(Gate::Invert).ok_or(Refusal::TooDeep);
+            return self.builder.invert().ok_or(Refusal::TooDeep);
         }
         if !self.acts(shape) {
             let condition = self.condition(shape)?;

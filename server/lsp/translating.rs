@@ -15,9 +15,9 @@
 //!
 //! It answers `{ forms: [{ to, text, certificate, notes: string[] }] }`, with `"all"` every form in a fixed order. The
 //! `certificate` is that of the rung of which least is known: `"proved"` (the same bits are driven under equal
-//! conditions), `"construction"` (instructions with the same operands under equal conditions), `"undecided"`, or null
-//! for a form that no proof is made for. A note says, with the line, why a rung was kept as it is or not proved. Where
-//! there is no rung there are no forms. What is asked for wrongly is an error whose message says what is wrong.
+//! conditions), `"construction"` (instructions with the same operands under equal conditions) or `"undecided"`. A note
+//! says, with the line, why a rung was kept as it is or not proved. Where there is no rung there are no forms. What is
+//! asked for wrongly is an error whose message says what is wrong.
 //!
 //! # `rungwise.translateBeside`
 //!
@@ -215,7 +215,8 @@ pub(super) fn actions(
             actions.extend(both(place, &kind, &asked, title, title_copy));
         }
     }
-    let wants_rungs = forms().any(|to| is_wanted(&rung_kind(to).into(), only));
+    let kinds = forms().flat_map(|to| [rung_kind(to), format!("{}.copy", rung_kind(to))]);
+    let wants_rungs = kinds.into_iter().any(|kind| is_wanted(&kind.into(), only));
     let span = place.span(params.range);
     if wants_rungs && let Some(part) = ide::part_at(place.document, span) {
         for to in forms() {

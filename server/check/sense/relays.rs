@@ -79,7 +79,7 @@ pub(super) fn is_written_in_row(name: &Name<'_>, uses: &Uses<'_>) -> bool {
     matches!(name.key, Key::Device(device) if uses.is_written_in_row(device))
 }
 
-/// Whether something of the name is done by `acts` alone, and by one of them at least.
+/// The first place that does `act` with all of the device or variable.
 pub(super) fn first_of(mut all: impl Iterator<Item = Use>, act: Act) -> Option<Use> {
     all.find(|one| one.access.act == act && one.is_whole())
 }

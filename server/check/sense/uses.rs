@@ -13,6 +13,8 @@ use std::cell::OnceCell;
 pub struct Uses<'a> {
     pages: Vec<PageAt<'a>>,
     names: Vec<Name<'a>>,
+    devices: FxHashMap<Device, u32>,
+    /// The numbers of what is no device.
     numbers: FxHashMap<Key<'a>, u32>,
     /// What is done with each name.
     acts: Vec<Acts>,
@@ -141,6 +143,7 @@ impl<'a> Uses<'a> {
         let mut uses = Uses {
             pages: Vec::new(),
             names: Vec::new(),
+            devices: FxHashMap::default(),
             numbers: FxHashMap::default(),
             acts: Vec::new(),
             starts: Vec::new(),
@@ -166,12 +169,22 @@ impl<'a> Uses<'a> {
             let (mut start, mut rungs, mut pous) = (at.start, 0, 0);
             for page in at.document.pages() {
                 let numbered = page.accesses().names.iter().map(|(pou, symbol)| {
-                    let name = name_of(symbol, file, pous + *pou as usize, scopes);
-                    let key = name.key;
-                    *self.numbers.entry(key).or_insert_with(|| {
+                    let next = self.names.len() as u32;
+                    let (name, number) = match symbol {
+                        Symbol::Device(device) => {
+                            let name = Name { key: Key::Device(*device), variable: None };
+                            (name, *self.devices.entry(*device).or_insert(next))
+                        }
+                        _ => {
+                            let name = name_of(symbol, file, pous + *pou as usize, scopes);
+                            let number = *self.numbers.entry(name.key).or_insert(next);
+                            (name, number)
+                        }
+                    };
+                    if number == next {
                         self.names.push(name);
-                        self.names.len() as u32 - 1
-                    })
+                    }
+                    number
                 });
                 let table = numbered.collect();
                 self.pages.push(PageAt { page, start, file, rungs, pous, table });
@@ -236,7 +249,7 @@ impl<'a> Uses<'a> {
 
     /// The number of a device, if it is named.
     pub fn device(&self, device: Device) -> Option<u32> {
-        self.numbers.get(&Key::Device(device)).copied()
+        self.devices.get(&device).copied()
     }
 
     /// The accesses of a name in the order of execution.

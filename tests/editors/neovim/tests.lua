@@ -316,7 +316,7 @@ end)
 
 --- A list that the server knows.
 local function open_list(name)
-  vim.fn.writefile({ '// dialect: fx', 'LD X0', 'LD X1', 'OR X2', 'ANB', 'OUT Y0', 'LD X5', 'OUT Y5', 'END' }, name)
+  vim.fn.writefile({ 'LD X0', 'LD X1', 'OR X2', 'ANB', 'OUT Y0', 'LD X5', 'OUT Y5', 'END' }, name)
   local client = open(name)
   until_codes({})
   return client
