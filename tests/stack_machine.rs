@@ -26,7 +26,8 @@ pub fn scan(list: &str, bits: &mut Bits, before: &Bits) -> Vec<(String, bool)> {
         };
         let drives = matches!(mnemonic, "OUT" | "SET" | "RST");
         // A load behind an output begins a rung, unless so many blocks are joined that one of them is what led to it.
-        if drove && kept.is_empty() && mnemonic.starts_with("LD") && begins_rung(&list[offset(list, line)..]) {
+        if drove && kept.is_empty() && mnemonic.starts_with("LD") && begins_rung(&list[offset(list, line)..])
+        {
             results.clear();
         }
         match mnemonic {
