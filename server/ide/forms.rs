@@ -81,7 +81,7 @@ fn network_of(tree: &Tree) -> Option<Span> {
     tree.header.as_ref().filter(|header| header.label.is_none()).map(|header| header.span)
 }
 
-/// The end of the network whose first chunk ends at a byte: where the next one begins, or something else than a drawing.
+/// The end of the network whose first chunk ends at a byte: where the next one begins, or what is no drawing.
 fn end_of_network(document: &Document, first: usize) -> usize {
     let mut end = first;
     while let Some(next) = document.chunk_at(end).filter(|next| next.start == end && !next.chunk.is_empty()) {
