@@ -55,6 +55,7 @@ mod rules;
 mod rules_drawing;
 mod rules_fx;
 mod rules_iec;
+mod rules_proof;
 mod rules_sense;
 mod stack_machine;
 mod target_fx;

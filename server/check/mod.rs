@@ -28,10 +28,11 @@ mod iec;
 mod declarations;
 mod drawing;
 mod order;
+mod proof;
 mod sense;
 mod words;
 
 /// All rules, in the order of the catalogue.
 pub static RULES: std::sync::LazyLock<Vec<&'static Rule>> = std::sync::LazyLock::new(|| {
-    [drawing::RULES, words::RULES, order::RULES, declarations::RULES, sense::RULES].concat()
+    [drawing::RULES, words::RULES, order::RULES, declarations::RULES, sense::RULES, proof::RULES].concat()
 });

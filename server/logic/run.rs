@@ -143,7 +143,8 @@ impl<'p> Run<'p> {
         }
     }
 
-    fn condition(&self, expression: &Expression, formulas: &mut Formulas) -> Formula {
+    /// Whether `expression` lets power pass where the run stands.
+    pub fn condition(&self, expression: &Expression, formulas: &mut Formulas) -> Formula {
         match expression {
             Expression::Constant(value) => Formulas::constant(*value),
             Expression::Contact(contact) => self.contact(contact, formulas),

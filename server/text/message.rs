@@ -203,6 +203,7 @@ macro_rules! catalogue_in {
                 include_str!(concat!("messages/", $tag, "/order.toml")),
                 include_str!(concat!("messages/", $tag, "/declarations.toml")),
                 include_str!(concat!("messages/", $tag, "/sense.toml")),
+                include_str!(concat!("messages/", $tag, "/proof.toml")),
                 include_str!(concat!("messages/", $tag, "/ide.toml")),
                 include_str!(concat!("messages/", $tag, "/devices.toml")),
                 include_str!(concat!("messages/", $tag, "/cli.toml")),

@@ -9,10 +9,10 @@ use crate::text::{Diagnostic, Message, Span, TextEdit};
 use std::cell::Cell;
 
 /// A chunk of a ladder document.
-pub(super) struct Drawn<'a> {
-    pub(super) text: &'a str,
-    pub(super) tree: &'a LadderTree,
-    pub(super) target: &'static Target,
+pub(in crate::check) struct Drawn<'a> {
+    pub(in crate::check) text: &'a str,
+    pub(in crate::check) tree: &'a LadderTree,
+    pub(in crate::check) target: &'static Target,
     /// How many fixes may still be tried, for trying one costs as much as reading the chunk.
     trials: Cell<u32>,
     /// How many mistakes there are, once it has been counted.
@@ -29,7 +29,7 @@ const BREAKING: [&str; 2] = ["unreadable-cell", "contact-on-vertical"];
 
 impl<'a> Drawn<'a> {
     /// The drawing of a chunk; nothing if it is no ladder.
-    pub(super) fn of(context: &ChunkContext<'a>) -> Option<Drawn<'a>> {
+    pub(in crate::check) fn of(context: &ChunkContext<'a>) -> Option<Drawn<'a>> {
         let Tree::Ladder(tree) = context.chunk.tree() else { return None };
         let text = context.chunk.text();
         let trials = if text.len() <= TRIAL_BYTES_MAX { TRIALS_MAX } else { 0 };
@@ -44,7 +44,7 @@ impl<'a> Drawn<'a> {
     }
 
     /// The same with their numbers in the chunk.
-    pub(super) fn sound_numbered(&self) -> impl Iterator<Item = (usize, &'a Rung)> {
+    pub(in crate::check) fn sound_numbered(&self) -> impl Iterator<Item = (usize, &'a Rung)> {
         let broken = self.breaking();
         self.tree.rungs.iter().enumerate().filter(move |(_, rung)| {
             let first = broken.partition_point(|span| span.end <= rung.span.start);

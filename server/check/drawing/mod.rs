@@ -4,7 +4,7 @@
 //! end, a dead end or an unreadable cell has that mistake and no other.
 
 mod drawn;
-use drawn::Drawn;
+pub(super) use drawn::Drawn;
 
 mod picture;
 use picture::Picture;
@@ -84,7 +84,7 @@ fn run(find: Find, context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
 }
 
 /// Whether the rung of `graph`, whose words stand in `text`, does what `path` does.
-fn does(path: &Path, text: &str, graph: &Graph) -> bool {
+pub(super) fn does(path: &Path, text: &str, graph: &Graph) -> bool {
     of_graph(text, graph).is_ok_and(|drawn| {
         matches!(compare(&[path], &[&drawn], &mut Formulas::default()), Comparison::Same { .. })
     })
