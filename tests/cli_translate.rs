@@ -45,7 +45,7 @@ fn a_list_is_drawn_listed_and_written_as_equations_with_proof() {
     assert_eq!(std::fs::read_to_string(folder.path().join("motor.lad")).unwrap(), drawn);
     assert_eq!(run(&folder, &["translate", "motor.lad", "--to", "fx"]), (0, MOTOR.into(), String::new()));
     let (code, equations, _) = run(&folder, &["translate", "motor.lad", "--to", "boolean"]);
-    assert_eq!((code, equations.as_str()), (0, "; start\nY0 = (X0 + Y0)*[X1]\n\nEND\n"));
+    assert_eq!((code, equations.as_str()), (0, "; start\nY0 = (X0 + Y0)*[X1]\nEND\n"));
     let (_, symbols, _) = run(&folder, &["translate", "motor.lad", "--to", "boolean", "--symbols"]);
     assert!(symbols.contains("Y0 = (X0 ∨ Y0) ∧ ¬X1\n"), "{symbols}");
     std::fs::write(folder.path().join("motor.bool"), symbols).unwrap();
