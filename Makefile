@@ -22,6 +22,8 @@ demo: $(RUNGWISE) ## build, check the example project, and show what mistakes lo
 	@$(RUNGWISE) check examples/mistakes/mixed-connection.lad || [ $$? -eq 1 ]
 	@echo "== rungwise fmt --stdout --style unicode examples/motor/motor.lad"
 	@$(RUNGWISE) fmt --stdout --style unicode examples/motor/motor.lad
+	@echo "== rungwise translate examples/motor/motor.lad --to fx --prove"
+	@$(RUNGWISE) translate examples/motor/motor.lad --to fx --prove
 	@echo "Next: make vscode, then open the folder examples/ in VS Code."
 
 test: lint test-rust test-editors ## everything that has to pass before a change lands

@@ -97,7 +97,7 @@ fn a_wide_branch_moves_first() {
     let (title, moved) = after(&drawn(text), "X0", "rung.wideFirst");
     assert_eq!(title, "Move wide branch first (saves 1 step)");
     assert_eq!(listed(&moved), "LD X1\nOR X2\nAND X0\nOUT Y0\n");
-    assert!(!is_offered(&list(&"LD X0\nAND X1\nOUT Y0\n".to_string()), "X0", "rung.wideFirst"));
+    assert!(!is_offered(&list("LD X0\nAND X1\nOUT Y0\n"), "X0", "rung.wideFirst"));
 }
 
 #[test]

@@ -10,6 +10,7 @@
 
 mod chinese;
 mod cli;
+mod cli_translate;
 mod cli_usage;
 mod command_line;
 mod comments;

@@ -25,11 +25,10 @@ pub fn scan(list: &str, bits: &mut Bits, before: &Bits) -> Vec<(String, bool)> {
             _ => value(bits),
         };
         let drives = matches!(mnemonic, "OUT" | "SET" | "RST");
-        if drove && mnemonic.starts_with("LD") {
-            // A load behind an output begins a rung, unless ANB or ORB joins it.
-            if kept.is_empty() {
-                results.clear();
-            }
+        // A load behind an output begins a rung, unless so many blocks are joined that one of them is what led to it.
+        if drove && kept.is_empty() && mnemonic.starts_with("LD") && begins_rung(&list[offset(list, line)..])
+        {
+            results.clear();
         }
         match mnemonic {
             "LD" | "LDI" | "LDP" | "LDF" => results.push(contact(&mnemonic[2..], bits)),
@@ -83,4 +82,20 @@ pub fn scan(list: &str, bits: &mut Bits, before: &Bits) -> Vec<(String, bool)> {
     }
     assert!(kept.is_empty(), "a branch is open\n{list}");
     written
+}
+
+/// Where `line`, a piece of `list`, starts.
+fn offset(list: &str, line: &str) -> usize {
+    line.as_ptr() as usize - list.as_ptr() as usize
+}
+
+/// Whether the blocks that are loaded from here to the next output are one more than the joins.
+fn begins_rung(rest: &str) -> bool {
+    let mnemonics = rest.lines().filter_map(|line| line.split_whitespace().next());
+    let until_output = mnemonics.take_while(|word| !matches!(*word, "OUT" | "SET" | "RST" | "MPS" | "END"));
+    let mut open = 0;
+    for word in until_output {
+        open += i32::from(word.starts_with("LD")) - i32::from(matches!(word, "ANB" | "ORB"));
+    }
+    open > 0
 }

@@ -629,3 +629,22 @@ fn a_question_too_large_is_not_decided() {
         Proof::Different(_) | Proof::Undecided { .. } => {}
     }
 }
+
+#[test]
+fn lists_of_others_go_there_and_back() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let places = ["../shared/corpus/fx", "../../shared/corpus/fx"].map(|place| root.join(place));
+    let Some(folder) = places.iter().find(|folder| folder.exists()) else {
+        return crate::corpus::say_skipped("no folder of lists");
+    };
+    let mut files = 0;
+    for entry in std::fs::read_dir(folder).expect("the folder is there") {
+        let text = std::fs::read_to_string(entry.expect("a file").path()).expect("a list");
+        let (again, drawn) = there_and_back(&text);
+        for other in [list(&again), drawing(&drawn)] {
+            assert_eq!(prove(&list(&text), &other), Proof::Equal { is_reordered: false }, "{text}");
+        }
+        files += 1;
+    }
+    assert!(files > 5, "{files}");
+}

@@ -129,11 +129,11 @@ fn tell(program: &Program, translation: &Translation, proves: bool, language: La
         );
     }
     if proves {
-        let count = |certificate| {
-            translation.rungs.iter().filter(|rung| rung.certificate == Some(certificate)).count()
-        };
+        // What is only a comment has nothing to prove.
+        let rungs = || translation.rungs.iter().filter(|rung| !rung.result.is_empty());
+        let count = |certificate| rungs().filter(|rung| rung.certificate == Some(certificate)).count();
         let summary = Message::new("cli.certificates")
-            .with("rungs", translation.rungs.len())
+            .with("rungs", rungs().count())
             .with("proved", count(Certificate::Proved))
             .with("construction", count(Certificate::Construction))
             .with("undecided", count(Certificate::Undecided));

@@ -1,7 +1,7 @@
 //! Work on long texts, shared by two threads.
 
 /// What `first` and `second` give. They run at the same time if that `is_worth_a_thread`.
-pub(super) fn both<A, B: Send>(
+pub fn both<A, B: Send>(
     is_worth_a_thread: bool,
     first: impl FnOnce() -> A,
     second: impl FnOnce() -> B + Send,

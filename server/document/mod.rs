@@ -11,6 +11,7 @@ mod snapshot;
 pub use snapshot::{ChunkRef, Document, Edit, LIMIT_BYTES};
 
 mod both;
+pub use both::both;
 
 mod split;
 

@@ -63,17 +63,35 @@ pub fn part_at(document: &Document, span: Span) -> Option<ProgramPart> {
     let reading = at.chunk.reading();
     let rungs = logic::rungs(&reading, document.target());
     let shifted = |span: Span| span.shifted(at.start);
-    if let Tree::Ladder(tree) = reading.tree()
-        && tree.header.as_ref().is_some_and(|header| header.label.is_none() && header.span.touches(inside))
-        && let (Some(first), Some(last)) = (rungs.first(), rungs.last())
-        && rungs.len() > 1
+    if network_of(reading.tree()).is_some_and(|header| header.touches(inside))
+        && let Some(first) = rungs.first()
     {
-        return Some(ProgramPart::Network(shifted(first.span.to(last.span))));
+        let end = end_of_network(document, at.start + at.chunk.len());
+        return Some(ProgramPart::Network(Span { start: shifted(first.span).start, end: end as u32 }));
     }
     let found = rungs.iter().find(|rung| rung.span.touches(inside));
     let below = || rungs.iter().find(|rung| inside <= rung.span.start as usize);
     let rung = found.or_else(below).or(rungs.last())?;
     Some(ProgramPart::Rung(shifted(rung.span)))
+}
+
+/// The header of the network that begins with a chunk, if one does.
+fn network_of(tree: &Tree) -> Option<Span> {
+    let Tree::Ladder(tree) = tree else { return None };
+    tree.header.as_ref().filter(|header| header.label.is_none()).map(|header| header.span)
+}
+
+/// The end of the network whose first chunk ends at a byte: where the next one begins, or what is no drawing.
+fn end_of_network(document: &Document, first: usize) -> usize {
+    let mut end = first;
+    while let Some(next) = document.chunk_at(end).filter(|next| next.start == end && !next.chunk.is_empty()) {
+        let reading = next.chunk.reading();
+        if !matches!(reading.tree(), Tree::Ladder(_)) || network_of(reading.tree()).is_some() {
+            break;
+        }
+        end += next.chunk.len();
+    }
+    end.saturating_sub(1)
 }
 
 /// `document` in the forms `to`, with `part` only its rungs; nothing if `is_cancelled` says on the way that nobody

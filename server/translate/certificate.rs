@@ -98,7 +98,8 @@ fn read_again((document, target): (&Document, &'static Target), to: To, text: &s
             .map(|(span, path)| Written { start: span.start as usize, path })
             .collect();
     };
-    let again = Document::frugal(text, notation, target);
+    // The symbols of the project stand for devices there, too.
+    let again = Document::with_comments(text, notation, target, document.comments().clone());
     let rungs = source::rungs(&again, None).into_iter();
     rungs.map(|rung| Written { start: rung.span().start as usize, path: rung.rung.path.ok() }).collect()
 }

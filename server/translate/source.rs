@@ -1,6 +1,6 @@
 //! The rungs of a document that are to be translated.
 
-use crate::document::{Chunk, Document, Notation, Tree};
+use crate::document::{Chunk, ChunkRef, Document, Notation, Tree, both};
 use crate::il::iec::{IecTree, ItemKind};
 use crate::ladder;
 use crate::logic::{self, Declared, Rung};
@@ -62,14 +62,25 @@ pub(super) fn program(document: &Document, part: Option<Span>) -> Program {
         reader.chunk(0, &whole);
         return reader.program;
     }
-    for at in document.chunks() {
-        let span = Span::new(at.start, at.start + at.chunk.len());
-        if at.chunk.is_iec() || reader.touches(span) {
-            reader.chunk(at.start, at.chunk);
-        }
-    }
-    reader.program
+    let is_wanted = |at: &ChunkRef<'_>| {
+        at.chunk.is_iec() || reader.touches(Span::new(at.start, at.start + at.chunk.len()))
+    };
+    let chunks: Vec<ChunkRef<'_>> = document.chunks().filter(is_wanted).collect();
+    // Drawings and lists without declarations depend on nothing before them, so two threads can share them.
+    let is_shared = chunks.len() >= WORTH_A_THREAD && !chunks.iter().any(|at| at.chunk.is_iec());
+    let (first, second) = chunks.split_at(if is_shared { chunks.len() / 2 } else { chunks.len() });
+    let read = |chunks: &[ChunkRef<'_>]| {
+        let mut reader = Reader { document, part, pous: 0, program: Program::default() };
+        chunks.iter().for_each(|at| reader.chunk(at.start, at.chunk));
+        reader.program
+    };
+    let (mut program, rest) = both(is_shared, || read(first), || read(second));
+    program.rungs.extend(rest.rungs);
+    program
 }
+
+/// So many chunks are worth the start of a thread that reads half of them.
+const WORTH_A_THREAD: usize = 500;
 
 struct Reader<'a> {
     document: &'a Document,

@@ -9,7 +9,7 @@
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, HELPER, Path, Term, Test};
 use crate::text::{Message, folded};
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
 
 /// The names of a program, and the variables that its translation needs beyond them.
@@ -21,6 +21,10 @@ pub struct Helpers {
     pub declared: Vec<Helper>,
     /// The program unit for which helpers are made.
     pub pou: Option<usize>,
+    /// The last number of each type of helper.
+    numbers: FxHashMap<&'static str, usize>,
+    /// The helpers that keep power in each program unit, by depth.
+    held: FxHashMap<Option<usize>, Vec<SmolStr>>,
 }
 
 /// A variable that a translation needs.
@@ -43,22 +47,25 @@ impl Helpers {
 
     /// A new variable.
     fn declare(&mut self, stem: &str, type_name: &'static str) -> SmolStr {
-        let mut number = 1 + self.declared.iter().filter(|helper| helper.type_name == type_name).count();
+        let number = self.numbers.entry(type_name).or_default();
         loop {
+            *number += 1;
             let name = format_smolstr!("{stem}{number}");
             if self.taken.insert(folded(&name)) {
                 self.declared.push(Helper { name: name.clone(), type_name, pou: self.pou });
                 return name;
             }
-            number += 1;
         }
     }
 
     /// The variable that keeps the power of the path at this depth, from 0.
     fn held(&mut self, depth: usize) -> SmolStr {
-        let own = |helper: &&Helper| helper.type_name == "BOOL" && helper.pou == self.pou;
-        let known = self.declared.iter().filter(own).nth(depth).map(|helper| helper.name.clone());
-        known.unwrap_or_else(|| self.declare(HELPER, "BOOL"))
+        if let Some(known) = self.held.get(&self.pou).and_then(|held| held.get(depth)) {
+            return known.clone();
+        }
+        let name = self.declare(HELPER, "BOOL");
+        self.held.entry(self.pou).or_default().push(name.clone());
+        name
     }
 }
 

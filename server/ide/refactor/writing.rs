@@ -149,7 +149,7 @@ fn instructions(tree: &FxTree) -> Option<Vec<&FxLine>> {
         LineKind::Instruction(form) => line.step.is_none() && form.instruction.flow() != Flow::Nothing,
         _ => false,
     };
-    instructions.iter().all(|line| is_plain(line)).then_some(instructions)
+    instructions.iter().all(is_plain).then_some(instructions)
 }
 
 /// The lines of drawn `rungs`, in bytes of the document, and `paths` in their place.

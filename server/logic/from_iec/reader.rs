@@ -1,15 +1,16 @@
 //! Runs a rung of instruction list with conditions in place of the current result.
 
-use super::{Source, ValueKind, output_of};
-use crate::il::iec::{
-    Condition, Direction, Item, ItemKind, OperandId, Operation, Parameter, ParameterValue, Run,
-};
+mod call;
+mod held;
+
+use super::{Source, ValueKind};
+use crate::il::iec::{Condition, Item, ItemKind, OperandId, Operation};
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::logic::block::Block;
 use crate::logic::builder::Builder;
-use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Term, Test};
+use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Term, Test};
 use crate::target::Role;
-use crate::target::iec::{FunctionBlock, OperatorRole};
+use crate::target::iec::OperatorRole;
 use crate::text::{Span, folded};
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
@@ -203,39 +204,6 @@ impl<'s, 'a> Reader<'s, 'a> {
         }
     }
 
-    fn block_of(&self, instance: OperandId) -> Option<&'static FunctionBlock> {
-        let name = self.source.tree.operand(instance).span.of(self.source.text);
-        self.source.block(self.pou, name)
-    }
-
-    /// `R C1`: calls the block with this input alone. Nothing is known of the current result behind it.
-    fn input_operator(&mut self, input: &str, instance: OperandId, span: Span) -> Result<(), Refusal> {
-        let block = self.block_of(instance).ok_or(Refusal::Element)?;
-        self.settle()?;
-        self.invert()?;
-        let called = self.source.tree.operand(instance);
-        let term = Term::new(called.value, called.span.of(self.source.text), called.span);
-        let call = Call::new(block, input, term, std::iter::empty::<(&str, bool, Term)>());
-        let (call, terms) = call.filter(|(call, _)| call.is_input_operator()).ok_or(Refusal::NotBoolean)?;
-        self.builder.drive(Action { deed: Deed::Call(call), terms, span });
-        self.value = Value::Nothing;
-        Ok(())
-    }
-
-    /// Power is stored for the block that is called next.
-    fn feed(&mut self, id: OperandId, negated: bool) -> Result<(), Refusal> {
-        let path = self.source.tree.operand(id).span.of(self.source.text);
-        let (instance, pin) = path.rsplit_once('.').ok_or(Refusal::NotBoolean)?;
-        let block = self.source.block(self.pou, instance).ok_or(Refusal::NotBoolean)?;
-        if !block.inputs.first().is_some_and(|first| first.name.eq_ignore_ascii_case(pin)) {
-            return Err(Refusal::NotBoolean);
-        }
-        self.is_inverted ^= negated;
-        self.invert()?;
-        self.fed = Some(folded(instance));
-        Ok(())
-    }
-
     fn complement(&mut self) -> Result<(), Refusal> {
         match std::mem::replace(&mut self.value, Value::Nothing) {
             Value::Nothing => return Err(Refusal::NoCurrentResult),
@@ -371,138 +339,6 @@ impl<'s, 'a> Reader<'s, 'a> {
         self.builder.is_empty() && matches!(self.value, Value::Nothing) && self.frames.is_empty()
     }
 
-    /// A call; tells whether `next`, the load of its output, goes on from it.
-    fn call(
-        &mut self,
-        item: &Item,
-        callee: OperandId,
-        parameters: Run,
-        next: Option<&Item>,
-    ) -> Result<bool, Refusal> {
-        let text = self.source.text;
-        let called = self.source.tree.operand(callee);
-        let instance = called.span.of(text);
-        let block = self.source.block(self.pou, instance).ok_or(Refusal::Element)?;
-        let parameters = parameters.of(&self.source.tree.parameters);
-        let fed = self.fed.take();
-        if fed.is_none() && self.is_edge(instance, parameters)? {
-            return Ok(false);
-        }
-        if fed.as_ref().is_some_and(|fed| *fed != folded(instance)) || fed.is_none() && !self.is_fresh() {
-            return Err(Refusal::NotBoolean);
-        }
-        let mut power = None;
-        let mut arguments = Vec::with_capacity(parameters.len());
-        for (place, parameter) in parameters.iter().enumerate() {
-            let (name, is_output, id) =
-                argument(parameter, text, || block.inputs.get(place).map(|pin| pin.name))?;
-            let is_power = block.inputs.first().is_some_and(|first| first.name.eq_ignore_ascii_case(name));
-            match is_power && !is_output {
-                true => power = Some(id),
-                false => arguments.push((name, is_output, self.term(id)?)),
-            }
-        }
-        match (power, fed) {
-            (Some(id), None) => {
-                let contact = self.contact(id, ContactKind::NormallyOpen)?;
-                self.builder.pass(Expression::Contact(contact)).ok_or(Refusal::TooDeep)?;
-            }
-            (None, Some(_)) => {}
-            _ => return Err(Refusal::Element),
-        }
-        let power_in = block.inputs.first().map_or("", |pin| pin.name);
-        let instance_term = Term::new(called.value, instance, called.span);
-        let (call, terms) = Call::new(block, power_in, instance_term, arguments).ok_or(Refusal::Element)?;
-        self.driven.extend(call.changes(&terms).iter().map(|term| (term.key(), self.at)));
-        let action = Action { deed: Deed::Call(call), terms, span: item.span };
-        match next.and_then(|next| self.loads(next, &output_of(block, instance))) {
-            None => {
-                self.builder.drive(action);
-                self.value = Value::Nothing;
-                Ok(false)
-            }
-            Some(negated) => {
-                self.builder.gate(Gate::Through(action)).ok_or(Refusal::TooDeep)?;
-                if negated {
-                    self.builder.gate(Gate::Invert).ok_or(Refusal::TooDeep)?;
-                }
-                self.value = Value::Power;
-                Ok(true)
-            }
-        }
-    }
-
-    /// Whether a call is that of a detector which is an edge contact here.
-    fn is_edge(&mut self, instance: &str, parameters: &[Parameter]) -> Result<bool, Refusal> {
-        let block = self.source.block(self.pou, instance).ok_or(Refusal::Element)?;
-        let ([parameter], Some(kind)) = (parameters, edge_kind(block.name)) else { return Ok(false) };
-        if !self.frames.is_empty() || !self.source.is_edge(self.pou, instance, self.span) {
-            return Ok(false);
-        }
-        let (name, is_output, operand) = argument(parameter, self.source.text, || Some("CLK"))?;
-        if is_output || !name.eq_ignore_ascii_case("CLK") {
-            return Ok(false);
-        }
-        self.bit(operand)?;
-        self.edges.insert(folded(instance), Edge { operand, kind, called_at: self.at });
-        Ok(true)
-    }
-
-    /// Keeps the power in a helper that a load in the same rung gives back; tells whether it was that.
-    fn holds(&mut self, id: OperandId, negated: bool) -> Result<bool, Refusal> {
-        let name = folded(self.source.tree.operand(id).span.of(self.source.text));
-        if negated || !self.source.is_helper(self.pou, &name) || !self.is_loaded_later(&name) {
-            return Ok(false);
-        }
-        self.invert()?;
-        self.builder.keep();
-        self.held.insert(name, self.builder.place());
-        Ok(true)
-    }
-
-    /// Goes back to the power that a helper keeps; tells whether it was that.
-    fn goes_back(&mut self, id: OperandId) -> Result<bool, Refusal> {
-        let name = folded(self.source.tree.operand(id).span.of(self.source.text));
-        let ItemKind::Operation { operation, .. } = self.source.item(self.at).kind else { return Ok(false) };
-        let Some(place) = self.held.get(&name).copied().filter(|_| !operation.negated) else {
-            return Ok(false);
-        };
-        let for_good = !self.is_loaded_later(&name);
-        if for_good {
-            self.held.remove(&name);
-        }
-        if matches!(self.value, Value::Loaded(..) | Value::Block(_)) {
-            return Err(Refusal::WithoutOutput);
-        }
-        self.builder.back_to(place, for_good).ok_or(Refusal::WithoutOutput)?;
-        self.is_inverted = false;
-        self.value = Value::Power;
-        Ok(true)
-    }
-
-    /// Whether the next mention of a helper in the rung loads it.
-    fn is_loaded_later(&self, name: &str) -> bool {
-        let rest = (self.at + 1..self.end).map(|index| self.source.item(index));
-        let mut mentions = rest.filter_map(|item| match item.kind {
-            ItemKind::Operation { operation, operand: Some(id) } => {
-                let operand = self.source.tree.operand(id).span.of(self.source.text);
-                operand.eq_ignore_ascii_case(name).then_some((operation, item.depth))
-            }
-            _ => None,
-        });
-        mentions.next().is_some_and(|(operation, depth)| {
-            operation.operator.role == OperatorRole::Load && !operation.negated && depth == 0
-        })
-    }
-
-    /// Whether `item` loads `word`, and if so whether negated.
-    fn loads(&self, item: &Item, word: &str) -> Option<bool> {
-        let ItemKind::Operation { operation, operand: Some(id) } = item.kind else { return None };
-        let operand = self.source.tree.operand(id).span.of(self.source.text);
-        let is_it = operation.operator.role == OperatorRole::Load && operand.eq_ignore_ascii_case(word);
-        is_it.then_some(operation.negated)
-    }
-
     /// The condition that an operand is, or its inverse.
     fn condition(&self, id: OperandId, kind: ContactKind) -> Result<Block, Refusal> {
         let contact = self.contact(id, kind)?;
@@ -556,31 +392,6 @@ impl<'s, 'a> Reader<'s, 'a> {
             kind if kinds.contains(&kind) && !is_edge => Ok(Term::new(operand.value, word, operand.span)),
             _ => Err(Refusal::NotBoolean),
         }
-    }
-}
-
-/// A parameter with the name of its pin, whether that is an output, and its operand.
-fn argument<'t>(
-    parameter: &Parameter,
-    text: &'t str,
-    positional: impl FnOnce() -> Option<&'t str>,
-) -> Result<(&'t str, bool, OperandId), Refusal> {
-    let ParameterValue::Operand(id) = parameter.value else { return Err(Refusal::NotBoolean) };
-    let is_output = match parameter.direction {
-        Direction::In => false,
-        Direction::Out { negated: false } => true,
-        Direction::Out { negated: true } => return Err(Refusal::NotBoolean),
-    };
-    let name = parameter.name.map(|name| name.of(text)).or_else(positional);
-    Ok((name.ok_or(Refusal::Element)?, is_output, id))
-}
-
-/// The contact for which the call of a detector stands.
-fn edge_kind(block: &str) -> Option<ContactKind> {
-    match block {
-        "R_TRIG" => Some(ContactKind::Rising),
-        "F_TRIG" => Some(ContactKind::Falling),
-        _ => None,
     }
 }
 

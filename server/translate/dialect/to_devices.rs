@@ -8,7 +8,7 @@ use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, R
 use crate::target::iec::LiteralValue;
 use crate::target::{Device, DeviceKind, Form, Operand, Target};
 use crate::text::{Span, folded};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, ToSmolStr, format_smolstr};
 
 /// The instance and the member that a variable such as `T0.Q` names.
@@ -27,7 +27,7 @@ impl Labels {
         for name in names().filter(|name| pointer(name).is_some()) {
             labels.insert(folded(name), name.to_uppercase().into());
         }
-        let taken: Vec<SmolStr> = labels.values().cloned().collect();
+        let taken: FxHashSet<SmolStr> = labels.values().cloned().collect();
         let mut free = (0..).map(|number| format_smolstr!("P{number}")).filter(|name| !taken.contains(name));
         for name in names() {
             if !labels.contains_key(&folded(name))

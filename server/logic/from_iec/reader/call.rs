@@ -1,0 +1,159 @@
+//! Calls of function blocks, and edge contacts.
+
+use super::super::output_of;
+use super::{Edge, Reader, Value};
+use crate::il::iec::{Direction, Item, ItemKind, OperandId, Parameter, ParameterValue, Run};
+use crate::ladder::ContactKind;
+use crate::logic::{Action, Call, Deed, Expression, Gate, Refusal, Term};
+use crate::target::iec::{FunctionBlock, OperatorRole};
+use crate::text::{Span, folded};
+
+impl Reader<'_, '_> {
+    /// Power is stored for the block that is called next.
+    pub(super) fn feed(&mut self, id: OperandId, negated: bool) -> Result<(), Refusal> {
+        let path = self.source.tree.operand(id).span.of(self.source.text);
+        let (instance, pin) = path.rsplit_once('.').ok_or(Refusal::NotBoolean)?;
+        let block = self.source.block(self.pou, instance).ok_or(Refusal::NotBoolean)?;
+        if !block.inputs.first().is_some_and(|first| first.name.eq_ignore_ascii_case(pin)) {
+            return Err(Refusal::NotBoolean);
+        }
+        self.is_inverted ^= negated;
+        self.invert()?;
+        self.fed = Some(folded(instance));
+        Ok(())
+    }
+
+    pub(super) fn block_of(&self, instance: OperandId) -> Option<&'static FunctionBlock> {
+        let name = self.source.tree.operand(instance).span.of(self.source.text);
+        self.source.block(self.pou, name)
+    }
+
+    /// `R C1`: calls the block with this input alone. Nothing is known of the current result behind it.
+    pub(super) fn input_operator(
+        &mut self,
+        input: &str,
+        instance: OperandId,
+        span: Span,
+    ) -> Result<(), Refusal> {
+        let block = self.block_of(instance).ok_or(Refusal::Element)?;
+        self.settle()?;
+        self.invert()?;
+        let called = self.source.tree.operand(instance);
+        let term = Term::new(called.value, called.span.of(self.source.text), called.span);
+        let call = Call::new(block, input, term, std::iter::empty::<(&str, bool, Term)>());
+        let (call, terms) = call.filter(|(call, _)| call.is_input_operator()).ok_or(Refusal::NotBoolean)?;
+        self.builder.drive(Action { deed: Deed::Call(call), terms, span });
+        self.value = Value::Nothing;
+        Ok(())
+    }
+
+    /// A call; tells whether `next`, the load of its output, goes on from it.
+    pub(super) fn call(
+        &mut self,
+        item: &Item,
+        callee: OperandId,
+        parameters: Run,
+        next: Option<&Item>,
+    ) -> Result<bool, Refusal> {
+        let text = self.source.text;
+        let called = self.source.tree.operand(callee);
+        let instance = called.span.of(text);
+        let block = self.source.block(self.pou, instance).ok_or(Refusal::Element)?;
+        let parameters = parameters.of(&self.source.tree.parameters);
+        let fed = self.fed.take();
+        if fed.is_none() && self.is_edge(instance, parameters)? {
+            return Ok(false);
+        }
+        if fed.as_ref().is_some_and(|fed| *fed != folded(instance)) || fed.is_none() && !self.is_fresh() {
+            return Err(Refusal::NotBoolean);
+        }
+        let mut power = None;
+        let mut arguments = Vec::with_capacity(parameters.len());
+        for (place, parameter) in parameters.iter().enumerate() {
+            let (name, is_output, id) =
+                argument(parameter, text, || block.inputs.get(place).map(|pin| pin.name))?;
+            let is_power = block.inputs.first().is_some_and(|first| first.name.eq_ignore_ascii_case(name));
+            match is_power && !is_output {
+                true => power = Some(id),
+                false => arguments.push((name, is_output, self.term(id)?)),
+            }
+        }
+        match (power, fed) {
+            (Some(id), None) => {
+                let contact = self.contact(id, ContactKind::NormallyOpen)?;
+                self.builder.pass(Expression::Contact(contact)).ok_or(Refusal::TooDeep)?;
+            }
+            (None, Some(_)) => {}
+            _ => return Err(Refusal::Element),
+        }
+        let power_in = block.inputs.first().map_or("", |pin| pin.name);
+        let instance_term = Term::new(called.value, instance, called.span);
+        let (call, terms) = Call::new(block, power_in, instance_term, arguments).ok_or(Refusal::Element)?;
+        self.driven.extend(call.changes(&terms).iter().map(|term| (term.key(), self.at)));
+        let action = Action { deed: Deed::Call(call), terms, span: item.span };
+        match next.and_then(|next| self.loads(next, &output_of(block, instance))) {
+            None => {
+                self.builder.drive(action);
+                self.value = Value::Nothing;
+                Ok(false)
+            }
+            Some(negated) => {
+                self.builder.gate(Gate::Through(action)).ok_or(Refusal::TooDeep)?;
+                if negated {
+                    self.builder.gate(Gate::Invert).ok_or(Refusal::TooDeep)?;
+                }
+                self.value = Value::Power;
+                Ok(true)
+            }
+        }
+    }
+
+    /// Whether `item` loads `word`, and if so whether negated.
+    fn loads(&self, item: &Item, word: &str) -> Option<bool> {
+        let ItemKind::Operation { operation, operand: Some(id) } = item.kind else { return None };
+        let operand = self.source.tree.operand(id).span.of(self.source.text);
+        let is_it = operation.operator.role == OperatorRole::Load && operand.eq_ignore_ascii_case(word);
+        is_it.then_some(operation.negated)
+    }
+
+    /// Whether a call is that of a detector which is an edge contact here.
+    fn is_edge(&mut self, instance: &str, parameters: &[Parameter]) -> Result<bool, Refusal> {
+        let block = self.source.block(self.pou, instance).ok_or(Refusal::Element)?;
+        let ([parameter], Some(kind)) = (parameters, edge_kind(block.name)) else { return Ok(false) };
+        if !self.frames.is_empty() || !self.source.is_edge(self.pou, instance, self.span) {
+            return Ok(false);
+        }
+        let (name, is_output, operand) = argument(parameter, self.source.text, || Some("CLK"))?;
+        if is_output || !name.eq_ignore_ascii_case("CLK") {
+            return Ok(false);
+        }
+        self.bit(operand)?;
+        self.edges.insert(folded(instance), Edge { operand, kind, called_at: self.at });
+        Ok(true)
+    }
+}
+
+/// A parameter with the name of its pin, whether that is an output, and its operand.
+fn argument<'t>(
+    parameter: &Parameter,
+    text: &'t str,
+    positional: impl FnOnce() -> Option<&'t str>,
+) -> Result<(&'t str, bool, OperandId), Refusal> {
+    let ParameterValue::Operand(id) = parameter.value else { return Err(Refusal::NotBoolean) };
+    let is_output = match parameter.direction {
+        Direction::In => false,
+        Direction::Out { negated: false } => true,
+        Direction::Out { negated: true } => return Err(Refusal::NotBoolean),
+    };
+    let name = parameter.name.map(|name| name.of(text)).or_else(positional);
+    Ok((name.ok_or(Refusal::Element)?, is_output, id))
+}
+
+/// The contact for which the call of a detector stands.
+fn edge_kind(block: &str) -> Option<ContactKind> {
+    match block {
+        "R_TRIG" => Some(ContactKind::Rising),
+        "F_TRIG" => Some(ContactKind::Falling),
+        _ => None,
+    }
+}

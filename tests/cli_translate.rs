@@ -1,0 +1,123 @@
+//! `rungwise translate` and `rungwise prove`, through the binary.
+
+use serde_json::{Value, json};
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+
+const MOTOR: &str = "; start\nLD X0\nOR Y0\nANI X1\nOUT Y0\nEND\n";
+/// The same but for the stop contact.
+const WRONG: &str = "LD X0\nOR Y0\nAND X1\nOUT Y0\nEND\n";
+/// A contact in parallel with what already drives an output has no drawing.
+const KEPT: &str = "LD X0\nOUT Y0\nOR X1\nOUT Y1\nEND\n";
+const BRIDGE: &str = "\
+|   X0                    X1                       Y0  |
++---| |---+---------------| |-----+----------------( )-+
+|         |   X2                  |                    |
+|         +---| |---+             |                    |
+|                   |             |                    |
+|   X3              |     X4      |                    |
++---| |-------------+-----| |-----+                    |
+";
+
+fn folder(files: &[(&str, &str)]) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, content) in files {
+        std::fs::write(folder.path().join(name), content).unwrap();
+    }
+    folder
+}
+
+fn run(folder: &TempDir, arguments: &[&str]) -> (i32, String, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rungwise"));
+    let command = command.current_dir(folder.path()).args(arguments).stdin(Stdio::null());
+    let Output { status, stdout, stderr } = command.output().unwrap();
+    (status.code().unwrap(), String::from_utf8(stdout).unwrap(), String::from_utf8(stderr).unwrap())
+}
+
+#[test]
+fn a_list_is_drawn_listed_and_written_as_equations_with_proof() {
+    let folder = folder(&[("motor.il", MOTOR)]);
+    let (code, drawn, err) = run(&folder, &["translate", "motor.il", "--to", "ladder", "--prove"]);
+    assert_eq!((code, err.contains("1 proved equal, 1 equal by construction")), (0, true), "{err}");
+    assert!(drawn.contains("; start\n|   X0        X1 "), "{drawn}");
+    let (code, out, _) = run(&folder, &["translate", "motor.il", "--to", "ladder", "-o", "motor.lad"]);
+    assert_eq!((code, out.as_str()), (0, ""));
+    assert_eq!(std::fs::read_to_string(folder.path().join("motor.lad")).unwrap(), drawn);
+    assert_eq!(run(&folder, &["translate", "motor.lad", "--to", "fx"]), (0, MOTOR.into(), String::new()));
+    let (code, equations, _) = run(&folder, &["translate", "motor.lad", "--to", "boolean"]);
+    assert_eq!((code, equations.as_str()), (0, "; start\nY0 = (X0 + Y0)*[X1]\nEND\n"));
+    let (_, symbols, _) = run(&folder, &["translate", "motor.lad", "--to", "boolean", "--symbols"]);
+    assert!(symbols.contains("Y0 = (X0 ∨ Y0) ∧ ¬X1\n"), "{symbols}");
+    std::fs::write(folder.path().join("motor.bool"), symbols).unwrap();
+    assert_eq!(run(&folder, &["translate", "motor.bool", "--to", "fx"]).1, MOTOR);
+}
+
+#[test]
+fn what_has_no_other_form_is_carried_along_and_told() {
+    let folder = folder(&[("kept.il", KEPT), ("bridge.lad", BRIDGE)]);
+    let (code, drawn, err) = run(&folder, &["translate", "kept.il", "--to", "ladder", "--prove"]);
+    assert_eq!(code, 0, "{err}");
+    assert!(err.starts_with("kept.il:1: this rung is kept as it is: a contact is put in parallel"), "{err}");
+    assert!(drawn.contains("{il\nLD X0\nOUT Y0\nOR X1\nOUT Y1\n}\n"), "{drawn}");
+    std::fs::write(folder.path().join("kept.lad"), drawn).unwrap();
+    assert_eq!(run(&folder, &["translate", "kept.lad", "--to", "fx"]).1, KEPT);
+    assert_eq!(run(&folder, &["prove", "kept.il", "kept.lad"]).0, 0);
+    // A drawing in a list is but a comment, so that is no translation.
+    let (code, out, err) = run(&folder, &["translate", "bridge.lad", "--to", "fx"]);
+    assert_eq!((code, out.contains("; +---| |---+")), (1, true), "{out}");
+    assert!(err.contains("neither series nor parallel"), "{err}");
+    let (code, out, _) = run(&folder, &["translate", "bridge.lad", "--to", "fx", "--prove", "-o", "x.il"]);
+    assert_eq!((code, out.as_str(), folder.path().join("x.il").exists()), (1, "", false));
+}
+
+#[test]
+fn a_proof_says_equal_or_which_scan_differs() {
+    let folder = folder(&[("motor.il", MOTOR), ("wrong.il", WRONG)]);
+    run(&folder, &["translate", "motor.il", "--to", "ladder", "-o", "motor.lad"]);
+    let (code, out, err) = run(&folder, &["prove", "motor.il", "motor.lad", "--format", "json"]);
+    assert_eq!((code, err.as_str()), (0, ""));
+    assert_eq!(serde_json::from_str::<Value>(&out).unwrap(), json!({"equal": true, "reordered": false}));
+    let arguments = ["prove", "motor.lad", "wrong.il", "--format", "json", "--scenario", "test.toml"];
+    let (code, out, _) = run(&folder, &arguments);
+    let answer: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!((code, &answer["equal"]), (1, &json!(false)));
+    let found = &answer["counterexample"];
+    let inputs = &found["inputs"];
+    let on = |name: &str| inputs[name].as_bool().unwrap_or(false);
+    let seal = on("X0") || on("Y0");
+    assert_eq!(found["left"]["Y0"], json!(seal && !on("X1")), "{out}");
+    assert_eq!(found["right"]["Y0"], json!(seal && on("X1")), "{out}");
+    assert_eq!(found["lines"], json!({"left": 2, "right": 1}));
+    let scenario = std::fs::read_to_string(folder.path().join("test.toml")).unwrap();
+    let scenario: toml::Value = toml::from_str(&scenario).unwrap();
+    let expected = &scenario["scenario"][0]["expect"][0]["values"]["Y0"];
+    assert_eq!(expected.as_bool(), found["left"]["Y0"].as_bool());
+    let (code, out, _) = run(&folder, &["prove", "motor.il", "wrong.il", "--lang", "zh-CN"]);
+    assert_eq!(code, 1);
+    assert!(out.starts_with("不相等：Y0（motor.il:2, wrong.il:1）"), "{out}");
+}
+
+#[test]
+fn a_proof_of_other_structures_is_not_decided() {
+    let folder =
+        folder(&[("one.il", "LD X0\nCJ P0\nLD X1\nOUT Y0\nP0\nLD X2\nOUT Y1\nEND\n"), ("two.il", MOTOR)]);
+    let (code, out, _) = run(&folder, &["prove", "one.il", "two.il", "--format", "json"]);
+    let answer: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!((code, &answer["equal"]), (1, &Value::Null), "{out}");
+    assert!(answer["reason"].as_str().unwrap().starts_with("jumps, labels"), "{out}");
+    // Wrong usage is another matter than an answer.
+    assert_eq!(run(&folder, &["prove", "one.il", "nowhere.il"]).0, 2);
+    assert_eq!(run(&folder, &["translate", "one.il"]).0, 2);
+}
+
+#[test]
+fn symbols_of_a_project_stay_and_are_proved() {
+    let manifest = "target = \"fx2n\"\ncomments = \"devices.csv\"\nfiles = [\"main.il\"]\n";
+    let main = "LD Start\nAND> Level K10\nOUT Motor\nEND\n";
+    let table = "X0;Start;\nY0;Motor;\nD5;Level;\n";
+    let folder = folder(&[("rungwise.toml", manifest), ("devices.csv", table), ("main.il", main)]);
+    let (code, drawn, err) = run(&folder, &["translate", "main.il", "--to", "ladder", "--prove"]);
+    assert_eq!(code, 0, "{err}");
+    assert!(drawn.contains("Start") && drawn.contains("[> Level K10]"), "{drawn}");
+    assert_eq!(run(&folder, &["translate", "main.il", "--to", "boolean", "--prove"]).0, 0);
+}
