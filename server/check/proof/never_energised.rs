@@ -5,7 +5,8 @@
 //! right.
 //!
 //! This is proved; the message says the reason in one line, such as two contacts in series that exclude each other.
-//! What is switched off by a contact that never conducts in any program, NOT M8000 or M8001, is meant so and not reported.
+//! What is switched off by a contact that never conducts in any program, NOT M8000 or M8001, is meant so and not
+//! reported.
 //!
 //! ```lad
 //! |  X0    X0     Y0  |

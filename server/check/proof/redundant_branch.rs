@@ -1,8 +1,8 @@
 //! # redundant-branch
 //!
 //! A branch that makes no difference: wherever it conducts, the branches beside it do, so that each output of the rung
-//! is on in the same scans without it. A contact in it may name another device than was meant, or the branch is left over
-//! from a change.
+//! is on in the same scans without it. A contact in it may name another device than was meant, or the branch is left
+//! over from a change.
 //!
 //! This is proved for all values of the devices; the mark is on the first contact of the branch. The fix takes it away,
 //! and is proved, too. In Instruction List of IEC 61131-3 it is taken away by hand.

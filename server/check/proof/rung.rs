@@ -74,7 +74,7 @@ fn is_worth_it(path: &Path) -> Option<bool> {
     let mut look =
         Look { contacts: 0, seen: FxHashSet::default(), spans: FxHashSet::default(), found: false };
     look.path(path)?;
-    look.found.then(|| look.spans.len() == look.contacts)
+    look.found.then_some(look.spans.len() == look.contacts)
 }
 
 struct Look {
