@@ -156,7 +156,8 @@ fn diagnostics_come_in_the_order_of_versions_and_the_newest_comes() {
         last = version;
         if version == 301 {
             let found = message["params"]["diagnostics"].as_array().expect("an array").clone();
-            assert_eq!(codes(&found), ["octal-digit"]);
+            // What the whole program is found to lack may have come along already.
+            assert!(codes(&found).iter().any(|code| code == "octal-digit"), "{found:?}");
             break;
         }
     }
