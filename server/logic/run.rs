@@ -184,10 +184,10 @@ impl<'p> Run<'p> {
         }
     }
 
-    /// The value that the run gave to `term`, whose key is `name`.
+    /// The value that the run gave to `term`, whose key is `name`, or that it always has.
     fn value(&self, term: &Term, name: &SmolStr) -> Option<Formula> {
-        let driven = self.driven.get(name)?;
-        (driven.since >= self.last_event(term, name)).then_some(driven.value)
+        let driven = self.driven.get(name).filter(|driven| driven.since >= self.last_event(term, name));
+        driven.map(|driven| driven.value).or_else(|| term.always().map(Formulas::constant))
     }
 
     /// The moment at which `term`, whose key is `name`, is read.
@@ -205,8 +205,7 @@ impl<'p> Run<'p> {
 
     /// The last event that may have changed `term` together with others.
     fn bulk(&self, term: &Term) -> u32 {
-        let is_flag = matches!(term.operand, Operand::Device(device)
-            if device.kind == DeviceKind::M && device.number >= FIRST_SPECIAL);
+        let is_flag = matches!(term.operand, Operand::Device(device) if device.is_special());
         self.kinds[slot(term)].max(if is_flag { self.flags } else { 0 })
     }
 
@@ -360,9 +359,6 @@ impl Default for Run<'_> {
         Run::new()
     }
 }
-
-/// The first special relay.
-const FIRST_SPECIAL: u32 = 8000;
 
 /// Whether it is a bit by itself, so that writing to it changes nothing else. Setting a state resets others, and the
 /// contact of a timer is no bit that a coil writes.

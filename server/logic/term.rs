@@ -22,6 +22,14 @@ impl Term {
         Term { operand, text: text.into(), span }
     }
 
+    /// Its value in every scan, if it is a device that has only one.
+    pub fn always(&self) -> Option<bool> {
+        match self.operand {
+            Operand::Device(device) => device.always(),
+            _ => None,
+        }
+    }
+
     /// What it means, in one spelling: `X10` for `x010`, `K16` for `H10`, names in lower case.
     pub fn key(&self) -> SmolStr {
         match &self.operand {

@@ -7,8 +7,8 @@ use super::to_iec::{self, Helpers};
 use super::{Options, To, Translated, Translation, to_boolean, to_fx, to_ladder};
 use crate::document::{Document, Notation};
 use crate::ladder::{Drawing, Style};
-use crate::logic::{Deed, Network, Path};
-use crate::target::{Flow, Form, Target};
+use crate::logic::{Network, Path};
+use crate::target::Target;
 use crate::text::Message;
 
 /// A rung in its new form.
@@ -114,10 +114,7 @@ fn drawing(path: &Path, target: &Target, options: &Options) -> Result<Body, Mess
 /// Whether the program ends with this rung.
 fn ends_program(source: &Source) -> bool {
     let Ok(Some(path)) = &source.rung.path else { return false };
-    path.actions().iter().any(|action| match action.deed {
-        Deed::Instruction(Form { instruction, .. }) => instruction.flow() == Flow::ProgramEnd,
-        _ => false,
-    })
+    path.actions().iter().any(|action| action.deed.ends_program())
 }
 
 struct Page {

@@ -5,8 +5,7 @@
 
 use super::source::{self, Source};
 use crate::document::Document;
-use crate::logic::{Atom, Comparison, Deed, Formulas, Path, compare, compare_outcome, touches_bits};
-use crate::target::Flow;
+use crate::logic::{Atom, Comparison, Formulas, Path, compare, compare_outcome, touches_bits};
 use crate::text::{Message, Span};
 use std::collections::BTreeMap;
 
@@ -105,10 +104,7 @@ impl End<'_> {
     /// Whether it is nothing but END.
     fn ends_program(&self) -> bool {
         let End::Rung(_, path) = self else { return false };
-        path.actions().iter().all(|action| match action.deed {
-            Deed::Instruction(form) => form.instruction.flow() == Flow::ProgramEnd,
-            _ => false,
-        })
+        path.actions().iter().all(|action| action.deed.ends_program())
     }
 }
 

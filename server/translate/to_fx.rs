@@ -8,7 +8,7 @@ use super::stack::{self, Wants};
 use crate::document::coil_form;
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
-use crate::target::{Form, Limits, Model, Operand, Role, Target};
+use crate::target::{Device, Form, Limits, Operand, Role, Target};
 use crate::text::{Message, Span};
 use std::borrow::Cow;
 use std::fmt;
@@ -183,12 +183,11 @@ fn wants(drive: &Drive) -> Wants {
 
 /// The contact that is on in each scan of a running FX PLC, M8000, or closed instead of open, so that it never is.
 pub(super) fn always(value: bool) -> Contact {
-    let text = "M8000";
-    let operand = Operand::read(text, Model::Fx2n);
+    let device = Device::ALWAYS_ON;
     let kind = if value { ContactKind::NormallyOpen } else { ContactKind::NormallyClosed };
     Contact {
         test: Test::Bit(kind),
-        terms: vec![Term::new(operand, text, Span::default())],
+        terms: vec![Term::new(Operand::Device(device), &device.to_string(), Span::default())],
         span: Span::default(),
     }
 }

@@ -1,18 +1,17 @@
 //! Paths of the FX family in the words of IEC 61131-3.
 
-use super::{FIRST_SPECIAL, address, without};
+use super::{address, without};
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Term, Test};
 use crate::target::iec::FunctionBlock;
-use crate::target::{Constant, Device, DeviceKind, Flow, Form, Model, Operand, Target};
+use crate::target::{Constant, Device, DeviceKind, Form, Model, Operand, Target};
 use crate::text::Span;
 use smol_str::{SmolStr, ToSmolStr, format_smolstr};
 
 /// Whether a rung is but END, which IEC 61131-3 does not write.
 pub(super) fn is_end(path: &Path) -> bool {
     let [Drive::Action(action)] = &path.drives[..] else { return false };
-    path.gates.is_empty()
-        && matches!(action.deed, Deed::Instruction(form) if form.instruction.flow() == Flow::ProgramEnd)
+    path.gates.is_empty() && action.deed.ends_program()
 }
 
 /// `path`, written for `target`, with variables for devices.
@@ -44,32 +43,16 @@ impl Converter<'_> {
     }
 
     fn expression(&self, expression: &Expression) -> Result<Expression, Refusal> {
-        let all = |parts: &[Expression]| -> Result<Vec<Expression>, Refusal> {
-            parts.iter().map(|part| self.expression(part)).collect()
-        };
-        Ok(match expression {
-            Expression::Constant(value) => Expression::Constant(*value),
-            Expression::Contact(contact) => self.contact(contact)?,
-            Expression::Not(part) => Expression::Not(Box::new(self.expression(part)?)),
-            Expression::And(parts) => Expression::and(all(parts)?),
-            Expression::Or(parts) => Expression::or(all(parts)?),
-        })
+        expression.mapped(&mut |contact| self.contact(contact))
     }
 
     fn contact(&self, contact: &Contact) -> Result<Expression, Refusal> {
         let terms = match (contact.test, &contact.terms[..]) {
-            (Test::Bit(kind), [term]) => {
-                let always = match term.key().as_str() {
-                    "M8000" => Some(true),
-                    "M8001" => Some(false),
-                    _ => None,
-                };
-                match (always, kind) {
-                    (Some(value), ContactKind::NormallyOpen) => return Ok(Expression::Constant(value)),
-                    (Some(value), ContactKind::NormallyClosed) => return Ok(Expression::Constant(!value)),
-                    _ => vec![self.bit(term)?],
-                }
-            }
+            (Test::Bit(kind), [term]) => match (term.always(), kind) {
+                (Some(value), ContactKind::NormallyOpen) => return Ok(Expression::Constant(value)),
+                (Some(value), ContactKind::NormallyClosed) => return Ok(Expression::Constant(!value)),
+                _ => vec![self.bit(term)?],
+            },
             (Test::Compare(operator), [left, right]) if !operator.is_wide() => {
                 vec![self.word(left)?, self.word(right)?]
             }
@@ -107,7 +90,7 @@ impl Converter<'_> {
     }
 
     fn located(&self, device: Device, span: Span) -> Result<Term, Refusal> {
-        without(address(device).filter(|_| device.number < FIRST_SPECIAL))?;
+        without(address(device))?;
         Ok(variable(&device.to_smolstr(), span))
     }
 
