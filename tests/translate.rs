@@ -354,6 +354,31 @@ fn worked_examples_of_the_field() {
     }
 }
 
+#[test]
+fn comments_of_every_kind_stand_among_equations() {
+    let text = "(* two\n   lines; // of it *)\n; plain\n// why\nLD X0\nOUT Y0\n(* last *)\nEND\n";
+    let equations = certain(&list(text), To::Boolean);
+    assert_eq!(equations, "(* two\n   lines; // of it *)\n; plain\n// why\nY0 = X0\n\n(* last *)\nEND\n");
+    assert_eq!(from_boolean::list(&equations, Target::of(Model::Fx2n)), Ok(text.to_string()));
+    let beside = "Y0 = X0 (* a\nb *)\nY1 = X1 // c\nY2 (* d *) = X2";
+    let read = "(* a\nb *)\nLD X0\nOUT Y0\n// c\nLD X1\nOUT Y1\n(* d *)\nLD X2\nOUT Y2\n";
+    assert_eq!(from_boolean::list(beside, Target::of(Model::Fx2n)), Ok(read.to_string()));
+    check_equation("Y0 = X0 (* a", "        ^^");
+}
+
+#[test]
+fn comments_and_networks_keep_their_places() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let drawn = std::fs::read_to_string(folder.join("traffic-lights/lights.lad")).expect("an example");
+    let listed = certain(&drawing(&drawn), To::Fx);
+    assert!(listed.contains(". *)\n\n; NETWORK 1 'the cycle'\n(* Green for A, 20 s *)\nLD X0\n"), "{listed}");
+    let again = certain(&list(&listed), To::Ladder);
+    assert_eq!(
+        again.strip_suffix("\n\n+--[END]---------------------------------------+\n"),
+        drawn.strip_suffix('\n')
+    );
+}
+
 /// The bits that a proof gives for a scan, and as they were one scan before.
 fn bits_of(found: &rungwise::translate::Counterexample) -> (Bits, Bits) {
     let now: Bits = found

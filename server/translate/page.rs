@@ -136,24 +136,19 @@ impl Page {
         if !self.text.is_empty() && parts && !self.text.ends_with("\n\n") {
             self.text.push('\n');
         }
-        for comment in source.comments().filter(|comment| !is_network(comment)) {
+        if let Some(network) = &rung.network {
+            self.network(&network_text(network));
+        }
+        let mut end = None;
+        for (comment, span) in source.comments().zip(&rung.comments) {
+            if end.is_some_and(|end| source.has_blank_line(end, span.start)) {
+                self.line("");
+            }
+            end = Some(span.end);
             match self.to {
+                _ if is_network(comment) => self.network(comment.trim_start_matches([';', ' '])),
                 To::Iec => self.line(&header::comment(comment)),
                 _ => self.line(comment),
-            }
-        }
-        let mut networks: Vec<String> = rung.network.iter().map(network_text).collect();
-        networks.extend(
-            source
-                .comments()
-                .filter(|comment| is_network(comment))
-                .map(|comment| comment.trim_start_matches([';', ' ']).to_string()),
-        );
-        for network in networks {
-            match self.to {
-                To::Ladder => self.line(&network),
-                To::Iec => self.line(&format!("(* {network} *)")),
-                _ => self.line(&format!("; {network}")),
             }
         }
         for label in &rung.labels {
@@ -161,6 +156,15 @@ impl Page {
                 To::Fx => self.line(label),
                 _ => self.line(&format!("{label}:")),
             }
+        }
+    }
+
+    /// The line that begins a network: one of its own in a drawing, a comment in lists and among equations.
+    fn network(&mut self, text: &str) {
+        match self.to {
+            To::Ladder => self.line(text),
+            To::Iec => self.line(&format!("(* {text} *)")),
+            _ => self.line(&format!("; {text}")),
         }
     }
 
