@@ -173,7 +173,8 @@ fn every_small_rung_goes_there_and_back() {
 }
 
 /// Instructions of the shortest list that drives the outputs with these truths in this order, each contact once and in
-/// this order, if it is shorter than `known`; else `known`. Found by trying all lists that can be.
+/// this order, normally open or closed, if it is shorter than `known`; else `known`. Found by trying all lists that can
+/// be.
 fn shortest(contacts: &[u32], outputs: &[u32], known: usize) -> usize {
     type State = (Vec<u32>, Vec<u32>, usize, usize);
     let mut waiting: VecDeque<(State, usize)> = VecDeque::from([((vec![], vec![], 0, 0), 0)]);
@@ -199,13 +200,13 @@ fn shortest(contacts: &[u32], outputs: &[u32], known: usize) -> usize {
             }
             blocks
         };
-        if let Some(contact) = contacts.get(*next) {
+        for contact in contacts.get(*next).into_iter().flat_map(|contact| [*contact, !contact]) {
             let mut loaded = blocks.clone();
-            loaded.push(*contact);
+            loaded.push(contact);
             go(loaded, kept.clone(), next + 1, *driven);
             if !blocks.is_empty() {
-                go(joined(*contact, true), kept.clone(), next + 1, *driven);
-                go(joined(*contact, false), kept.clone(), next + 1, *driven);
+                go(joined(contact, true), kept.clone(), next + 1, *driven);
+                go(joined(contact, false), kept.clone(), next + 1, *driven);
             }
         }
         let Some(top) = blocks.last() else { continue };
@@ -238,13 +239,15 @@ fn no_list_for_the_drawn_order_is_shorter() {
         for part in parts(contacts, None) {
             let mut text = String::new();
             naive(&part, &mut 0, 0, &mut text);
-            text += "OUT Y0\n";
-            let truth = truth_of_list(&text);
-            let short = certain(&list(&text), To::Fx);
-            let inputs: Vec<u32> = (0..contacts as u32).map(input).collect();
-            // END is no part of the rung.
-            let length = short.lines().count() - 1;
-            assert_eq!(length, shortest(&inputs, &[truth], length), "{short}");
+            for output in ["OUT Y0\n", "INV\nOUT Y0\n"] {
+                let text = text.clone() + output;
+                let truth = truth_of_list(&text);
+                let short = certain(&list(&text), To::Fx);
+                let inputs: Vec<u32> = (0..contacts as u32).map(input).collect();
+                // END is no part of the rung.
+                let length = short.lines().count() - 1;
+                assert_eq!(length, shortest(&inputs, &[truth], length), "{short}");
+            }
         }
     }
 }

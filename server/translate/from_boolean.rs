@@ -1,6 +1,7 @@
 //! Reads equations: `Y0 = (X0 + Y0)*[X1]`, `Y0 = (X0 ∨ Y0) ∧ ¬X1`, and both mixed.
 //!
-//! Grammar, a line each; comments are those of an instruction list, `;` and `//` to the end of the line, and `(* … *)`:
+//! Grammar, a line each; comments are those of an instruction list: `;` and `//` to the end of the line, `(* … *)`.
+//!
 //! ```text
 //! equation = left [ "=" sum ] ;  left = [mnemonic] operand… | "[" device "]" | "¬" device | label ":"
 //! sum      = product { ("+" | "∨" | "|") product }
