@@ -1,8 +1,8 @@
 //! Whether two stretches of program do the same.
 
 use super::decide::{Verdict, equal};
-use super::{Action, Deed, Effect, Formula, Formulas, Path, Run, Term};
-use crate::target::{Flow, Operand};
+use super::{Action, Atom, Deed, Effect, Formula, Formulas, Path, Run, Term};
+use crate::target::{DeviceKind, Flow};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 use std::collections::BTreeMap;
@@ -66,15 +66,21 @@ pub fn compare_but(
 
 /// Compares what has come of the same state when paths were run: the same events in the same order under equal
 /// conditions, and the same values of all bits at the end, whatever the way there. Of the paths the first `known` on
-/// either side are known to do the same.
+/// either side are known to do the same. With `may_be_off` there may be no power at the left rail.
 pub fn compare_outcome(
     left: &[&Path],
     right: &[&Path],
     known: [usize; 2],
+    may_be_off: bool,
     formulas: &mut Formulas,
 ) -> Comparison {
     let skipped = run(&left[..known[0].min(left.len())], &mut Formulas::default()).events() as usize;
-    let [left, right] = [run(left, formulas), run(right, formulas)];
+    let rail = if may_be_off { formulas.atom(Atom::Rail) } else { Formulas::TRUE };
+    let [left, right] = [left, right].map(|paths| {
+        let mut run = Run::by_outcome(rail);
+        paths.iter().for_each(|path| run.path(path, formulas));
+        run
+    });
     let events = |run: &Run<'_>| run.events() as usize;
     let pairs = || {
         let [left, right] = [&left, &right].map(|run| run.effects.iter().filter(|e| e.event.is_some()));
@@ -87,6 +93,15 @@ pub fn compare_outcome(
         let sides = [left.guard, right.guard];
         if let Some(difference) = difference(formulas, sides, || what(left)) {
             return difference;
+        }
+        for sides in left.reads.iter().zip(&right.reads).map(|(left, right)| [*left, *right]) {
+            if let Some(difference) = difference(formulas, sides, || what(left)) {
+                // What the call makes of it, nobody knows.
+                return match difference {
+                    Comparison::Different { .. } => Comparison::Undecided,
+                    other => other,
+                };
+            }
         }
         // What an event makes of bits that differ when it happens, nobody knows.
         if touches_bits(left.action) {
@@ -140,14 +155,22 @@ fn what(effect: &Effect<'_>) -> String {
     }
 }
 
-/// Whether an action looks at bits other than through its condition, or may change bits whose values are known. What
-/// it does when its condition fails depends on what these were before.
+/// Whether an action looks at bits other than through its condition and the operands of a call, or may change bits whose
+/// values are known, or decides what comes next. What it does when its condition fails depends on what was before.
 pub fn touches_bits(action: &Action) -> bool {
-    let Deed::Instruction(form) = action.deed else { return false };
-    let is_bit = |term: &Term| match term.operand {
-        Operand::Device(device) => device.kind.is_bit(),
-        Operand::Nibbles { .. } => true,
-        _ => false,
-    };
-    form.instruction.flow() != Flow::Straight || action.terms.iter().any(is_bit)
+    let is_bit = |term: &Term| term.operand.device().is_some_and(|device| device.kind.is_bit());
+    match action.deed {
+        Deed::Instruction(form) => {
+            form.instruction.flow() != Flow::Straight || action.terms.iter().any(is_bit)
+        }
+        Deed::Coil(_) => action.terms.first().is_some_and(covers_others),
+        Deed::Call(call) => call.changes(&action.terms).iter().any(covers_others),
+        Deed::Jump | Deed::Return => true,
+    }
+}
+
+/// Whether who writes to it may write to bits that have names of their own.
+fn covers_others(term: &Term) -> bool {
+    use DeviceKind::{M, X, Y};
+    !term.is_lone() && term.operand.device().is_none_or(|device| matches!(device.kind, X | Y | M))
 }

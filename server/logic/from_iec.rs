@@ -14,7 +14,7 @@ mod reader;
 use self::reader::Reader;
 use super::{Declared, Path, Refusal, Rung, Term};
 use crate::document::{DeclaredType, Scopes};
-use crate::il::iec::{Condition, IecTree, Item, ItemKind, ListForm, SectionKind};
+use crate::il::iec::{Condition, IecTree, Item, ItemKind, ListForm, OperandId, SectionKind};
 use crate::target::Operand;
 use crate::target::Width;
 use crate::target::iec::{ElementaryType, FunctionBlock, LiteralValue, OperatorRole};
@@ -478,6 +478,12 @@ impl<'a> Source<'a> {
             return Err(Refusal::Unreadable);
         }
         Reader::new(self, pou, span).read(items).map(Some)
+    }
+
+    /// The term that an operand is, where it lies as declared.
+    fn term(&self, pou: Option<usize>, id: OperandId) -> Term {
+        let operand = self.tree.operand(id);
+        Term::new(operand.value, operand.span.of(self.text), operand.span).located(self.scopes, pou)
     }
 
     fn item(&self, index: usize) -> &'a Item {

@@ -4,7 +4,7 @@
 //! the devices is found by running it with formulas in place of bits.
 
 mod term;
-pub use term::Term;
+pub use term::{Storage, Term};
 
 mod expression;
 pub use expression::{Contact, Expression, Test};

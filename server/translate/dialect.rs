@@ -15,8 +15,8 @@
 //! | `M8000`, `M8001` | `TRUE`, `FALSE` |
 //!
 //! `END` is dropped and put back. What has no counterpart keeps its words in a comment: retentive timers, counters of
-//! 32 bits, special relays, applied instructions, steps. The way back takes variables by their names where these are
-//! names of devices, others by their addresses.
+//! 32 bits, special relays, applied instructions, steps. The way back takes variables by their addresses, and by their
+//! names where they have none and these are names of devices that nothing else is.
 
 mod to_devices;
 mod to_variables;
@@ -24,6 +24,7 @@ mod to_variables;
 use super::To;
 use super::source::Program;
 use crate::document::Document;
+use crate::il::iec::PouKind;
 use crate::logic::{Path, Refusal};
 use crate::target::{Device, DeviceKind, DirectAddress, Location, Model, Target, Width};
 
@@ -54,22 +55,28 @@ pub(super) fn convert(document: &Document, (to, target): (To, &'static Target), 
     if document.target().is_fx() == target.is_fx() {
         return;
     }
-    let labels = to_devices::Labels::of(program);
+    let names = to_devices::Names::of(program, document.scopes(), target);
     for source in &mut program.rungs {
         let converted = match (&source.rung.path, target.is_fx()) {
             (Ok(Some(path)), false) => to_variables::path(path, document.target()).map(Some),
-            (Ok(Some(path)), true) => {
-                to_devices::path(path, target, document.scopes(), source.pou, &labels).map(Some)
-            }
+            // What a function or a block does it does for whoever calls it.
+            (Ok(Some(_)), true) if !is_of_program(document, source.pou) => Err(Refusal::NoCounterpart),
+            (Ok(Some(path)), true) => to_devices::path(path, target, &names).map(Some),
             (other, _) => other.clone(),
         };
         if target.is_fx() {
-            source.rung.labels.iter_mut().for_each(|label| *label = labels.of_label(label));
+            source.rung.labels.iter_mut().for_each(|label| *label = names.of_label(label));
         }
         // The words of the other language are no list in this one.
         source.rung.is_list &= converted.is_ok();
         source.rung.path = converted;
     }
+}
+
+/// Whether a rung belongs to a program, not to a function or a block.
+fn is_of_program(document: &Document, pou: Option<usize>) -> bool {
+    let pou = pou.and_then(|pou| document.scopes().pous.get(pou));
+    pou.is_none_or(|pou| pou.kind == PouKind::Program)
 }
 
 /// The address of the variable that stands for a device, if it is located.

@@ -56,8 +56,12 @@ pub enum Value {
 /// Compares two programs.
 pub fn prove(left: &Document, right: &Document) -> Proof {
     let sources = [source::rungs(left, None), source::rungs(right, None)];
-    let stretches = [stretches(&sources[0]), stretches(&sources[1])];
-    let mut prover = Prover { before: [Vec::new(), Vec::new()], is_reordered: false };
+    let stretches = [(left, &sources[0]), (right, &sources[1])].map(|(document, sources)| {
+        let unit = |pou: usize| document.scopes().pous.get(pou).map_or("", |pou| pou.name.as_str());
+        stretches(sources, unit)
+    });
+    let may_be_off = sources.iter().flatten().any(leaves_out);
+    let mut prover = Prover { before: [Vec::new(), Vec::new()], may_be_off, is_reordered: false };
     let [left, right] = &stretches;
     let outcome = left.iter().zip(right).try_for_each(|(left, right)| prover.stretches(left, right));
     match outcome {
@@ -71,8 +75,17 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
     }
 }
 
-/// Rungs that are executed one after the other, and what ends them: a label, a jump, or an instruction of which
-/// nobody knows which bits it looks at.
+/// Whether a rung begins a part of the program in which there may be no power at the left rail.
+fn leaves_out(source: &Source) -> bool {
+    let actions = source.rung.path.iter().flatten().flat_map(Path::actions);
+    actions.into_iter().any(|action| match action.deed {
+        Deed::Instruction(form) => matches!(form.instruction.flow(), Flow::SectionBegin | Flow::Step),
+        _ => false,
+    })
+}
+
+/// Rungs that are executed one after the other, and what ends them: a label, a jump, another program unit, or an
+/// instruction of which nobody knows which bits it looks at.
 #[derive(Default)]
 struct Stretch<'s> {
     rungs: Vec<(&'s Source, &'s Path)>,
@@ -81,6 +94,8 @@ struct Stretch<'s> {
 
 enum End<'s> {
     Label(Span, &'s str),
+    /// The program unit that begins, by its name.
+    Unit(Span, &'s str),
     Rung(&'s Source, &'s Path),
     /// A rung that cannot be read, by its words.
     Unread(&'s Source, Vec<&'s str>),
@@ -97,7 +112,7 @@ impl Stretch<'_> {
 impl End<'_> {
     fn span(&self) -> Span {
         match self {
-            End::Label(span, _) => *span,
+            End::Label(span, _) | End::Unit(span, _) => *span,
             End::Rung(source, _) | End::Unread(source, _) => source.span(),
         }
     }
@@ -113,10 +128,16 @@ impl End<'_> {
 }
 
 /// The stretches of a program. The END at its end is left out: a drawing may go without.
-fn stretches(sources: &[Source]) -> Vec<Stretch<'_>> {
+fn stretches<'s>(sources: &'s [Source], unit: impl Fn(usize) -> &'s str) -> Vec<Stretch<'s>> {
     let mut stretches = Vec::new();
     let mut open = Stretch::default();
+    let mut pou = sources.first().and_then(|source| source.pou);
     for source in sources {
+        if source.pou != pou {
+            pou = source.pou;
+            open.end = Some(End::Unit(source.span(), pou.map_or("", &unit)));
+            stretches.push(std::mem::take(&mut open));
+        }
         for label in &source.rung.labels {
             open.end = Some(End::Label(source.span(), label));
             stretches.push(std::mem::take(&mut open));
@@ -147,6 +168,8 @@ fn stretches(sources: &[Source]) -> Vec<Stretch<'_>> {
 struct Prover<'s> {
     /// The paths that are known to do the same, on either side.
     before: [Vec<&'s Path>; 2],
+    /// Whether a part of the program may be left out, so that there is no power at the left rail.
+    may_be_off: bool,
     is_reordered: bool,
 }
 
@@ -155,7 +178,8 @@ impl<'s> Prover<'s> {
         // What ends at different things does not start at the same ones, either.
         let is_alike = match (&left.end, &right.end) {
             (None, None) | (Some(End::Rung(..)), Some(End::Rung(..))) => true,
-            (Some(End::Label(_, left)), Some(End::Label(_, right))) => left == right,
+            (Some(End::Label(_, left)), Some(End::Label(_, right)))
+            | (Some(End::Unit(_, left)), Some(End::Unit(_, right))) => left.eq_ignore_ascii_case(right),
             (Some(End::Unread(_, left)), Some(End::Unread(_, right))) => left == right,
             _ => false,
         };
@@ -167,6 +191,11 @@ impl<'s> Prover<'s> {
         match (&left.end, &right.end) {
             (Some(End::Rung(left, left_path)), Some(End::Rung(right, right_path))) => {
                 self.rungs([&[(*left, *left_path)], &[(*right, *right_path)]])
+            }
+            // What stands here may come after other rungs than those before it, or knows other variables.
+            (Some(End::Label(..) | End::Unit(..) | End::Unread(..)), _) => {
+                self.before.iter_mut().for_each(Vec::clear);
+                Ok(())
             }
             _ => Ok(()),
         }
@@ -197,8 +226,11 @@ impl<'s> Prover<'s> {
         paths: &[Vec<&'s Path>; 2],
         sides: [&[(&'s Source, &'s Path)]; 2],
     ) -> Result<(), Proof> {
-        let mut formulas = Formulas::default();
-        let alone = compare_outcome(&paths[0], &paths[1], [0, 0], &mut formulas);
+        let compare = |left: &[&Path], right: &[&Path], known, may_be_off| {
+            let mut formulas = Formulas::default();
+            (compare_outcome(left, right, known, may_be_off, &mut formulas), formulas)
+        };
+        let (alone, _) = compare(&paths[0], &paths[1], [0, 0], self.may_be_off);
         if matches!(alone, Comparison::Same { .. }) {
             return Ok(());
         }
@@ -206,10 +238,17 @@ impl<'s> Prover<'s> {
         let [left, right] =
             [0, 1].map(|side| self.before[side].iter().chain(&paths[side]).copied().collect::<Vec<&Path>>());
         let known = [self.before[0].len(), self.before[1].len()];
-        let mut formulas = Formulas::default();
         let at = sides.map(|side| side.first().map(|(source, _)| source.span()));
         let undecided = |key| Err(Proof::Undecided { reason: Message::new(key), at });
-        match compare_outcome(&left, &right, known, &mut formulas) {
+        let (comparison, formulas) = compare(&left, &right, known, false);
+        match comparison {
+            // With no power at the rail they may do otherwise.
+            Comparison::Same { .. } if self.may_be_off => {
+                match compare(&left, &right, known, true) {
+                    (Comparison::Same { .. }, _) => Ok(()),
+                    _ => undecided("prove.undecided"),
+                }
+            }
             Comparison::Same { .. } => Ok(()),
             Comparison::Undecided => undecided("prove.undecided"),
             Comparison::Unlike => undecided("prove.unlike"),
@@ -274,7 +313,7 @@ fn inputs(
                 before.insert(of.name.to_string(), !rising);
             }
             Atom::Edge { of, rising, .. } => idle.push((of.name.to_string(), *rising)),
-            Atom::Behind(_) => {}
+            Atom::Behind(_) | Atom::Rail => {}
             Atom::Reaches { word, number } => {
                 let name = word.name.trim_start_matches("D ").to_string();
                 let (least, below) = limits.entry(name).or_insert((0, None));

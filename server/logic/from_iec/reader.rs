@@ -389,7 +389,7 @@ impl<'s, 'a> Reader<'s, 'a> {
         let is_edge = word.rsplit_once('.').is_some_and(|(root, _)| self.edges.contains_key(&folded(root)));
         match self.source.value_kind(self.pou, &operand.value, word) {
             ValueKind::Invalid => Err(Refusal::Unreadable),
-            kind if kinds.contains(&kind) && !is_edge => Ok(Term::new(operand.value, word, operand.span)),
+            kind if kinds.contains(&kind) && !is_edge => Ok(self.source.term(self.pou, id)),
             _ => Err(Refusal::NotBoolean),
         }
     }

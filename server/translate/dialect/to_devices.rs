@@ -3,8 +3,9 @@
 use super::super::source::Program;
 use super::{device_at, without};
 use crate::document::Scopes;
+use crate::il::iec::SectionKind;
 use crate::ladder::{CoilKind, ContactKind};
-use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Term, Test};
+use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Storage, Term, Test};
 use crate::target::iec::LiteralValue;
 use crate::target::{Device, DeviceKind, Form, Operand, Target};
 use crate::text::{Span, folded};
@@ -16,12 +17,18 @@ fn member(term: &Term) -> Option<(&str, &str)> {
     (term.operand == Operand::Variable).then(|| term.text.split_once('.')).flatten()
 }
 
-/// The pointers of the FX family for the labels of a program, by folded name.
-pub(super) struct Labels(FxHashMap<SmolStr, SmolStr>);
+/// What the names of a program stand for on the FX family, where each is one device.
+pub(super) struct Names {
+    /// The pointers for labels, by folded name.
+    labels: FxHashMap<SmolStr, SmolStr>,
+    /// The devices that cannot be named without an address: those at whose addresses something lies, and those whose
+    /// names are variables of several program units.
+    taken: FxHashSet<Device>,
+}
 
-impl Labels {
+impl Names {
     /// Labels that are names of pointers keep them, the others get the next free ones.
-    pub(super) fn of(program: &Program) -> Labels {
+    pub(super) fn of(program: &Program, scopes: &Scopes, target: &Target) -> Names {
         let mut labels = FxHashMap::default();
         let names = || program.rungs.iter().flat_map(|source| &source.rung.labels);
         for name in names().filter(|name| pointer(name).is_some()) {
@@ -36,35 +43,57 @@ impl Labels {
                 labels.insert(folded(name), pointer);
             }
         }
-        Labels(labels)
+        Names { labels, taken: taken_devices(program, scopes, target) }
     }
 
     /// The pointer for a label; one that nobody has stays as it is.
     pub(super) fn of_label(&self, label: &SmolStr) -> SmolStr {
-        self.0.get(&folded(label)).unwrap_or(label).clone()
+        self.labels.get(&folded(label)).unwrap_or(label).clone()
     }
+
+    /// Whether nothing else is this device than the variable of its name.
+    fn is_free(&self, device: Device) -> bool {
+        !self.taken.contains(&device)
+    }
+}
+
+fn taken_devices(program: &Program, scopes: &Scopes, target: &Target) -> FxHashSet<Device> {
+    let mut taken = FxHashSet::default();
+    let mut named = FxHashSet::default();
+    for (unit, pou) in scopes.own_pous().iter().enumerate() {
+        for variable in &pou.variables {
+            match (variable.address, Operand::read(&variable.name, target.model)) {
+                (Some(address), _) => taken.extend(device_at(address)),
+                (None, Operand::Device(device)) if variable.section == SectionKind::Local => {
+                    taken.extend((!named.insert(device) && unit > 0).then_some(device));
+                }
+                _ => {}
+            }
+        }
+    }
+    taken.extend(scopes.globals.values().filter_map(|variable| device_at(variable.address?)));
+    for path in program.rungs.iter().flat_map(|source| source.rung.path.iter().flatten()) {
+        let mut look = |term: &Term| match term.operand {
+            Operand::Direct(address) => taken.extend(device_at(address)),
+            _ => {}
+        };
+        path.clone().each_term(&mut |term| look(term));
+    }
+    taken
 }
 
 fn pointer(name: &str) -> Option<u32> {
     name.strip_prefix(['P', 'p'])?.parse().ok()
 }
 
-/// `path` with devices of `target` for variables, as seen from POU number `pou`.
-pub(super) fn path(
-    path: &Path,
-    target: &Target,
-    scopes: &Scopes,
-    pou: Option<usize>,
-    labels: &Labels,
-) -> Result<Path, Refusal> {
-    Converter { target, scopes, pou, labels }.whole(path)
+/// `path` with devices of `target` for variables.
+pub(super) fn path(path: &Path, target: &Target, names: &Names) -> Result<Path, Refusal> {
+    Converter { target, names }.whole(path)
 }
 
 struct Converter<'a> {
     target: &'a Target,
-    scopes: &'a Scopes,
-    pou: Option<usize>,
-    labels: &'a Labels,
+    names: &'a Names,
 }
 
 impl Converter<'_> {
@@ -196,14 +225,14 @@ impl Converter<'_> {
         }
     }
 
-    /// The device that a variable stands for: by its name, or by its address.
+    /// The device that a variable stands for: by its address, or if it has none by its name.
     fn device(&self, term: &Term) -> Option<Device> {
-        let device = match term.operand {
-            Operand::Direct(address) => device_at(address),
-            Operand::Variable => self
-                .named(&term.text)
-                .or_else(|| device_at(self.scopes.variable(self.pou, &term.text)?.address?)),
-            _ => None,
+        let device = match term.storage {
+            Storage::Own if term.operand == Operand::Variable => {
+                self.named(&term.text).filter(|device| self.names.is_free(*device))
+            }
+            Storage::Anywhere => None,
+            _ => device_at(term.address()?),
         };
         device.filter(|device| device.range_on(self.target).is_some())
     }
@@ -221,7 +250,7 @@ impl Converter<'_> {
         let (deed, terms) = match (action.deed, &action.terms[..]) {
             (Deed::Coil(_), [term]) => (action.deed, vec![self.bit(term)?]),
             (Deed::Jump, [label]) => {
-                let pointer = self.labels.of_label(&label.text);
+                let pointer = self.names.of_label(&label.text);
                 let operand = Operand::read(&pointer, self.target.model);
                 let form = without(Form::named("CJ").filter(|_| self::pointer(&pointer).is_some()))?;
                 (Deed::Instruction(form), vec![Term::new(operand, &pointer, label.span)])

@@ -2,7 +2,7 @@
 
 use super::{FIRST_SPECIAL, address, without};
 use crate::ladder::{CoilKind, ContactKind};
-use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Term, Test};
+use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Storage, Term, Test};
 use crate::target::iec::FunctionBlock;
 use crate::target::{Constant, Device, DeviceKind, Flow, Form, Model, Operand, Target};
 use crate::text::Span;
@@ -107,8 +107,8 @@ impl Converter<'_> {
     }
 
     fn located(&self, device: Device, span: Span) -> Result<Term, Refusal> {
-        without(address(device).filter(|_| device.number < FIRST_SPECIAL))?;
-        Ok(variable(&device.to_smolstr(), span))
+        let address = without(address(device).filter(|_| device.number < FIRST_SPECIAL))?;
+        Ok(Term { storage: Storage::At(address), ..variable(&device.to_smolstr(), span) })
     }
 
     /// Milliseconds for each step of a timer that forgets its time when power goes off.
