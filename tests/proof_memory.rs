@@ -4,7 +4,7 @@
 
 use rungwise::document::{Document, Notation};
 use rungwise::target::{Model, Target};
-use rungwise::translate::{Proof, To, prove, translate};
+use rungwise::translate::{Proof, To, Value, prove, translate};
 
 fn list(text: &str) -> Document {
     Document::new(text, Notation::IecIl, Target::of(Model::Iec))
@@ -154,6 +154,48 @@ fn located_variables_keep_their_certificates_in_parts() {
         for to in [To::Ladder, To::Iec, To::Boolean, To::Fx] {
             let translation = translate(&document, Some(part), to, &Default::default());
             assert!(translation.is_certain() && !translation.rungs.is_empty(), "{to:?}\n{translation:#?}");
+        }
+    }
+}
+
+#[test]
+fn a_counterexample_that_no_scan_confirms_is_none() {
+    // The formulas know of a register only that MOV changed it, and of K4M0 only that M0 or M1 was driven.
+    for (left, right) in [
+        ("LD M8000; MOV K5 D0; LD= D0 K5; OUT Y0", "LD M8000; MOV K5 D0; LD M8000; OUT Y0"),
+        (
+            "LD X0; OUT M0; LD= K4M0 K1; OUT Y0; LD X1; OUT M1",
+            "LD X1; OUT M1; LD= K4M0 K1; OUT Y0; LD X0; OUT M0",
+        ),
+    ] {
+        let [left, right] = [left, right].map(|text| fx(&lines(text)));
+        let Proof::Undecided { reason, .. } = prove(&left, &right) else {
+            panic!("{:?}", prove(&left, &right))
+        };
+        assert_eq!(reason.key(), "prove.unconfirmed");
+    }
+}
+
+#[test]
+fn words_of_a_counterexample_are_numbers() {
+    let cases = [
+        ("LD>= D0 D1; AND> D1 K7; OUT Y0", "LD> D0 D1; AND> D1 K7; OUT Y0"),
+        ("LD<= D0 K-3; OUT Y0", "LD< D0 K-3; OUT Y0"),
+        ("LDD>= D0 K100000; OUT Y0", "LDD>= D0 K100001; OUT Y0"),
+        ("LD X0; MOV K5 D0; LD> D0 K3; OUT Y0", "LD X0; MOV K5 D0; LD> D0 K7; OUT Y0"),
+        ("LD X0; OUT T0 K5; LD T0; OUT Y0", "LD X0; OUT T0 K5; LDI T0; OUT Y0"),
+        ("LDP X0; OUT M0; LDP M0; OUT Y0", "LDP X0; OUT M0; LDF M0; OUT Y0"),
+    ];
+    for (left, right) in cases {
+        let [left, right] = [left, right].map(|text| fx(&lines(text)));
+        let Proof::Different(found) = prove(&left, &right) else { panic!("{:?}", prove(&left, &right)) };
+        assert_eq!((found.what.as_str(), found.sides[0]), ("Y0", !found.sides[1]));
+        if left.text().starts_with("LD>= D0 D1") {
+            let word = |name: &str| match found.inputs.get(name) {
+                Some(Value::Word(value)) => *value,
+                other => panic!("{other:?}"),
+            };
+            assert!(word("D0") == word("D1") && word("D1") > 7, "{found:?}");
         }
     }
 }

@@ -20,6 +20,8 @@ pub enum Comparison {
     Different {
         /// What differs: the bit, or the first operand of the action.
         what: String,
+        /// Where to look for it in a run.
+        place: Place,
         /// What it is on the left and on the right: the bit, or whether the action is done.
         sides: [bool; 2],
         /// Values of atoms for which they do, by the number of the atom.
@@ -29,6 +31,15 @@ pub enum Comparison {
     Unlike,
     /// Too large a question.
     Undecided,
+}
+
+/// What differs between two runs.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Place {
+    /// The bit with this key, at the end or where it is driven.
+    Bit(SmolStr),
+    /// The power of the event of this number, from 1.
+    Event(u32),
 }
 
 /// Compares what is done by paths run one after the other from the same state, step by step: the same things in the
@@ -57,7 +68,7 @@ pub fn compare_but(
     }
     for (left, right) in pairs {
         let sides = [left.guard, right.guard];
-        if let Some(difference) = difference(formulas, sides, || what(left)) {
+        if let Some(difference) = difference(formulas, sides, || place_of(left)) {
             return difference;
         }
     }
@@ -91,11 +102,11 @@ pub fn compare_outcome(
     }
     for (left, right) in pairs().skip(skipped) {
         let sides = [left.guard, right.guard];
-        if let Some(difference) = difference(formulas, sides, || what(left)) {
+        if let Some(difference) = difference(formulas, sides, || place_of(left)) {
             return difference;
         }
         for sides in left.reads.iter().zip(&right.reads).map(|(left, right)| [*left, *right]) {
-            if let Some(difference) = difference(formulas, sides, || what(left)) {
+            if let Some(difference) = difference(formulas, sides, || place_of(left)) {
                 // What the call makes of it, nobody knows.
                 return match difference {
                     Comparison::Different { .. } => Comparison::Undecided,
@@ -113,7 +124,7 @@ pub fn compare_outcome(
     bits.dedup_by(|(left, _), (right, _)| left == right);
     for (_, bit) in bits {
         let sides = [left.bit(bit, formulas), right.bit(bit, formulas)];
-        if let Some(difference) = difference(formulas, sides, || bit.text.to_string()) {
+        if let Some(difference) = difference(formulas, sides, || (bit.text.to_string(), Place::Bit(bit.key()))) {
             return difference;
         }
     }
@@ -130,7 +141,7 @@ fn run<'p>(paths: &[&'p Path], formulas: &mut Formulas) -> Run<'p> {
 fn difference(
     formulas: &mut Formulas,
     [left, right]: [Formula; 2],
-    what: impl FnOnce() -> String,
+    what: impl FnOnce() -> (String, Place),
 ) -> Option<Comparison> {
     match equal(formulas, left, right) {
         Verdict::Equal => None,
@@ -138,9 +149,15 @@ fn difference(
         Verdict::Different(values) => {
             let value = |atom: u32| values.get(&atom).copied().unwrap_or(false);
             let sides = formulas.evaluate(&[left, right], value);
-            Some(Comparison::Different { what: what(), sides: [sides[0], sides[1]], values })
+            let (what, place) = what();
+            Some(Comparison::Different { what, place, sides: [sides[0], sides[1]], values })
         }
     }
+}
+
+fn place_of(effect: &Effect<'_>) -> (String, Place) {
+    let bit = || effect.action.terms.first().map(Term::key).unwrap_or_default();
+    (what(effect), effect.event.map_or_else(|| Place::Bit(bit()), Place::Event))
 }
 
 fn what(effect: &Effect<'_>) -> String {
@@ -155,8 +172,9 @@ fn what(effect: &Effect<'_>) -> String {
     }
 }
 
-/// Whether an action looks at bits other than through its condition and the operands of a call, or may change bits whose
-/// values are known, or decides what comes next. What it does when its condition fails depends on what was before.
+/// Whether an action looks at bits other than through its condition and the operands of a call, or may change bits
+/// whose values are known, or decides what comes next. What it does when its condition fails depends on what was
+/// before.
 pub fn touches_bits(action: &Action) -> bool {
     let is_bit = |term: &Term| term.operand.device().is_some_and(|device| device.kind.is_bit());
     match action.deed {

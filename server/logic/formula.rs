@@ -90,7 +90,8 @@ pub struct Formulas {
     numbers: FxHashMap<Node, Formula>,
     atoms: Vec<Atom>,
     atom_numbers: FxHashMap<Atom, u32>,
-    steps: FxHashMap<Step, u32>,
+    steps: Vec<Step>,
+    step_numbers: FxHashMap<Step, u32>,
 }
 
 impl Default for Formulas {
@@ -100,7 +101,8 @@ impl Default for Formulas {
             numbers: FxHashMap::default(),
             atoms: Vec::new(),
             atom_numbers: FxHashMap::default(),
-            steps: FxHashMap::default(),
+            steps: Vec::new(),
+            step_numbers: FxHashMap::default(),
         }
     }
 }
@@ -137,8 +139,18 @@ impl Formulas {
 
     /// The number of a step, from 1.
     pub fn step(&mut self, step: Step) -> u32 {
-        let next = self.steps.len() as u32 + 1;
-        *self.steps.entry(step).or_insert(next)
+        match self.step_numbers.entry(step) {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(new) => {
+                self.steps.push(new.key().clone());
+                *new.insert(self.steps.len() as u32)
+            }
+        }
+    }
+
+    /// The step with this number; nothing for 0, the start of the run.
+    pub fn step_at(&self, number: u32) -> Option<&Step> {
+        self.steps.get((number as usize).checked_sub(1)?)
     }
 
     /// Where `part` does not hold.

@@ -34,7 +34,7 @@ mod apart;
 pub use apart::apart;
 
 mod formula;
-pub use formula::{Atom, Formula, Formulas, Moment};
+pub use formula::{Atom, Formula, Formulas, Moment, Step};
 
 mod run;
 pub use run::{Effect, Run};
@@ -46,7 +46,10 @@ mod minimal;
 pub use minimal::{Sum, sum_of_products};
 
 mod compare;
-pub use compare::{Comparison, compare, compare_but, compare_outcome, touches_bits};
+pub use compare::{Comparison, Place, compare, compare_but, compare_outcome, touches_bits};
+
+mod evaluate;
+pub use evaluate::{LeftBehind, Scan, State, evaluate};
 
 use crate::document::{Chunk, Scopes, Tree};
 use crate::target::Target;

@@ -74,8 +74,8 @@ impl Term {
         }
     }
 
-    /// Whether it is a bit by itself, so that writing to it changes nothing else but words that are made of bits. Setting
-    /// a state resets others, and the contact of a timer is no bit that a coil writes.
+    /// Whether it is a bit by itself, so that writing to it changes nothing else but words that are made of bits.
+    /// Setting a state resets others, and the contact of a timer is no bit that a coil writes.
     pub fn is_lone(&self) -> bool {
         match &self.operand {
             Operand::Device(device) => matches!(device.kind, DeviceKind::X | DeviceKind::Y | DeviceKind::M),

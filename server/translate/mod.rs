@@ -12,8 +12,11 @@ pub use certificate::Certificate;
 
 mod stack;
 
+mod counterexample;
+pub use counterexample::{Counterexample, Value};
+
 mod prove;
-pub use prove::{Counterexample, Proof, Value, prove};
+pub use prove::{Proof, prove};
 
 mod dialect;
 

@@ -3,12 +3,12 @@
 //! Rungs are compared in step as far as they drive the same things in the same order. Where one program does so in
 //! another way, stretches between jumps, labels and the like are compared by what comes of them.
 
+use super::counterexample::{self, Counterexample};
 use super::source::{self, Source};
 use crate::document::Document;
-use crate::logic::{Atom, Comparison, Deed, Formulas, Path, compare, compare_outcome, touches_bits};
+use crate::logic::{Comparison, Deed, Formulas, Path, compare, compare_outcome, touches_bits};
 use crate::target::Flow;
 use crate::text::{Message, Span};
-use std::collections::BTreeMap;
 
 /// What is known of two programs.
 #[derive(Clone, PartialEq, Debug)]
@@ -27,30 +27,6 @@ pub enum Proof {
         /// The rung of the first program from which on, and that of the second, if there is one.
         at: [Option<Span>; 2],
     },
-}
-
-/// A scan in which two programs differ.
-#[derive(Clone, PartialEq, Debug)]
-pub struct Counterexample {
-    /// Inputs and states at its start, by name.
-    pub inputs: BTreeMap<String, Value>,
-    /// Bits as they were one scan before, where it matters that they changed.
-    pub before: BTreeMap<String, bool>,
-    /// What differs: a bit, or an action that only one does.
-    pub what: String,
-    /// What it is on either side.
-    pub sides: [bool; 2],
-    /// The rungs on either side that differ, or where the stretch starts that does.
-    pub at: [Option<Span>; 2],
-}
-
-/// A value at the start of a scan.
-#[derive(Clone, PartialEq, Debug)]
-pub enum Value {
-    /// Of a bit, or of a condition that stands for itself.
-    Bit(bool),
-    /// Of a word.
-    Word(i64),
 }
 
 /// Compares two programs.
@@ -252,9 +228,14 @@ impl<'s> Prover<'s> {
             Comparison::Same { .. } => Ok(()),
             Comparison::Undecided => undecided("prove.undecided"),
             Comparison::Unlike => undecided("prove.unlike"),
-            Comparison::Different { what, sides: values_of, values } => {
+            Comparison::Different { what, place, sides: values_of, values } => {
+                // Formulas know less than a PLC: what they leave open may be what it never does.
+                let state = counterexample::state(&formulas, &values).filter(|state| {
+                    counterexample::is_confirmed(state, [&left, &right], &place, values_of)
+                });
+                let Some(state) = state else { return undecided("prove.unconfirmed") };
                 let at = sides.map(|side| rung_of(side, &what));
-                let (inputs, before) = inputs(&formulas, &values);
+                let (inputs, before) = counterexample::inputs(&state);
                 let found = Counterexample { inputs, before, what, sides: values_of, at };
                 Err(Proof::Different(Box::new(found)))
             }
@@ -292,49 +273,4 @@ fn rung_of(side: &[(&Source, &Path)], what: &str) -> Option<Span> {
     };
     let rung = side.iter().rfind(drives).or(side.first());
     rung.map(|(source, _)| source.span())
-}
-
-/// Values of atoms as values of devices, and as they were one scan before where a change matters.
-fn inputs(
-    formulas: &Formulas,
-    values: &BTreeMap<u32, bool>,
-) -> (BTreeMap<String, Value>, BTreeMap<String, bool>) {
-    let mut inputs = BTreeMap::new();
-    let mut before = BTreeMap::new();
-    let mut limits: BTreeMap<String, (i64, Option<i64>)> = BTreeMap::new();
-    let mut idle = Vec::new();
-    for (atom, value) in values {
-        match formulas.atom_at(*atom) {
-            Atom::Bit(of) => {
-                inputs.insert(of.name.to_string(), Value::Bit(*value));
-            }
-            Atom::Edge { of, rising, .. } if *value => {
-                inputs.insert(of.name.to_string(), Value::Bit(*rising));
-                before.insert(of.name.to_string(), !rising);
-            }
-            Atom::Edge { of, rising, .. } => idle.push((of.name.to_string(), *rising)),
-            Atom::Behind(_) | Atom::Rail => {}
-            Atom::Reaches { word, number } => {
-                let name = word.name.trim_start_matches("D ").to_string();
-                let (least, below) = limits.entry(name).or_insert((0, None));
-                match value {
-                    true => *least = (*least).max(*number),
-                    false => *below = Some(below.map_or(*number, |other| other.min(*number))),
-                }
-            }
-            Atom::AtLeast { word, other } => {
-                inputs.insert(format!("{} >= {}", word.name, other.name), Value::Bit(*value));
-            }
-        }
-    }
-    for (name, (least, below)) in limits {
-        let word = below.map_or(least, |below| least.min(below - 1));
-        inputs.insert(name, Value::Word(word));
-    }
-    for (name, rising) in idle {
-        // A bit that did not change has no edge of either kind.
-        let now = inputs.get(&name).map_or(rising, |value| *value == Value::Bit(true));
-        before.entry(name).or_insert(now);
-    }
-    (inputs, before)
 }
