@@ -124,7 +124,9 @@ pub fn compare_outcome(
     bits.dedup_by(|(left, _), (right, _)| left == right);
     for (_, bit) in bits {
         let sides = [left.bit(bit, formulas), right.bit(bit, formulas)];
-        if let Some(difference) = difference(formulas, sides, || (bit.text.to_string(), Place::Bit(bit.key()))) {
+        if let Some(difference) =
+            difference(formulas, sides, || (bit.text.to_string(), Place::Bit(bit.key())))
+        {
             return difference;
         }
     }
@@ -168,6 +170,7 @@ fn what(effect: &Effect<'_>) -> String {
             let words = action.terms.iter().map(|term| term.text.as_str());
             std::iter::once(form.mnemonic().as_str()).chain(words).collect::<Vec<_>>().join(" ")
         }
+        (Deed::Compute(_), _) => action.terms.last().map(|term| term.text.to_string()).unwrap_or_default(),
         (_, term) => term.map(|term| term.text.to_string()).unwrap_or_default(),
     }
 }
@@ -176,12 +179,14 @@ fn what(effect: &Effect<'_>) -> String {
 /// whose values are known, or decides what comes next. What it does when its condition fails depends on what was
 /// before.
 pub fn touches_bits(action: &Action) -> bool {
-    let is_bit = |term: &Term| term.operand.device().is_some_and(|device| device.kind.is_bit());
+    // States, timers and counters change in events only, and these come in the same order.
+    let is_bit = |term: &Term| term.operand.device().is_some_and(|device| is_driven(device.kind));
     match action.deed {
         Deed::Instruction(form) => {
             form.instruction.flow() != Flow::Straight || action.terms.iter().any(is_bit)
         }
         Deed::Coil(_) => action.terms.first().is_some_and(covers_others),
+        Deed::Compute(_) => action.terms.last().is_some_and(covers_others),
         Deed::Call(call) => call.changes(&action.terms).iter().any(covers_others),
         Deed::Jump | Deed::Return => true,
     }
@@ -189,6 +194,10 @@ pub fn touches_bits(action: &Action) -> bool {
 
 /// Whether who writes to it may write to bits that have names of their own.
 fn covers_others(term: &Term) -> bool {
-    use DeviceKind::{M, X, Y};
-    !term.is_lone() && term.operand.device().is_none_or(|device| matches!(device.kind, X | Y | M))
+    !term.is_lone() && term.operand.device().is_none_or(|device| is_driven(device.kind))
+}
+
+/// Whether coils drive single bits of this kind.
+fn is_driven(kind: DeviceKind) -> bool {
+    matches!(kind, DeviceKind::X | DeviceKind::Y | DeviceKind::M)
 }

@@ -179,17 +179,21 @@ impl<'s> Scan<'s> {
         self.state.left_behind.get(&(self.events.len() as u32))
     }
 
-    /// The register that MOV writes with what it holds then, as this is one of the instructions whose working is known.
+    /// The register that MOV or a calculation writes with what it holds then, as far as that is known.
     fn moved(&self, action: &Action, power: bool) -> Option<(SmolStr, i64)> {
-        let (Deed::Instruction(form), [source, register]) = (action.deed, &action.terms[..]) else {
-            return None;
-        };
+        let register = action.terms.last()?;
         let is_register = matches!(register.operand, Operand::Device(Device { kind: DeviceKind::D, .. }));
-        if Form::named("MOV") != Some(form) || !is_register {
-            return None;
-        }
-        let value = self.word(if power { source } else { register }, false);
-        Some((register.key(), value))
+        let copies = match action.deed {
+            Deed::Compute(computation) => computation.copies(),
+            Deed::Instruction(form) if Form::named("MOV") == Some(form) && is_register => true,
+            _ => return None,
+        };
+        let source = match power {
+            true if copies => action.terms.first()?,
+            true => return None,
+            false => register,
+        };
+        Some((register.key(), self.word(source, false)))
     }
 }
 

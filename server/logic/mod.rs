@@ -18,6 +18,9 @@ pub use rung::{Network, Refusal, Rung};
 mod call;
 pub use call::{Argument, Call};
 
+mod computation;
+pub use computation::Computation;
+
 mod block;
 
 mod builder;

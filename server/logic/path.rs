@@ -1,6 +1,6 @@
 //! What power does in a rung: conditions that it passes, and what it drives behind them.
 
-use super::{Call, Expression, Term};
+use super::{Call, Computation, Expression, Term};
 use crate::document::{Scopes, coil_form};
 use crate::ladder::CoilKind;
 use crate::target::{Form, Role};
@@ -58,6 +58,8 @@ pub enum Deed {
     Instruction(Form),
     /// Calls a function block; the operands are the instance and those of its pins.
     Call(Call),
+    /// Stores the result of a calculation with words; the operands are its inputs and the result.
+    Compute(Computation),
     /// Goes on at a network of the same program; the label is the operand.
     Jump,
     /// Leaves the program unit.

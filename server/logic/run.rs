@@ -17,7 +17,7 @@ pub struct Effect<'p> {
     pub guard: Formula,
     /// Its number among the events, from 1; nothing if it drives a bit whose value is known.
     pub event: Option<u32>,
-    /// What a call is handed over: the value of each of its operands but the instance.
+    /// What a call or a calculation is handed over: the value of each of its operands but the instance.
     pub reads: Vec<Formula>,
 }
 
@@ -332,6 +332,7 @@ impl<'p> Run<'p> {
         self.events += 1;
         let reads = match action.deed {
             Deed::Call(_) => action.terms.iter().skip(1).map(|term| self.bit(term, formulas)).collect(),
+            Deed::Compute(_) => action.terms.iter().map(|term| self.bit(term, formulas)).collect(),
             _ => Vec::new(),
         };
         self.effects.push(Effect { action, guard, event: Some(self.events), reads });
@@ -358,6 +359,11 @@ impl<'p> Run<'p> {
                 self.touch(VARIABLES, formulas);
                 for changed in call.changes(&action.terms) {
                     self.change_term(&changed, formulas);
+                }
+            }
+            Deed::Compute(_) => {
+                if let Some(result) = action.terms.last() {
+                    self.change_term(result, formulas);
                 }
             }
             // What is done meanwhile elsewhere, nobody knows here.

@@ -69,7 +69,9 @@ impl Term {
     pub fn address(&self) -> Option<DirectAddress> {
         match (self.operand, self.storage) {
             (Operand::Direct(address), _) => Some(address),
-            (Operand::Variable, Storage::At(address)) if !self.text.contains(['.', '[', '^']) => Some(address),
+            (Operand::Variable, Storage::At(address)) if !self.text.contains(['.', '[', '^']) => {
+                Some(address)
+            }
             _ => None,
         }
     }
@@ -92,6 +94,22 @@ impl Term {
             },
             _ => false,
         }
+    }
+
+    /// Whether who writes to it may change `other`: the same, or what may lie in the same place.
+    pub fn may_cover(&self, other: &Term) -> bool {
+        let area = |term: &Term| match (term.operand, term.storage) {
+            (Operand::Direct(address), _) | (Operand::Variable, Storage::At(address)) => {
+                Some(address.location)
+            }
+            _ => None,
+        };
+        let is_variable = |term: &Term| matches!(term.operand, Operand::Variable | Operand::Direct(_));
+        let is_anywhere = [self, other].iter().any(|term| term.storage == Storage::Anywhere);
+        let is_apart = self.is_lone() && other.is_lone();
+        self == other
+            || is_anywhere && is_variable(self) && is_variable(other)
+            || !is_apart && area(self).is_some() && area(self) == area(other)
     }
 
     /// What it means, in one spelling: `X10` for `x010`, `K16` for `H10`, names in lower case.

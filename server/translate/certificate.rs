@@ -106,11 +106,7 @@ fn located(path: Path, document: &Document, pou: Option<usize>) -> Path {
 }
 
 /// The rungs of the result, and whether it has declarations of its own.
-fn read_again(
-    (document, target): (&Document, &'static Target),
-    to: To,
-    text: &str,
-) -> (Vec<Written>, bool) {
+fn read_again((document, target): (&Document, &'static Target), to: To, text: &str) -> (Vec<Written>, bool) {
     let Some(notation) = page::notation(to) else {
         let (equations, problems) = from_boolean::read(text, document.reader());
         let equations = equations.into_iter();

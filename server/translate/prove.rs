@@ -219,20 +219,17 @@ impl<'s> Prover<'s> {
         let (comparison, formulas) = compare(&left, &right, known, false);
         match comparison {
             // With no power at the rail they may do otherwise.
-            Comparison::Same { .. } if self.may_be_off => {
-                match compare(&left, &right, known, true) {
-                    (Comparison::Same { .. }, _) => Ok(()),
-                    _ => undecided("prove.undecided"),
-                }
-            }
+            Comparison::Same { .. } if self.may_be_off => match compare(&left, &right, known, true) {
+                (Comparison::Same { .. }, _) => Ok(()),
+                _ => undecided("prove.undecided"),
+            },
             Comparison::Same { .. } => Ok(()),
             Comparison::Undecided => undecided("prove.undecided"),
             Comparison::Unlike => undecided("prove.unlike"),
             Comparison::Different { what, place, sides: values_of, values } => {
                 // Formulas know less than a PLC: what they leave open may be what it never does.
-                let state = counterexample::state(&formulas, &values).filter(|state| {
-                    counterexample::is_confirmed(state, [&left, &right], &place, values_of)
-                });
+                let state = counterexample::state(&formulas, &values)
+                    .filter(|state| counterexample::is_confirmed(state, [&left, &right], &place, values_of));
                 let Some(state) = state else { return undecided("prove.unconfirmed") };
                 let at = sides.map(|side| rung_of(side, &what));
                 let (inputs, before) = counterexample::inputs(&state);

@@ -149,7 +149,7 @@ impl Writer {
         let form = match action.deed {
             Deed::Coil(kind) => coil_form(kind),
             Deed::Instruction(form) => Some(form),
-            Deed::Call(_) | Deed::Jump | Deed::Return => None,
+            Deed::Call(_) | Deed::Compute(_) | Deed::Jump | Deed::Return => None,
         };
         let form = form.ok_or_else(|| Message::new("translate.no-instruction"))?;
         self.lines.push(Line { form, terms: action.terms.clone() });

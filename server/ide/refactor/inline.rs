@@ -90,7 +90,7 @@ fn runs_straight(placed: &Placed) -> bool {
     let is_straight = |action: &&Action| match action.deed {
         Deed::Coil(_) => true,
         Deed::Instruction(form) => form.instruction.flow() == Flow::Straight,
-        Deed::Call(_) => true,
+        Deed::Call(_) | Deed::Compute(_) => true,
         Deed::Jump | Deed::Return => false,
     };
     placed.rung.labels.is_empty() && path.actions().iter().all(is_straight)

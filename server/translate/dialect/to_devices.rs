@@ -1,11 +1,13 @@
 //! Paths of IEC 61131-3 in the words of the FX family.
 
 use super::super::source::Program;
-use super::{device_at, without};
+use super::{COMPUTED, PULSE, STEPPED, device_at, without};
 use crate::document::Scopes;
 use crate::il::iec::SectionKind;
 use crate::ladder::{CoilKind, ContactKind};
-use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Storage, Term, Test};
+use crate::logic::{
+    Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Storage, Term, Test,
+};
 use crate::target::iec::LiteralValue;
 use crate::target::{Device, DeviceKind, Form, Operand, Target};
 use crate::text::{Span, folded};
@@ -82,6 +84,12 @@ fn taken_devices(program: &Program, scopes: &Scopes, target: &Target) -> FxHashS
     taken
 }
 
+/// Whether an instance detects the power of a pulse form.
+fn is_pulse(name: &str) -> bool {
+    let stem = name.get(..PULSE.len()).is_some_and(|stem| stem.eq_ignore_ascii_case(PULSE));
+    stem && name.len() > PULSE.len() && name[PULSE.len()..].bytes().all(|byte| byte.is_ascii_digit())
+}
+
 fn pointer(name: &str) -> Option<u32> {
     name.strip_prefix(['P', 'p'])?.parse().ok()
 }
@@ -130,6 +138,11 @@ impl Converter<'_> {
                 }
             }
         }
+        // What IEC does in each scan, a contact that is always on drives.
+        let is_bare = |drive: &Drive| matches!(drive, Drive::Action(action) if !action.deed.stands_alone());
+        if path.gates.is_empty() && path.drives.iter().any(is_bare) {
+            converted.gates.push(Gate::Pass(Expression::Constant(true)));
+        }
         for drive in &path.drives {
             converted.drives.push(match drive {
                 Drive::Path(path) => match &path.gates[..] {
@@ -147,14 +160,21 @@ impl Converter<'_> {
         let (Deed::Call(call), [Drive::Action(coil)]) = (detector.deed, &path.drives[..]) else {
             return None;
         };
+        let instance = detector.terms.first()?;
+        let is_last = matches!(path.gates.last(), Some(Gate::Through(last)) if last == detector);
+        if call.block.name == "R_TRIG" && is_last && is_pulse(&instance.text) {
+            let Deed::Compute(computation) = coil.deed else { return None };
+            let action = self.calculation(computation, coil).ok()?;
+            // RST has no pulse form.
+            let Deed::Instruction(form) = action.deed else { return None };
+            return Some(Action { deed: Deed::Instruction(Form { pulse: true, ..form }), ..action });
+        }
         let (kind, prefix) = match call.block.name {
             "R_TRIG" => (CoilKind::Rising, "PLS_"),
             "F_TRIG" => (CoilKind::Falling, "PLF_"),
             _ => return None,
         };
         let relay = coil.terms.first().filter(|_| coil.deed == Deed::Coil(CoilKind::Plain))?;
-        let is_last = matches!(path.gates.last(), Some(Gate::Through(last)) if last == detector);
-        let instance = detector.terms.first()?;
         let named = instance.text.get(..prefix.len())?.eq_ignore_ascii_case(prefix)
             && instance.text[prefix.len()..].eq_ignore_ascii_case(&relay.text);
         let terms = vec![self.bit(relay).ok()?];
@@ -255,10 +275,38 @@ impl Converter<'_> {
                 let form = without(Form::named("CJ").filter(|_| self::pointer(&pointer).is_some()))?;
                 (Deed::Instruction(form), vec![Term::new(operand, &pointer, label.span)])
             }
+            (Deed::Compute(computation), _) => return self.calculation(computation, action),
             (Deed::Call(call), [instance, ..]) => self.called(call, instance, &action.terms)?,
             _ => return Err(Refusal::NoCounterpart),
         };
         Ok(Action { deed, terms, span: action.span })
+    }
+
+    /// The instruction that a calculation is.
+    fn calculation(&self, computation: Computation, action: &Action) -> Result<Action, Refusal> {
+        let (inputs, result) = without(computation.operands(&action.terms))?;
+        let register = self.word(result)?;
+        without(matches!(register.operand, Operand::Device(_)).then_some(()))?;
+        let function = computation.function.name;
+        let row = |rows: &[(&'static str, &str)]| {
+            rows.iter().find(|(_, own)| *own == function).and_then(|(mnemonic, _)| Form::named(mnemonic))
+        };
+        let span = action.span;
+        match inputs {
+            [zero] if zero.text == "0" => {
+                let deed = Deed::Coil(CoilKind::Reset);
+                return Ok(Action { deed, terms: vec![register], span });
+            }
+            [left, one] if left == result && one.text == "1" && row(&STEPPED).is_some() => {
+                let deed = Deed::Instruction(without(row(&STEPPED))?);
+                return Ok(Action { deed, terms: vec![register], span });
+            }
+            _ => {}
+        }
+        let form = without(row(&COMPUTED))?;
+        let mut terms = inputs.iter().map(|term| self.word(term)).collect::<Result<Vec<_>, _>>()?;
+        terms.push(register);
+        Ok(Action { deed: Deed::Instruction(form), terms, span })
     }
 
     /// The output that the call of a timer or counter is.
