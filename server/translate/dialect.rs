@@ -47,12 +47,14 @@ const REGISTERS: u32 = 1000;
 /// From here on relays and registers are special.
 const FIRST_SPECIAL: u32 = 8000;
 
-/// What the result of a translation is written for: the document's target where it is of the same family.
-pub(super) fn target(document: &Document, to: To) -> &'static Target {
+/// What the result of a translation is written for: the document's target where it is of the same family. An FX list
+/// can be `wanted` for another model.
+pub(super) fn target(document: &Document, to: To, wanted: Option<Model>) -> &'static Target {
     let own = document.target();
-    match to {
-        To::Iec => Target::of(Model::Iec),
-        To::Fx if !own.is_fx() => Target::of(Model::Fx2n),
+    match (to, wanted.map(Target::of).filter(|wanted| wanted.is_fx())) {
+        (To::Iec, _) => Target::of(Model::Iec),
+        (To::Fx, Some(wanted)) => wanted,
+        (To::Fx, None) if !own.is_fx() => Target::of(Model::Fx2n),
         _ => own,
     }
 }
@@ -82,7 +84,7 @@ pub(super) fn convert(document: &Document, (to, target): (To, &'static Target), 
             source.rung.labels.iter_mut().for_each(|label| *label = names.of_label(label));
         }
         // The words of the other language are no list in this one.
-        source.rung.is_list &= converted.is_ok();
+        source.rung.is_list = false;
         source.rung.path = converted;
     }
 }

@@ -43,6 +43,26 @@ pub fn lines(path: &Path, target: &Target) -> Result<Vec<Line>, Message> {
     Ok(writer.lines)
 }
 
+/// `lines`, if `target` has all of their instructions and devices; else what it lacks.
+pub fn on_model(lines: Vec<Line>, target: &Target) -> Result<Vec<Line>, Message> {
+    let lacks = |word: &dyn fmt::Display| {
+        Message::new("translate.model-lacks").with("word", word).with("model", target.title)
+    };
+    for Line { form, terms } in &lines {
+        if !form.is_on(target.model) {
+            return Err(lacks(&form.mnemonic()));
+        }
+        for (place, term) in terms.iter().enumerate() {
+            let device = term.operand.device();
+            let is_there = device.is_none_or(|device| device.range_on(target).is_some());
+            if !is_there || !form.takes(place, &term.operand, target.model) {
+                return Err(lacks(term));
+            }
+        }
+    }
+    Ok(lines)
+}
+
 struct Writer {
     lines: Vec<Line>,
     /// How many powers are kept on the branch stack.

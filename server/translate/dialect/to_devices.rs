@@ -84,6 +84,11 @@ fn taken_devices(program: &Program, scopes: &Scopes, target: &Target) -> FxHashS
     taken
 }
 
+/// Whether a model of the family has it; what the target lacks is said of the instruction.
+fn is_known(device: Device) -> bool {
+    Target::ALL.into_iter().any(|target| device.range_on(target).is_some())
+}
+
 /// Whether an instance detects the power of a pulse form.
 fn is_pulse(name: &str) -> bool {
     let stem = name.get(..PULSE.len()).is_some_and(|stem| stem.eq_ignore_ascii_case(PULSE));
@@ -240,7 +245,7 @@ impl Converter<'_> {
     /// The device of this name that the target has.
     fn named(&self, name: &str) -> Option<Device> {
         match Operand::read(name, self.target.model) {
-            Operand::Device(device) => device.range_on(self.target).map(|_| device),
+            Operand::Device(device) => is_known(device).then_some(device),
             _ => None,
         }
     }
@@ -254,7 +259,7 @@ impl Converter<'_> {
             Storage::Anywhere => None,
             _ => device_at(term.address()?),
         };
-        device.filter(|device| device.range_on(self.target).is_some())
+        device.filter(|device| is_known(*device))
     }
 
     fn term(&self, device: Device, span: Span) -> Term {
