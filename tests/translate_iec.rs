@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use rungwise::document::{Document, Notation};
 use rungwise::ide::{self, Style};
 use rungwise::target::{Model, Target};
-use rungwise::translate::{Certificate, Options, Proof, To, Translation, prove, translate};
+use rungwise::translate::{Certificate, Options, Proof, To, Translated, Translation, prove, translate};
 use std::collections::HashMap;
 use std::path::Path;
 use std::process::Command;
@@ -403,7 +403,14 @@ proptest! {
     fn lists_of_any_words_come_to_an_end(lines in instructions()) {
         let text = lines.join("\n");
         for form in To::ALL {
-            to(&list(&text), form);
+            let translation = to(&list(&text), form);
+            // Each line belongs to a rung, or to the mistake that is told of it.
+            let mut start = 0;
+            for line in text.split_inclusive('\n') {
+                let covers = |rung: &Translated| rung.span.touches(start) && !rung.span.is_empty();
+                prop_assert!(translation.rungs.iter().any(covers), "{:?} {}\n{}", form, line, text);
+                start += line.len();
+            }
         }
     }
 }
@@ -630,8 +637,7 @@ fn calculations_of_a_list_are_boxes() {
 
 #[test]
 fn what_a_jump_skips_is_done_as_before() {
-    let condition = ["LD a", "LDN a\nOR b", "LD a\nANDN b\nNOT"];
-    for condition in condition {
+    for condition in ["LD a", "LDN a\nOR b", "LD a\nANDN b\nNOT", "LD a\nANDN b\nST w\nNOT"] {
         let text = program(
             BITS,
             &format!("{condition}\nST y\nJMPCN over\nLD n\nADD 1\nST n\nLD n\nST k\nover:\nLD n\nGT 3\nST z"),
