@@ -96,3 +96,27 @@ fn symbols_of_a_project_stay_and_are_proved() {
     assert!(drawn.contains("Start") && drawn.contains("[> Level K10]"), "{drawn}");
     assert_eq!(run(&folder, &["translate", "main.il", "--to", "boolean", "--prove"]).0, 0);
 }
+
+#[test]
+fn a_list_for_another_model_says_what_that_lacks() {
+    let head =
+        "PROGRAM P\nVAR\nStart AT %IX0.0 : BOOL; Far AT %MX500.0 : BOOL; Lamp AT %QX0.0 : BOOL;\nEND_VAR\n";
+    let text = format!("{head}LD Start\nST Lamp\nLD Start\nST Far\nEND_PROGRAM\n");
+    let folder = folder(&[("motor.il", MOTOR), ("other.il", &text)]);
+    let (code, out, err) = run(&folder, &["translate", "other.il", "--to", "fx"]);
+    assert_eq!((code, out.contains("; ST Far")), (1, true), "{out}");
+    assert!(err.contains("FX2N has no M4000"), "{err}");
+    let (code, out, err) =
+        run(&folder, &["translate", "other.il", "--to", "fx", "--target", "fx3u", "--prove"]);
+    assert_eq!((code, out.as_str()), (0, "LD X0\nOUT Y0\nLD X0\nOUT M4000\nEND\n"), "{err}");
+    // The model of the project is the one to write for.
+    std::fs::write(folder.path().join("rungwise.toml"), "target = \"fx3u\"\ndialect = \"iec\"\n").unwrap();
+    assert_eq!(run(&folder, &["translate", "other.il", "--to", "fx"]).0, 0);
+    let (code, _, err) = run(&folder, &["translate", "other.il", "--to", "fx", "--target", "fx1s"]);
+    assert!(code == 1 && err.contains("FX1S has no M4000"), "{err}");
+    for arguments in [["ladder", "fx3u"], ["fx", "iec"]] {
+        let (code, _, err) =
+            run(&folder, &["translate", "other.il", "--to", arguments[0], "--target", arguments[1]]);
+        assert_eq!((code, err.contains("no model for")), (2, true), "{err}");
+    }
+}

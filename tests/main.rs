@@ -52,6 +52,7 @@ mod manifest_schema;
 mod markdown;
 mod mistakes;
 mod plain_instructions;
+mod proof_memory;
 mod rules;
 mod rules_drawing;
 mod rules_fx;

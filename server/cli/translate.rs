@@ -1,6 +1,7 @@
 //! `rungwise translate`
 
 use super::Outcome;
+use super::check::target_named;
 use super::fmt::style_of;
 use super::input::{Program, complain, put, remark};
 use super::prove;
@@ -20,6 +21,9 @@ pub(super) struct Arguments {
     /// The form to translate it to.
     #[arg(long, value_enum)]
     to: Form,
+    /// The FX model that an FX list is for [default: that of the project or of the program].
+    #[arg(long, value_parser = target_named)]
+    target: Option<&'static Target>,
     /// Write the result to this file, not to standard output.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -53,7 +57,15 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         Form::Iec => To::Iec,
         Form::Boolean => To::Boolean,
     };
+    if let Some(asked) = arguments.target.filter(|asked| to != To::Fx || !asked.is_fx()) {
+        let reason = Message::new("cli.no-model").with("target", asked.name).with("form", to.name());
+        let help = Message::new("cli.choose-model").render(language);
+        complain("target-refused", &reason.render(language), &help, language);
+        return Outcome::Unusable;
+    }
+    let of_project = program.manifest.target().filter(|_| !program.document.target().is_fx());
     let options = Options {
+        model: arguments.target.or(of_project).map(|target| target.model),
         style: style_of(program, None).ladder(),
         notation: if arguments.symbols { Equations::Symbols } else { Equations::Algebra },
         ..Options::default()

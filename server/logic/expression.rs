@@ -162,6 +162,18 @@ impl Expression {
         }
     }
 
+    /// Calls `found` with all operands.
+    pub fn each_term(&mut self, found: &mut impl FnMut(&mut Term)) {
+        match self {
+            Expression::Constant(_) => {}
+            Expression::Contact(contact) => contact.terms.iter_mut().for_each(found),
+            Expression::Not(part) => part.each_term(found),
+            Expression::And(parts) | Expression::Or(parts) => {
+                parts.iter_mut().for_each(|part| part.each_term(found));
+            }
+        }
+    }
+
     /// The contacts, left to right and top to bottom.
     pub fn contacts(&self) -> Vec<&Contact> {
         let mut contacts = Vec::new();

@@ -42,8 +42,9 @@ pub(super) fn write(
         To::Iec => Helpers::beside(header::names(document, sources.iter())),
         _ => Helpers::default(),
     };
+    let is_moved = document.target().model != target.model;
     let mut unless_cancelled =
-        |source| (!is_cancelled()).then(|| body(source, (to, target), options, &mut helpers));
+        |source| (!is_cancelled()).then(|| body(source, (to, target), is_moved, options, &mut helpers));
     let bodies: Vec<Body> = sources.iter().map(&mut unless_cancelled).collect::<Option<_>>()?;
     let rails = bodies.iter().filter_map(|body| match body {
         Body::Drawing(drawing) => Some(drawing.rail_column_min()),
@@ -85,7 +86,13 @@ pub(super) fn write(
     Some(Translation { text: page.text, rungs, helpers })
 }
 
-fn body(source: &Source, (to, target): (To, &Target), options: &Options, helpers: &mut Helpers) -> Body {
+fn body(
+    source: &Source,
+    (to, target): (To, &Target),
+    is_moved: bool,
+    options: &Options,
+    helpers: &mut Helpers,
+) -> Body {
     let kept = |reason: Message| Body::Kept(source.rung.span.of(source.chunk.text()).to_string(), reason);
     let path = match &source.rung.path {
         Ok(None) => return Body::Nothing,
@@ -93,7 +100,13 @@ fn body(source: &Source, (to, target): (To, &Target), options: &Options, helpers
         Err(refusal) => return kept(refusal.message()),
     };
     let written = match to {
-        To::Fx => to_fx::lines(path, target).map(Body::Lines),
+        To::Fx => {
+            let lines = to_fx::lines(path, target);
+            // What a document has for its own model is not for the translation to judge.
+            let fit =
+                lines.and_then(|lines| if is_moved { to_fx::on_model(lines, target) } else { Ok(lines) });
+            fit.map(Body::Lines)
+        }
         To::Iec => {
             helpers.pou = source.pou;
             to_iec::lines(path, helpers).map(|lines| Body::Text(header::laid_out(&(lines.join("\n") + "\n"))))

@@ -66,6 +66,7 @@ impl Writer {
             }
             Deed::Instruction(form) => form.mnemonic(),
             Deed::Call(call) => call.block.name.to_string(),
+            Deed::Compute(computation) => computation.function.name.to_string(),
             Deed::Jump => "JMP".to_string(),
             Deed::Return => "RET".to_string(),
         };

@@ -44,6 +44,26 @@ pub fn lines(path: &Path, target: &Target) -> Result<Vec<Line>, Message> {
     Ok(writer.lines)
 }
 
+/// `lines`, if `target` has all of their instructions and devices; else what it lacks.
+pub fn on_model(lines: Vec<Line>, target: &Target) -> Result<Vec<Line>, Message> {
+    let lacks = |word: &dyn fmt::Display| {
+        Message::new("translate.model-lacks").with("word", word).with("model", target.title)
+    };
+    for Line { form, terms } in &lines {
+        if !form.is_on(target.model) {
+            return Err(lacks(&form.mnemonic()));
+        }
+        for (place, term) in terms.iter().enumerate() {
+            let device = term.operand.device();
+            let is_there = device.is_none_or(|device| device.range_on(target).is_some());
+            if !is_there || !form.takes(place, &term.operand, target.model) {
+                return Err(lacks(term));
+            }
+        }
+    }
+    Ok(lines)
+}
+
 struct Writer {
     lines: Vec<Line>,
     /// How many powers are kept on the branch stack.
@@ -159,7 +179,7 @@ impl Writer {
         let form = match action.deed {
             Deed::Coil(kind) => coil_form(kind),
             Deed::Instruction(form) => Some(form),
-            Deed::Call(_) | Deed::Jump | Deed::Return => None,
+            Deed::Call(_) | Deed::Compute(_) | Deed::Jump | Deed::Return => None,
         };
         let form = form.ok_or_else(|| Message::new("translate.no-instruction"))?;
         self.lines.push(Line { form, terms: action.terms.clone() });

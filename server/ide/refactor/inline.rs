@@ -1,6 +1,6 @@
 //! The condition of a relay in the place of its contacts, and the relay gone.
 
-use super::neighbourhood::{Neighbourhood, Placed};
+use super::neighbourhood::Neighbourhood;
 use super::{Change, Proposal};
 use crate::document::{ProjectView, Symbol};
 use crate::ide::bookkeeping::Book;
@@ -8,6 +8,7 @@ use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Test};
 use crate::target::{Device, DeviceKind, Flow};
 use crate::text::Message;
+use crate::translate::Source;
 use smol_str::SmolStr;
 
 pub(super) fn propose(around: &Neighbourhood<'_>, view: &ProjectView<'_>) -> Option<Proposal> {
@@ -71,12 +72,12 @@ fn driven_relay(path: &Path) -> Option<(usize, Relay)> {
 }
 
 /// Whether each scan comes through the rung, and nothing jumps to it.
-fn runs_straight(placed: &Placed) -> bool {
+fn runs_straight(placed: &Source) -> bool {
     let Some(path) = placed.path() else { return matches!(placed.rung.path, Ok(None)) };
     let is_straight = |action: &&Action| match action.deed {
         Deed::Coil(_) => true,
         Deed::Instruction(form) => form.instruction.flow() == Flow::Straight,
-        Deed::Call(_) => true,
+        Deed::Call(_) | Deed::Compute(_) => true,
         Deed::Jump | Deed::Return => false,
     };
     placed.rung.labels.is_empty() && path.actions().iter().all(is_straight)
@@ -91,7 +92,7 @@ impl Relay {
     }
 
     /// How often the rung names it.
-    fn mentions(&self, placed: &Placed) -> u32 {
+    fn mentions(&self, placed: &Source) -> u32 {
         let own = placed.rung.span;
         let mentions = placed.chunk.mentions().iter().filter(|mention| {
             mention.symbol == Symbol::Device(self.device)

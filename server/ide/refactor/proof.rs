@@ -1,10 +1,11 @@
 //! The law of refactorings: what was written is read again, and does the same; everything around it stands as before.
 
 use super::Proposal;
-use super::neighbourhood::{Neighbourhood, Placed};
+use super::neighbourhood::Neighbourhood;
 use crate::document::{Document, Edit};
 use crate::logic::{Comparison, Formulas, Path, compare, compare_but};
 use crate::text::{Span, TextEdit};
+use crate::translate::Source;
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
@@ -22,8 +23,8 @@ fn proved(around: &Neighbourhood<'_>, proposal: &Proposal, edits: &[TextEdit]) -
     let window = window(around, first.first, last.first + last.count)?;
     let grown = after.len() as i64 - around.document.len() as i64;
     let new_window = Span { start: window.start, end: u32::try_from(i64::from(window.end) + grown).ok()? };
-    let old = Placed::within(around.document, window);
-    let new = Placed::within(&after, new_window);
+    let old = Source::within(around.document, window);
+    let new = Source::within(&after, new_window);
     if !ends_chunk(&after, new_window) || !same_comments(&old, &new) {
         return None;
     }
@@ -46,7 +47,7 @@ fn proved(around: &Neighbourhood<'_>, proposal: &Proposal, edits: &[TextEdit]) -
         return None;
     }
     let behind = old.len() - (last.first + last.count - skipped);
-    let changed = |placed: &[Placed]| -> Option<Vec<Path>> {
+    let changed = |placed: &[Source]| -> Option<Vec<Path>> {
         let rungs = placed.get(first.first - skipped..placed.len().checked_sub(behind)?)?;
         let paths = rungs.iter().map(|placed| placed.rung.path.clone().ok());
         Some(paths.collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
@@ -79,18 +80,18 @@ fn ends_chunk(document: &Document, window: Span) -> bool {
     starts(window.start) && starts(window.end)
 }
 
-fn same_rung(left: &Placed, right: &Placed) -> Option<()> {
+fn same_rung(left: &Source, right: &Source) -> Option<()> {
     same_head(left, right)?;
     (left.text() == right.text()).then_some(())
 }
 
 /// The labels and the network of a rung.
-fn same_head(left: &Placed, right: &Placed) -> Option<()> {
+fn same_head(left: &Source, right: &Source) -> Option<()> {
     (left.rung.labels == right.rung.labels && left.rung.network == right.rung.network).then_some(())
 }
 
-fn same_comments(left: &[Placed], right: &[Placed]) -> bool {
-    let comments = |placed: &[Placed]| {
+fn same_comments(left: &[Source], right: &[Source]) -> bool {
+    let comments = |placed: &[Source]| {
         let all = placed.iter().flat_map(|placed| {
             let comments = placed.rung.comments.iter();
             comments.map(|comment| comment.of(placed.chunk.text()).trim_end().to_string())
