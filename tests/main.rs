@@ -43,6 +43,7 @@ mod lsp_edit;
 mod lsp_project;
 mod lsp_refactor;
 mod lsp_robust;
+mod lsp_streaming;
 mod lsp_tokens;
 mod lsp_translate;
 mod lsp_within;

@@ -39,6 +39,9 @@ pub use formula::{Atom, Formula, Formulas, Moment};
 mod run;
 pub use run::{Effect, Run};
 
+mod effort;
+pub use effort::Effort;
+
 mod decide;
 pub use decide::{Verdict, equal, is_never};
 

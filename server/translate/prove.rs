@@ -5,7 +5,7 @@
 
 use super::source::{self, Source};
 use crate::document::Document;
-use crate::logic::{Atom, Comparison, Deed, Formulas, Path, compare, compare_outcome, touches_bits};
+use crate::logic::{Atom, Comparison, Deed, Effort, Formulas, Path, compare, compare_outcome, touches_bits};
 use crate::target::Flow;
 use crate::text::{Message, Span};
 use std::collections::BTreeMap;
@@ -57,7 +57,8 @@ pub enum Value {
 pub fn prove(left: &Document, right: &Document) -> Proof {
     let sources = [source::rungs(left, None), source::rungs(right, None)];
     let stretches = [stretches(&sources[0]), stretches(&sources[1])];
-    let mut prover = Prover { before: [Vec::new(), Vec::new()], is_reordered: false };
+    let mut prover =
+        Prover { before: [Vec::new(), Vec::new()], is_reordered: false, effort: Effort::of_program() };
     let [left, right] = &stretches;
     let outcome = left.iter().zip(right).try_for_each(|(left, right)| prover.stretches(left, right));
     match outcome {
@@ -148,6 +149,7 @@ struct Prover<'s> {
     /// The paths that are known to do the same, on either side.
     before: [Vec<&'s Path>; 2],
     is_reordered: bool,
+    effort: Effort,
 }
 
 impl<'s> Prover<'s> {
@@ -174,10 +176,11 @@ impl<'s> Prover<'s> {
 
     /// Compares rungs in step; where that does not do, by what comes of them.
     fn rungs(&mut self, sides: [&[(&'s Source, &'s Path)]; 2]) -> Result<(), Proof> {
+        let effort = &mut self.effort;
         let in_step = groups(sides).is_some_and(|groups| {
             groups.into_iter().all(|group| {
                 let paths = group.map(|side| side.iter().map(|(_, path)| *path).collect::<Vec<_>>());
-                let comparison = compare(&paths[0], &paths[1], &mut Formulas::default());
+                let comparison = effort.ask(|formulas| compare(&paths[0], &paths[1], formulas));
                 matches!(comparison, Comparison::Same { .. })
             })
         });
@@ -193,12 +196,11 @@ impl<'s> Prover<'s> {
     }
 
     fn outcome(
-        &self,
+        &mut self,
         paths: &[Vec<&'s Path>; 2],
         sides: [&[(&'s Source, &'s Path)]; 2],
     ) -> Result<(), Proof> {
-        let mut formulas = Formulas::default();
-        let alone = compare_outcome(&paths[0], &paths[1], [0, 0], &mut formulas);
+        let alone = self.effort.ask(|formulas| compare_outcome(&paths[0], &paths[1], [0, 0], formulas));
         if matches!(alone, Comparison::Same { .. }) {
             return Ok(());
         }
@@ -206,20 +208,19 @@ impl<'s> Prover<'s> {
         let [left, right] =
             [0, 1].map(|side| self.before[side].iter().chain(&paths[side]).copied().collect::<Vec<&Path>>());
         let known = [self.before[0].len(), self.before[1].len()];
-        let mut formulas = Formulas::default();
         let at = sides.map(|side| side.first().map(|(source, _)| source.span()));
         let undecided = |key| Err(Proof::Undecided { reason: Message::new(key), at });
-        match compare_outcome(&left, &right, known, &mut formulas) {
+        self.effort.ask(|formulas| match compare_outcome(&left, &right, known, formulas) {
             Comparison::Same { .. } => Ok(()),
             Comparison::Undecided => undecided("prove.undecided"),
             Comparison::Unlike => undecided("prove.unlike"),
             Comparison::Different { what, sides: values_of, values } => {
                 let at = sides.map(|side| rung_of(side, &what));
-                let (inputs, before) = inputs(&formulas, &values);
+                let (inputs, before) = inputs(formulas, &values);
                 let found = Counterexample { inputs, before, what, sides: values_of, at };
                 Err(Proof::Different(Box::new(found)))
             }
-        }
+        })
     }
 }
 
