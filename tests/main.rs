@@ -41,6 +41,7 @@ mod lsp_calls;
 mod lsp_client;
 mod lsp_edit;
 mod lsp_project;
+mod lsp_prove;
 mod lsp_refactor;
 mod lsp_robust;
 mod lsp_streaming;

@@ -287,6 +287,7 @@ impl Task {
         let mut diagnostics = judged.realtime;
         diagnostics.extend(judged.batch.found.iter().cloned());
         let diagnostics = check::sorted(diagnostics);
+        judged.batch.around.keep(diagnostics.clone());
         if shown.as_ref() != Some(&diagnostics) {
             self.push(&judged.batch.around, diagnostics).await;
         }
