@@ -1,7 +1,7 @@
 //! `rungwise prove`
 
-use super::Outcome;
 use super::input::{Program, complain, programs, put, say};
+use super::{Outcome, translate};
 use crate::text::{Language, Message};
 use crate::translate::{Proof, prove, told};
 use clap::ValueEnum;
@@ -31,7 +31,8 @@ enum ProofFormat {
 }
 
 pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
-    let [Some(left), Some(right)] = [&arguments.left, &arguments.right].map(|path| read(path, language))
+    let [Some(left), Some(right)] =
+        [&arguments.left, &arguments.right].map(|path| translate::read(path, language))
     else {
         return Outcome::Unusable;
     };

@@ -83,7 +83,7 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
 }
 
 /// The program at `path`: a list, a drawing, or equations, which stand for a list.
-fn read(path: &Path, language: Language) -> Option<Program> {
+pub(super) fn read(path: &Path, language: Language) -> Option<Program> {
     let is_equations = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("bool"));
     if !is_equations {
         return prove::read(path, language);

@@ -121,8 +121,10 @@ fn operand_words(line: &str) -> impl Iterator<Item = &str> {
         let beside = |sign: Option<char>| sign.is_some_and(|sign| "()[]{}|!┤├│┃".contains(sign));
         let mark = word.len() == 1 && "SRLUPNsrlupn".contains(word);
         let single = mark && (beside(before.chars().next_back()) || beside(after.chars().next()));
+        // `[D>= D0 K5]` compares 32 bits.
+        let is_wide = word.eq_ignore_ascii_case("D") && after.starts_with(['<', '>', '=']);
         let mnemonic = before.trim_end().ends_with(['[', '(', '{']) && after.trim_start().starts_with(part);
-        !(single || mnemonic)
+        !(single || mnemonic || is_wide)
     })
 }
 

@@ -3,7 +3,7 @@
 use super::decide::{Verdict, equal};
 use super::{Action, Atom, Deed, Effect, Formula, Formulas, Path, Run, Term};
 use crate::ladder::CoilKind;
-use crate::target::{DeviceKind, Flow};
+use crate::target::{Access, Device, DeviceKind, Flow};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 use std::collections::BTreeMap;
@@ -187,10 +187,33 @@ pub fn touches_bits(action: &Action) -> bool {
         Deed::Instruction(form) => {
             form.instruction.flow() != Flow::Straight || action.terms.iter().any(is_bit)
         }
-        Deed::Coil(_) => action.terms.first().is_some_and(covers_others),
+        // Instructions look at special relays that none of their operands names: carry, direction, modes.
+        Deed::Coil(_) => action.terms.first().is_some_and(|term| covers_others(term) || is_special(term)),
         Deed::Compute(_) => action.terms.last().is_some_and(covers_others),
         Deed::Call(call) => call.changes(&action.terms).iter().any(covers_others),
         Deed::Jump | Deed::Return => true,
+    }
+}
+
+fn is_special(term: &Term) -> bool {
+    term.operand.device().is_some_and(Device::is_special)
+}
+
+/// Whether an action may drive the bit with this key.
+pub fn may_drive(action: &Action, key: &str) -> bool {
+    let is_alike =
+        |term: &Term| term.operand.device().is_none_or(|device| key.starts_with(device.kind.letter()));
+    let may_be = |term: &Term| term.key() == key || covers_others(term) && is_alike(term);
+    match action.deed {
+        Deed::Coil(_) => action.terms.first().is_some_and(may_be),
+        Deed::Instruction(form) => {
+            let operands = action.terms.iter().zip(form.instruction.operands);
+            let mut written = operands.filter(|(_, spec)| spec.access != Access::Read);
+            form.instruction.flow() == Flow::Straight && written.any(|(term, _)| may_be(term))
+        }
+        Deed::Call(call) => call.changes(&action.terms).iter().any(may_be),
+        Deed::Compute(_) => action.terms.last().is_some_and(may_be),
+        Deed::Jump | Deed::Return => false,
     }
 }
 

@@ -1,10 +1,10 @@
 //! Runs paths with plain values, one scan from a given state: a second opinion on what the diagrams say, that shares
 //! nothing with them but the reading of rungs.
 
-use super::{Action, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
+use super::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::target::iec::LiteralValue;
-use crate::target::{Constant, Device, DeviceKind, Form, Operand};
+use crate::target::{Constant, Device, DeviceKind, Flow, Form, Operand};
 use smol_str::{SmolStr, format_smolstr};
 use std::collections::BTreeMap;
 
@@ -119,7 +119,8 @@ impl<'s> Scan<'s> {
     fn value(&self, term: &Term) -> bool {
         match term.operand {
             Operand::Literal(literal) if literal.value == LiteralValue::Bool(true) => true,
-            Operand::Device(Device::ALWAYS_ON) => true,
+            Operand::Device(Device::OFF_AT_FIRST) => !self.bit(&Device::FIRST_SCAN.to_string()),
+            Operand::Device(device) if let Some(value) = device.always() => value,
             Operand::WordBit { word, bit } if self.words.contains_key(&*word.to_string()) => {
                 self.words[&*word.to_string()] >> bit & 1 == 1
             }
@@ -168,11 +169,58 @@ impl<'s> Scan<'s> {
         }
         let moved = self.moved(action, power);
         self.events.push(power);
-        if let Some(left) = self.left_behind() {
-            self.bits.extend(left.bits.iter().map(|(key, value)| (key.clone(), *value)));
+        let nothing = LeftBehind::default();
+        let left = self.left_behind().unwrap_or(&nothing);
+        let own = action.terms.first().map(|term| (term.key(), self.value(term)));
+        let bits = own.into_iter().chain(left.bits.iter().map(|(key, value)| (key.clone(), *value)));
+        let bits: Vec<_> =
+            bits.map(|(key, value)| (self.bit_after(action, power, &key, value), key)).collect();
+        self.bits.extend(bits.into_iter().map(|(value, key)| (key, value)));
+        if power || !is_idle_without_power(action) {
             self.words.extend(left.words.iter().map(|(key, value)| (key.clone(), *value)));
         }
         self.words.extend(moved);
+    }
+
+    /// What the bit with this key is after an event that is said to leave `left`, as far as its working is known:
+    /// a timer does not run without power, SET does not leave off, an instruction without power changes nothing.
+    fn bit_after(&self, action: &Action, power: bool, key: &str, left: bool) -> bool {
+        let before = self.bit(key);
+        let own = action.terms.first().filter(|term| term.key() == key);
+        let kind = own.and_then(|term| term.operand.device()).map(|device| (device.kind, device.number));
+        match (action.deed, kind) {
+            (Deed::Coil(CoilKind::Plain), Some((DeviceKind::T, number))) if number < FIRST_RETENTIVE => {
+                power && (before || left)
+            }
+            (Deed::Coil(CoilKind::Plain), Some((DeviceKind::T | DeviceKind::C, _))) => {
+                before || power && left
+            }
+            (Deed::Coil(CoilKind::Rising), Some(_)) => power && left,
+            (Deed::Coil(CoilKind::Falling), Some(_)) => !power && left,
+            (Deed::Coil(CoilKind::Set), Some(_)) => power || before,
+            (Deed::Coil(CoilKind::Reset), Some(_)) => !power && before,
+            (Deed::Call(call), _) => self.output_after(call, &action.terms, power, key).unwrap_or(left),
+            (Deed::Instruction(form), _) if power && Form::named("ZRST") == Some(form) => false,
+            _ if !power && is_idle_without_power(action) => before,
+            _ => left,
+        }
+    }
+
+    /// What standard blocks make of their output `key` where their input alone decides it.
+    fn output_after(&self, call: Call, terms: &[Term], power: bool, key: &str) -> Option<bool> {
+        let instance = terms.first()?.key();
+        let output = key.strip_prefix(&*instance)?.strip_prefix('.')?;
+        let input = || {
+            let arguments = call.arguments(terms);
+            let given = arguments.iter().find(|argument| argument.name == call.power_in());
+            given.map_or(power, |argument| self.value(&argument.term))
+        };
+        match (call.block.name, output) {
+            ("TON" | "R_TRIG", "q") if !input() => Some(false),
+            ("TOF", "q") if input() => Some(true),
+            ("F_TRIG", "q") if input() => Some(false),
+            _ => None,
+        }
     }
 
     fn left_behind(&self) -> Option<&'s LeftBehind> {
@@ -195,6 +243,14 @@ impl<'s> Scan<'s> {
         };
         Some((register.key(), self.word(source, false)))
     }
+}
+
+/// Timers from this number on keep their time without power (T246 to T255 of the FX1N, FX2N and FX3U).
+const FIRST_RETENTIVE: u32 = 246;
+
+/// Whether an action changes nothing while it has no power.
+fn is_idle_without_power(action: &Action) -> bool {
+    matches!(action.deed, Deed::Instruction(form) if form.instruction.flow() == Flow::Straight)
 }
 
 /// The number that the lowest `width` bits are.

@@ -4,7 +4,7 @@ use super::formula::{Atom, Moment, Step};
 use super::{Action, Contact, Deed, Drive, Expression, Formula, Formulas, Gate, Path, Storage, Term, Test};
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::target::iec::LiteralValue;
-use crate::target::{Access, Constant, DeviceKind, Flow, Location, Operand};
+use crate::target::{Access, Constant, Device, DeviceKind, Flow, Form, Location, Operand};
 use rustc_hash::FxHashMap;
 use smol_str::{SmolStr, format_smolstr};
 
@@ -127,10 +127,16 @@ impl<'p> Run<'p> {
             return Formulas::constant(value);
         }
         let name = term.key();
-        self.value(term, &name).unwrap_or_else(|| {
-            let of = self.moment(term, name, formulas);
-            formulas.atom(Atom::Bit(of))
-        })
+        if let Some(value) = self.value(term, &name) {
+            return value;
+        }
+        if matches!(term.operand, Operand::Device(Device::OFF_AT_FIRST)) {
+            let first = Term::new(Operand::Device(Device::FIRST_SCAN), "M8002", term.span);
+            let first = self.bit(&first, formulas);
+            return formulas.not(first);
+        }
+        let of = self.moment(term, name, formulas);
+        formulas.atom(Atom::Bit(of))
     }
 
     fn powered(&mut self, path: &'p Path, power: Formula, formulas: &mut Formulas) {
@@ -208,9 +214,10 @@ impl<'p> Run<'p> {
 
     /// The moment at which `term`, whose key is `name`, is read as a bit.
     fn moment(&self, term: &Term, name: SmolStr, formulas: &mut Formulas) -> Moment {
-        // Words are made of bits, bits of words, and an index may lead anywhere: whatever wrote to the kind counts.
+        // Words are made of bits, bits of words: whatever wrote to the kind counts.
         let since = match term.is_lone() {
             true => self.after(self.last_event(term, &name), formulas),
+            false if leads_anywhere(term) => self.touched[ANYWHERE],
             false => self.touched[slot(term)],
         };
         Moment { name, since }
@@ -346,13 +353,14 @@ impl<'p> Run<'p> {
                     self.change_term(term, formulas);
                 }
             }
-            Deed::Instruction(form) if form.instruction.flow() == Flow::Straight => {
+            Deed::Instruction(form) if writes_operands(form) => {
                 for (term, spec) in action.terms.iter().zip(form.instruction.operands) {
                     if spec.access != Access::Read {
                         self.change_kind(slot(term), formulas);
                     }
                 }
                 self.flags = self.events;
+                self.touch(ANYWHERE, formulas);
             }
             Deed::Call(call) => {
                 self.touch(VARIABLES, formulas);
@@ -432,6 +440,24 @@ impl<'p> Run<'p> {
 impl Default for Run<'_> {
     fn default() -> Self {
         Run::new()
+    }
+}
+
+/// Whether an instruction changes what it names and flags, and nothing else. One that names nothing to change refreshes
+/// inputs, resets annunciators, or steers the program.
+fn writes_operands(form: Form) -> bool {
+    let is_written = form.instruction.operands.iter().any(|spec| spec.access != Access::Read);
+    is_written && form.instruction.flow() == Flow::Straight
+}
+
+/// Whether it depends on more than devices of its kind: on an index register, or on flags that instructions set.
+fn leads_anywhere(term: &Term) -> bool {
+    match term.operand {
+        Operand::Indexed { .. }
+        | Operand::Nibbles { index: Some(_), .. }
+        | Operand::Constant { index: Some(_), .. } => true,
+        Operand::Nibbles { first, .. } => first.is_special(),
+        _ => false,
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::document::Scopes;
 use crate::il::iec::SectionKind;
+use crate::target::iec::LiteralValue;
 use crate::target::{Constant, DeviceKind, DirectAddress, Operand, Width};
 use crate::text::{Span, folded};
 use smol_str::{SmolStr, ToSmolStr, format_smolstr};
@@ -145,6 +146,8 @@ impl Term {
                 format_smolstr!("K{value}")
             }
             Operand::Text => self.text.clone(),
+            // Capitals count between quotes.
+            Operand::Literal(literal) if matches!(literal.value, LiteralValue::Text) => self.text.clone(),
             _ => folded(&self.text),
         }
     }

@@ -125,6 +125,11 @@ impl Device {
     /// The special relay that is off while the CPU runs.
     pub const ALWAYS_OFF: Device = Device::new(DeviceKind::M, 8001);
 
+    /// The special relay that is on in the first scan alone, and the one that is off in it alone.
+    pub const FIRST_SCAN: Device = Device::new(DeviceKind::M, 8002);
+    /// See [`Device::FIRST_SCAN`].
+    pub const OFF_AT_FIRST: Device = Device::new(DeviceKind::M, 8003);
+
     /// Its value in every scan of a running CPU, if it has only one.
     pub fn always(self) -> Option<bool> {
         match self {

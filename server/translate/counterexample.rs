@@ -42,16 +42,17 @@ pub(super) fn inputs(state: &State) -> (BTreeMap<String, Value>, BTreeMap<String
     (bits.chain(words).collect(), before.collect())
 }
 
-/// Whether the programs that `paths` are differ as said when they are run from `state`.
-pub(super) fn is_confirmed(state: &State, paths: [&[&Path]; 2], place: &Place, sides: [bool; 2]) -> bool {
-    let found = paths.map(|paths| {
+/// What `place` is in each of two programs when they are run from `state`, if it differs.
+pub(super) fn confirmed(state: &State, paths: [&[&Path]; 2], place: &Place) -> Option<[bool; 2]> {
+    let [left, right] = paths.map(|paths| {
         let scan = evaluate(paths, state);
         match place {
             Place::Bit(key) => Some(scan.bit(key)),
             Place::Event(number) => scan.events.get((*number as usize).checked_sub(1)?).copied(),
         }
     });
-    found == sides.map(Some)
+    let values = [left?, right?];
+    (values[0] != values[1]).then_some(values)
 }
 
 /// What 32-bit values have before their names.

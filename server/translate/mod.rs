@@ -16,6 +16,8 @@ mod stack;
 mod counterexample;
 pub use counterexample::{Counterexample, Value};
 
+mod declared;
+
 mod prove;
 pub use prove::{Proof, prove};
 

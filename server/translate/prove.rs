@@ -4,9 +4,12 @@
 //! another way, stretches between jumps, labels and the like are compared by what comes of them.
 
 use super::counterexample::{self, Counterexample};
+use super::declared;
 use super::source::{self, Source};
 use crate::document::Document;
-use crate::logic::{Comparison, Deed, Effort, Path, compare, compare_outcome, touches_bits};
+use crate::logic::{
+    Comparison, Deed, Effort, Path, Place, compare, compare_outcome, may_drive, touches_bits,
+};
 use crate::target::Flow;
 use crate::text::{Message, Span};
 
@@ -36,8 +39,13 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
         let unit = |pou: usize| document.scopes().pous.get(pou).map_or("", |pou| pou.name.as_str());
         stretches(sources, unit)
     });
+    if let Some((name, at)) = declared::difference(left, right) {
+        let reason = Message::new("prove.declared").with("name", name);
+        return Proof::Undecided { reason, at: at.map(Some) };
+    }
     let may_be_off = sources.iter().flatten().any(leaves_out);
     let mut prover = Prover {
+        all: [&sources[0], &sources[1]],
         before: [Vec::new(), Vec::new()],
         may_be_off,
         is_reordered: false,
@@ -110,7 +118,10 @@ fn stretches<'s>(sources: &'s [Source], unit: impl Fn(usize) -> &'s str) -> Vec<
     let mut stretches = Vec::new();
     let mut open = Stretch::default();
     let mut pou = sources.first().and_then(|source| source.pou);
+    // Nothing is executed behind an END, a return or a jump without condition.
+    let mut is_left = false;
     for source in sources {
+        is_left &= source.pou == pou && source.rung.labels.is_empty();
         if source.pou != pou {
             pou = source.pou;
             open.end = Some(End::Unit(source.span(), pou.map_or("", &unit)));
@@ -120,11 +131,15 @@ fn stretches<'s>(sources: &'s [Source], unit: impl Fn(usize) -> &'s str) -> Vec<
             open.end = Some(End::Label(source.span(), label));
             stretches.push(std::mem::take(&mut open));
         }
+        if is_left {
+            continue;
+        }
         match &source.rung.path {
             Ok(None) => {}
             Ok(Some(path)) if path.actions().iter().any(|action| touches_bits(action)) => {
                 open.end = Some(End::Rung(source, path));
                 stretches.push(std::mem::take(&mut open));
+                is_left = path.gates.is_empty() && path.actions().iter().any(|action| leaves(action.deed));
             }
             Ok(Some(path)) => open.rungs.push((source, path)),
             Err(_) => {
@@ -143,7 +158,14 @@ fn stretches<'s>(sources: &'s [Source], unit: impl Fn(usize) -> &'s str) -> Vec<
     stretches
 }
 
+/// Whether the rungs behind it are not executed if it is without condition.
+fn leaves(deed: Deed) -> bool {
+    matches!(deed, Deed::Jump | Deed::Return) || deed.ends_program()
+}
+
 struct Prover<'s> {
+    /// The rungs of either program.
+    all: [&'s [Source]; 2],
     /// The paths that are known to do the same, on either side.
     before: [Vec<&'s Path>; 2],
     /// Whether a part of the program may be left out, so that there is no power at the left rail.
@@ -234,22 +256,43 @@ impl<'s> Prover<'s> {
             // With no power at the rail they may do otherwise.
             Comparison::Same { .. } if may_be_off => match compare(true) {
                 (Comparison::Same { .. }, _) => Ok(()),
-                _ => undecided("prove.undecided"),
+                _ => undecided("prove.left-out"),
             },
             Comparison::Same { .. } => Ok(()),
             Comparison::Undecided => undecided("prove.undecided"),
             Comparison::Unlike => undecided("prove.unlike"),
-            Comparison::Different { what, place, sides: values_of, .. } => {
+            Comparison::Different { place: Place::Bit(key), .. } if self.is_driven_behind(sides, &key) => {
+                undecided("prove.driven-again")
+            }
+            Comparison::Different { what, place, .. } => {
                 // Formulas know less than a PLC: what they leave open may be what it never does.
-                let state = state
-                    .filter(|state| counterexample::is_confirmed(state, [&left, &right], &place, values_of));
-                let Some(state) = state else { return undecided("prove.unconfirmed") };
+                let confirmed = state.and_then(|state| {
+                    let values = counterexample::confirmed(&state, [&left, &right], &place)?;
+                    Some((state, values))
+                });
+                let Some((state, values)) = confirmed else { return undecided("prove.unconfirmed") };
                 let at = sides.map(|side| rung_of(side, &what));
                 let (inputs, before) = counterexample::inputs(&state);
-                let found = Counterexample { inputs, before, what, sides: values_of, at };
+                let found = Counterexample { inputs, before, what, sides: values, at };
                 Err(Proof::Different(Box::new(found)))
             }
         }
+    }
+}
+
+impl Prover<'_> {
+    /// Whether the bit with this key may be driven once more behind the rungs on either side, so that what it is at
+    /// their end is not what the scan leaves.
+    fn is_driven_behind(&self, sides: [&[(&Source, &Path)]; 2], key: &str) -> bool {
+        self.all.iter().zip(sides).any(|(all, side)| {
+            let last = side.last().map(|(source, _)| source.span());
+            let behind = all.iter().filter(|source| last.is_none_or(|last| source.span() > last));
+            let mut behind = behind.filter(|source| !side.iter().any(|(own, _)| std::ptr::eq(*own, *source)));
+            behind.any(|source| match &source.rung.path {
+                Ok(path) => path.iter().flat_map(Path::actions).any(|action| may_drive(action, key)),
+                Err(_) => source.rung.span.of(source.chunk.text()).contains(key),
+            })
+        })
     }
 }
 
