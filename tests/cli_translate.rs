@@ -1,39 +1,14 @@
 //! `rungwise translate` and `rungwise prove`, through the binary.
 
+use crate::binary::{folder, run};
+use crate::drawing_redrawn::BRIDGES;
 use serde_json::{Value, json};
-use std::process::{Command, Output, Stdio};
-use tempfile::TempDir;
 
 const MOTOR: &str = "; start\nLD X0\nOR Y0\nANI X1\nOUT Y0\nEND\n";
 /// The same but for the stop contact.
 const WRONG: &str = "LD X0\nOR Y0\nAND X1\nOUT Y0\nEND\n";
 /// A contact in parallel with what already drives an output has no drawing.
 const KEPT: &str = "LD X0\nOUT Y0\nOR X1\nOUT Y1\nEND\n";
-const BRIDGE: &str = "\
-|   X0                    X1                       Y0  |
-+---| |---+---------------| |-----+----------------( )-+
-|         |   X2                  |                    |
-|         +---| |---+             |                    |
-|                   |             |                    |
-|   X3              |     X4      |                    |
-+---| |-------------+-----| |-----+                    |
-";
-
-fn folder(files: &[(&str, &str)]) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    for (name, content) in files {
-        std::fs::write(folder.path().join(name), content).unwrap();
-    }
-    folder
-}
-
-fn run(folder: &TempDir, arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_rungwise"));
-    let command = command.current_dir(folder.path()).args(arguments).stdin(Stdio::null());
-    let Output { status, stdout, stderr } = command.output().unwrap();
-    (status.code().unwrap(), String::from_utf8(stdout).unwrap(), String::from_utf8(stderr).unwrap())
-}
-
 #[test]
 fn a_list_is_drawn_listed_and_written_as_equations_with_proof() {
     let folder = folder(&[("motor.il", MOTOR)]);
@@ -54,7 +29,7 @@ fn a_list_is_drawn_listed_and_written_as_equations_with_proof() {
 
 #[test]
 fn what_has_no_other_form_is_carried_along_and_told() {
-    let folder = folder(&[("kept.il", KEPT), ("bridge.lad", BRIDGE)]);
+    let folder = folder(&[("kept.il", KEPT), ("bridge.lad", BRIDGES[0])]);
     let (code, drawn, err) = run(&folder, &["translate", "kept.il", "--to", "ladder", "--prove"]);
     assert_eq!(code, 0, "{err}");
     assert!(err.starts_with("kept.il:1: this rung is kept as it is: a contact is put in parallel"), "{err}");

@@ -8,6 +8,7 @@
     reason = "a test that fails says so by a panic"
 )]
 
+mod binary;
 mod chinese;
 mod cli;
 mod cli_translate;

@@ -3,11 +3,11 @@
 use super::Outcome;
 use super::check::target_named;
 use super::fmt::style_of;
-use super::input::{Program, complain, remark, say};
+use super::input::{Program, complain, put, remark};
 use super::prove;
 use crate::document::{Document, Notation};
 use crate::target::{Model, Target};
-use crate::text::{Encoding, Language, Message};
+use crate::text::{Encoding, Language, Message, position_of};
 use crate::translate::to_boolean::Notation as Equations;
 use crate::translate::{Certificate, Options, To, Translation, from_boolean, translate};
 use clap::ValueEnum;
@@ -76,15 +76,8 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     if arguments.prove && !is_certain {
         return Outcome::Findings;
     }
-    match &arguments.output {
-        None => say(&translation.text),
-        Some(path) => {
-            if let Err(error) = std::fs::write(path, &translation.text) {
-                let reason = format!("{}: {error}", path.display());
-                complain("not-written", &reason, &Message::new("cli.make-room").render(language), language);
-                return Outcome::Unusable;
-            }
-        }
+    if !put(&translation.text, arguments.output.as_deref(), language) {
+        return Outcome::Unusable;
     }
     if is_certain { Outcome::Clean } else { Outcome::Findings }
 }
@@ -116,10 +109,9 @@ fn read(path: &Path, language: Language) -> Option<Program> {
         }),
         Err(problems) => {
             for problem in problems {
-                let before = &text[..problem.span.start as usize];
-                let line = before.matches('\n').count() + 1;
-                let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
-                let reason = format!("{line}:{column}: {}", problem.message.render(language));
+                let at = position_of(&text, problem.span.start as usize, Encoding::Utf32);
+                let reason =
+                    format!("{}:{}: {}", at.line + 1, at.column + 1, problem.message.render(language));
                 unusable(&reason, "cli.equation-form");
             }
             None
@@ -131,7 +123,7 @@ fn read(path: &Path, language: Language) -> Option<Program> {
 fn tell(program: &Program, translation: &Translation, proves: bool, language: Language) {
     for rung in &translation.rungs {
         let Some(note) = &rung.note else { continue };
-        let line = program.document.position(rung.span.start as usize, Encoding::Utf32).line + 1;
+        let line = program.document.line_of(rung.span.start as usize) + 1;
         remark(
             &Message::new("cli.not-translated")
                 .with("path", program.path.display())

@@ -2,6 +2,7 @@
 
 use super::decide::{Verdict, equal};
 use super::{Action, Atom, Deed, Effect, Formula, Formulas, Path, Run, Term};
+use crate::ladder::CoilKind;
 use crate::target::{DeviceKind, Flow};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
@@ -48,7 +49,7 @@ pub fn compare(left: &[&Path], right: &[&Path], formulas: &mut Formulas) -> Comp
     compare_but(left, right, &FxHashSet::default(), formulas)
 }
 
-/// The same, where the right side may drive further bits of its own, `helpers` by their keys.
+/// The same, where the right side may have coils of further bits of its own, `helpers` by their keys.
 pub fn compare_but(
     left: &[&Path],
     right: &[&Path],
@@ -58,8 +59,9 @@ pub fn compare_but(
     let [left, mut right] = [run(left, formulas), run(right, formulas)];
     if !helpers.is_empty() {
         right.effects.retain(|effect| {
-            let mut terms = effect.action.terms.iter();
-            effect.event.is_some() || !terms.next().is_some_and(|term| helpers.contains(&term.key()))
+            let [term] = &effect.action.terms[..] else { return true };
+            let is_driven = effect.event.is_none() && effect.deed() == Deed::Coil(CoilKind::Plain);
+            !is_driven || !helpers.contains(&term.key())
         });
     }
     let pairs = left.effects.iter().zip(&right.effects);

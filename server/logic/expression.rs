@@ -181,6 +181,23 @@ impl Expression {
         contacts
     }
 
+    /// The same connections with other conditions for contacts; the first error of `instead`, if there is one.
+    pub fn mapped<E>(
+        &self,
+        instead: &mut impl FnMut(&Contact) -> Result<Expression, E>,
+    ) -> Result<Expression, E> {
+        let mut all = |parts: &[Expression]| {
+            parts.iter().map(|part| part.mapped(instead)).collect::<Result<Vec<_>, E>>()
+        };
+        Ok(match self {
+            Expression::Constant(value) => Expression::Constant(*value),
+            Expression::And(parts) => Expression::and(all(parts)?),
+            Expression::Or(parts) => Expression::or(all(parts)?),
+            Expression::Contact(contact) => instead(contact)?,
+            Expression::Not(part) => Expression::Not(Box::new(part.mapped(instead)?)),
+        })
+    }
+
     /// The expression that holds where this one does not, with the negation moved into its contacts: De Morgan's form.
     /// An edge keeps its negation before it.
     pub fn negated(&self) -> Expression {

@@ -118,15 +118,8 @@ impl Formulas {
         Formula(u32::from(value))
     }
 
-    /// The formula that is this atom. M8000 is on in every scan of a running PLC, M8001 off.
+    /// The formula that is this atom.
     pub fn atom(&mut self, atom: Atom) -> Formula {
-        if let Atom::Bit(Moment { name, .. }) = &atom {
-            match name.as_str() {
-                ALWAYS_ON => return Formulas::TRUE,
-                ALWAYS_OFF => return Formulas::FALSE,
-                _ => {}
-            }
-        }
         let number = match self.atom_numbers.entry(atom) {
             Entry::Occupied(known) => *known.get(),
             Entry::Vacant(new) => {
@@ -270,7 +263,3 @@ impl Formulas {
         }
     }
 }
-
-/// The relays that are on and off in every scan of a running FX PLC, from its device tables.
-const ALWAYS_ON: &str = "M8000";
-const ALWAYS_OFF: &str = "M8001";

@@ -3,7 +3,7 @@
 use super::{Call, Computation, Expression, Term};
 use crate::document::{Scopes, coil_form};
 use crate::ladder::CoilKind;
-use crate::target::{Form, Role};
+use crate::target::{Flow, Form, Role};
 use crate::text::Span;
 
 /// A path of power from the left rail, or from where it leaves another path: it passes all gates, then it drives one
@@ -87,6 +87,11 @@ impl Deed {
     pub fn stands_alone(self) -> bool {
         matches!(self, Deed::Instruction(form) if form.instruction.role == Role::Standalone)
     }
+
+    /// Whether the program ends with it.
+    pub fn ends_program(self) -> bool {
+        matches!(self, Deed::Instruction(form) if form.instruction.flow() == Flow::ProgramEnd)
+    }
 }
 
 /// Coils that one instruction drives.
@@ -100,6 +105,19 @@ impl Action {
             Deed::Call(call) => call.output(&self.terms),
             _ => None,
         }
+    }
+}
+
+impl Gate {
+    /// The one condition that gates are behind the one `before` them, if there is any; or the gate that is no
+    /// condition: power goes through something there, or nothing stands before an inverter.
+    pub fn condition(gates: &[Gate], before: Option<Expression>) -> Result<Option<Expression>, &Gate> {
+        gates.iter().try_fold(before, |before, gate| match (gate, before) {
+            (Gate::Pass(more), None) => Ok(Some(more.clone())),
+            (Gate::Pass(more), Some(before)) => Ok(Some(Expression::and([before, more.clone()]))),
+            (Gate::Invert, Some(before)) => Ok(Some(Expression::Not(Box::new(before)))),
+            (Gate::Invert, None) | (Gate::Through(_), _) => Err(gate),
+        })
     }
 }
 

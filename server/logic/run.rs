@@ -200,10 +200,10 @@ impl<'p> Run<'p> {
         }
     }
 
-    /// The value that the run gave to `term`, whose key is `name`.
+    /// The value that the run gave to `term`, whose key is `name`, or that it always has.
     fn value(&self, term: &Term, name: &SmolStr) -> Option<Formula> {
-        let driven = self.driven.get(name)?;
-        (driven.since >= self.last_event(term, name)).then_some(driven.value)
+        let driven = self.driven.get(name).filter(|driven| driven.since >= self.last_event(term, name));
+        driven.map(|driven| driven.value).or_else(|| term.always().map(Formulas::constant))
     }
 
     /// The moment at which `term`, whose key is `name`, is read as a bit.
@@ -229,8 +229,7 @@ impl<'p> Run<'p> {
 
     /// The last event that may have changed `term` together with others.
     fn bulk(&self, term: &Term) -> u32 {
-        let is_flag = matches!(term.operand, Operand::Device(device)
-            if device.kind == DeviceKind::M && device.number >= FIRST_SPECIAL);
+        let is_flag = matches!(term.operand, Operand::Device(device) if device.is_special());
         self.kinds[slot(term)].max(if is_flag { self.flags } else { 0 })
     }
 
@@ -436,8 +435,6 @@ impl Default for Run<'_> {
     }
 }
 
-/// The first special relay.
-const FIRST_SPECIAL: u32 = 8000;
 
 /// The place of a term's kind.
 fn slot(term: &Term) -> usize {

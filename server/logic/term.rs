@@ -112,6 +112,14 @@ impl Term {
             || !is_apart && area(self).is_some() && area(self) == area(other)
     }
 
+    /// Its value in every scan, if it is a device that has only one.
+    pub fn always(&self) -> Option<bool> {
+        match self.operand {
+            Operand::Device(device) => device.always(),
+            _ => None,
+        }
+    }
+
     /// What it means, in one spelling: `X10` for `x010`, `K16` for `H10`, names in lower case.
     ///
     /// Names of one address have its spelling.

@@ -44,8 +44,6 @@ const PULSE: &str = "Pulse";
 /// The first byte of the states, in bits, and the first word of the data registers.
 const STATES: u32 = 1100 * 8;
 const REGISTERS: u32 = 1000;
-/// From here on relays and registers are special.
-const FIRST_SPECIAL: u32 = 8000;
 
 /// What the result of a translation is written for: the document's target where it is of the same family. An FX list
 /// can be `wanted` for another model.
@@ -95,8 +93,11 @@ fn is_of_program(document: &Document, pou: Option<usize>) -> bool {
     pou.is_none_or(|pou| pou.kind == PouKind::Program)
 }
 
-/// The address of the variable that stands for a device, if it is located.
+/// The address of the variable that stands for a device, if it is located. The CPU's own relays and registers are not.
 pub(super) fn address(device: Device) -> Option<DirectAddress> {
+    if device.is_special() {
+        return None;
+    }
     let bit = |location: Location, number: u32| DirectAddress {
         location,
         width: Width::Bit,
@@ -105,9 +106,9 @@ pub(super) fn address(device: Device) -> Option<DirectAddress> {
     Some(match device.kind {
         DeviceKind::X => bit(Location::Input, device.number),
         DeviceKind::Y => bit(Location::Output, device.number),
-        DeviceKind::M if device.number < FIRST_SPECIAL => bit(Location::Memory, device.number),
+        DeviceKind::M => bit(Location::Memory, device.number),
         DeviceKind::S => bit(Location::Memory, STATES + device.number),
-        DeviceKind::D if device.number < FIRST_SPECIAL => DirectAddress {
+        DeviceKind::D => DirectAddress {
             location: Location::Memory,
             width: Width::Word,
             path: [Some(REGISTERS + device.number), None, None, None],

@@ -7,8 +7,8 @@ use super::to_iec::{self, Helpers};
 use super::{Options, To, Translated, Translation, to_boolean, to_fx, to_ladder};
 use crate::document::{Document, Notation};
 use crate::ladder::{Drawing, Style};
-use crate::logic::{Deed, Network, Path};
-use crate::target::{Flow, Form, Target};
+use crate::logic::{Network, Path};
+use crate::target::Target;
 use crate::text::Message;
 
 /// A rung in its new form.
@@ -127,10 +127,7 @@ fn drawing(path: &Path, target: &Target, options: &Options) -> Result<Body, Mess
 /// Whether the program ends with this rung.
 fn ends_program(source: &Source) -> bool {
     let Ok(Some(path)) = &source.rung.path else { return false };
-    path.actions().iter().any(|action| match action.deed {
-        Deed::Instruction(Form { instruction, .. }) => instruction.flow() == Flow::ProgramEnd,
-        _ => false,
-    })
+    path.actions().iter().any(|action| action.deed.ends_program())
 }
 
 struct Page {
@@ -152,24 +149,19 @@ impl Page {
         if !self.text.is_empty() && parts && !self.text.ends_with("\n\n") {
             self.text.push('\n');
         }
-        for comment in source.comments().filter(|comment| !is_network(comment)) {
+        if let Some(network) = &rung.network {
+            self.network(&network_text(network));
+        }
+        let mut end = None;
+        for (comment, span) in source.comments().zip(&rung.comments) {
+            if end.is_some_and(|end| source.has_blank_line(end, span.start)) {
+                self.line("");
+            }
+            end = Some(span.end);
             match self.to {
+                _ if is_network(comment) => self.network(comment.trim_start_matches([';', ' '])),
                 To::Iec => self.line(&header::comment(comment)),
                 _ => self.line(comment),
-            }
-        }
-        let mut networks: Vec<String> = rung.network.iter().map(network_text).collect();
-        networks.extend(
-            source
-                .comments()
-                .filter(|comment| is_network(comment))
-                .map(|comment| comment.trim_start_matches([';', ' ']).to_string()),
-        );
-        for network in networks {
-            match self.to {
-                To::Ladder => self.line(&network),
-                To::Iec => self.line(&format!("(* {network} *)")),
-                _ => self.line(&format!("; {network}")),
             }
         }
         for label in &rung.labels {
@@ -177,6 +169,15 @@ impl Page {
                 To::Fx => self.line(label),
                 _ => self.line(&format!("{label}:")),
             }
+        }
+    }
+
+    /// The line that begins a network: one of its own in a drawing, a comment in lists and among equations.
+    fn network(&mut self, text: &str) {
+        match self.to {
+            To::Ladder => self.line(text),
+            To::Iec => self.line(&format!("(* {text} *)")),
+            _ => self.line(&format!("; {text}")),
         }
     }
 

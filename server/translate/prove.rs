@@ -96,10 +96,7 @@ impl End<'_> {
     /// Whether it is nothing but END.
     fn ends_program(&self) -> bool {
         let End::Rung(_, path) = self else { return false };
-        path.actions().iter().all(|action| match action.deed {
-            Deed::Instruction(form) => form.instruction.flow() == Flow::ProgramEnd,
-            _ => false,
-        })
+        path.actions().iter().all(|action| action.deed.ends_program())
     }
 }
 

@@ -73,6 +73,12 @@ impl Source {
         self.rung.comments.iter().map(|comment| comment.of(self.chunk.text()).trim_end())
     }
 
+    /// Whether there is a blank line between these offsets of the chunk, and nothing else.
+    pub fn has_blank_line(&self, start: u32, end: u32) -> bool {
+        let between = self.chunk.text().get(start as usize..end as usize).unwrap_or_default();
+        between.trim().is_empty() && between.matches('\n').count() > 1
+    }
+
     /// Whether there is nothing of it but blank lines.
     pub fn is_blank(&self) -> bool {
         let Rung { labels, network, comments, path, .. } = &self.rung;

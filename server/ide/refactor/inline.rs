@@ -18,7 +18,7 @@ pub(super) fn propose(around: &Neighbourhood<'_>, view: &ProjectView<'_>) -> Opt
     if relay.is_special(around.document) || !head.labels.is_empty() || head.network.is_some() {
         return None;
     }
-    let condition = condition_of(&path.gates)?;
+    let condition = Gate::condition(&path.gates, None).ok()??;
     let book = Book::of(view);
     let tally = book.devices.get(&relay.device).filter(|_| !book.is_in_run(relay.device))?;
     let others = around.rungs.get(around.here + 1..)?;
@@ -69,20 +69,6 @@ fn driven_relay(path: &Path) -> Option<(usize, Relay)> {
         let device = term.operand.device().filter(|device| device.kind == DeviceKind::M)?;
         Some((place, Relay { device, key: term.key() }))
     })
-}
-
-/// What leads to the drives; nothing if power goes through something on the way.
-fn condition_of(gates: &[Gate]) -> Option<Expression> {
-    let mut condition = None;
-    for gate in gates {
-        condition = Some(match (gate, condition) {
-            (Gate::Pass(more), None) => more.clone(),
-            (Gate::Pass(more), Some(before)) => Expression::and([before, more.clone()]),
-            (Gate::Invert, Some(before)) => Expression::Not(Box::new(before)),
-            (Gate::Invert, None) | (Gate::Through(_), _) => return None,
-        });
-    }
-    condition
 }
 
 /// Whether each scan comes through the rung, and nothing jumps to it.
@@ -139,20 +125,13 @@ impl Relay {
     }
 
     fn within(&self, expression: &Expression, condition: &Expression) -> Option<Expression> {
-        let all = |parts: &[Expression]| -> Option<Vec<Expression>> {
-            parts.iter().map(|part| self.within(part, condition)).collect()
+        let instead = |contact: &Contact| match contact.test {
+            _ if !self.is_of(contact) => Ok(Expression::Contact(contact.clone())),
+            Test::Bit(ContactKind::NormallyOpen) => Ok(condition.clone()),
+            Test::Bit(ContactKind::NormallyClosed) => Ok(condition.negated()),
+            _ => Err(()),
         };
-        Some(match expression {
-            Expression::Contact(contact) if self.is_of(contact) => match contact.test {
-                Test::Bit(ContactKind::NormallyOpen) => condition.clone(),
-                Test::Bit(ContactKind::NormallyClosed) => condition.negated(),
-                _ => return None,
-            },
-            Expression::And(parts) => Expression::and(all(parts)?),
-            Expression::Or(parts) => Expression::or(all(parts)?),
-            Expression::Not(part) => Expression::Not(Box::new(self.within(part, condition)?)),
-            leaf => leaf.clone(),
-        })
+        expression.mapped(&mut { instead }).ok()
     }
 
     fn is_of(&self, contact: &Contact) -> bool {

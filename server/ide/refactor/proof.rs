@@ -3,10 +3,10 @@
 use super::Proposal;
 use super::neighbourhood::Neighbourhood;
 use crate::document::{Document, Edit};
-use crate::ladder::CoilKind;
-use crate::logic::{Comparison, Deed, Effect, Formulas, Path, Run, Verdict, compare, equal};
+use crate::logic::{Comparison, Formulas, Path, compare, compare_but};
 use crate::text::{Span, TextEdit};
 use crate::translate::Source;
+use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
 /// Whether the document with `edits` is the one without, but for the changed rungs, and these do the same.
@@ -106,23 +106,9 @@ fn same_comments(left: &[Source], right: &[Source]) -> bool {
 
 /// Whether both do the same if nobody looks at the relay with this key, which one of them drives.
 fn same_but_for(relay: &SmolStr, left: &[&Path], right: &[&Path]) -> bool {
-    let mut formulas = Formulas::default();
-    let [left, right] = [left, right].map(|paths| {
-        let mut run = Run::new();
-        paths.iter().for_each(|path| run.path(path, &mut formulas));
-        run.effects.retain(|effect| !drives(effect, relay));
-        run
-    });
-    if left.effects.len() != right.effects.len() {
-        return false;
-    }
-    let mut pairs = left.effects.iter().zip(&right.effects);
-    pairs.all(|(left, right)| {
-        left.is_like(right) && equal(&mut formulas, left.guard, right.guard) == Verdict::Equal
+    let relays = FxHashSet::from_iter([relay.clone()]);
+    [(left, right), (right, left)].into_iter().any(|(without, with)| {
+        let comparison = compare_but(without, with, &relays, &mut Formulas::default());
+        matches!(comparison, Comparison::Same { .. })
     })
-}
-
-fn drives(effect: &Effect<'_>, relay: &SmolStr) -> bool {
-    let [term] = &effect.action.terms[..] else { return false };
-    effect.action.deed == Deed::Coil(CoilKind::Plain) && term.key() == *relay
 }

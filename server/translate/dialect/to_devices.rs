@@ -187,16 +187,7 @@ impl Converter<'_> {
     }
 
     fn expression(&self, expression: &Expression) -> Result<Expression, Refusal> {
-        let all = |parts: &[Expression]| -> Result<Vec<Expression>, Refusal> {
-            parts.iter().map(|part| self.expression(part)).collect()
-        };
-        Ok(match expression {
-            Expression::Constant(value) => Expression::Constant(*value),
-            Expression::Contact(contact) => self.contact(contact)?,
-            Expression::Not(part) => Expression::Not(Box::new(self.expression(part)?)),
-            Expression::And(parts) => Expression::and(all(parts)?),
-            Expression::Or(parts) => Expression::or(all(parts)?),
-        })
+        expression.mapped(&mut |contact| self.contact(contact))
     }
 
     fn contact(&self, contact: &Contact) -> Result<Expression, Refusal> {

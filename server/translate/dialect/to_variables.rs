@@ -1,12 +1,12 @@
 //! Paths of the FX family in the words of IEC 61131-3.
 
-use super::{COMPUTED, FIRST_SPECIAL, PULSE, STEPPED, address, without};
+use super::{COMPUTED, PULSE, STEPPED, address, without};
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{
     Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Storage, Term, Test,
 };
 use crate::target::iec::FunctionBlock;
-use crate::target::{Constant, Device, DeviceKind, Flow, Form, Model, Operand, Target};
+use crate::target::{Constant, Device, DeviceKind, Form, Model, Operand, Target};
 use crate::text::Span;
 use smol_str::{SmolStr, ToSmolStr, format_smolstr};
 use std::cell::Cell;
@@ -14,8 +14,7 @@ use std::cell::Cell;
 /// Whether a rung is but END, which IEC 61131-3 does not write.
 pub(super) fn is_end(path: &Path) -> bool {
     let [Drive::Action(action)] = &path.drives[..] else { return false };
-    path.gates.is_empty()
-        && matches!(action.deed, Deed::Instruction(form) if form.instruction.flow() == Flow::ProgramEnd)
+    path.gates.is_empty() && action.deed.ends_program()
 }
 
 /// `path`, written for `target`, with variables for devices. `pulses` counts the detectors of pulse forms.
@@ -54,32 +53,16 @@ impl Converter<'_> {
     }
 
     fn expression(&self, expression: &Expression) -> Result<Expression, Refusal> {
-        let all = |parts: &[Expression]| -> Result<Vec<Expression>, Refusal> {
-            parts.iter().map(|part| self.expression(part)).collect()
-        };
-        Ok(match expression {
-            Expression::Constant(value) => Expression::Constant(*value),
-            Expression::Contact(contact) => self.contact(contact)?,
-            Expression::Not(part) => Expression::Not(Box::new(self.expression(part)?)),
-            Expression::And(parts) => Expression::and(all(parts)?),
-            Expression::Or(parts) => Expression::or(all(parts)?),
-        })
+        expression.mapped(&mut |contact| self.contact(contact))
     }
 
     fn contact(&self, contact: &Contact) -> Result<Expression, Refusal> {
         let terms = match (contact.test, &contact.terms[..]) {
-            (Test::Bit(kind), [term]) => {
-                let always = match term.key().as_str() {
-                    "M8000" => Some(true),
-                    "M8001" => Some(false),
-                    _ => None,
-                };
-                match (always, kind) {
-                    (Some(value), ContactKind::NormallyOpen) => return Ok(Expression::Constant(value)),
-                    (Some(value), ContactKind::NormallyClosed) => return Ok(Expression::Constant(!value)),
-                    _ => vec![self.bit(term)?],
-                }
-            }
+            (Test::Bit(kind), [term]) => match (term.always(), kind) {
+                (Some(value), ContactKind::NormallyOpen) => return Ok(Expression::Constant(value)),
+                (Some(value), ContactKind::NormallyClosed) => return Ok(Expression::Constant(!value)),
+                _ => vec![self.bit(term)?],
+            },
             (Test::Compare(operator), [left, right]) if !operator.is_wide() => {
                 vec![self.word(left)?, self.word(right)?]
             }
@@ -117,7 +100,7 @@ impl Converter<'_> {
     }
 
     fn located(&self, device: Device, span: Span) -> Result<Term, Refusal> {
-        let address = without(address(device).filter(|_| device.number < FIRST_SPECIAL))?;
+        let address = without(address(device))?;
         Ok(Term { storage: Storage::At(address), ..variable(&device.to_smolstr(), span) })
     }
 
