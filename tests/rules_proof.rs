@@ -181,3 +181,18 @@ fn large_rungs_are_looked_at_in_little_time() {
     assert!(!proved(&text).is_empty());
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
 }
+
+#[test]
+fn behind_rungs_that_are_too_hard_simple_ones_are_still_proved() {
+    let hard: String = (0..60).map(crate::lsp_streaming::hard_rung).collect();
+    let text = format!("{hard}LD X2\nINV\nAND X2\nOUT Y1\nEND\n");
+    let document = Document::new(&text, Notation::FxIl, Target::of(Model::Fx3u));
+    let found = || {
+        let mut found = check::all(&document, &Severities::default());
+        found.retain(|one| CODES.contains(&one.code));
+        found
+    };
+    let first = found();
+    assert_eq!(first.iter().map(|one| one.code).collect::<Vec<_>>(), ["never-energised"]);
+    assert_eq!(found(), first, "what is kept is told again");
+}

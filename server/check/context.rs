@@ -7,7 +7,8 @@ use crate::document::{Chunk, ChunkRef, Document, Notation, Operation, Pou, Scope
 use crate::il::fx::FxTree;
 use crate::target::{Model, Target};
 use crate::text::{Diagnostic, Span};
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A chunk and what it depends on. Offsets are those of the chunk.
 pub struct ChunkContext<'a> {
@@ -23,6 +24,8 @@ pub struct ChunkContext<'a> {
     pub pou: Option<usize>,
     /// Its FX instructions that are not right at one look, in the order of the text: what the rules about words judge.
     pub doubtful: Vec<Operation<'a>>,
+    /// Whether a rung of it is worth a proof when typing stops.
+    pub(super) is_worth_a_proof: Cell<bool>,
     rung: OnceCell<Vec<rung::Finding>>,
 }
 
@@ -37,6 +40,7 @@ impl<'a> ChunkContext<'a> {
             scopes: document.scopes(),
             pou,
             doubtful: chunk.operations().filter(|operation| !is_plain(operation, target)).collect(),
+            is_worth_a_proof: Cell::new(false),
             rung: OnceCell::new(),
         }
     }
@@ -61,6 +65,7 @@ pub struct ProgramContext<'a> {
     files: Vec<ProgramFile<'a>>,
     /// The only file about which the findings are wanted, if not all.
     wanted: Option<usize>,
+    cancelled: Option<&'a AtomicBool>,
     uses: OnceCell<Uses<'a>>,
     regions: OnceCell<Regions>,
 }
@@ -98,7 +103,18 @@ impl<'a> ProgramContext<'a> {
             file
         });
         let files = files.take_while(|file| file.start.saturating_add(file.document.len()) < MOST_BYTES);
-        ProgramContext { files: files.collect(), wanted, uses: OnceCell::new(), regions: OnceCell::new() }
+        let (uses, regions) = (OnceCell::new(), OnceCell::new());
+        ProgramContext { files: files.collect(), wanted, cancelled: None, uses, regions }
+    }
+
+    /// The same program for work that nobody waits for any more once `flag` is set.
+    pub fn cancellable(self, flag: Option<&'a AtomicBool>) -> ProgramContext<'a> {
+        ProgramContext { cancelled: flag, ..self }
+    }
+
+    /// Whether nobody waits for the findings any more. Rules that take long ask now and then, and end.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
     /// The files in order.

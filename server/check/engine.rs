@@ -3,8 +3,8 @@
 use super::rule::ChunkJudge;
 use super::sense::unused;
 use super::suppression::Suppression;
-use super::{ChunkContext, ProgramContext, RULES, Rule, Run, program_around, programs};
-use crate::document::{Document, Found, LIMIT_BYTES, Page, ProjectView};
+use super::{ChunkContext, ProgramContext, RULES, Rule, Run, program_around, programs, proofs};
+use crate::document::{Document, Found, LIMIT_BYTES, Page, ProjectView, Proofs};
 use crate::text::{Diagnostic, Message, Severity, Span};
 use rustc_hash::{FxHashMap, FxHasher};
 use std::hash::{Hash, Hasher};
@@ -102,7 +102,6 @@ fn judged(document: &Document, with_mentions: bool) -> Vec<Diagnostic> {
 
 /// The findings in each page, from the page's start. Many pages are judged by several threads.
 fn judged_pages(document: &Document, with_mentions: bool) -> Vec<Found> {
-    let scopes = document.scopes();
     let mut pou_number = 0;
     let mut tasks = Vec::with_capacity(document.pages().len());
     for page in document.pages() {
@@ -110,12 +109,9 @@ fn judged_pages(document: &Document, with_mentions: bool) -> Vec<Found> {
         pou_number += page.pou_starts();
     }
     let judge = |(page, pou_number): (&Arc<Page>, usize)| {
-        page.found(hash_of((scopes.key, pou_number)), || {
-            judge_page(document, page, pou_number, with_mentions)
-        })
+        page.found(key(document, pou_number), || judge_page(document, page, pou_number, with_mentions))
     };
-    let is_new =
-        |(page, pou_number): &(&Arc<Page>, usize)| !page.has_found(hash_of((scopes.key, *pou_number)));
+    let is_new = |(page, pou_number): &(&Arc<Page>, usize)| !page.has_found(key(document, *pou_number));
     let new: Vec<_> = tasks.iter().copied().filter(is_new).collect();
     if new.len() >= WORTH_THREADS {
         let threads = std::thread::available_parallelism().map_or(1, NonZero::get).min(new.len());
@@ -137,16 +133,39 @@ fn judged_pages(document: &Document, with_mentions: bool) -> Vec<Found> {
 
 /// What the batch tier finds in a document that stands alone.
 pub fn program(document: &Document, severities: &Severities) -> Vec<Diagnostic> {
-    let found = judge_program(&ProgramContext::new([(0, document)], None));
-    finished(document, found.into_iter().map(|(_, diagnostic)| diagnostic).collect(), severities)
+    within_project(&ProjectView::alone(document), severities)
 }
 
 /// What the batch tier finds in the file of the project that is looked at. Other files are seen, and named by their
 /// numbers where they have to do with a finding.
 pub fn within_project(view: &ProjectView<'_>, severities: &Severities) -> Vec<Diagnostic> {
+    batch(view, severities, &mut |_| {}).unwrap_or_default()
+}
+
+/// The same, told on the way: `tell` gets what the rules about programs find, and then what proofs find, as they find
+/// it; at the end comments that allow nothing are found, too. Nothing if the view is cancelled before.
+pub fn batch(
+    view: &ProjectView<'_>,
+    severities: &Severities,
+    tell: &mut dyn FnMut(Vec<Diagnostic>),
+) -> Option<Vec<Diagnostic>> {
     let files = program_around(view).into_iter().map(|number| (number, view.members()[number].document));
-    let found = judge_program(&ProgramContext::new(files, Some(view.here_number())));
-    finished(view.here(), found.into_iter().map(|(_, diagnostic)| diagnostic).collect(), severities)
+    let context = ProgramContext::new(files, Some(view.here_number())).cancellable(view.cancelled());
+    let here = view.here();
+    let suppression = Suppression::of(here);
+    let mut told = |found: &[Diagnostic]| {
+        let found = found.to_vec();
+        let allowed = match &suppression {
+            Some(suppression) => suppression.filtered(found),
+            None => found,
+        };
+        tell(with_severities(allowed, severities));
+    };
+    let found = judge_program(&context)?.into_iter();
+    let mut found: Vec<Diagnostic> = found.map(|(_, diagnostic)| diagnostic).collect();
+    told(&found);
+    found.extend(proofs::of(here, &|| view.is_cancelled(), &mut told)?);
+    Some(finished(here, found, severities))
 }
 
 /// What both tiers find in each file of a project, in their order, sorted by place.
@@ -157,25 +176,31 @@ pub fn project(view: &ProjectView<'_>, severities: &Severities) -> Vec<Vec<Diagn
     let mut of_programs: Vec<Vec<Diagnostic>> = vec![Vec::new(); by_file.len()];
     for program in programs(view).into_iter().take_while(|_| !view.is_cancelled()) {
         let files = program.into_iter().map(|number| (number, document(number)));
-        for (number, diagnostic) in judge_program(&ProgramContext::new(files, None)) {
+        let context = ProgramContext::new(files, None).cancellable(view.cancelled());
+        for (number, diagnostic) in judge_program(&context).unwrap_or_default() {
             of_programs[number].push(diagnostic);
         }
     }
-    for (number, found) in of_programs.into_iter().enumerate() {
+    for (number, mut found) in of_programs.into_iter().enumerate() {
+        let proved = proofs::of(document(number), &|| view.is_cancelled(), &mut |_| {});
+        found.extend(proved.unwrap_or_default());
         by_file[number].extend(finished(document(number), found, severities));
     }
     by_file.into_iter().map(sorted).collect()
 }
 
-/// What the rules of the batch tier find, with the number of the file.
-fn judge_program(context: &ProgramContext<'_>) -> Vec<(usize, Diagnostic)> {
+/// What the rules about whole programs find, with the number of the file; nothing if nobody waits for it any more.
+fn judge_program(context: &ProgramContext<'_>) -> Option<Vec<(usize, Diagnostic)>> {
     let mut found = Vec::new();
     for rule in RULES.iter() {
+        if context.is_cancelled() {
+            return None;
+        }
         if let Rule { run: Run::Program(judge) | Run::Both(_, judge), .. } = rule {
             judge(context, &mut found);
         }
     }
-    context.distributed(found).collect()
+    Some(context.distributed(found).collect())
 }
 
 /// By place, then gravity, then code.
@@ -200,15 +225,18 @@ fn judge_page(
     mut pou_number: usize,
     with_mentions: bool,
 ) -> Vec<Diagnostic> {
-    let scopes = document.scopes();
     let mut diagnostics = Vec::new();
     let mut start = 0;
     for chunk in page.chunks() {
         pou_number += chunk.pou_starts();
-        let found = chunk.found(hash_of((scopes.key, pou_number)), with_mentions, |chunk| {
+        let key = key(document, pou_number);
+        let found = chunk.found(key, with_mentions, |chunk| {
             let mut found = chunk.problems().to_vec();
             let context = ChunkContext::new(chunk, document, pou_number.checked_sub(1));
             CHUNK_JUDGES.iter().for_each(|judge| judge(&context, &mut found));
+            if !context.is_worth_a_proof.get() {
+                chunk.keep_proofs(key, Proofs::default());
+            }
             found
         });
         diagnostics.extend(found.iter().map(|diagnostic| diagnostic.shifted(start)));
@@ -242,8 +270,9 @@ fn with_severities(diagnostics: Vec<Diagnostic>, severities: &Severities) -> Vec
     graded.collect()
 }
 
-fn hash_of(value: impl Hash) -> u64 {
+/// Stands for all outside of a page or a chunk that its findings depend on, behind so many starts of a POU.
+pub(super) fn key(document: &Document, pou_number: usize) -> u64 {
     let mut hasher = FxHasher::default();
-    value.hash(&mut hasher);
+    (document.scopes().key, pou_number).hash(&mut hasher);
     hasher.finish()
 }

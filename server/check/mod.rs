@@ -16,7 +16,9 @@ mod surface;
 pub use surface::surface;
 
 mod engine;
-pub use engine::{Severities, all, once, program, project, realtime, sorted, within_project};
+pub use engine::{Severities, all, batch, once, program, project, realtime, sorted, within_project};
+
+mod proofs;
 
 mod suppression;
 pub use suppression::is_suppressible;

@@ -1,5 +1,6 @@
 //! What a rule is.
 
+use super::proof::Prover;
 use super::{ChunkContext, ProgramContext};
 use crate::text::{self, Book, Diagnostic, Language, Severity};
 
@@ -28,6 +29,8 @@ pub enum Run {
     Chunk(fn(&ChunkContext<'_>, &mut Vec<Diagnostic>)),
     /// On the whole program, when typing stops. Batch tier.
     Program(fn(&ProgramContext<'_>, &mut Vec<Diagnostic>)),
+    /// On each chunk with rungs that are worth a proof, behind all others. Batch tier.
+    Proof(fn(&ChunkContext<'_>, &mut Prover<'_>)),
     /// On what all others have found.
     Last,
     /// On each chunk, and on the whole program: each tier sees a part of it.

@@ -35,7 +35,8 @@ struct Known {
     outline: OnceLock<Outline>,
     mentions: OnceLock<Box<[Mention]>>,
     tokens: OnceLock<Box<[Token]>>,
-    found: Kept,
+    found: Kept<Found>,
+    proofs: Kept<Proofs>,
 }
 
 /// How the chunks of a document are read.
@@ -95,8 +96,8 @@ impl Deref for Reading<'_> {
     }
 }
 
-/// Diagnostics and the key under which they hold.
-pub(super) type Kept = Mutex<Option<(u64, Found)>>;
+/// What was found, and the key under which it holds.
+pub(super) type Kept<T> = Mutex<Option<(u64, T)>>;
 
 /// Diagnostics that are shared. Most chunks have none, and threads that look at many of those share nothing.
 #[derive(Clone, Debug, Default)]
@@ -108,6 +109,21 @@ impl Deref for Found {
     fn deref(&self) -> &[Diagnostic] {
         self.0.as_deref().unwrap_or_default()
     }
+}
+
+impl From<Vec<Diagnostic>> for Found {
+    fn from(found: Vec<Diagnostic>) -> Found {
+        Found((!found.is_empty()).then(|| found.into()))
+    }
+}
+
+/// What proofs about rungs found.
+#[derive(Clone, Debug, Default)]
+pub struct Proofs {
+    /// The findings.
+    pub found: Found,
+    /// How much work they were; 0 where there was nothing to prove.
+    pub effort: usize,
 }
 
 /// What a chunk says.
@@ -156,6 +172,7 @@ impl Chunk {
             mentions: OnceLock::new(),
             tokens: OnceLock::new(),
             found: Mutex::new(None),
+            proofs: Mutex::new(None),
         };
         Chunk { known: Arc::new(known), tree: OnceLock::new() }
     }
@@ -295,7 +312,7 @@ impl Chunk {
         with_mentions: bool,
         find: impl FnOnce(&Chunk) -> Vec<Diagnostic>,
     ) -> Found {
-        kept(&self.known.found, key, || {
+        kept_or(&self.known.found, key, || {
             let reading = self.reading();
             let found = find(&reading);
             reading.outline();
@@ -305,26 +322,42 @@ impl Chunk {
             found
         })
     }
+
+    /// What the proofs about its rungs found under `key`, if they were made.
+    pub fn proofs(&self, key: u64) -> Option<Proofs> {
+        kept(&self.known.proofs, key)
+    }
+
+    /// Keeps what the proofs found.
+    pub fn keep_proofs(&self, key: u64, proofs: Proofs) {
+        keep(&self.known.proofs, key, proofs);
+    }
 }
 
-/// The value kept under `key`, or a new one. A panic elsewhere leaves the slot usable: it holds a whole value or none.
-pub(super) fn kept(slot: &Kept, key: u64, make: impl FnOnce() -> Vec<Diagnostic>) -> Found {
-    if let Some((kept_key, value)) = &*locked(slot)
-        && *kept_key == key
-    {
-        return value.clone();
-    }
-    let made = make();
-    let value = Found((!made.is_empty()).then(|| made.into()));
-    *locked(slot) = Some((key, value.clone()));
-    value
+/// The value kept under `key`, or a new one.
+pub(super) fn kept_or(slot: &Kept<Found>, key: u64, make: impl FnOnce() -> Vec<Diagnostic>) -> Found {
+    kept(slot, key).unwrap_or_else(|| {
+        let value = Found::from(make());
+        keep(slot, key, value.clone());
+        value
+    })
+}
+
+/// The value kept under `key`. A panic elsewhere leaves the slot usable: it holds a whole value or none.
+pub(super) fn kept<T: Clone>(slot: &Kept<T>, key: u64) -> Option<T> {
+    locked(slot).as_ref().filter(|(kept_key, _)| *kept_key == key).map(|(_, value)| value.clone())
+}
+
+/// Keeps `value` under `key`.
+pub(super) fn keep<T>(slot: &Kept<T>, key: u64, value: T) {
+    *locked(slot) = Some((key, value));
 }
 
 /// Whether there is a value under `key`.
-pub(super) fn is_kept(slot: &Kept, key: u64) -> bool {
+pub(super) fn is_kept<T>(slot: &Kept<T>, key: u64) -> bool {
     matches!(&*locked(slot), Some((kept_key, _)) if *kept_key == key)
 }
 
-fn locked(slot: &Kept) -> MutexGuard<'_, Option<(u64, Found)>> {
+fn locked<T>(slot: &Kept<T>) -> MutexGuard<'_, Option<(u64, T)>> {
     slot.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -16,7 +16,7 @@ pub use both::both;
 mod split;
 
 mod chunk;
-pub use chunk::{Chunk, Found, Reading, Tree};
+pub use chunk::{Chunk, Found, Proofs, Reading, Tree};
 
 mod exported;
 

@@ -2,7 +2,7 @@
 //! rebuilds one page.
 
 use super::allowance::{self, OwnAllowance};
-use super::{Accesses, Chunk, Found, Milestone, Names, Size, access, chunk, milestone};
+use super::{Accesses, Chunk, Found, Milestone, Names, Proofs, Size, access, chunk, milestone};
 use crate::ladder::NameHabit;
 use crate::text::Diagnostic;
 use std::sync::{Arc, Mutex, OnceLock};
@@ -23,7 +23,8 @@ pub struct Page {
     milestones: OnceLock<Arc<[Milestone]>>,
     accesses: OnceLock<Arc<Accesses>>,
     allowances: OnceLock<Arc<[(usize, OwnAllowance)]>>,
-    found: chunk::Kept,
+    found: chunk::Kept<Found>,
+    proofs: chunk::Kept<Proofs>,
 }
 
 impl Page {
@@ -44,6 +45,7 @@ impl Page {
             accesses: OnceLock::new(),
             allowances: OnceLock::new(),
             found: Mutex::new(None),
+            proofs: Mutex::new(None),
         })
     }
 
@@ -105,7 +107,17 @@ impl Page {
 
     /// The diagnostics of all its chunks, offsets from the page's start, kept under `key` as those of a chunk are.
     pub fn found(&self, key: u64, find: impl FnOnce() -> Vec<Diagnostic>) -> Found {
-        chunk::kept(&self.found, key, find)
+        chunk::kept_or(&self.found, key, find)
+    }
+
+    /// What the proofs about all its rungs found, offsets from the page's start, if they were made under `key`.
+    pub fn proofs(&self, key: u64) -> Option<Proofs> {
+        chunk::kept(&self.proofs, key)
+    }
+
+    /// Keeps what the proofs found.
+    pub fn keep_proofs(&self, key: u64, proofs: Proofs) {
+        chunk::keep(&self.proofs, key, proofs);
     }
 }
 
@@ -155,6 +167,7 @@ impl Pages {
                 accesses: page.accesses.clone(),
                 allowances: page.allowances.clone(),
                 found: Mutex::new(None),
+                proofs: Mutex::new(None),
             }),
         };
         Pages { pages: self.pages.iter().map(lean_page).collect() }

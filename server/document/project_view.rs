@@ -91,6 +91,11 @@ impl<'a> ProjectView<'a> {
         self
     }
 
+    /// The flag that says so.
+    pub fn cancelled(&self) -> Option<&'a AtomicBool> {
+        self.cancelled
+    }
+
     /// Whether nobody waits for the answer any more, so that any answer is as good as the right one.
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed))

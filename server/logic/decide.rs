@@ -20,6 +20,8 @@ pub enum Verdict {
 
 /// So many nodes a diagram may have: some tens of milliseconds.
 const NODES_MAX: usize = 200_000;
+/// Two diagrams are joined without a look at how much work it will be if it cannot be more than so many steps.
+const STEPS_MAX: usize = 1 << 16;
 /// The library numbers variables with 16 bits.
 const ATOMS_MAX: usize = 4_000;
 
@@ -31,6 +33,7 @@ pub fn equal(formulas: &mut Formulas, left: Formula, right: Formula) -> Verdict 
     }
     let Some(mut diagrams) = Diagrams::of(formulas, &[left, right]) else { return Verdict::Undecided };
     let differ = diagrams.differing(left, right);
+    formulas.spend(diagrams.work.spent);
     match differ {
         None => Verdict::Undecided,
         Some(differ) => match differ.sat_witness() {
@@ -57,10 +60,49 @@ pub(super) struct Diagrams {
     /// That of each formula that was wanted, and of its parts.
     pub of: FxHashMap<Formula, Bdd>,
     possible: Bdd,
+    /// What was done since the formulas were told of it.
+    work: Work,
+}
+
+/// The work that may be done.
+#[derive(Default)]
+struct Work {
+    left: usize,
+    spent: usize,
+}
+
+type Operation = fn(Option<bool>, Option<bool>) -> Option<bool>;
+
+impl Work {
+    /// Two diagrams joined; nothing if that is too much work.
+    fn join(&mut self, left: &Bdd, right: &Bdd, operation: Operation) -> Option<Bdd> {
+        let limit = self.left.min(NODES_MAX);
+        if left.size().saturating_mul(right.size()) > STEPS_MAX {
+            // The result may be small after all, but not the way to it.
+            let steps = Bdd::check_binary_op(limit, left, right, operation).map(|(_, steps)| steps);
+            self.spend(steps.unwrap_or(limit));
+            steps?;
+        }
+        let joined = Bdd::binary_op_with_limit(limit, left, right, operation);
+        self.spend(joined.as_ref().map_or(limit, Bdd::size));
+        joined
+    }
+
+    fn spend(&mut self, effort: usize) {
+        self.spent += effort;
+        self.left = self.left.saturating_sub(effort);
+    }
 }
 
 impl Diagrams {
     pub fn of(formulas: &mut Formulas, wanted: &[Formula]) -> Option<Diagrams> {
+        let mut work = Work { left: formulas.effort(), spent: 0 };
+        let diagrams = Diagrams::made(formulas, wanted, &mut work);
+        formulas.spend(work.spent);
+        diagrams.map(|diagrams| Diagrams { work: Work { left: formulas.effort(), spent: 0 }, ..diagrams })
+    }
+
+    fn made(formulas: &mut Formulas, wanted: &[Formula], work: &mut Work) -> Option<Diagrams> {
         let axioms = axioms(formulas, wanted);
         let all: Vec<Formula> = wanted.iter().copied().chain(axioms.iter().copied()).collect();
         let parts = formulas.parts_of(all);
@@ -78,20 +120,20 @@ impl Diagrams {
                 Node::Constant(false) => variables.mk_false(),
                 Node::Atom(number) => variables.mk_var(*places.get(number)?),
                 Node::Not(inner) => of.get(inner)?.not(),
-                Node::And(inner) => joined(&of, inner, variables.mk_true(), op_function::and)?,
-                Node::Or(inner) => joined(&of, inner, variables.mk_false(), op_function::or)?,
+                Node::And(inner) => joined(&of, inner, variables.mk_true(), op_function::and, work)?,
+                Node::Or(inner) => joined(&of, inner, variables.mk_false(), op_function::or, work)?,
             };
             of.insert(part, diagram);
         }
-        let possible = joined(&of, &axioms, variables.mk_true(), op_function::and)?;
-        Some(Diagrams { variables, atoms, of, possible })
+        let possible = joined(&of, &axioms, variables.mk_true(), op_function::and, work)?;
+        Some(Diagrams { variables, atoms, of, possible, work: Work::default() })
     }
 
     /// Where two formulas differ.
     fn differing(&mut self, left: Formula, right: Formula) -> Option<Bdd> {
         let (left, right) = (self.of.get(&left)?, self.of.get(&right)?);
-        let differ = Bdd::binary_op_with_limit(NODES_MAX, left, right, op_function::xor)?;
-        Bdd::binary_op_with_limit(NODES_MAX, &differ, &self.possible, op_function::and)
+        let differ = self.work.join(left, right, op_function::xor)?;
+        self.work.join(&differ, &self.possible, op_function::and)
     }
 
     /// Values for which `diagram` holds, with as few atoms on as there are on the shortest way.
@@ -107,14 +149,15 @@ fn joined(
     of: &FxHashMap<Formula, Bdd>,
     parts: &[Formula],
     neutral: Bdd,
-    operation: fn(Option<bool>, Option<bool>) -> Option<bool>,
+    operation: Operation,
+    work: &mut Work,
 ) -> Option<Bdd> {
     let mut level: Vec<Bdd> = parts.iter().map(|part| of.get(part).cloned()).collect::<Option<_>>()?;
     while level.len() > 1 {
         let pairs = level.chunks(2);
         let next: Option<Vec<Bdd>> = pairs
             .map(|pair| match pair {
-                [left, right] => Bdd::binary_op_with_limit(NODES_MAX, left, right, operation),
+                [left, right] => work.join(left, right, operation),
                 _ => pair.first().cloned(),
             })
             .collect();

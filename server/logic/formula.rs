@@ -1,6 +1,7 @@
 //! Formulas in an arena: equal ones have equal numbers as far as commuting and associating goes, so that most proofs
 //! are done when they are written down.
 
+use super::effort;
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 use std::collections::hash_map::Entry;
@@ -92,18 +93,12 @@ pub struct Formulas {
     atom_numbers: FxHashMap<Atom, u32>,
     steps: Vec<Step>,
     step_numbers: FxHashMap<Step, u32>,
+    effort: usize,
 }
 
 impl Default for Formulas {
     fn default() -> Formulas {
-        Formulas {
-            nodes: vec![Node::Constant(false), Node::Constant(true)],
-            numbers: FxHashMap::default(),
-            atoms: Vec::new(),
-            atom_numbers: FxHashMap::default(),
-            steps: Vec::new(),
-            step_numbers: FxHashMap::default(),
-        }
+        Formulas::limited(effort::QUESTION)
     }
 }
 
@@ -112,6 +107,29 @@ impl Formulas {
     pub const FALSE: Formula = Formula(0);
     /// Always.
     pub const TRUE: Formula = Formula(1);
+
+    /// No formulas yet; proofs about them may need so many nodes of diagrams in all.
+    pub fn limited(effort: usize) -> Formulas {
+        Formulas {
+            nodes: vec![Node::Constant(false), Node::Constant(true)],
+            numbers: FxHashMap::default(),
+            atoms: Vec::new(),
+            atom_numbers: FxHashMap::default(),
+            steps: Vec::new(),
+            step_numbers: FxHashMap::default(),
+            effort,
+        }
+    }
+
+    /// How many nodes of diagrams proofs may still need.
+    pub fn effort(&self) -> usize {
+        self.effort
+    }
+
+    /// Takes off what a proof needed.
+    pub(super) fn spend(&mut self, effort: usize) {
+        self.effort = self.effort.saturating_sub(effort);
+    }
 
     /// The constant.
     pub fn constant(value: bool) -> Formula {

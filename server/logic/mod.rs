@@ -42,6 +42,9 @@ pub use formula::{Atom, Formula, Formulas, Moment, Step};
 mod run;
 pub use run::{Effect, Run};
 
+mod effort;
+pub use effort::Effort;
+
 mod decide;
 pub use decide::{Verdict, equal, is_never};
 

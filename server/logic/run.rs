@@ -435,7 +435,6 @@ impl Default for Run<'_> {
     }
 }
 
-
 /// The place of a term's kind.
 fn slot(term: &Term) -> usize {
     let area = |location: Location| VARIABLES + 1 + location as usize;

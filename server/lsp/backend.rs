@@ -11,7 +11,7 @@ use super::tokens;
 use super::typed;
 use super::workspace::{SNAPSHOT, Snapshot, Workspace};
 use super::written::{given, write};
-use super::{capabilities, features, translating, usage};
+use super::{capabilities, features, proving, translating, usage};
 use crate::ide;
 use crate::text::Message;
 use serde_json::{Value, json};
@@ -314,7 +314,7 @@ impl LanguageServer for Backend {
             // To find what could be mended, all rules run.
             let found = match editing::is_wanted(&CodeActionKind::QUICKFIX, only) {
                 true => around.findings(),
-                false => Vec::new(),
+                false => Arc::default(),
             };
             let fixes = ide::fixes(&found, place.span(params.range)).into_iter();
             let fixes = fixes.map(|fix| features::quick_fix(around, place, &fix));
@@ -384,7 +384,8 @@ impl LanguageServer for Backend {
     async fn diagnostic(&self, params: DocumentDiagnosticParams) -> Result<DocumentDiagnosticReportResult> {
         let manner = snapshot().manner;
         let uri = params.text_document.uri;
-        let items = whole(uri, move |around, _| to_proto::diagnostics(around, around.findings(), manner));
+        let items =
+            whole(uri, move |around, _| to_proto::diagnostics(around, around.findings().to_vec(), manner));
         let items = items.await?.unwrap_or_default();
         Ok(pulled::of_document(items, params.previous_result_id.as_deref()))
     }
@@ -422,6 +423,9 @@ impl LanguageServer for Backend {
         }
         if [translating::TRANSLATE, translating::BESIDE].contains(&params.command.as_str()) {
             return self.translate(&params.command, params.arguments.first()).await;
+        }
+        if params.command == proving::PROVE {
+            return proving::answer(params.arguments.first()).await;
         }
         let Some(uri) =
             params.arguments.first().and_then(|value| value.as_str()).and_then(|text| text.parse().ok())

@@ -1,7 +1,7 @@
 //! What the server offers, and what the client can do.
 
 use super::abilities::{Abilities, Requests};
-use super::{editing, manifest_help, to_proto, translating, usage};
+use super::{editing, manifest_help, proving, to_proto, translating, usage};
 use crate::text::Encoding;
 use serde_json::json;
 use tower_lsp::ls_types::*;
@@ -13,6 +13,7 @@ pub(super) const COMMANDS: &[&str] = &[
     "rungwise.usage",
     translating::TRANSLATE,
     translating::BESIDE,
+    proving::PROVE,
     APPLY,
 ];
 

@@ -1,6 +1,7 @@
 //! The task that looks after projects: it reads their files, links them, and publishes what is found in those that are
 //! not open. One task, so that the disk is asked once at a time and no two pictures of a project compete.
 
+use super::known::Known;
 use super::projects::{Loaded, OnDisk, canonical};
 use super::settings::Settings;
 use super::sheets;
@@ -371,12 +372,18 @@ fn read_project(
                 document,
                 manifest: loaded.manifest.clone(),
                 severities: severities.clone(),
+                known: Known::default(),
             })
         });
         let exports = exports.unwrap_or_default();
         loaded.files.push(OnDisk { path: canonical_path, name, stamp, file, exports });
     }
     Some(loaded)
+}
+
+/// The program in a file of the disk, read for the PLC of a manifest; nothing if it is not there or too large.
+pub(super) fn read_program(path: &Path, settings: &Settings, manifest: &Manifest) -> Option<Document> {
+    read_file(path, settings, manifest).map(|(_, document)| document)
 }
 
 fn read_file(path: &Path, settings: &Settings, manifest: &Manifest) -> Option<(Uri, Document)> {

@@ -78,14 +78,25 @@ impl Around {
     }
 
     /// What both tiers find in the file that is looked at, sorted by place.
-    pub fn findings(&self) -> Vec<Diagnostic> {
+    pub fn findings(&self) -> Arc<[Diagnostic]> {
         let open = self.here();
-        if self.files.len() == 1 {
-            return check::all(&open.document, &open.severities);
+        if let Some(known) = open.known.among(&self.files) {
+            return known;
         }
         let mut found = check::realtime(&open.document, &open.severities);
         found.extend(check::within_project(&self.view(), &open.severities));
-        check::sorted(found)
+        let found = check::sorted(found);
+        match self.is_cancelled() {
+            true => found.into(),
+            false => self.keep(found),
+        }
+    }
+
+    /// Keeps what both tiers found in the file that is looked at, sorted by place, for those who ask for it next.
+    pub fn keep(&self, found: Vec<Diagnostic>) -> Arc<[Diagnostic]> {
+        let found = found.into();
+        self.here().known.keep(&self.files, &found);
+        found
     }
 
     /// The same files seen from file number `here`.

@@ -1,7 +1,8 @@
 //! One publisher for each open document: diagnostics of the newest version, never of an older one after it.
 //!
 //! Edits that come while one is worked on are taken together; nothing waits for a pause, except the batch tier,
-//! whose findings follow when typing stops and until then move along with the text.
+//! whose findings follow when typing stops and until then move along with the text. A batch run that takes long shows
+//! what it has found so far, and ends when the text moves on.
 
 use super::keeper::Keeper;
 use super::projects::Around;
@@ -9,11 +10,14 @@ use super::status::StatusNotification;
 use super::to_proto::{self, Manner};
 use super::workspace::{Open, Snapshot, Workspace};
 use crate::check;
-use crate::text::Diagnostic;
+use crate::text::{Diagnostic, Span};
+use rustc_hash::FxHashSet;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::{Duration, Instant};
-use tokio::sync::{Notify, watch};
+use tokio::sync::{Notify, mpsc, watch};
 use tokio::task::JoinHandle;
 use tower_lsp::Client;
 use tower_lsp::ls_types::Uri;
@@ -27,8 +31,12 @@ const PAUSE: Duration = Duration::from_millis(120);
 /// What was published about a closed document stays so long for an editor that opens it again at once, as it does to
 /// give it another language.
 const REOPENED: Duration = Duration::from_millis(40);
-/// A document that is opened with more bytes than this shows what the real-time tier finds before the batch tier runs.
-const LARGE_BYTES: usize = 256 << 10;
+
+/// What is found at once is shown with what the whole run finds if that does not take longer than this,
+const PATIENCE: Duration = Duration::from_millis(8);
+
+/// and what is found later not more often than this.
+const STREAMED: Duration = Duration::from_millis(150);
 
 /// Sends what it is given to a task, which sees the newest only.
 pub(super) struct Publisher {
@@ -110,6 +118,36 @@ struct Batch {
     surface_of_disk: Option<u64>,
 }
 
+/// What is found on the way.
+enum News {
+    /// All that the real-time tier finds.
+    Realtime(Vec<Diagnostic>),
+    /// The files that findings of the batch tier name by their numbers.
+    Around(Around),
+    /// Some of what the batch tier finds.
+    Batch(Vec<Diagnostic>),
+}
+
+/// What is known of a version while it is judged.
+#[derive(Default)]
+struct Partial {
+    realtime: Option<Vec<Diagnostic>>,
+    around: Option<Around>,
+    batch: Vec<Diagnostic>,
+    has_news: bool,
+}
+
+impl Partial {
+    fn take(&mut self, news: News) {
+        match news {
+            News::Realtime(found) => self.realtime = Some(found),
+            News::Around(around) => self.around = Some(around),
+            News::Batch(found) => self.batch.extend(found),
+        }
+        self.has_news = self.realtime.is_some();
+    }
+}
+
 /// What both tiers found in one version.
 struct Judged {
     realtime: Vec<Diagnostic>,
@@ -119,18 +157,22 @@ struct Judged {
 }
 
 impl Batch {
-    /// Runs the rules about whole programs over all files of the project as they are now. `is_first` says that
-    /// nothing is known of this file yet.
-    fn of(snapshot: &Snapshot, own: &Arc<Open>, is_first: bool) -> Batch {
-        let around = snapshot.around(own);
+    /// Runs the rules about whole programs over the files of the project as they are now. `is_first` says that
+    /// nothing is known of this file yet. Nothing if it is cancelled.
+    fn of(
+        (snapshot, around): (&Snapshot, Around),
+        own: &Arc<Open>,
+        is_first: bool,
+        tell: &dyn Fn(News),
+    ) -> Option<Batch> {
+        tell(News::Around(around.clone()));
+        let found = check::batch(&around.view(), &own.severities, &mut |found| tell(News::Batch(found)))?;
         if around.files().len() == 1 {
-            let found = check::program(&own.document, &own.severities);
-            return Batch { found, around, surface: None, surface_of_disk: None };
+            return Some(Batch { found, around, surface: None, surface_of_disk: None });
         }
-        let found = check::within_project(&around.view(), &own.severities);
         let on_disk = is_first.then(|| snapshot.on_disk(own)).flatten();
         let surface_of_disk = on_disk.map(|file| check::surface(&file.document));
-        Batch { found, around, surface: Some(check::surface(&own.document)), surface_of_disk }
+        Some(Batch { found, around, surface: Some(check::surface(&own.document)), surface_of_disk })
     }
 }
 
@@ -223,27 +265,30 @@ impl Task {
     }
 
     async fn publish(&mut self, open: Arc<Open>, receiver: &mut watch::Receiver<Order>) {
-        // How long the batch run of a large document takes is not known when it is opened.
-        let is_first = self.batch.is_none() && open.document.len() > LARGE_BYTES;
-        if is_first || self.batch_took >= AT_ONCE {
+        let mut shown = None;
+        if self.batch_took >= AT_ONCE {
             let realtime = self.find(&open, check::realtime).await;
-            let (mut diagnostics, around) = self.carried(&open);
-            diagnostics.extend(realtime);
-            self.push(&around, diagnostics).await;
-            let pause = if is_first { Duration::ZERO } else { PAUSE };
-            match tokio::time::timeout(pause, receiver.changed()).await {
+            shown = Some(self.push_partial(&open, &realtime, &Partial::default()).await);
+            match tokio::time::timeout(PAUSE, receiver.changed()).await {
                 Ok(Ok(())) => return receiver.mark_changed(),
                 // Nobody is there any more to give orders.
                 Ok(Err(_)) => return,
                 Err(_) => {}
             }
         }
-        let judged = self.judge(&open).await;
+        let started = Instant::now();
+        let Some(judged) = self.judge(&open, receiver, &mut shown).await else {
+            if started.elapsed() > PATIENCE {
+                self.batch_took = AT_ONCE;
+            }
+            return;
+        };
         self.batch_took = judged.batch_took;
         let mut diagnostics = judged.realtime;
         diagnostics.extend(judged.batch.found.iter().cloned());
-        // What was shown first is all there is if the batch run found nothing.
-        if !is_first || !judged.batch.found.is_empty() {
+        let diagnostics = check::sorted(diagnostics);
+        judged.batch.around.keep(diagnostics.clone());
+        if shown.as_ref() != Some(&diagnostics) {
             self.push(&judged.batch.around, diagnostics).await;
         }
         self.tell_project(&open, &judged.batch);
@@ -258,29 +303,89 @@ impl Task {
         }
     }
 
-    /// Both tiers and the status, beside the other tasks; if one of them fails the log has it, and that one finds
-    /// nothing.
-    async fn judge(&self, open: &Arc<Open>) -> Judged {
-        let (workspace, own, is_first) = (self.workspace.clone(), open.clone(), self.surface.is_none());
-        let judged = tokio::task::spawn_blocking(move || {
-            let realtime = check::realtime(&own.document, &own.severities);
-            let started = Instant::now();
-            let snapshot = workspace.upgrade().map(|workspace| workspace.seen_by(&own)).unwrap_or_default();
-            let batch = Batch::of(&snapshot, &own, is_first);
-            let batch_took = started.elapsed();
-            Judged { realtime, batch, batch_took, status: Some(StatusNotification::of(&own)) }
-        });
-        match judged.await {
-            Ok(judged) => judged,
-            Err(failure) => {
-                tracing::error!("a check failed: {failure}");
-                let realtime = self.find(open, check::realtime).await;
-                let found = self.find(open, check::program).await;
-                let around = Around::alone(open);
-                let batch = Batch { found, around, surface: None, surface_of_disk: None };
-                Judged { realtime, batch, batch_took: AT_ONCE, status: None }
+    /// Both tiers and the status, beside the other tasks. What is known after a while is put into `shown` and pushed.
+    /// Nothing if the text moves on: then what the real-time tier found is pushed, and the batch run ends. If a run
+    /// fails the log has it, and its tier finds nothing.
+    async fn judge(
+        &mut self,
+        open: &Arc<Open>,
+        receiver: &mut watch::Receiver<Order>,
+        shown: &mut Option<Vec<Diagnostic>>,
+    ) -> Option<Judged> {
+        let cancelled: Arc<AtomicBool> = Arc::default();
+        let (sender, mut news) = mpsc::unbounded_channel();
+        let mut run = self.start(open, &cancelled, sender);
+        let mut partial = Partial::default();
+        let mut next = tokio::time::Instant::now() + PATIENCE;
+        let mut is_old = false;
+        loop {
+            tokio::select! {
+                biased;
+                changed = receiver.changed(), if !is_old => {
+                    is_old = true;
+                    cancelled.store(true, Relaxed);
+                    if changed.is_ok() {
+                        receiver.mark_changed();
+                    }
+                }
+                told = news.recv(), if !news.is_closed() || !news.is_empty() => {
+                    told.into_iter().for_each(|told| partial.take(told));
+                }
+                judged = &mut run => match judged {
+                    Ok(judged) => return judged,
+                    Err(failure) => {
+                        tracing::error!("a check failed: {failure}");
+                        return Some(self.judge_apart(open).await);
+                    }
+                },
+                () = tokio::time::sleep_until(next), if partial.has_news && !is_old => {
+                    if let Some(realtime) = partial.realtime.take() {
+                        *shown = Some(self.push_partial(open, &realtime, &partial).await);
+                        partial.realtime = Some(realtime);
+                    }
+                    partial.has_news = false;
+                    next = tokio::time::Instant::now() + STREAMED;
+                }
+            }
+            if is_old && let Some(realtime) = &partial.realtime {
+                if shown.is_none() {
+                    self.push_partial(open, realtime, &partial).await;
+                }
+                return None;
             }
         }
+    }
+
+    /// Starts both tiers on a thread of their own.
+    fn start(
+        &self,
+        open: &Arc<Open>,
+        cancelled: &Arc<AtomicBool>,
+        news: mpsc::UnboundedSender<News>,
+    ) -> JoinHandle<Option<Judged>> {
+        let (workspace, own, is_first) = (self.workspace.clone(), open.clone(), self.surface.is_none());
+        let cancelled = cancelled.clone();
+        tokio::task::spawn_blocking(move || {
+            // Nobody listens any more to what is found in an old text.
+            let tell = |told| drop(news.send(told));
+            let realtime = check::realtime(&own.document, &own.severities);
+            tell(News::Realtime(realtime.clone()));
+            let started = Instant::now();
+            let snapshot = workspace.upgrade().map(|workspace| workspace.seen_by(&own)).unwrap_or_default();
+            let around = snapshot.around(&own).cancellable(&cancelled);
+            let batch = Batch::of((&snapshot, around), &own, is_first, &tell)?;
+            let batch_took = started.elapsed();
+            Some(Judged { realtime, batch, batch_took, status: Some(StatusNotification::of(&own)) })
+        })
+    }
+
+    /// Each tier on a thread of its own, so that one finds what it can if the other fails.
+    async fn judge_apart(&self, open: &Arc<Open>) -> Judged {
+        let realtime = self.find(open, check::realtime).await;
+        let found = self.find(open, check::program).await;
+        let around = Around::alone(open);
+        let batch = Batch { found, around, surface: None, surface_of_disk: None };
+        Judged { realtime, batch, batch_took: AT_ONCE, status: None }
     }
 
     /// Has the other files of the project judged again if they see something new.
@@ -308,6 +413,26 @@ impl Task {
         })
     }
 
+    /// Pushes what is known while a run goes on, and says what that is: what was found in the last run stays until this
+    /// one is done.
+    async fn push_partial(
+        &self,
+        open: &Arc<Open>,
+        realtime: &[Diagnostic],
+        partial: &Partial,
+    ) -> Vec<Diagnostic> {
+        let (mut diagnostics, around) = self.carried(open);
+        let around = partial.around.as_ref().unwrap_or(&around);
+        let known: FxHashSet<(Span, &str)> = diagnostics.iter().map(|one| (one.span, one.code)).collect();
+        let new = partial.batch.iter().filter(|one| !known.contains(&(one.span, one.code)));
+        let new: Vec<Diagnostic> = new.cloned().collect();
+        diagnostics.extend(new);
+        diagnostics.extend(realtime.iter().cloned());
+        let diagnostics = check::sorted(diagnostics);
+        self.push(around, diagnostics.clone()).await;
+        diagnostics
+    }
+
     /// The last batch findings, moved along with the text; those in changed text are dropped.
     fn carried(&self, open: &Arc<Open>) -> (Vec<Diagnostic>, Around) {
         let Some((old, batch)) = &self.batch else { return (Vec::new(), Around::alone(open)) };
@@ -330,7 +455,7 @@ impl Task {
     async fn push(&self, around: &Around, diagnostics: Vec<Diagnostic>) {
         if self.pushes {
             let open = around.here();
-            let diagnostics = to_proto::diagnostics(around, check::sorted(diagnostics), self.manner);
+            let diagnostics = to_proto::diagnostics(around, diagnostics, self.manner);
             self.client.publish_diagnostics(open.uri.clone(), diagnostics, Some(open.version)).await;
         }
     }

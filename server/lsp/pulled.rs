@@ -96,7 +96,7 @@ pub(super) fn of_workspace(
     for open in alone.iter().take_while(|_| !is_cancelled()) {
         let around = snapshot.around(open);
         let findings = around.findings();
-        report(vec![of_file(&around, findings, snapshot, &mut known)]);
+        report(vec![of_file(&around, findings.to_vec(), snapshot, &mut known)]);
     }
     // What the client still shows about files that are no more.
     let gone = known.into_keys().map(|uri| full(uri, None, Vec::new()));

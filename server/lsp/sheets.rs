@@ -1,5 +1,6 @@
 //! Device comments files: those that the editor has open win over the disk, and what is wrong in them is published.
 
+use super::known::Known;
 use super::projects::{Around, Loaded, canonical, file_path};
 use super::to_proto;
 use super::workspace::{Open, Snapshot, Workspace, edit_of, spliced};
@@ -126,5 +127,6 @@ pub(super) fn around(snapshot: &Snapshot, file: &CommentsFile) -> Option<Around>
         document: unread(file.text()),
         manifest: Arc::default(),
         severities: Arc::default(),
+        known: Known::default(),
     })))
 }

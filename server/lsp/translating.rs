@@ -219,8 +219,9 @@ pub(super) fn actions(
     let wants_rungs = kinds.into_iter().any(|kind| is_wanted(&kind.into(), only));
     let span = place.span(params.range);
     if wants_rungs && let Some(part) = ide::part_at(place.document, span) {
+        let told = told(around, place, part, &forms().collect::<Vec<_>>(), settings);
         for to in forms() {
-            actions.extend(of_part(around, place, params.range, part, to, settings));
+            actions.extend(of_part(around, place, params.range, (part, &told), to));
         }
     }
     let wanted = |action: &CodeAction| action.kind.as_ref().is_some_and(|kind| is_wanted(kind, only));
@@ -231,16 +232,31 @@ fn rung_kind(to: To) -> String {
     format!("refactor.rewrite.translate.{}", to.name())
 }
 
+/// The forms of a part, of which titles tell; nothing if it is too long for that.
+fn told(
+    around: &Around,
+    place: Place<'_>,
+    part: ProgramPart,
+    forms: &[To],
+    settings: &Settings,
+) -> Option<Vec<TranslatedForm>> {
+    let span = part.span();
+    if span.end - span.start > TOLD_MAX {
+        return None;
+    }
+    let style = settings.style(&around.here().manifest);
+    let told = ide::forms(place.document, Some(span), forms, style, &|| around.is_cancelled());
+    Some(told.unwrap_or_default())
+}
+
 /// The actions for rungs; none if nothing of them has this form.
 fn of_part(
     around: &Around,
     place: Place<'_>,
     range: Range,
-    part: ProgramPart,
+    (part, told): (ProgramPart, &Option<Vec<TranslatedForm>>),
     to: To,
-    settings: &Settings,
 ) -> Vec<CodeAction> {
-    let span = part.span();
     let what = match part {
         ProgramPart::Rung(_) => "translating.rung",
         ProgramPart::Network(_) => "translating.network",
@@ -248,14 +264,11 @@ fn of_part(
     };
     let mut details = Vec::new();
     let mut copied = Vec::new();
-    if span.end - span.start <= TOLD_MAX {
-        let style = settings.style(&around.here().manifest);
-        let form = ide::forms(place.document, Some(span), &[to], style, &|| around.is_cancelled());
-        let Some(form) = form.and_then(|mut forms| forms.pop()) else { return Vec::new() };
-        if form.notes.len() >= form.rungs {
+    if let Some(told) = told {
+        let Some(form) = told.iter().find(|form| form.to == to && form.notes.len() < form.rungs) else {
             return Vec::new();
-        }
-        let steps = ide::form_steps(&form, place.document);
+        };
+        let steps = ide::form_steps(form, place.document);
         copied.extend(steps.map(|steps| Message::new("translating.steps").with("steps", steps)));
         details.clone_from(&copied);
         details.extend(form.certificate.map(certificate));

@@ -3,6 +3,7 @@
 use super::abilities::{Abilities, Newer, Requests};
 use super::capabilities;
 use super::keeper::Keeper;
+use super::known::Known;
 use super::manifests::Manifests;
 use super::projects::{Projects, canonical, file_path};
 use super::publisher::{Closing, Publisher};
@@ -70,6 +71,8 @@ pub(super) struct Open {
     pub document: Document,
     pub manifest: Arc<Manifest>,
     pub severities: Arc<Severities>,
+    /// What was found in it last.
+    pub known: Known,
 }
 
 /// The state, and what goes on beside it.
@@ -262,7 +265,17 @@ impl Workspace {
         if let Some(path) = &path {
             Arc::make_mut(&mut state.snapshot.paths).entry(path.clone()).or_insert_with(|| uri.clone());
         }
-        state.put(Open { uri, version, is_open: true, path, project, document, manifest, severities });
+        state.put(Open {
+            uri,
+            version,
+            is_open: true,
+            path,
+            project,
+            document,
+            manifest,
+            severities,
+            known: Known::default(),
+        });
     }
 
     fn change(&self, params: DidChangeTextDocumentParams) {

@@ -3,7 +3,7 @@
 use super::source::{self, Source};
 use super::{To, Translation, dialect, from_boolean, page};
 use crate::document::Document;
-use crate::logic::{Comparison, Formulas, Path, Storage, compare_but};
+use crate::logic::{Comparison, Effort, Path, Storage, compare_but};
 use crate::target::{Operand, Target};
 use crate::text::{Message, folded};
 use rustc_hash::FxHashSet;
@@ -48,6 +48,7 @@ pub(super) fn add(
 ) -> Option<()> {
     let (written, is_declared) = read_again((document, target), to, &translation.text);
     let mut written = written.into_iter().peekable();
+    let mut effort = Effort::of_program();
     let helpers: FxHashSet<SmolStr> = translation.helpers.iter().map(|name| folded(name)).collect();
     for (source, translated) in sources.iter().zip(&mut translation.rungs) {
         if is_cancelled() {
@@ -70,7 +71,7 @@ pub(super) fn add(
         }
         let sources: Vec<&Path> = source.rung.path.iter().flatten().collect();
         let (certificate, note) = match paths {
-            Some(paths) => judge(&sources, &paths.iter().collect::<Vec<_>>(), &helpers),
+            Some(paths) => judge(&sources, &paths.iter().collect::<Vec<_>>(), &helpers, &mut effort),
             None => (Certificate::Undecided, Some("translate.unreadable")),
         };
         translated.certificate = Some(certificate);
@@ -128,8 +129,9 @@ fn judge(
     own: &[&Path],
     written: &[&Path],
     helpers: &FxHashSet<SmolStr>,
+    effort: &mut Effort,
 ) -> (Certificate, Option<&'static str>) {
-    match compare_but(own, written, helpers, &mut Formulas::default()) {
+    match effort.ask(|formulas| compare_but(own, written, helpers, formulas)) {
         Comparison::Same { is_boolean: true } => (Certificate::Proved, None),
         Comparison::Same { is_boolean: false } => (Certificate::Construction, None),
         Comparison::Different { .. } | Comparison::Unlike => {

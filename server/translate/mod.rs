@@ -19,6 +19,8 @@ pub use counterexample::{Counterexample, Value};
 mod prove;
 pub use prove::{Proof, prove};
 
+pub mod told;
+
 mod dialect;
 
 mod header;
@@ -144,10 +146,42 @@ pub fn translate_unless(
     options: &Options,
     is_cancelled: &dyn Fn() -> bool,
 ) -> Option<Translation> {
-    let mut program = source::program(document, part);
+    written((document, part.is_none()), source::program(document, part), to, options, is_cancelled)
+}
+
+/// The rungs of a document or a part of one, read once for several translations.
+pub struct Original<'d> {
+    document: &'d Document,
+    is_whole: bool,
+    program: source::Program,
+}
+
+impl<'d> Original<'d> {
+    /// Reads `document`; with `part` only the rungs that touch these bytes.
+    pub fn of(document: &'d Document, part: Option<Span>) -> Original<'d> {
+        Original { document, is_whole: part.is_none(), program: source::program(document, part) }
+    }
+
+    /// In another form; nothing if `is_cancelled` says on the way that nobody waits for it any more.
+    pub fn translated(
+        &self,
+        to: To,
+        options: &Options,
+        is_cancelled: &dyn Fn() -> bool,
+    ) -> Option<Translation> {
+        written((self.document, self.is_whole), self.program.clone(), to, options, is_cancelled)
+    }
+}
+
+fn written(
+    (document, is_whole): (&Document, bool),
+    mut program: source::Program,
+    to: To,
+    options: &Options,
+    is_cancelled: &dyn Fn() -> bool,
+) -> Option<Translation> {
     let target = dialect::target(document, to, options.model);
     dialect::convert(document, (to, target), &mut program);
-    let is_whole = part.is_none();
     let mut translation = page::write(document, &program, (to, target), options, is_whole, is_cancelled)?;
     if options.proves {
         certificate::add((document, target), &program.rungs, to, &mut translation, is_cancelled)?;

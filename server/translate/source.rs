@@ -8,7 +8,7 @@ use crate::text::Span;
 use std::sync::Arc;
 
 /// A rung with its chunk.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Source {
     /// Where the chunk starts in the document.
     pub start: usize,
@@ -23,7 +23,7 @@ pub struct Source {
 }
 
 /// A program, or a part of one.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Program {
     /// The rungs.
     pub rungs: Vec<Source>,
@@ -96,8 +96,11 @@ pub(super) fn program(document: &Document, part: Option<Span>) -> Program {
     let mut reader = Reader { document, part, pous: 0, program: Program::default() };
     if document.notation() == Notation::IecIl {
         // A rung of instruction list may reach over several chunks: the calls before it belong to it.
-        let whole = Arc::new(document.chunk_of(&document.text()));
-        reader.chunk(0, &whole);
+        let (bytes, pous) =
+            part.map_or((Span::new(0, document.len()), 0), |part| units_around(document, part));
+        reader.pous = pous;
+        let whole = Arc::new(document.chunk_of(&document.slice(bytes)));
+        reader.chunk(bytes.start as usize, &whole);
         return reader.program;
     }
     let is_wanted = |at: &ChunkRef<'_>| {
@@ -115,6 +118,23 @@ pub(super) fn program(document: &Document, part: Option<Span>) -> Program {
     let (mut program, rest) = both(is_shared, || read(first), || read(second));
     program.rungs.extend(rest.rungs);
     program
+}
+
+/// The bytes of the program units around `part`, and how many units start before them. A chunk in which a unit starts
+/// may begin with the end of the one before.
+fn units_around(document: &Document, part: Span) -> (Span, usize) {
+    let (mut first, mut before, mut count) = (0, 0, 0);
+    for at in document.chunks() {
+        let (end, starts) = (at.start + at.chunk.len(), at.chunk.pou_starts());
+        if starts > 0 && at.start > part.end as usize {
+            return (Span::new(first, at.start), before);
+        }
+        if starts > 0 && end <= part.start as usize {
+            (first, before) = (at.start, count);
+        }
+        count += starts;
+    }
+    (Span::new(first, document.len()), before)
 }
 
 /// So many chunks are worth the start of a thread that reads half of them.

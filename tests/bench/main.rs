@@ -23,6 +23,8 @@ mod interleaved;
 
 mod translation;
 
+mod cursor;
+
 use figures::{Figures, Table, calibrate, milliseconds};
 use lsp_client::{Client, at};
 use programs::Program;
@@ -54,6 +56,7 @@ fn main() {
     start(&table);
     interleaved::measure(&table);
     translation::measure(&table);
+    cursor::measure(&table);
     command_line::measure(&table);
     println!("| (calibration again) | {} | | | | |", milliseconds(calibrate()));
 }

@@ -52,6 +52,30 @@ pub fn rungs(count: usize) -> String {
     (0..count).map(|number| il_rung(number, false)).collect::<String>() + "END\n"
 }
 
+/// Instruction list of IEC 61131-3 of about so many lines, in units of a hundred rungs.
+pub fn iec(lines: usize) -> String {
+    const RUNGS: usize = 100;
+    let mut text = String::new();
+    let mut count = 0;
+    for unit in 0.. {
+        if count >= lines {
+            break;
+        }
+        text += &format!("PROGRAM Unit{unit}\nVAR\n");
+        (0..=RUNGS).for_each(|rung| text += &format!("    Relay{rung} : BOOL;\n"));
+        text += "END_VAR\n";
+        for rung in 0..RUNGS {
+            let (next, other) = (rung + 1, rung * 7 % RUNGS);
+            text += &format!(
+                "    LD Relay{next}\n    OR Relay{rung}\n    ANDN Relay{other}\n    ST Relay{rung}\n"
+            );
+        }
+        text += "END_PROGRAM\n";
+        count += 4 + RUNGS * 5;
+    }
+    text
+}
+
 /// A rung of a program in which no rule finds anything: each coil, timer and latch is there once, and read.
 fn il_rung(number: usize, marked: bool) -> String {
     let input = if marked { "X10".to_string() } else { format!("X{:o}", number % 128) };

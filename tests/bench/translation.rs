@@ -15,6 +15,8 @@ pub fn measure(table: &Table) {
         let targets = |full: &'static str| if rungs == 10_000 { full } else { "" };
         let of = |what: &str| format!("{rungs} rungs, {what}");
         translation(table, &of("ladder to FX list"), targets("< 150 ms"), &drawing, To::Fx, false);
+        from_text(table, &of("ladder to FX list, from the text on"), targets("< 150 ms"), &drawing, To::Fx);
+        from_text(table, &of("FX list to ladder, from the text on"), targets("< 300 ms"), &list, To::Ladder);
         translation(table, &of("FX list to ladder"), targets("< 300 ms"), &list, To::Ladder, false);
         translation(table, &of("ladder to FX list, proved"), targets("< 2 s"), &drawing, To::Fx, true);
         translation(table, &of("FX list to ladder, proved"), targets("< 2 s"), &list, To::Ladder, true);
@@ -37,6 +39,15 @@ fn translation(table: &Table, name: &str, target: &str, document: &Document, to:
     timed(table, name, target, || {
         let Translation { rungs, .. } = translate(document, None, to, &options);
         assert!(rungs.iter().all(|rung| rung.note.is_none()), "everything can be translated");
+    });
+}
+
+/// As on the command line: nothing is known of the document yet. An open one of a thousand rungs keeps its trees, one
+/// of ten thousand does not.
+fn from_text(table: &Table, name: &str, target: &str, document: &Document, to: To) {
+    let text = document.text();
+    timed(table, name, target, || {
+        _ = translate(&open(&text, document.notation()), None, to, &without_proof());
     });
 }
 

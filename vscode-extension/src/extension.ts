@@ -7,6 +7,7 @@ import { DevicesView } from './devicesView';
 import { DrawingEditor } from './drawing';
 import { registerExample } from './example';
 import { FormsView } from './formsView';
+import { ProofView } from './proving';
 import { Pages } from './pages';
 import { ServerController } from './server';
 import type { ProgramStatus, ServerState } from './status';
@@ -46,6 +47,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<Rungwi
     new UsageView(controller),
     new DevicesView(controller),
     new FormsView(controller),
+    new ProofView(controller),
     RungwiseTasks.register(controller),
     registerExample(context),
     registerWalkthrough(),

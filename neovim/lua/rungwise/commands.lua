@@ -90,6 +90,14 @@ M.subcommands = {
     end,
   },
   log = { run = M.log },
+  prove = {
+    run = function(words)
+      require('rungwise.pages').prove(table.concat(words, ' '))
+    end,
+    complete = function(start)
+      return vim.fn.getcompletion(start, 'file')
+    end,
+  },
   restart = { run = client.restart },
   target = {
     run = function(words)
@@ -137,7 +145,7 @@ function M.complete(start, line)
     return matching(start, subcommand_names())
   end
   local subcommand = M.subcommands[words[1]]
-  return #words == 2 and subcommand and subcommand.complete and matching(start, subcommand.complete()) or {}
+  return #words == 2 and subcommand and subcommand.complete and matching(start, subcommand.complete(start)) or {}
 end
 
 function M.create()

@@ -63,6 +63,29 @@ function M.explain(word)
   end
 end
 
+--- Compares the program in the buffer with that of a file, and shows the answer as a page.
+function M.prove(file)
+  local buffer = vim.api.nvim_get_current_buf()
+  local running = client.clients(buffer)[1]
+  if not running then
+    client.notify(t('no language server for this buffer; see :checkhealth rungwise'), vim.log.levels.ERROR)
+    return
+  elseif not file or file == '' then
+    client.notify(t('name the file of the other program'), vim.log.levels.WARN)
+    return
+  end
+  local other = vim.uri_from_fname(vim.fn.fnamemodify(file, ':p'))
+  local asked = { uri = vim.uri_from_bufnr(buffer), with = other }
+  local params = { command = 'rungwise.prove', arguments = { asked } }
+  client.request(running, 'workspace/executeCommand', params, function(err, result)
+    if err or type(result) ~= 'table' or type(result.page) ~= 'string' then
+      client.notify(t('nothing was proved: %s', err and err.message or vim.inspect(err)), vim.log.levels.ERROR)
+    else
+      show('rungwise://proof', 'markdown', result.page)
+    end
+  end, buffer)
+end
+
 --- Shows the table of the devices that the program in the buffer uses.
 function M.usage()
   local buffer = vim.api.nvim_get_current_buf()

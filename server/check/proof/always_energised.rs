@@ -67,7 +67,7 @@ use crate::text::{Diagnostic, Message, Severity};
 pub(super) const RULE: Rule = Rule {
     code: "always-energised",
     severity: Severity::Warning,
-    run: Run::With("contradiction-on-path"),
+    run: Run::With("never-energised"),
     source: include_str!("always_energised.rs"),
 };
 

@@ -3,7 +3,9 @@
 use super::contradiction_on_path::Contradiction;
 use super::rung::{ProofRung, decided, devices_of, name_of};
 use super::{always_energised, never_energised};
-use crate::logic::{self, Action, Contact, Deed, Drive, Expression, Formula, Formulas, Gate, Path, equal};
+use crate::logic::{
+    self, Action, Contact, Deed, Drive, Effort, Expression, Formula, Formulas, Gate, Path, equal,
+};
 use crate::text::{Diagnostic, Message, Span};
 use rustc_hash::FxHashMap;
 
@@ -44,17 +46,24 @@ fn collect<'p>(path: &'p Path, before: &mut Vec<&'p Expression>, is_plain: bool,
 }
 
 /// The outputs of a rung that are never or always on.
-pub(super) fn find(rung: &ProofRung, contradictions: &[Contradiction<'_>]) -> Vec<Diagnostic> {
-    let mut formulas = Formulas::default();
+pub(super) fn find(
+    rung: &ProofRung,
+    contradictions: &[Contradiction<'_>],
+    effort: &mut Effort,
+) -> Vec<Diagnostic> {
+    effort.ask(|formulas| among(rung, contradictions, formulas))
+}
+
+fn among(rung: &ProofRung, contradictions: &[Contradiction<'_>], formulas: &mut Formulas) -> Vec<Diagnostic> {
     let mut run = logic::Run::new();
-    run.path(&rung.path, &mut formulas);
+    run.path(&rung.path, formulas);
     let mut decided: FxHashMap<Formula, Option<bool>> = FxHashMap::default();
     let mut found = Vec::new();
     for (effect, way) in run.effects.iter().zip(ways(&rung.path)) {
         if way.conditions.is_empty() || !is_output(way.action) {
             continue;
         }
-        let value = *decided.entry(effect.guard).or_insert_with(|| value_of(effect.guard, &mut formulas));
+        let value = *decided.entry(effect.guard).or_insert_with(|| value_of(effect.guard, formulas));
         match value {
             Some(false) => found.push(never_energised::diagnostic(&way, never(&way, contradictions))),
             // Instructions that are executed in each scan are nothing to wonder about.

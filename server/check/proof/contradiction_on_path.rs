@@ -97,9 +97,13 @@ impl Contradiction<'_> {
     }
 }
 
+/// The diagrams of two contacts are small; those of all pairs in a rung may have so many nodes.
+const EFFORT: usize = 50_000;
+
 /// All of a rung, each second contact once.
 pub(super) fn find(rung: &ProofRung) -> Vec<Contradiction<'_>> {
-    let mut walk = Walk { formulas: Formulas::default(), facts: Vec::new(), floor: 0, found: Vec::new() };
+    let mut walk =
+        Walk { formulas: Formulas::limited(EFFORT), facts: Vec::new(), floor: 0, found: Vec::new() };
     walk.path(&rung.path);
     walk.found
 }

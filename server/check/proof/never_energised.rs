@@ -75,7 +75,7 @@ use crate::text::{Diagnostic, Message, Severity};
 pub(super) const RULE: Rule = Rule {
     code: "never-energised",
     severity: Severity::Warning,
-    run: Run::With("contradiction-on-path"),
+    run: Run::Proof(super::prove),
     source: include_str!("never_energised.rs"),
 };
 

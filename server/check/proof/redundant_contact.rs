@@ -68,6 +68,6 @@ use crate::text::Severity;
 pub(super) const RULE: Rule = Rule {
     code: "redundant-contact",
     severity: Severity::Hint,
-    run: Run::With("contradiction-on-path"),
+    run: Run::With("never-energised"),
     source: include_str!("redundant_contact.rs"),
 };

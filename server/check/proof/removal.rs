@@ -5,7 +5,8 @@ use super::{redundant_branch, redundant_contact, rewrite};
 use crate::check::ChunkContext;
 use crate::ladder::ContactKind;
 use crate::logic::{
-    self, Comparison, Contact, Drive, Expression, Formula, Formulas, Gate, Path, Test, compare, is_never,
+    self, Comparison, Contact, Drive, Effort, Expression, Formula, Formulas, Gate, Path, Test, compare,
+    is_never,
 };
 use crate::text::{Diagnostic, Message};
 use rustc_hash::FxHashMap;
@@ -34,11 +35,11 @@ const PROOFS_MAX: usize = 16;
 const TOLD_MAX: usize = 4;
 
 /// What makes no difference in a rung: branches before contacts, the later before the earlier.
-pub(super) fn find(rung: &ProofRung, context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
-    let mut parts = Vec::new();
+pub(super) fn find(rung: &ProofRung, context: &ChunkContext<'_>, effort: &mut Effort) -> Vec<Diagnostic> {
+    let (mut parts, mut found) = (Vec::new(), Vec::new());
     collect(&rung.path, &mut Vec::new(), &mut parts);
     if parts.len() > PARTS_MAX {
-        return;
+        return found;
     }
     let contacts: Vec<&Contact> = parts.iter().flat_map(|part| part.gate.contacts()).collect();
     let samples = Samples::of(&contacts);
@@ -51,22 +52,23 @@ pub(super) fn find(rung: &ProofRung, context: &ChunkContext<'_>, found: &mut Vec
             }
             proofs += 1;
             if proofs > PROOFS_MAX || removed.len() == TOLD_MAX {
-                return;
+                return found;
             }
             let mut without = removed.clone();
             without.push(part.expression);
             let alone = taken(&rung.path, &[part.expression]);
-            let is_proved = |path: &Path| {
-                let same = compare(&[&rung.path], &[path], &mut Formulas::default());
+            let mut is_proved = |path: &Path| {
+                let same = effort.ask(|formulas| compare(&[&rung.path], &[path], formulas));
                 matches!(same, Comparison::Same { .. })
             };
             if !is_proved(&alone) || (without.len() > 1 && !is_proved(&taken(&rung.path, &without))) {
                 continue;
             }
             removed = without;
-            found.push(part.diagnostic(rewrite::edits(context, rung, &alone)));
+            found.push(part.diagnostic(rewrite::edits(context, rung, &alone), effort));
         }
     }
+    found
 }
 
 fn collect<'p>(path: &'p Path, before: &mut Vec<&'p Gate>, parts: &mut Vec<Part<'p>>) {
@@ -184,9 +186,9 @@ impl<'p> Part<'p> {
         })
     }
 
-    fn diagnostic(&self, edits: Option<Vec<crate::text::TextEdit>>) -> Diagnostic {
+    fn diagnostic(&self, edits: Option<Vec<crate::text::TextEdit>>, effort: &mut Effort) -> Diagnostic {
         let first = self.expression.contacts().first().map(|contact| contact.span).unwrap_or_default();
-        let (why, place) = self.reason();
+        let (why, place) = effort.ask(|formulas| self.reason(formulas));
         let name = self.name();
         let (code, key, fix) = match self.is_branch {
             true => (
@@ -217,17 +219,16 @@ impl<'p> Part<'p> {
     }
 
     /// Why it makes no difference, in one line, and the contact that does its work.
-    fn reason(&self) -> (Message, Option<&'p Contact>) {
-        let mut formulas = Formulas::default();
+    fn reason(&self, formulas: &mut Formulas) -> (Message, Option<&'p Contact>) {
         let run = logic::Run::new();
-        let mut of = |expression: &Expression| run.condition(expression, &mut formulas);
+        let mut of = |expression: &Expression| run.condition(expression, formulas);
         let own = of(self.expression);
         let series: Vec<Formula> = self.series.iter().map(|part| of(part)).collect();
         let beside: Vec<Formula> = self.beside.iter().map(|branch| of(branch)).collect();
         let mut implies = |left: Vec<Formula>, right: Formula| {
             let inverse = formulas.not(right);
             let against = formulas.and(left.into_iter().chain([inverse]));
-            is_never(&mut formulas, against) == Some(true)
+            is_never(formulas, against) == Some(true)
         };
         let contact_in = |expression: &'p Expression| match expression {
             Expression::Contact(contact) => Some(contact),

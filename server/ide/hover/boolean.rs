@@ -10,6 +10,9 @@ use crate::target::Target;
 use crate::text::{Language, Message};
 use crate::translate::to_boolean::{Notation, equations};
 
+/// The search for a shorter equation is so much work at most, as a pointer does not rest for long.
+const EFFORT: usize = 20_000;
+
 /// A longer equation says less than the drawing.
 const LENGTH_MAX: usize = 400;
 
@@ -61,7 +64,7 @@ fn contacts_before(path: &Path, place: &mut usize) -> Option<usize> {
 
 /// The equation with the shortest sum of products, and how many contacts it has.
 fn minimal(path: &Path, place: usize) -> Option<(String, usize)> {
-    let mut formulas = Formulas::default();
+    let mut formulas = Formulas::limited(EFFORT);
     let mut run = Run::new();
     run.path(path, &mut formulas);
     let effect = run.effects.get(place)?;

@@ -388,6 +388,17 @@ check('the forms of a rung follow the cursor with the real server', function()
   vim.cmd('bwipeout! rungwise://forms')
 end)
 
+check('two programs are compared with the real server', function()
+  local other = vim.fn.tempname() .. '.il'
+  vim.fn.writefile({ 'LD X0', 'OUT Y7', 'END' }, other)
+  open_list('forms.il')
+  vim.cmd('Rungwise prove ' .. vim.fn.fnameescape(other))
+  until_true('the page of the proof', function()
+    return vim.api.nvim_buf_get_name(0):find('rungwise://proof', 1, true) and buffer_text():find('^# forms%.il · ')
+  end)
+  vim.cmd('bwipeout!')
+end)
+
 --- Has the server seem to know the translation, or not; answers what it is asked.
 local function translating(client, answers)
   local commands = vim.tbl_filter(function(command)

@@ -57,6 +57,16 @@ module.exports = [
     go('OUT Y5');
     await until('the next rung', () => /Y5 = X5/.test(page()) && !/X1 \+ X2/.test(page()));
   }],
+  ['two programs are compared, and the page shows how they differ', async () => {
+    const left = await openText('plc-il', 'LD X0\nANI X1\nOUT Y0\nEND\n');
+    const right = await openText('plc-il', 'LD X0\nAND X1\nOUT Y0\nEND\n');
+    const prove = (one, other) => vscode.commands.executeCommand('rungwise.proveEqual', one.uri, other.uri);
+    const page = await until('the proof', () => prove(left, right));
+    assert.match(page, /different: Y0/);
+    const shown = () => vscode.workspace.textDocuments.find(({ uri }) => uri.scheme === 'rungwise-proof')?.getText();
+    assert.equal(shown(), page);
+    assert.match(await prove(left, left), /equal: for all inputs/);
+  }],
   ['the hover of an output shows its equation', async () => {
     const document = await openText('plc-il', LIST);
     await until('the equation', async () => (await hoverText(document, find(document, 'Y0'))).includes('Y0 = X0*(X1 + X2)'));
