@@ -38,6 +38,8 @@ pub struct Scopes {
     pub(super) own_globals: Vec<SmolStr>,
     pub(super) own_types: Vec<SmolStr>,
     pub(super) own_configuration: bool,
+    /// Whether there are variables that may lie in one place with others: at addresses, or where a caller says.
+    pub shares_storage: bool,
 }
 
 /// A program organisation unit.
@@ -159,6 +161,7 @@ impl Scopes {
         if let Some((outer, own)) = document.outer() {
             scopes.add_outer(outer, own, &mut hasher);
         }
+        scopes.shares_storage = scopes.has_shared_storage();
         scopes.key = hasher.finish();
         scopes
     }
@@ -184,8 +187,7 @@ impl Scopes {
         self.pous.get(self.pou_number(name)?).map(|pou| &**pou)
     }
 
-    /// Whether there are variables that may lie in one place with others: at addresses, or where a caller says.
-    pub fn has_shared_storage(&self) -> bool {
+    fn has_shared_storage(&self) -> bool {
         let locals = self.pous.iter().flat_map(|pou| &pou.variables);
         locals
             .chain(self.globals.values())

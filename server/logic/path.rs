@@ -136,7 +136,7 @@ impl Path {
 
     /// The same with its variables where they lie as declared in program unit number `pou`.
     pub fn located(mut self, scopes: &Scopes, pou: Option<usize>) -> Path {
-        if scopes.has_shared_storage() {
+        if scopes.shares_storage {
             self.each_term(&mut |term| *term = term.clone().located(scopes, pou));
         }
         self

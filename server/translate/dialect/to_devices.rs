@@ -75,11 +75,11 @@ fn taken_devices(program: &Program, scopes: &Scopes, target: &Target) -> FxHashS
     }
     taken.extend(scopes.globals.values().filter_map(|variable| device_at(variable.address?)));
     for path in program.rungs.iter().flat_map(|source| source.rung.path.iter().flatten()) {
-        let mut look = |term: &Term| match term.operand {
-            Operand::Direct(address) => taken.extend(device_at(address)),
-            _ => {}
-        };
-        path.clone().each_term(&mut |term| look(term));
+        path.clone().each_term(&mut |term| {
+            if let Operand::Direct(address) = term.operand {
+                taken.extend(device_at(address));
+            }
+        });
     }
     taken
 }
