@@ -1,7 +1,7 @@
 //! `rungwise prove`
 
 use super::Outcome;
-use super::input::{Program, complain, programs, say};
+use super::input::{Program, complain, programs, put, say};
 use crate::text::{Language, Message};
 use crate::translate::{Proof, prove, told};
 use clap::ValueEnum;
@@ -43,10 +43,8 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         ProofFormat::Text => say(&told::text(&proof, sides, &names, language)),
     }
     if let (Some(path), Proof::Different(found)) = (&arguments.scenario, &proof)
-        && let Err(error) = std::fs::write(path, told::scenario(found, &names))
+        && !put(&told::scenario(found, &names), Some(path), language)
     {
-        let reason = format!("{}: {error}", path.display());
-        complain("not-written", &reason, &Message::new("cli.make-room").render(language), language);
         return Outcome::Unusable;
     }
     match proof {

@@ -4,7 +4,7 @@ use super::Style;
 use crate::document::{Document, Notation, Tree};
 use crate::logic;
 use crate::text::{Message, Span};
-use crate::translate::{Certificate, Options, Source, To};
+use crate::translate::{Certificate, Options, SourceProgram, To};
 
 /// A part of a program in one form.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -61,7 +61,7 @@ pub fn part_at(document: &Document, span: Span) -> Option<ProgramPart> {
     let at = document.chunk_at(span.start as usize)?;
     let inside = (span.start as usize).saturating_sub(at.start);
     let reading = at.chunk.reading();
-    let rungs = logic::rungs(&reading, document.target());
+    let rungs = logic::rungs(&reading, document.reader());
     let shifted = |span: Span| span.shifted(at.start);
     if network_of(reading.tree()).is_some_and(|header| header.touches(inside))
         && let Some(first) = rungs.first()
@@ -104,7 +104,7 @@ pub fn forms(
     is_cancelled: &dyn Fn() -> bool,
 ) -> Option<Vec<TranslatedForm>> {
     let options = Options { style: style.ladder(), is_whole: part.is_none(), ..Options::default() };
-    let source = Source::of(document, part);
+    let source = SourceProgram::of(document, part);
     let mut forms = Vec::with_capacity(to.len());
     for to in to {
         let translation = source.translated(*to, &options, is_cancelled)?;

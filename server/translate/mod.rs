@@ -4,6 +4,7 @@
 //! with what it was made of.
 
 mod source;
+pub use source::Source;
 
 mod page;
 
@@ -12,8 +13,11 @@ pub use certificate::Certificate;
 
 mod stack;
 
+mod counterexample;
+pub use counterexample::{Counterexample, Value};
+
 mod prove;
-pub use prove::{Counterexample, Proof, Value, prove};
+pub use prove::{Proof, prove};
 
 pub mod told;
 
@@ -33,6 +37,7 @@ pub mod from_boolean;
 
 use crate::document::Document;
 use crate::ladder::Style;
+use crate::target::Model;
 use crate::text::{Message, Span};
 use smol_str::SmolStr;
 use std::ops::Range;
@@ -81,11 +86,19 @@ pub struct Options {
     pub proves: bool,
     /// Whether it is a whole program, which in instruction list ends with END.
     pub is_whole: bool,
+    /// The model of the FX family that an FX list is for; without one that of the document, or else an FX2N.
+    pub model: Option<Model>,
 }
 
 impl Default for Options {
     fn default() -> Options {
-        Options { style: Style::default(), notation: Default::default(), proves: true, is_whole: true }
+        Options {
+            style: Style::default(),
+            notation: Default::default(),
+            proves: true,
+            is_whole: true,
+            model: None,
+        }
     }
 }
 
@@ -137,16 +150,16 @@ pub fn translate_unless(
 }
 
 /// The rungs of a document or a part of one, read once for several translations.
-pub struct Source<'d> {
+pub struct SourceProgram<'d> {
     document: &'d Document,
     is_whole: bool,
     program: source::Program,
 }
 
-impl<'d> Source<'d> {
+impl<'d> SourceProgram<'d> {
     /// Reads `document`; with `part` only the rungs that touch these bytes.
-    pub fn of(document: &'d Document, part: Option<Span>) -> Source<'d> {
-        Source { document, is_whole: part.is_none(), program: source::program(document, part) }
+    pub fn of(document: &'d Document, part: Option<Span>) -> SourceProgram<'d> {
+        SourceProgram { document, is_whole: part.is_none(), program: source::program(document, part) }
     }
 
     /// In another form; nothing if `is_cancelled` says on the way that nobody waits for it any more.
@@ -167,7 +180,7 @@ fn written(
     options: &Options,
     is_cancelled: &dyn Fn() -> bool,
 ) -> Option<Translation> {
-    let target = dialect::target(document, to);
+    let target = dialect::target(document, to, options.model);
     dialect::convert(document, (to, target), &mut program);
     let mut translation = page::write(document, &program, (to, target), options, is_whole, is_cancelled)?;
     if options.proves {

@@ -91,7 +91,7 @@ fn is_output(action: &Action) -> bool {
         Deed::Instruction(form) => {
             form.instruction.flow() == crate::target::Flow::Straight && !action.terms.is_empty()
         }
-        Deed::Call(_) | Deed::Jump | Deed::Return => false,
+        Deed::Call(_) | Deed::Compute(_) | Deed::Jump | Deed::Return => false,
     }
 }
 
