@@ -4,7 +4,7 @@ use super::Style;
 use crate::document::{Document, Notation, Tree};
 use crate::logic;
 use crate::text::{Message, Span};
-use crate::translate::{Certificate, Options, SourceProgram, To};
+use crate::translate::{Certificate, Options, Original, To};
 
 /// A part of a program in one form.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -104,7 +104,7 @@ pub fn forms(
     is_cancelled: &dyn Fn() -> bool,
 ) -> Option<Vec<TranslatedForm>> {
     let options = Options { style: style.ladder(), is_whole: part.is_none(), ..Options::default() };
-    let source = SourceProgram::of(document, part);
+    let source = Original::of(document, part);
     let mut forms = Vec::with_capacity(to.len());
     for to in to {
         let translation = source.translated(*to, &options, is_cancelled)?;

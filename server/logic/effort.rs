@@ -35,15 +35,10 @@ impl Effort {
 
     /// The answer of `question`, whose work is taken off.
     pub fn ask<T>(&mut self, question: impl FnOnce(&mut Formulas) -> T) -> T {
-        self.ask_with(question).0
-    }
-
-    /// The same, and the formulas that the answer is about.
-    pub fn ask_with<T>(&mut self, question: impl FnOnce(&mut Formulas) -> T) -> (T, Formulas) {
         let given = self.left.min(self.most);
         let mut formulas = Formulas::limited(given);
         let answer = question(&mut formulas);
         self.left -= given - formulas.effort();
-        (answer, formulas)
+        answer
     }
 }

@@ -91,9 +91,9 @@ pub struct Formulas {
     numbers: FxHashMap<Node, Formula>,
     atoms: Vec<Atom>,
     atom_numbers: FxHashMap<Atom, u32>,
-    effort: usize,
     steps: Vec<Step>,
     step_numbers: FxHashMap<Step, u32>,
+    effort: usize,
 }
 
 impl Default for Formulas {

@@ -150,16 +150,16 @@ pub fn translate_unless(
 }
 
 /// The rungs of a document or a part of one, read once for several translations.
-pub struct SourceProgram<'d> {
+pub struct Original<'d> {
     document: &'d Document,
     is_whole: bool,
     program: source::Program,
 }
 
-impl<'d> SourceProgram<'d> {
+impl<'d> Original<'d> {
     /// Reads `document`; with `part` only the rungs that touch these bytes.
-    pub fn of(document: &'d Document, part: Option<Span>) -> SourceProgram<'d> {
-        SourceProgram { document, is_whole: part.is_none(), program: source::program(document, part) }
+    pub fn of(document: &'d Document, part: Option<Span>) -> Original<'d> {
+        Original { document, is_whole: part.is_none(), program: source::program(document, part) }
     }
 
     /// In another form; nothing if `is_cancelled` says on the way that nobody waits for it any more.

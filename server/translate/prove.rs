@@ -37,8 +37,12 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
         stretches(sources, unit)
     });
     let may_be_off = sources.iter().flatten().any(leaves_out);
-    let effort = Effort::of_program();
-    let mut prover = Prover { before: [Vec::new(), Vec::new()], may_be_off, is_reordered: false, effort };
+    let mut prover = Prover {
+        before: [Vec::new(), Vec::new()],
+        may_be_off,
+        is_reordered: false,
+        effort: Effort::of_program(),
+    };
     let [left, right] = &stretches;
     let outcome = left.iter().zip(right).try_for_each(|(left, right)| prover.stretches(left, right));
     match outcome {
@@ -202,11 +206,9 @@ impl<'s> Prover<'s> {
         paths: &[Vec<&'s Path>; 2],
         sides: [&[(&'s Source, &'s Path)]; 2],
     ) -> Result<(), Proof> {
-        let effort = &mut self.effort;
-        let mut compare = |left: &[&Path], right: &[&Path], known, may_be_off| {
-            effort.ask_with(|formulas| compare_outcome(left, right, known, may_be_off, formulas))
-        };
-        let (alone, _) = compare(&paths[0], &paths[1], [0, 0], self.may_be_off);
+        let may_be_off = self.may_be_off;
+        let alone =
+            self.effort.ask(|formulas| compare_outcome(&paths[0], &paths[1], [0, 0], may_be_off, formulas));
         if matches!(alone, Comparison::Same { .. }) {
             return Ok(());
         }
@@ -216,19 +218,30 @@ impl<'s> Prover<'s> {
         let known = [self.before[0].len(), self.before[1].len()];
         let at = sides.map(|side| side.first().map(|(source, _)| source.span()));
         let undecided = |key| Err(Proof::Undecided { reason: Message::new(key), at });
-        let (comparison, formulas) = compare(&left, &right, known, false);
+        let effort = &mut self.effort;
+        let mut compare = |may_be_off| {
+            effort.ask(|formulas| {
+                let comparison = compare_outcome(&left, &right, known, may_be_off, formulas);
+                let values = match &comparison {
+                    Comparison::Different { values, .. } => counterexample::state(formulas, values),
+                    _ => None,
+                };
+                (comparison, values)
+            })
+        };
+        let (comparison, state) = compare(false);
         match comparison {
             // With no power at the rail they may do otherwise.
-            Comparison::Same { .. } if self.may_be_off => match compare(&left, &right, known, true) {
+            Comparison::Same { .. } if may_be_off => match compare(true) {
                 (Comparison::Same { .. }, _) => Ok(()),
                 _ => undecided("prove.undecided"),
             },
             Comparison::Same { .. } => Ok(()),
             Comparison::Undecided => undecided("prove.undecided"),
             Comparison::Unlike => undecided("prove.unlike"),
-            Comparison::Different { what, place, sides: values_of, values } => {
+            Comparison::Different { what, place, sides: values_of, .. } => {
                 // Formulas know less than a PLC: what they leave open may be what it never does.
-                let state = counterexample::state(&formulas, &values)
+                let state = state
                     .filter(|state| counterexample::is_confirmed(state, [&left, &right], &place, values_of));
                 let Some(state) = state else { return undecided("prove.unconfirmed") };
                 let at = sides.map(|side| rung_of(side, &what));

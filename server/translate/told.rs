@@ -2,7 +2,7 @@
 
 use super::{Counterexample, Proof, Value};
 use crate::document::Document;
-use crate::text::{Language, Message, Span, text_width};
+use crate::text::{Encoding, Language, Message, Span, text_width};
 use serde_json::{Map, Value as Json, json};
 
 /// The JSON of `prove`: `{"equal", "counterexample": {"inputs", "before", "left", "right", "lines"}}`.
@@ -117,5 +117,5 @@ pub fn scenario(found: &Counterexample, names: &[String; 2]) -> String {
 }
 
 fn line(document: &Document, span: Span) -> u32 {
-    document.line_of(span.start as usize) + 1
+    document.position(span.start as usize, Encoding::Utf32).line + 1
 }
