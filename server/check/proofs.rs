@@ -57,8 +57,9 @@ impl Walk<'_> {
         let mut start = 0;
         for chunk in page.chunks() {
             pou_number += chunk.pou_starts();
-            is_whole &= self.left > 0;
+            let is_ample = self.left > 0;
             let proofs = self.chunk(chunk, pou_number)?;
+            is_whole &= is_ample || proofs.effort == 0;
             self.left = self.left.saturating_sub(proofs.effort);
             effort += proofs.effort;
             found.extend(proofs.found.iter().map(|diagnostic| diagnostic.shifted(start)));

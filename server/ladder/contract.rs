@@ -302,7 +302,7 @@ impl Raw {
         roots
     }
 
-    fn contract(self) -> Nodes {
+    fn contract(mut self) -> Nodes {
         let roots = self.roots();
         let mut number = vec![u32::MAX; self.nodes.len()];
         let mut contracted = Nodes::default();
@@ -324,8 +324,10 @@ impl Raw {
             for edge in self.list(id, false) {
                 edge_number[edge as usize] = contracted.edges.len() as u32;
                 contracted.nodes[node].outs.push(contracted.edges.len() as u32);
-                let Edge { tail, head, kind } = &self.edges[edge as usize];
-                contracted.edges.push(Edge { tail: end(*tail), head: end(*head), kind: kind.clone() });
+                let Edge { tail, head, kind } = &mut self.edges[edge as usize];
+                // Each edge leaves one node, so nobody else asks for its kind.
+                let kind = std::mem::replace(kind, EdgeKind::Wire { arcs: Vec::new(), bends: Vec::new() });
+                contracted.edges.push(Edge { tail: end(*tail), head: end(*head), kind });
             }
         }
         for id in 0..self.nodes.len() as u32 {
@@ -349,15 +351,19 @@ impl Raw {
     fn list(&self, root: u32, ins: bool) -> Vec<u32> {
         let list = |node: u32| {
             let lists = &self.nodes[node as usize];
-            if ins { lists.ins.iter().rev() } else { lists.outs.iter().rev() }
+            if ins { &lists.ins } else { &lists.outs }
         };
-        let mut stack: Vec<u32> = list(root).copied().collect();
-        let mut edges = Vec::new();
+        let direct = list(root);
+        if direct.iter().all(|edge| self.contraction[*edge as usize] == Contraction::None) {
+            return direct.clone();
+        }
+        let mut stack: Vec<u32> = direct.iter().rev().copied().collect();
+        let mut edges = Vec::with_capacity(direct.len());
         while let Some(edge) = stack.pop() {
             let Edge { tail, head, .. } = self.edges[edge as usize];
             match (self.contraction[edge as usize], ins) {
-                (Contraction::IntoTail, false) => stack.extend(list(head)),
-                (Contraction::IntoHead, true) => stack.extend(list(tail)),
+                (Contraction::IntoTail, false) => stack.extend(list(head).iter().rev()),
+                (Contraction::IntoHead, true) => stack.extend(list(tail).iter().rev()),
                 (Contraction::None, _) => edges.push(edge),
                 // The other direction leads out of the root only where the graph is not a ladder's.
                 (Contraction::IntoHead, false) | (Contraction::IntoTail, true) => {}

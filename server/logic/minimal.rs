@@ -72,7 +72,7 @@ fn exact(formulas: &mut Formulas, formula: Formula, atoms: &[u32]) -> Sum {
         may[row as usize / 64] |= if holds || !is_possible { bit } else { 0 };
     }
     let primes = primes(atoms.len() as u32, &may);
-    let mut search = Search { primes: &primes, best: None, tries: 0 };
+    let mut search = Search { primes: &primes, choices: choices(&primes), best: None, tries: 0 };
     search.cover(&must, &mut Vec::new(), 0);
     let chosen = search.best.map_or_else(Vec::new, |(_, chosen)| chosen);
     let product = |prime: usize| {
@@ -117,9 +117,22 @@ fn rows_of(atoms: u32, asked: u32, holds: u32) -> Rows {
     rows
 }
 
+/// Each row that primes cover, with their numbers; the row that the fewest cover first.
+fn choices(primes: &[Cube]) -> Vec<(usize, Vec<usize>)> {
+    let covering = |row: usize| {
+        let primes = primes.iter().enumerate();
+        let covers = primes.filter(|(_, prime)| prime.rows[row / 64] >> (row % 64) & 1 == 1);
+        (row, covers.map(|(number, _)| number).collect::<Vec<_>>())
+    };
+    let mut choices: Vec<_> = (0..1usize << EXACT_MAX).map(covering).collect();
+    choices.sort_by_key(|(_, primes)| primes.len());
+    choices
+}
+
 /// The search for the cheapest cover.
 struct Search<'p> {
     primes: &'p [Cube],
+    choices: Vec<(usize, Vec<usize>)>,
     /// Its cost, and the numbers of its primes.
     best: Option<(u32, Vec<usize>)>,
     tries: u32,
@@ -134,17 +147,12 @@ impl Search<'_> {
             return;
         }
         // The row that the fewest primes cover leaves the least choice.
-        let rows = (0..1usize << EXACT_MAX).filter(|row| left[row / 64] >> (row % 64) & 1 == 1);
-        let covering = |row: usize| {
-            let primes = 0..self.primes.len();
-            primes
-                .filter(|prime| self.primes[*prime].rows[row / 64] >> (row % 64) & 1 == 1)
-                .collect::<Vec<_>>()
-        };
-        let Some(mut choices) = rows.map(covering).min_by_key(Vec::len) else {
+        let mut rows = self.choices.iter();
+        let Some((_, choices)) = rows.find(|(row, _)| left[row / 64] >> (row % 64) & 1 == 1) else {
             self.best = Some((cost, chosen.clone()));
             return;
         };
+        let mut choices = choices.clone();
         // Those that cover most come first, so that a good answer is found early.
         let covers = |prime: &usize| {
             let rows = self.primes[*prime].rows.iter().zip(left);

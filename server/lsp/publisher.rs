@@ -140,11 +140,16 @@ struct Partial {
 impl Partial {
     fn take(&mut self, news: News) {
         match news {
-            News::Realtime(found) => self.realtime = Some(found),
             News::Around(around) => self.around = Some(around),
-            News::Batch(found) => self.batch.extend(found),
+            News::Realtime(found) => {
+                self.realtime = Some(found);
+                self.has_news = true;
+            }
+            News::Batch(found) => {
+                self.has_news |= !found.is_empty();
+                self.batch.extend(found);
+            }
         }
-        self.has_news = self.realtime.is_some();
     }
 }
 

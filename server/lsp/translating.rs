@@ -13,8 +13,8 @@
 //! }
 //! ```
 //!
-//! It answers `{ forms: [{ to, text, certificate, notes: string[] }] }`, with `"all"` every form, the shortest first. The
-//! `certificate` is that of the rung of which least is known: `"proved"` (the same bits are driven under equal
+//! It answers `{ forms: [{ to, text, certificate, notes: string[] }] }`, with `"all"` every form, the shortest first.
+//! The `certificate` is that of the rung of which least is known: `"proved"` (the same bits are driven under equal
 //! conditions), `"construction"` (instructions with the same operands under equal conditions) or `"undecided"`. A note
 //! says, with the line, why a rung was kept as it is or not proved. Where there is no rung there are no forms. What is
 //! asked for wrongly is an error whose message says what is wrong.

@@ -3,11 +3,12 @@
 use crate::check::ChunkContext;
 use crate::check::drawing::Drawn;
 use crate::document::Tree;
+use crate::il::fx::{FxLine, FxTree, LineKind};
 use crate::ladder::{ContactKind, Element, Graph};
 use crate::logic::{
     self, Action, Contact, Declared, Drive, Expression, Formulas, Gate, Path, Run, Term, Test,
 };
-use crate::target::{DeviceKind, Operand};
+use crate::target::{DeviceKind, Operand, Role};
 use crate::text::Span;
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
@@ -44,6 +45,7 @@ pub(super) fn rungs(context: &ChunkContext<'_>) -> Vec<ProofRung> {
                 }
             }
         }
+        Tree::Fx(tree) if !asks_twice(tree) => {}
         Tree::Fx(_) | Tree::Iec(_) => {
             let pous = context.pou.map_or(0, |pou| pou + 1).saturating_sub(chunk.pou_starts());
             let declared = Declared { scopes: context.scopes, pous };
@@ -65,6 +67,25 @@ fn names_twice(graph: &Graph, text: &str) -> bool {
     graph.elements.iter().filter(named).any(|element| {
         element.operands.len() > 1 || !seen.insert(element.operand_text(0, text).to_lowercase())
     })
+}
+
+/// Lists with more lines are read without a look.
+const LINES_MAX: usize = 64;
+
+/// Whether a contact of a list names something that stands before it, too, or compares something.
+fn asks_twice(tree: &FxTree) -> bool {
+    let is_contact = |line: &FxLine| match line.kind {
+        LineKind::Instruction(form) => {
+            matches!(form.instruction.role, Role::Load | Role::Series | Role::Parallel)
+        }
+        _ => false,
+    };
+    let asks_again = |line: &FxLine| {
+        let before = tree.operands.get(..line.operands.0 as usize).unwrap_or(&[]);
+        let own = tree.operands(line);
+        own.len() > 1 || own.iter().any(|one| before.iter().any(|other| other.value == one.value))
+    };
+    tree.lines.len() > LINES_MAX || tree.lines.iter().any(|line| is_contact(line) && asks_again(line))
 }
 
 /// Whether a contact asks for something that the rung asks for or drives before it, or a comparison is decided by its
@@ -136,9 +157,10 @@ fn is_constant(term: &Term) -> bool {
 
 /// The answer of a comparison that has the same for all values of its words.
 pub(super) fn decided(contact: &Contact) -> Option<bool> {
-    match (contact.test, Run::new().contact(contact, &mut Formulas::default())) {
-        (Test::Compare(_), Formulas::TRUE) => Some(true),
-        (Test::Compare(_), Formulas::FALSE) => Some(false),
+    let Test::Compare(_) = contact.test else { return None };
+    match Run::new().contact(contact, &mut Formulas::default()) {
+        Formulas::TRUE => Some(true),
+        Formulas::FALSE => Some(false),
         _ => None,
     }
 }
