@@ -15,14 +15,19 @@ use std::sync::{Arc, LazyLock};
 /// So many pages are worth the start of threads: a page takes longer to judge than a thread to start.
 const WORTH_THREADS: usize = 4;
 
-/// What a project makes of the rules' severities: a code maps to its severity here, or to `None` if it is off.
+/// What a project makes of the rules.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
-pub struct Severities(pub FxHashMap<String, Option<Severity>>);
+pub struct Severities {
+    /// A code maps to its severity here, or to `None` if it is off.
+    pub grades: FxHashMap<String, Option<Severity>>,
+    /// Names of which no two may be on together, list by list.
+    pub never: Vec<Vec<String>>,
+}
 
 impl Severities {
     /// The severity of `code`; `None` if it is switched off.
     pub fn of(&self, code: &str) -> Option<Severity> {
-        match self.0.get(code) {
+        match self.grades.get(code) {
             Some(severity) => *severity,
             None => Some(DEFAULTS.get(code).copied().unwrap_or(Severity::Error)),
         }
@@ -137,7 +142,8 @@ fn judged_pages(document: &Document, with_mentions: bool) -> Vec<Found> {
 
 /// What the batch tier finds in a document that stands alone.
 pub fn program(document: &Document, severities: &Severities) -> Vec<Diagnostic> {
-    let found = judge_program(&ProgramContext::new([(0, document)], None));
+    let found =
+        judge_program(&ProgramContext::new([(0, document)], None).with_never(&severities.never, true));
     finished(document, found.into_iter().map(|(_, diagnostic)| diagnostic).collect(), severities)
 }
 
@@ -145,7 +151,9 @@ pub fn program(document: &Document, severities: &Severities) -> Vec<Diagnostic> 
 /// numbers where they have to do with a finding.
 pub fn within_project(view: &ProjectView<'_>, severities: &Severities) -> Vec<Diagnostic> {
     let files = program_around(view).into_iter().map(|number| (number, view.members()[number].document));
-    let found = judge_program(&ProgramContext::new(files, Some(view.here_number())));
+    let is_all = files.len() == view.members().len();
+    let context = ProgramContext::new(files, Some(view.here_number()));
+    let found = judge_program(&context.with_never(&severities.never, is_all));
     finished(view.here(), found.into_iter().map(|(_, diagnostic)| diagnostic).collect(), severities)
 }
 
@@ -156,8 +164,10 @@ pub fn project(view: &ProjectView<'_>, severities: &Severities) -> Vec<Vec<Diagn
         (0..view.members().len()).map(|number| realtime_once(document(number), severities)).collect();
     let mut of_programs: Vec<Vec<Diagnostic>> = vec![Vec::new(); by_file.len()];
     for program in programs(view).into_iter().take_while(|_| !view.is_cancelled()) {
+        let is_all = program.len() == view.members().len();
         let files = program.into_iter().map(|number| (number, document(number)));
-        for (number, diagnostic) in judge_program(&ProgramContext::new(files, None)) {
+        let context = ProgramContext::new(files, None).with_never(&severities.never, is_all);
+        for (number, diagnostic) in judge_program(&context) {
             of_programs[number].push(diagnostic);
         }
     }
@@ -234,9 +244,11 @@ fn with_severities(diagnostics: Vec<Diagnostic>, severities: &Severities) -> Vec
     let graded = diagnostics.into_iter().filter_map(|mut diagnostic| {
         let severity = severities.of(diagnostic.code)?;
         // A project that grades the rule itself has the last word.
-        let own = OWN_SEVERITIES.iter().find(|(key, _)| *key == diagnostic.message.key());
-        let own = own.filter(|_| !severities.0.contains_key(diagnostic.code));
-        diagnostic.severity = own.map_or(severity, |(_, severity)| *severity);
+        let key = diagnostic.message.key();
+        let not_proved = super::proof::NOT_PROVED.iter().map(|key| (*key, Severity::Warning));
+        let own = OWN_SEVERITIES.iter().copied().chain(not_proved).find(|(own, _)| *own == key);
+        let own = own.filter(|_| !severities.grades.contains_key(diagnostic.code));
+        diagnostic.severity = own.map_or(severity, |(_, severity)| severity);
         Some(diagnostic)
     });
     graded.collect()

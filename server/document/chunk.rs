@@ -2,6 +2,7 @@
 
 use super::access::{self, OwnAccesses};
 use super::allowance::{self, OwnAllowance};
+use super::exclusion::{self, Exclusion};
 use super::milestone::{self, Milestone};
 use super::{Mention, Notation, Size, Token, exported, mention, tokens};
 use crate::il::{fx, iec};
@@ -73,6 +74,7 @@ struct Outline {
     milestones: Box<[Milestone]>,
     accesses: OwnAccesses,
     allowances: Vec<OwnAllowance>,
+    exclusions: Box<[Exclusion]>,
     is_only_comments: bool,
 }
 
@@ -268,6 +270,11 @@ impl Chunk {
         &self.outline().allowances
     }
 
+    /// The comments in it that exclude something, offsets from its start, without the units before it.
+    pub(super) fn exclusions(&self) -> &[Exclusion] {
+        &self.outline().exclusions
+    }
+
     /// Whether nothing is in it but comments and blank lines.
     pub(super) fn is_only_comments(&self) -> bool {
         self.outline().is_only_comments
@@ -281,6 +288,7 @@ impl Chunk {
                 milestones: milestone::of_chunk(&reading).into_boxed_slice(),
                 accesses: access::of_chunk(&reading),
                 allowances: allowance::of_chunk(&reading),
+                exclusions: exclusion::of_chunk(&reading),
                 is_only_comments: allowance::is_only_comments(reading.tree()),
             }
         })

@@ -42,6 +42,9 @@ pub use run::{Effect, Run};
 mod decide;
 pub use decide::{Verdict, equal, is_never};
 
+mod scans;
+pub use scans::{Exclusion, Scans, Source};
+
 mod minimal;
 pub use minimal::{Sum, sum_of_products};
 

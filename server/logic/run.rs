@@ -54,6 +54,8 @@ pub struct Run<'p> {
     touched: [u32; KINDS],
     /// The last event that may have set special relays: flags of arithmetic and of completion.
     flags: u32,
+    /// Whether states are relays like others, as in a program without steps.
+    has_plain_states: bool,
 }
 
 /// A bit that was driven.
@@ -80,12 +82,40 @@ impl<'p> Run<'p> {
             kinds: [0; KINDS],
             touched: [0; KINDS],
             flags: 0,
+            has_plain_states: false,
         }
+    }
+
+    /// The same for a program without steps, in which states are relays like others.
+    pub fn without_steps() -> Run<'p> {
+        Run { has_plain_states: true, ..Run::new() }
     }
 
     /// Runs a rung.
     pub fn path(&mut self, path: &'p Path, formulas: &mut Formulas) {
         self.powered(path, Formulas::TRUE, formulas);
+    }
+
+    /// Passes a rung that may be executed or not: nothing is known afterwards of what it drives.
+    pub fn maybe(&mut self, path: &'p Path, formulas: &mut Formulas) {
+        for action in path.actions() {
+            let guard = formulas.atom(Atom::Behind(self.events + 1));
+            self.event(action, guard);
+        }
+    }
+
+    /// Passes something that nobody can read, and that may change anything.
+    pub fn unread(&mut self) {
+        self.events += 1;
+        self.kinds = [self.events; KINDS];
+        self.touched = [self.effects.len() as u32 + 1; KINDS];
+        self.flags = self.events;
+    }
+
+    /// Lets time pass, in which the CPU may change the special relays that it owns.
+    pub fn pause(&mut self) {
+        self.events += 1;
+        self.flags = self.events;
     }
 
     /// How many events there were.
@@ -193,7 +223,7 @@ impl<'p> Run<'p> {
     /// The moment at which `term`, whose key is `name`, is read.
     fn moment(&self, term: &Term, name: SmolStr) -> Moment {
         // Words are made of bits, bits of words, and an index may lead anywhere: whatever wrote to the kind counts.
-        let since = if is_lone(term) { self.last_event(term, &name) } else { self.touched[slot(term)] };
+        let since = if self.is_apart(term) { self.last_event(term, &name) } else { self.touched[slot(term)] };
         Moment { name, since }
     }
 
@@ -289,6 +319,12 @@ impl<'p> Run<'p> {
             self.touched[slot(term)] = number;
             return;
         }
+        self.event(action, guard);
+    }
+
+    /// Does something of which nothing is known afterwards.
+    fn event(&mut self, action: &'p Action, guard: Formula) {
+        let number = self.effects.len() as u32 + 1;
         self.events += 1;
         self.effects.push(Effect { action, guard, event: Some(self.events) });
         match action.deed {
@@ -297,7 +333,7 @@ impl<'p> Run<'p> {
                     self.changed.insert(term.key(), self.events);
                     self.touched[slot(term)] = number;
                     // Setting one state resets others; a word has its bits and those beside it.
-                    if !is_lone(term) {
+                    if !self.is_apart(term) {
                         self.kinds[slot(term)] = self.events;
                     }
                 }
@@ -335,7 +371,7 @@ impl<'p> Run<'p> {
         formulas: &mut Formulas,
     ) -> Option<(&'p Term, Formula)> {
         let [term] = &action.terms[..] else { return None };
-        if !is_lone(term) {
+        if !self.is_lone(term) {
             return None;
         }
         let value = match action.deed {
@@ -353,6 +389,31 @@ impl<'p> Run<'p> {
         };
         Some((term, value))
     }
+
+    /// Whether it is a bit by itself, so that writing to it changes nothing else. Setting a state resets others, and
+    /// the contact of a timer is no bit that a coil writes.
+    fn is_lone(&self, term: &Term) -> bool {
+        match &term.operand {
+            Operand::Device(device) => match device.kind {
+                DeviceKind::X | DeviceKind::Y | DeviceKind::M => true,
+                DeviceKind::S => self.has_plain_states,
+                _ => false,
+            },
+            Operand::Direct(address) => address.width == Width::Bit,
+            // `T1.Q` is a bit by itself, `Word.3` is not.
+            Operand::Variable => {
+                let is_part =
+                    |(_, last): (&str, &str)| last.starts_with(|c: char| c.is_ascii_digit() || c == '%');
+                !term.text.contains(['[', '^']) && !term.text.rsplit_once('.').is_some_and(is_part)
+            }
+            _ => false,
+        }
+    }
+
+    /// Whether nothing but writing to it changes it: a bit by itself, a timer or a counter.
+    fn is_apart(&self, term: &Term) -> bool {
+        self.is_lone(term) || matches!(term.operand, Operand::Device(device) if device.kind.has_preset())
+    }
 }
 
 impl Default for Run<'_> {
@@ -363,22 +424,6 @@ impl Default for Run<'_> {
 
 /// The first special relay.
 const FIRST_SPECIAL: u32 = 8000;
-
-/// Whether it is a bit by itself, so that writing to it changes nothing else. Setting a state resets others, and the
-/// contact of a timer is no bit that a coil writes.
-fn is_lone(term: &Term) -> bool {
-    match &term.operand {
-        Operand::Device(device) => matches!(device.kind, DeviceKind::X | DeviceKind::Y | DeviceKind::M),
-        Operand::Direct(address) => address.width == Width::Bit,
-        // `T1.Q` is a bit by itself, `Word.3` is not.
-        Operand::Variable => {
-            let is_part =
-                |(_, last): (&str, &str)| last.starts_with(|c: char| c.is_ascii_digit() || c == '%');
-            !term.text.contains(['[', '^']) && !term.text.rsplit_once('.').is_some_and(is_part)
-        }
-        _ => false,
-    }
-}
 
 /// The place of a term's kind.
 fn slot(term: &Term) -> usize {

@@ -25,6 +25,11 @@ mod never_energised;
 
 mod always_energised;
 
+mod slice;
+
+mod mutual_exclusion;
+pub(super) use mutual_exclusion::NOT_PROVED;
+
 /// The rules of this group.
 pub(super) const RULES: &[&Rule] = &[
     &contradiction_on_path::RULE,
@@ -32,6 +37,7 @@ pub(super) const RULES: &[&Rule] = &[
     &redundant_branch::RULE,
     &never_energised::RULE,
     &always_energised::RULE,
+    &mutual_exclusion::RULE,
 ];
 
 /// What all of them find in the rungs of a chunk. They share the reading, and one mistake is told once: in a rung with

@@ -3,7 +3,7 @@
 use super::Rule;
 
 mod uses;
-pub(super) use uses::Uses;
+pub(super) use uses::{Key, Name, Use, Uses};
 
 mod regions;
 pub(super) use regions::Regions;

@@ -3,7 +3,7 @@
 
 use crate::check::ProgramContext;
 use crate::check::statements::is_fx_program;
-use crate::document::{Access, Act, Chunk, Notation, Page, Part, Symbol, Variable};
+use crate::document::{Access, Act, Chunk, Notation, Page, Part, Scopes, Symbol, Variable};
 use crate::target::{Device, DeviceKind, DirectAddress, Flow};
 use crate::text::Span;
 use rustc_hash::FxHashMap;
@@ -242,6 +242,47 @@ impl<'a> Uses<'a> {
         self.names.iter().enumerate().map(|(number, name)| (number as u32, name))
     }
 
+    /// The name with this number.
+    pub fn name(&self, number: u32) -> Option<&Name<'a>> {
+        self.names.get(number as usize)
+    }
+
+    /// The number of what a declared name means in a unit of a file, or that of a direct address; units are counted as
+    /// [`Key::Local`] does.
+    pub fn named(&self, scopes: &'a Scopes, file: usize, unit: usize, symbol: &'a Symbol) -> Option<u32> {
+        self.numbers.get(&name_of(symbol, file, unit, scopes).key).copied()
+    }
+
+    /// All that is accessed from one offset to another, each with the number of its name, in order.
+    pub fn within(&self, start: u32, end: u32) -> impl Iterator<Item = (u32, Use)> {
+        let first = self.pages.partition_point(|page| page.start <= start as usize).saturating_sub(1);
+        let pages = self.pages.iter().enumerate().skip(first);
+        let pages = pages.take_while(move |(_, page)| page.start < end as usize);
+        pages.flat_map(move |(number, page)| {
+            let all = &page.page.accesses().all;
+            let at = |offset: u32| {
+                all.partition_point(|access| (access.span.start as usize + page.start) < offset as usize)
+            };
+            let places = at(start)..at(end);
+            places.map(move |place| (page.table[all[place].name as usize], self.at(number, place)))
+        })
+    }
+
+    /// The chunk at an offset with its start, and how many units of its file have started when it ends.
+    pub fn chunk_at(&self, offset: u32) -> Option<(usize, &'a Chunk, usize)> {
+        let behind = self.pages.partition_point(|page| page.start <= offset as usize);
+        let page = self.pages.get(behind.checked_sub(1)?)?;
+        let (mut start, mut pous) = (page.start, page.pous);
+        for chunk in page.page.chunks() {
+            pous += chunk.pou_starts();
+            if (offset as usize) < start + chunk.len() {
+                return Some((start, chunk, pous));
+            }
+            start += chunk.len();
+        }
+        None
+    }
+
     /// All that is done with a name.
     pub fn acts(&self, number: u32) -> Acts {
         self.acts.get(number as usize).copied().unwrap_or_default()
@@ -333,12 +374,7 @@ impl<'a> Uses<'a> {
     }
 }
 
-fn name_of<'a>(
-    symbol: &'a Symbol,
-    file: usize,
-    started: usize,
-    scopes: &'a crate::document::Scopes,
-) -> Name<'a> {
+fn name_of<'a>(symbol: &'a Symbol, file: usize, started: usize, scopes: &'a Scopes) -> Name<'a> {
     let plain = |key| Name { key, variable: None };
     match symbol {
         Symbol::Device(device) => plain(Key::Device(*device)),
