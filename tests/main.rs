@@ -52,6 +52,7 @@ mod markdown;
 mod mistakes;
 mod plain_instructions;
 mod rules;
+mod rules_across;
 mod rules_drawing;
 mod rules_exclusion;
 mod rules_fx;

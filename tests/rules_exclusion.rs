@@ -113,7 +113,7 @@ fn what_is_not_decided_is_no_error() {
         ("LD X7; CJ P1; LD X0; OUT Y0; P1; LD X1; ANI Y0; OUT Y1", "leave out line 5"),
         ("LD X7; MC N0 M100; LD X0; OUT Y0; MCR N0; LD X1; ANI Y0; OUT Y1", "leave out line 5"),
         ("FOR K3; LD X0; OUT Y0; NEXT; LD X1; ANI Y0; OUT Y1", "line 4 may be executed several times"),
-        ("P1; LD X0; OUT Y0; LD X1; ANI Y0; OUT Y1; LD X7; CJ P1", "line 4 may be executed several times"),
+        ("P1; LD X0; OUT Y0; LD X1; ANI Y0; OUT Y1; LD X7; CJ P1", "line 7 may be executed several times"),
         ("LD X0; CALL P1; LD X1; ANI Y0; OUT Y1; FEND; P1; LD X2; OUT Y0; SRET", "leave out line 10"),
         ("LD X0; ORB; OUT Y0; LD X1; OUT Y1", "line 4:"),
     ] {

@@ -20,6 +20,8 @@ use std::sync::Arc;
 pub enum Act {
     /// Its value is read.
     Read,
+    /// Its value is read by a contact that conducts while it is off: LDI, `|/|`.
+    ReadOff,
     /// An edge of it is read: LDP, `|P|`.
     ReadEdge,
     /// It gets the current result each time that the place is executed: OUT, ST, a drawn coil.
@@ -48,7 +50,8 @@ pub enum Act {
 
 impl Act {
     /// Those that read or may read the value.
-    pub const READS: &[Act] = &[Act::Read, Act::ReadEdge, Act::Change, Act::Pass, Act::Call, Act::CallInput];
+    pub const READS: &[Act] =
+        &[Act::Read, Act::ReadOff, Act::ReadEdge, Act::Change, Act::Pass, Act::Call, Act::CallInput];
 
     /// Those that write or may write it.
     pub const WRITES: &[Act] = &[
@@ -283,7 +286,12 @@ impl Collector<'_> {
                 continue;
             };
             let is_edge = operation.form.is_some_and(|form| form.instruction.is_edge_contact());
-            let act = if is_edge { Act::ReadEdge } else { act_of(spec) };
+            let is_inverse = operation.form.is_some_and(|form| form.instruction.is_inverse_contact());
+            let act = match act_of(spec) {
+                _ if is_edge => Act::ReadEdge,
+                Act::Read if is_inverse => Act::ReadOff,
+                act => act,
+            };
             let gates = operation.form.is_some_and(|form| form.instruction.flow() == Flow::SectionBegin);
             if gates && act.writes() {
                 // The relay of a master control is there to be read by what it gates.

@@ -25,6 +25,8 @@ mod never_energised;
 
 mod always_energised;
 
+mod across;
+
 mod slice;
 
 mod mutual_exclusion;

@@ -17,6 +17,7 @@ mod double_coil;
 mod coil_and_set_reset;
 
 mod relays;
+pub(super) use relays::is_general;
 
 mod set_without_reset;
 

@@ -29,6 +29,8 @@ pub struct Uses<'a> {
     lists: Vec<bool>,
     /// Where each name is written.
     written: OnceCell<Vec<Vec<u32>>>,
+    /// Where the program ends.
+    end: u32,
     /// Whether it is a program for an FX.
     pub is_fx: bool,
 }
@@ -152,6 +154,7 @@ impl<'a> Uses<'a> {
             written_rows: Rows::default(),
             lists: context.files().iter().map(|file| file.document.notation() != Notation::Ladder).collect(),
             written: OnceCell::new(),
+            end,
             is_fx: context.files().first().is_some_and(|file| is_fx_program(file.document)),
         };
         uses.number_names(context);
@@ -342,6 +345,22 @@ impl<'a> Uses<'a> {
             .map(move |(place, access)| (page.table[access.name as usize], self.at(number, first + place)))
     }
 
+    /// Calls `visit` with what each rung accesses, each with the number of its name.
+    pub fn each_rung<'u>(&'u self, mut visit: impl FnMut(RungUses<'u, 'a>)) {
+        for (number, page) in self.pages.iter().enumerate() {
+            let all = &page.page.accesses().all;
+            let length = (self.end as usize).saturating_sub(page.start);
+            let length = all.partition_point(|access| (access.span.start as usize) < length);
+            let mut first = 0;
+            for rung in
+                all[..length].chunk_by(|one, other| (one.chunk, one.rung) == (other.chunk, other.rung))
+            {
+                visit(RungUses { uses: self, page: number, places: first..first + rung.len() });
+                first += rung.len();
+            }
+        }
+    }
+
     /// The chunk of `one`, with its start in the program.
     pub fn chunk(&self, one: &Use) -> Option<(usize, &'a Chunk)> {
         let page = self.pages.get(one.page)?;
@@ -371,6 +390,29 @@ impl<'a> Uses<'a> {
     /// Whether `device` is written as a part of a row of several.
     pub fn is_written_in_row(&self, device: Device) -> bool {
         self.written_rows.covers(device)
+    }
+}
+
+/// What a rung accesses, in order.
+#[derive(Clone)]
+pub struct RungUses<'u, 'a> {
+    uses: &'u Uses<'a>,
+    page: usize,
+    places: std::ops::Range<usize>,
+}
+
+impl Iterator for RungUses<'_, '_> {
+    type Item = (u32, Use);
+
+    fn next(&mut self) -> Option<(u32, Use)> {
+        let place = self.places.next()?;
+        let page = &self.uses.pages[self.page];
+        let name = page.table[page.page.accesses().all[place].name as usize];
+        Some((name, self.uses.at(self.page, place)))
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        self.places.size_hint()
     }
 }
 
