@@ -53,6 +53,7 @@ mod mistakes;
 mod plain_instructions;
 mod rules;
 mod rules_across;
+mod rules_boxes;
 mod rules_drawing;
 mod rules_exclusion;
 mod rules_fx;

@@ -4,7 +4,7 @@ use super::rule::ChunkJudge;
 use super::sense::unused;
 use super::suppression::Suppression;
 use super::{ChunkContext, ProgramContext, RULES, Rule, Run, program_around, programs};
-use crate::document::{Document, Found, LIMIT_BYTES, Page, ProjectView};
+use crate::document::{Chunk, Document, Found, LIMIT_BYTES, Notation, Page, ProjectView};
 use crate::text::{Diagnostic, Message, Severity, Span};
 use rustc_hash::{FxHashMap, FxHasher};
 use std::hash::{Hash, Hasher};
@@ -219,6 +219,10 @@ fn judge_page(
             let mut found = chunk.problems().to_vec();
             let context = ChunkContext::new(chunk, document, pou_number.checked_sub(1));
             CHUNK_JUDGES.iter().for_each(|judge| judge(&context, &mut found));
+            for (start, list) in chunk.boxes() {
+                let own = judge_box(&list, document, pou_number.checked_sub(1));
+                found.extend(own.iter().map(|diagnostic| diagnostic.shifted(start)));
+            }
             found
         });
         diagnostics.extend(found.iter().map(|diagnostic| diagnostic.shifted(start)));
@@ -229,6 +233,17 @@ fn judge_page(
     page.accesses();
     page.size();
     diagnostics
+}
+
+/// The findings in a list that a drawing carries along, from its start.
+fn judge_box(list: &Chunk, document: &Document, pou: Option<usize>) -> Vec<Diagnostic> {
+    let mut found = list.problems().to_vec();
+    let mut context = ChunkContext::new(list, document, pou);
+    if document.target().is_fx() {
+        context.notation = Notation::FxIl;
+    }
+    CHUNK_JUDGES.iter().for_each(|judge| judge(&context, &mut found));
+    found
 }
 
 /// Messages that are graver or milder than the rest of their rule's.

@@ -159,7 +159,7 @@ pub(super) struct OwnAccesses {
     joints: Box<[Joint]>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct OwnAccess {
     subject: Subject,
     act: Act,
@@ -170,7 +170,7 @@ struct OwnAccess {
 }
 
 /// What is named; nearly always it is a device, and a symbol is three times as large.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 enum Subject {
     Device(Device),
     Other(Box<Symbol>),
@@ -233,10 +233,17 @@ pub(super) fn of_chunk(chunk: &Chunk) -> OwnAccesses {
         Tree::Ladder(tree) => {
             let label = tree.header.as_ref().and_then(|header| header.label);
             own.joint(label, JointKind::Label);
-            for (number, rung) in tree.rungs.iter().enumerate() {
-                let number = number.min(usize::from(u16::MAX)) as u16;
+            let mut boxes = chunk.boxes().into_iter().peekable();
+            let mut number = 0;
+            for rung in &tree.rungs {
+                while let Some((start, list)) = boxes.next_if(|(start, _)| *start < rung.span.start as usize)
+                {
+                    own.boxed(start, &list, &mut number);
+                }
                 rung.graph.elements.iter().for_each(|element| own.element(element, number));
+                number = number.saturating_add(1);
             }
+            boxes.for_each(|(start, list)| own.boxed(start, &list, &mut number));
         }
         Tree::Iec(tree) => own.iec(tree),
     }
@@ -253,6 +260,20 @@ impl Collector<'_> {
     fn joint(&mut self, name: Option<Span>, kind: impl FnOnce(SmolStr) -> JointKind) {
         let Some(span) = name else { return };
         self.joints.push(Joint { span, pou: 0, kind: kind(folded(span.of(self.text))) });
+    }
+
+    /// A list in a box, which is a rung of its own.
+    fn boxed(&mut self, start: usize, list: &Chunk, rung: &mut u16) {
+        let own = list.accesses();
+        let moved = |access: &OwnAccess| OwnAccess {
+            span: access.span.shifted(start),
+            rung: *rung,
+            ..access.clone()
+        };
+        self.all.extend(own.all.iter().map(moved));
+        let joints = own.joints.iter();
+        self.joints.extend(joints.map(|joint| Joint { span: joint.span.shifted(start), ..joint.clone() }));
+        *rung = rung.saturating_add(list.size().rungs as u16);
     }
 
     fn element(&mut self, element: &Element, rung: u16) {

@@ -4,7 +4,7 @@ use super::access::{self, OwnAccesses};
 use super::allowance::{self, OwnAllowance};
 use super::exclusion::{self, Exclusion};
 use super::milestone::{self, Milestone};
-use super::{Mention, Notation, Size, Token, exported, mention, tokens};
+use super::{Mention, Notation, Size, Token, boxes, exported, mention, tokens};
 use crate::il::{fx, iec};
 use crate::ladder::{self, LadderTree, NameHabit};
 use crate::target::Target;
@@ -206,6 +206,15 @@ impl Chunk {
                 Kind::Tables => Tree::Iec(exported::read(self.text())),
             })
         })
+    }
+
+    /// The lists in the boxes `{il … }` of a drawing in the order of the text, each with its start, as chunks of their
+    /// own.
+    pub fn boxes(&self) -> Vec<(usize, Chunk)> {
+        match self.known.kind {
+            Kind::Ladder => boxes::of_chunk(self, &self.known.dialect),
+            Kind::Fx | Kind::Iec | Kind::Tables => Vec::new(),
+        }
     }
 
     /// Whether it is IEC declarations or statements, told without reading it.

@@ -1,8 +1,8 @@
 //! Outputs that are never or always on because of what other rungs make of the relays before them.
 //!
 //! A relay is followed if one plain coil is all that writes it, so that its value is known from there. Two things are
-//! looked for: relays that are never on and whatever needs them, rung after rung; and rungs that ask for the opposite of
-//! what the rung of a relay above them asks for, which the names of both tell before any tree is read.
+//! looked for: relays that are never on and whatever needs them, rung after rung; and rungs that ask for the opposite
+//! of what the rung of a relay above them asks for, which the names of both tell before any tree is read.
 
 use super::constant::{Reason, Way, is_output, place_of, value_of, ways};
 use super::rung::{devices_of, has_constant};
@@ -238,7 +238,10 @@ impl<'c, 'a> Across<'c, 'a> {
                 pous: one.unit.saturating_sub(chunk.pou_starts()),
             };
             let rungs = logic::rungs_with(&reading, file.document.reader(), declared);
-            Rc::new(rungs.into_iter().map(|rung| (rung.span, rung.path.ok().flatten())).collect())
+            // Places in a list that a drawing carries along are not those of the drawing.
+            let is_own = |rung: &logic::Rung| !rung.is_list || file.document.notation() != Notation::Ladder;
+            let own = rungs.into_iter().filter(is_own);
+            Rc::new(own.map(|rung| (rung.span, rung.path.ok().flatten())).collect())
         });
         let at = one.span.start - start as u32;
         let (_, path) = rungs.iter().find(|(span, _)| span.start <= at && at < span.end)?;
