@@ -60,6 +60,7 @@ mod rules_fx;
 mod rules_iec;
 mod rules_proof;
 mod rules_sense;
+mod rules_sense_fixes;
 mod stack_machine;
 mod target_fx;
 mod target_fx_applied;

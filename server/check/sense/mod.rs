@@ -10,6 +10,8 @@ pub(super) use regions::Regions;
 
 mod rungs;
 
+mod free;
+
 mod coils;
 
 mod double_coil;
