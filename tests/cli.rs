@@ -1,30 +1,13 @@
 //! The command line as scripts meet it: the real binary, its exit codes, its streams and its JSON.
 
+use crate::binary::{command, folder};
 use serde_json::{Value, json};
-use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Output, Stdio};
 use tempfile::TempDir;
 
 const CLEAN: &str = "LD X0\nOUT Y0\nEND\n";
 const WRONG: &str = "LD X8\nOUT Y0\nEND\n";
 const HINTED: &str = "P0\nLD X0\nOUT Y0\nEND\n";
-
-/// A folder with these files.
-fn folder(files: &[(&str, &str)]) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    for (name, text) in files {
-        let path = folder.path().join(name);
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(path, text).unwrap();
-    }
-    folder
-}
-
-fn command(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_rungwise"));
-    command.current_dir(folder).args(arguments).env("LC_ALL", "C").stdin(Stdio::null());
-    command
-}
 
 fn rungwise(folder: &TempDir, arguments: &[&str]) -> Output {
     command(folder.path(), arguments).output().unwrap()

@@ -1,39 +1,14 @@
 //! `rungwise translate` and `rungwise prove`, through the binary.
 
+use crate::binary::{folder, run};
+use crate::drawing_redrawn::BRIDGES;
 use serde_json::{Value, json};
-use std::process::{Command, Output, Stdio};
-use tempfile::TempDir;
 
 const MOTOR: &str = "; start\nLD X0\nOR Y0\nANI X1\nOUT Y0\nEND\n";
 /// The same but for the stop contact.
 const WRONG: &str = "LD X0\nOR Y0\nAND X1\nOUT Y0\nEND\n";
 /// A contact in parallel with what already drives an output has no drawing.
 const KEPT: &str = "LD X0\nOUT Y0\nOR X1\nOUT Y1\nEND\n";
-const BRIDGE: &str = "\
-|   X0                    X1                       Y0  |
-+---| |---+---------------| |-----+----------------( )-+
-|         |   X2                  |                    |
-|         +---| |---+             |                    |
-|                   |             |                    |
-|   X3              |     X4      |                    |
-+---| |-------------+-----| |-----+                    |
-";
-
-fn folder(files: &[(&str, &str)]) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    for (name, content) in files {
-        std::fs::write(folder.path().join(name), content).unwrap();
-    }
-    folder
-}
-
-fn run(folder: &TempDir, arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_rungwise"));
-    let command = command.current_dir(folder.path()).args(arguments).stdin(Stdio::null());
-    let Output { status, stdout, stderr } = command.output().unwrap();
-    (status.code().unwrap(), String::from_utf8(stdout).unwrap(), String::from_utf8(stderr).unwrap())
-}
-
 #[test]
 fn a_list_is_drawn_listed_and_written_as_equations_with_proof() {
     let folder = folder(&[("motor.il", MOTOR)]);
@@ -54,7 +29,7 @@ fn a_list_is_drawn_listed_and_written_as_equations_with_proof() {
 
 #[test]
 fn what_has_no_other_form_is_carried_along_and_told() {
-    let folder = folder(&[("kept.il", KEPT), ("bridge.lad", BRIDGE)]);
+    let folder = folder(&[("kept.il", KEPT), ("bridge.lad", BRIDGES[0])]);
     let (code, drawn, err) = run(&folder, &["translate", "kept.il", "--to", "ladder", "--prove"]);
     assert_eq!(code, 0, "{err}");
     assert!(err.starts_with("kept.il:1: this rung is kept as it is: a contact is put in parallel"), "{err}");
@@ -120,4 +95,28 @@ fn symbols_of_a_project_stay_and_are_proved() {
     assert_eq!(code, 0, "{err}");
     assert!(drawn.contains("Start") && drawn.contains("[> Level K10]"), "{drawn}");
     assert_eq!(run(&folder, &["translate", "main.il", "--to", "boolean", "--prove"]).0, 0);
+}
+
+#[test]
+fn a_list_for_another_model_says_what_that_lacks() {
+    let head =
+        "PROGRAM P\nVAR\nStart AT %IX0.0 : BOOL; Far AT %MX500.0 : BOOL; Lamp AT %QX0.0 : BOOL;\nEND_VAR\n";
+    let text = format!("{head}LD Start\nST Lamp\nLD Start\nST Far\nEND_PROGRAM\n");
+    let folder = folder(&[("motor.il", MOTOR), ("other.il", &text)]);
+    let (code, out, err) = run(&folder, &["translate", "other.il", "--to", "fx"]);
+    assert_eq!((code, out.contains("; ST Far")), (1, true), "{out}");
+    assert!(err.contains("FX2N has no M4000"), "{err}");
+    let (code, out, err) =
+        run(&folder, &["translate", "other.il", "--to", "fx", "--target", "fx3u", "--prove"]);
+    assert_eq!((code, out.as_str()), (0, "LD X0\nOUT Y0\nLD X0\nOUT M4000\nEND\n"), "{err}");
+    // The model of the project is the one to write for.
+    std::fs::write(folder.path().join("rungwise.toml"), "target = \"fx3u\"\ndialect = \"iec\"\n").unwrap();
+    assert_eq!(run(&folder, &["translate", "other.il", "--to", "fx"]).0, 0);
+    let (code, _, err) = run(&folder, &["translate", "other.il", "--to", "fx", "--target", "fx1s"]);
+    assert!(code == 1 && err.contains("FX1S has no M4000"), "{err}");
+    for arguments in [["ladder", "fx3u"], ["fx", "iec"]] {
+        let (code, _, err) =
+            run(&folder, &["translate", "other.il", "--to", arguments[0], "--target", arguments[1]]);
+        assert_eq!((code, err.contains("no model for")), (2, true), "{err}");
+    }
 }

@@ -1,7 +1,7 @@
 //! `rungwise usage`, and the device comments file in `rungwise check`, through the binary.
 
+use crate::binary::{folder, run};
 use serde_json::{Value, json};
-use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
 const MANIFEST: &str = "target = \"fx2n\"\ncomments = \"devices.csv\"\nfiles = [\"main.il\", \"pump.il\"]\n";
@@ -9,25 +9,11 @@ const TABLE: &str = "X0;Start;\"button; green\"\nY0;Motor;contactor\n";
 const MAIN: &str = "LD Start\nOUT Y0\nOUT T0 K50\n";
 const PUMP: &str = "LD T0\nAND Motor\nOUT M500\nEND\n";
 
+/// A project whose table of comments is of some encoding.
 fn project(table: &[u8]) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    let files: [(&str, &[u8]); 4] = [
-        ("rungwise.toml", MANIFEST.as_bytes()),
-        ("devices.csv", table),
-        ("main.il", MAIN.as_bytes()),
-        ("pump.il", PUMP.as_bytes()),
-    ];
-    for (name, content) in files {
-        std::fs::write(folder.path().join(name), content).unwrap();
-    }
+    let folder = folder(&[("rungwise.toml", MANIFEST), ("main.il", MAIN), ("pump.il", PUMP)]);
+    std::fs::write(folder.path().join("devices.csv"), table).unwrap();
     folder
-}
-
-fn run(folder: &TempDir, arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_rungwise"));
-    let command = command.current_dir(folder.path()).args(arguments).stdin(Stdio::null());
-    let Output { status, stdout, stderr } = command.output().unwrap();
-    (status.code().unwrap(), String::from_utf8(stdout).unwrap(), String::from_utf8(stderr).unwrap())
 }
 
 #[test]

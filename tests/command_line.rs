@@ -1,28 +1,14 @@
 //! The command line beyond check and fmt: SARIF, diffs, colours, completions, recordings, imports, Markdown.
 
+use crate::binary::{command, folder, run};
 use serde_json::{Value, json};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use tempfile::TempDir;
-
-fn folder(files: &[(&str, &str)]) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    for (name, text) in files {
-        std::fs::write(folder.path().join(name), text).unwrap();
-    }
-    folder
-}
-
-fn run(folder: &TempDir, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_rungwise"));
-    command.current_dir(folder.path()).args(arguments).env("LC_ALL", "C").env_remove("NO_COLOR");
-    command.stdin(Stdio::null()).output().unwrap()
-}
 
 /// Both streams of a command that must end with `code`.
 fn check(folder: &TempDir, arguments: &[&str], code: i32) -> (String, String) {
-    let output = run(folder, arguments);
-    let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}\n{out}\n{err}");
+    let (ended, out, err) = run(folder, arguments);
+    assert_eq!(ended, code, "{arguments:?}\n{out}\n{err}");
     assert!(!err.contains("panicked"), "{err}");
     (out, err)
 }
@@ -262,7 +248,7 @@ fn files_keep_their_encoding_mark_and_line_ends() {
             formatted.starts_with("LD X0") && formatted.contains("电机\r\nOUT Y0\r\n"),
             "{name}: {formatted}"
         );
-        let stdout = run(&files, &["fmt", "--stdout", name]).stdout;
+        let stdout = command(files.path(), &["fmt", "--stdout", name]).output().unwrap().stdout;
         assert_eq!(stdout, written, "{name}");
     }
 }

@@ -8,6 +8,7 @@
     reason = "a test that fails says so by a panic"
 )]
 
+mod binary;
 mod chinese;
 mod cli;
 mod cli_translate;
@@ -51,6 +52,7 @@ mod manifest_schema;
 mod markdown;
 mod mistakes;
 mod plain_instructions;
+mod proof_memory;
 mod rules;
 mod rules_across;
 mod rules_boxes;

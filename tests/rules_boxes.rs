@@ -81,5 +81,5 @@ fn boxes_with_lists_of_iec_are_read_with_the_declarations_around() {
     assert_eq!(told(&text("LD N\nADD 1\nST N"), Model::Iec), Vec::<String>::new());
     let missing = told(&text("LD N\nADD 1\nST Missing"), Model::Iec);
     assert_eq!(missing, ["read-never-written N", "undeclared-variable Missing"]);
-    assert_eq!(told(&text("LD A\nST L"), Model::Iec), ["double-coil L"]);
+    assert_eq!(told(&text("LD A\nST L"), Model::Iec), ["unused-variable N", "double-coil L"]);
 }

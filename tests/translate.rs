@@ -173,7 +173,8 @@ fn every_small_rung_goes_there_and_back() {
 }
 
 /// Instructions of the shortest list that drives the outputs with these truths in this order, each contact once and in
-/// this order, if it is shorter than `known`; else `known`. Found by trying all lists that can be.
+/// this order, normally open or closed, if it is shorter than `known`; else `known`. Found by trying all lists that can
+/// be.
 fn shortest(contacts: &[u32], outputs: &[u32], known: usize) -> usize {
     type State = (Vec<u32>, Vec<u32>, usize, usize);
     let mut waiting: VecDeque<(State, usize)> = VecDeque::from([((vec![], vec![], 0, 0), 0)]);
@@ -199,13 +200,13 @@ fn shortest(contacts: &[u32], outputs: &[u32], known: usize) -> usize {
             }
             blocks
         };
-        if let Some(contact) = contacts.get(*next) {
+        for contact in contacts.get(*next).into_iter().flat_map(|contact| [*contact, !contact]) {
             let mut loaded = blocks.clone();
-            loaded.push(*contact);
+            loaded.push(contact);
             go(loaded, kept.clone(), next + 1, *driven);
             if !blocks.is_empty() {
-                go(joined(*contact, true), kept.clone(), next + 1, *driven);
-                go(joined(*contact, false), kept.clone(), next + 1, *driven);
+                go(joined(contact, true), kept.clone(), next + 1, *driven);
+                go(joined(contact, false), kept.clone(), next + 1, *driven);
             }
         }
         let Some(top) = blocks.last() else { continue };
@@ -238,13 +239,15 @@ fn no_list_for_the_drawn_order_is_shorter() {
         for part in parts(contacts, None) {
             let mut text = String::new();
             naive(&part, &mut 0, 0, &mut text);
-            text += "OUT Y0\n";
-            let truth = truth_of_list(&text);
-            let short = certain(&list(&text), To::Fx);
-            let inputs: Vec<u32> = (0..contacts as u32).map(input).collect();
-            // END is no part of the rung.
-            let length = short.lines().count() - 1;
-            assert_eq!(length, shortest(&inputs, &[truth], length), "{short}");
+            for output in ["OUT Y0\n", "INV\nOUT Y0\n"] {
+                let text = text.clone() + output;
+                let truth = truth_of_list(&text);
+                let short = certain(&list(&text), To::Fx);
+                let inputs: Vec<u32> = (0..contacts as u32).map(input).collect();
+                // END is no part of the rung.
+                let length = short.lines().count() - 1;
+                assert_eq!(length, shortest(&inputs, &[truth], length), "{short}");
+            }
         }
     }
 }
@@ -352,6 +355,31 @@ fn worked_examples_of_the_field() {
         let symbols = translate(&list(text), None, To::Boolean, &symbols).text;
         assert_eq!(from_boolean::list(&symbols, Target::of(Model::Fx2n)), Ok(text.to_string()));
     }
+}
+
+#[test]
+fn comments_of_every_kind_stand_among_equations() {
+    let text = "(* two\n   lines; // of it *)\n; plain\n// why\nLD X0\nOUT Y0\n(* last *)\nEND\n";
+    let equations = certain(&list(text), To::Boolean);
+    assert_eq!(equations, "(* two\n   lines; // of it *)\n; plain\n// why\nY0 = X0\n\n(* last *)\nEND\n");
+    assert_eq!(from_boolean::list(&equations, Target::of(Model::Fx2n)), Ok(text.to_string()));
+    let beside = "Y0 = X0 (* a\nb *)\nY1 = X1 // c\nY2 (* d *) = X2";
+    let read = "(* a\nb *)\nLD X0\nOUT Y0\n// c\nLD X1\nOUT Y1\n(* d *)\nLD X2\nOUT Y2\n";
+    assert_eq!(from_boolean::list(beside, Target::of(Model::Fx2n)), Ok(read.to_string()));
+    check_equation("Y0 = X0 (* a", "        ^^");
+}
+
+#[test]
+fn comments_and_networks_keep_their_places() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let drawn = std::fs::read_to_string(folder.join("traffic-lights/lights.lad")).expect("an example");
+    let listed = certain(&drawing(&drawn), To::Fx);
+    assert!(listed.contains(". *)\n\n; NETWORK 1 'the cycle'\n(* Green for A, 20 s *)\nLD X0\n"), "{listed}");
+    let again = certain(&list(&listed), To::Ladder);
+    assert_eq!(
+        again.strip_suffix("\n\n+--[END]---------------------------------------+\n"),
+        drawn.strip_suffix('\n')
+    );
 }
 
 /// The bits that a proof gives for a scan, and as they were one scan before.

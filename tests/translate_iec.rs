@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use rungwise::document::{Document, Notation};
 use rungwise::ide::{self, Style};
 use rungwise::target::{Model, Target};
-use rungwise::translate::{Certificate, Options, Proof, To, Translation, prove, translate};
+use rungwise::translate::{Certificate, Options, Proof, To, Translated, Translation, prove, translate};
 use std::collections::HashMap;
 use std::path::Path;
 use std::process::Command;
@@ -129,6 +129,8 @@ fn combine(operator: &str, left: i64, right: i64) -> i64 {
         "ORN" => left | (1 - right),
         "XOR" => left ^ right,
         "XORN" => left ^ (1 - right),
+        "ADD" => left + right,
+        "SUB" => left - right,
         "GT" => i64::from(left > right),
         "GE" => i64::from(left >= right),
         "EQ" => i64::from(left == right),
@@ -401,7 +403,14 @@ proptest! {
     fn lists_of_any_words_come_to_an_end(lines in instructions()) {
         let text = lines.join("\n");
         for form in To::ALL {
-            to(&list(&text), form);
+            let translation = to(&list(&text), form);
+            // Each line belongs to a rung, or to the mistake that is told of it.
+            let mut start = 0;
+            for line in text.split_inclusive('\n') {
+                let covers = |rung: &Translated| rung.span.touches(start) && !rung.span.is_empty();
+                prop_assert!(translation.rungs.iter().any(covers), "{:?} {}\n{}", form, line, text);
+                start += line.len();
+            }
         }
     }
 }
@@ -513,11 +522,19 @@ fn variables_are_devices_by_their_addresses() {
 fn what_has_no_counterpart_keeps_its_words() {
     for (rung, words) in [
         ("LD X0\nOUT T246 K5", "OUT T246 K5"),
-        ("LD X0\nMOV K5 D0", "MOV K5 D0"),
+        ("LD X0\nDMOV K5 D0", "DMOV K5 D0"),
+        ("LD X0\nMOV K4M0 D0", "MOV K4M0 D0"),
+        ("LD X0\nMOV T0 D0", "MOV T0 D0"),
+        ("LD X0\nMOV D0 C0", "MOV D0 C0"),
+        ("LD X0\nMOVP K5 D0Z0", "MOVP K5 D0Z0"),
+        ("LD X0\nMUL D0 D1 D2", "MUL D0 D1 D2"),
+        ("LD X0\nWAND D0 D1 D2", "WAND D0 D1 D2"),
+        ("LD X0\nBMOV D0 D10 K5", "BMOV D0 D10 K5"),
+        ("LD X0\nZRST M0 M10", "ZRST M0 M10"),
+        ("LD X0\nRST T0", "RST T0"),
         ("LD M8013\nOUT Y0", "LD M8013"),
         ("LD X0\nOUT C200 K5", "OUT C200 K5"),
         ("LDD>= D0 K5\nOUT Y0", "LDD>= D0 K5"),
-        ("LD X0\nRST D0", "RST D0"),
         ("STL S0\nOUT Y0", "STL S0"),
     ] {
         let translation = to(&fx(&format!("{rung}\nEND\n")), To::Iec);
@@ -539,6 +556,97 @@ fn what_has_no_counterpart_keeps_its_words() {
     }
 }
 
+#[test]
+fn calculations_are_jumped_over_and_come_back() {
+    let text = "\
+LD X0
+MOV K0 D0
+MOV H0FF D1
+OUT Y0
+ADD D0 K1 D0
+LD X1
+OR X2
+INC D0
+ADDP D0 D1 D2
+AND X3
+SUB D2 C0 D2
+RST D3
+LD M8000
+DEC D4
+LDI X1
+MOVP K-5 D0
+END
+";
+    let written = certain(&fx(text), To::Iec);
+    let lines = body(&written);
+    let expected = "LD X0 | JMPCN Skip1 | LD INT#0 | ST D0 | LD 255 | ST D1 | Skip1: | LD X0 | ST Y0 | JMPCN Skip2 | \
+                    LD D0 | ADD INT#1 | ST D0 | Skip2: | LD X1 | OR X2 | ST Held1 | JMPCN Skip3 | LD D0 | ADD 1 | ST D0 | \
+                    Skip3: | LD Held1 | ST Pulse1.CLK | CAL Pulse1 | LD Pulse1.Q | JMPCN Skip4 | LD D0 | ADD D1 | ST D2 | \
+                    Skip4: | LD Held1 | AND X3 | JMPCN Skip5 | LD D2 | SUB C0.CV | ST D2 | LD 0 | ST D3 | Skip5: | LD D4 | \
+                    SUB 1 | ST D4 | LDN X1 | ST Pulse2.CLK | CAL Pulse2 | LD Pulse2.Q | JMPCN Skip6 | LD -5 | ST D0 | Skip6:";
+    assert_eq!(lines.join(" | "), expected, "{written}");
+    for declaration in ["D2 AT %MW1002 : INT;", "Pulse1 : R_TRIG;"] {
+        let written = written.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(written.contains(declaration), "{declaration}\n{written}");
+    }
+    assert!(problems(&written).is_empty(), "{:?}\n{written}", problems(&written));
+    assert_eq!(formatted(&list(&written)), written);
+    let back = certain(&list(&written), To::Fx);
+    assert!(matches!(prove(&fx(text), &fx(&back)), Proof::Equal { .. }), "{back}");
+    let instructions = |text: &str| {
+        let applied =
+            text.lines().filter(|line| !line.starts_with(['L', 'O', 'A', 'M']) || line.starts_with("MOV"));
+        applied.map(|line| line.replace("H0FF", "K255")).collect::<Vec<_>>()
+    };
+    assert_eq!(instructions(&back), instructions(text), "{back}");
+    // By way of a drawing, in which they are boxes.
+    let drawn = certain(&list(&written), To::Ladder);
+    assert!(drawn.contains("MOVE") && drawn.contains("|EN   ENO|"), "{drawn}");
+    assert_eq!(certain(&drawing(&drawn), To::Fx), back, "{drawn}");
+    let again = body(&certain(&drawing(&drawn), To::Iec)).join(" | ");
+    assert_eq!(again.replace("Held2", "Held1"), expected, "{drawn}");
+}
+
+#[test]
+fn calculations_of_a_list_are_boxes() {
+    let text = program(
+        "a, b : BOOL; x, y : BOOL; n, k, m : INT; w AT %MW5 : WORD; v : WORD;",
+        "LD n\nADD k\nST m\nLD w\nAND v\nST w\nLD a\nOR b\nJMPCN over\nLD n\nMOD 7\nST n\nover:\nLD b\nST y",
+    );
+    let (drawn, back) = round(&text);
+    for word in ["ADD", "AND", "MOD", "IN1", "OUT"] {
+        assert!(drawn.contains(word), "{word}\n{drawn}");
+    }
+    assert!(!drawn.contains("over"), "{drawn}");
+    assert_eq!(body(&back).join("\n"), body(&text).join("\n").replace("over", "Skip1"), "{drawn}");
+    // A label to which others jump stays one.
+    let text = program(BITS, "LD c\nJMPC over\nLD a\nJMPCN over\nLD n\nST k\nover:\nLD b\nST y");
+    let (drawn, back) = round(&text);
+    assert!(drawn.contains("over:"), "{drawn}");
+    same(&text, &back, INPUTS, &["k", "y"]);
+    // What goes on behind its store, or is no single calculation, stays as it is.
+    for kept in [
+        "LD n\nADD k\nST m\nST n",
+        "LD n\nADD k\nMUL n\nST m",
+        "LD a\nJMPCN over\nLD n\nST k\nover:\nAND b\nST y",
+    ] {
+        let translation = to(&list(&program(BITS, &kept.replace("m", "w"))), To::Ladder);
+        assert!(translation.rungs.iter().any(|rung| rung.note.is_some()), "{kept}\n{}", translation.text);
+    }
+}
+
+#[test]
+fn what_a_jump_skips_is_done_as_before() {
+    for condition in ["LD a", "LDN a\nOR b", "LD a\nANDN b\nNOT", "LD a\nANDN b\nST w\nNOT"] {
+        let text = program(
+            BITS,
+            &format!("{condition}\nST y\nJMPCN over\nLD n\nADD 1\nST n\nLD n\nST k\nover:\nLD n\nGT 3\nST z"),
+        );
+        let (_, back) = round(&text);
+        same(&text, &back, INPUTS, &["y", "z", "n", "k"]);
+    }
+}
+
 /// A random program of an FX2N, well formed.
 fn fx_programs() -> impl Strategy<Value = String> {
     let bit = prop::sample::select(vec!["X0", "X1", "X17", "Y0", "M5", "S3", "T1", "C2"]);
@@ -557,6 +665,13 @@ fn fx_programs() -> impl Strategy<Value = String> {
         "RST C2",
         "PLS M9",
         "PLF M10",
+        "MOV K5 D0",
+        "MOVP D1 D0",
+        "ADD D0 C2 D1",
+        "SUBP D0 K1 D0",
+        "INC D0",
+        "DECP D1",
+        "RST D0",
         "INV\nOUT Y2",
     ]);
     let outputs = prop::collection::vec(output, 1..4);

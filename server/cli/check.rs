@@ -143,7 +143,7 @@ fn diagnostic_json(program: &Program, diagnostic: &Diagnostic, language: Languag
     })
 }
 
-fn target_named(name: &str) -> Result<&'static Target, String> {
+pub(super) fn target_named(name: &str) -> Result<&'static Target, String> {
     Target::named(name).ok_or_else(|| {
         let names = Target::ALL.iter().map(|target| target.name);
         Message::new("cli.no-such-target").with_words("names", names, ", ").render(super::language::spoken())

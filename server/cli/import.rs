@@ -1,7 +1,7 @@
 //! `rungwise import`
 
 use super::Outcome;
-use super::input::{caution, complain, say};
+use super::input::{caution, complain, put, say};
 use crate::ladder::{self, ImportError};
 use crate::text::{Language, Message};
 use std::path::{Path, PathBuf};
@@ -44,18 +44,12 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
             return Outcome::Findings;
         }
     };
-    match &arguments.output {
-        None => say(&imported.text),
-        Some(output) => {
-            if let Err(reason) = std::fs::write(output, &imported.text) {
-                let help = words("import.unwritable-help");
-                complain("unwritable", &format!("{}: {reason}", output.display()), &help, language);
-                return Outcome::Unusable;
-            }
-            let done =
-                Message::new("import.done").with("path", output.display()).with("rungs", imported.rungs);
-            say(&format!("{}\n", done.render(language)));
-        }
+    if !put(&imported.text, arguments.output.as_deref(), language) {
+        return Outcome::Unusable;
+    }
+    if let Some(output) = &arguments.output {
+        let done = Message::new("import.done").with("path", output.display()).with("rungs", imported.rungs);
+        say(&format!("{}\n", done.render(language)));
     }
     for note in &imported.notes {
         let place = format!("{path}:{}: {}", note.line, note.message.render(language));

@@ -128,6 +128,20 @@ pub(super) fn say_bytes(bytes: &[u8]) {
     }
 }
 
+/// Writes a result to `output`, or to standard output where no file is named; whether it could be written.
+pub(super) fn put(text: &str, output: Option<&Path>, language: Language) -> bool {
+    let Some(path) = output else {
+        say(text);
+        return true;
+    };
+    let written = std::fs::write(path, text);
+    if let Err(reason) = &written {
+        let help = Message::new("cli.make-room").render(language);
+        complain("unwritable", &format!("{}: {reason}", path.display()), &help, language);
+    }
+    written.is_ok()
+}
+
 /// An error on standard error: `error[code]: reason`, and a sentence that helps.
 pub(super) fn complain(code: &str, reason: &str, help: &str, language: Language) {
     let help = Message::new("cli.help").with("help", help).render(language);

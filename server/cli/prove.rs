@@ -1,9 +1,9 @@
 //! `rungwise prove`
 
 use super::Outcome;
-use super::input::{Program, complain, programs, say};
+use super::input::{Program, complain, programs, put, say};
 use crate::document::Document;
-use crate::text::{Encoding, Language, Message, Span};
+use crate::text::{Language, Message, Span};
 use crate::translate::{Counterexample, Proof, Value, prove};
 use clap::ValueEnum;
 use serde_json::{Map, json};
@@ -45,10 +45,8 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         ProofFormat::Text => say(&as_text(&proof, sides, &names, language)),
     }
     if let (Some(path), Proof::Different(found)) = (&arguments.scenario, &proof)
-        && let Err(error) = std::fs::write(path, scenario(found, &names))
+        && !put(&scenario(found, &names), Some(path), language)
     {
-        let reason = format!("{}: {error}", path.display());
-        complain("not-written", &reason, &Message::new("cli.make-room").render(language), language);
         return Outcome::Unusable;
     }
     match proof {
@@ -179,5 +177,5 @@ fn scenario(found: &Counterexample, names: &[String; 2]) -> String {
 }
 
 fn line(document: &Document, span: Span) -> u32 {
-    document.position(span.start as usize, Encoding::Utf32).line + 1
+    document.line_of(span.start as usize) + 1
 }

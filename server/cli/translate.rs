@@ -1,12 +1,13 @@
 //! `rungwise translate`
 
 use super::Outcome;
+use super::check::target_named;
 use super::fmt::style_of;
-use super::input::{Program, complain, remark, say};
+use super::input::{Program, complain, put, remark};
 use super::prove;
 use crate::document::{Document, Notation};
 use crate::target::{Model, Target};
-use crate::text::{Encoding, Language, Message};
+use crate::text::{Encoding, Language, Message, position_of};
 use crate::translate::to_boolean::Notation as Equations;
 use crate::translate::{Certificate, Options, To, Translation, from_boolean, translate};
 use clap::ValueEnum;
@@ -20,6 +21,9 @@ pub(super) struct Arguments {
     /// The form to translate it to.
     #[arg(long, value_enum)]
     to: Form,
+    /// The FX model that an FX list is for [default: that of the project or of the program].
+    #[arg(long, value_parser = target_named)]
+    target: Option<&'static Target>,
     /// Write the result to this file, not to standard output.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -53,7 +57,15 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         Form::Iec => To::Iec,
         Form::Boolean => To::Boolean,
     };
+    if let Some(asked) = arguments.target.filter(|asked| to != To::Fx || !asked.is_fx()) {
+        let reason = Message::new("cli.no-model").with("target", asked.name).with("form", to.name());
+        let help = Message::new("cli.choose-model").render(language);
+        complain("target-refused", &reason.render(language), &help, language);
+        return Outcome::Unusable;
+    }
+    let of_project = program.manifest.target().filter(|_| !program.document.target().is_fx());
     let options = Options {
+        model: arguments.target.or(of_project).map(|target| target.model),
         style: style_of(program, None).ladder(),
         notation: if arguments.symbols { Equations::Symbols } else { Equations::Algebra },
         ..Options::default()
@@ -64,15 +76,8 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     if arguments.prove && !is_certain {
         return Outcome::Findings;
     }
-    match &arguments.output {
-        None => say(&translation.text),
-        Some(path) => {
-            if let Err(error) = std::fs::write(path, &translation.text) {
-                let reason = format!("{}: {error}", path.display());
-                complain("not-written", &reason, &Message::new("cli.make-room").render(language), language);
-                return Outcome::Unusable;
-            }
-        }
+    if !put(&translation.text, arguments.output.as_deref(), language) {
+        return Outcome::Unusable;
     }
     if is_certain { Outcome::Clean } else { Outcome::Findings }
 }
@@ -104,10 +109,9 @@ fn read(path: &Path, language: Language) -> Option<Program> {
         }),
         Err(problems) => {
             for problem in problems {
-                let before = &text[..problem.span.start as usize];
-                let line = before.matches('\n').count() + 1;
-                let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
-                let reason = format!("{line}:{column}: {}", problem.message.render(language));
+                let at = position_of(&text, problem.span.start as usize, Encoding::Utf32);
+                let reason =
+                    format!("{}:{}: {}", at.line + 1, at.column + 1, problem.message.render(language));
                 unusable(&reason, "cli.equation-form");
             }
             None
@@ -119,7 +123,7 @@ fn read(path: &Path, language: Language) -> Option<Program> {
 fn tell(program: &Program, translation: &Translation, proves: bool, language: Language) {
     for rung in &translation.rungs {
         let Some(note) = &rung.note else { continue };
-        let line = program.document.position(rung.span.start as usize, Encoding::Utf32).line + 1;
+        let line = program.document.line_of(rung.span.start as usize) + 1;
         remark(
             &Message::new("cli.not-translated")
                 .with("path", program.path.display())

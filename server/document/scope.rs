@@ -184,6 +184,14 @@ impl Scopes {
         self.pous.get(self.pou_number(name)?).map(|pou| &**pou)
     }
 
+    /// Whether there are variables that may lie in one place with others: at addresses, or where a caller says.
+    pub fn has_shared_storage(&self) -> bool {
+        let locals = self.pous.iter().flat_map(|pou| &pou.variables);
+        locals
+            .chain(self.globals.values())
+            .any(|variable| variable.address.is_some() || variable.section == SectionKind::InOut)
+    }
+
     /// Whether `name` is a declared data type.
     pub fn is_type(&self, name: &str) -> bool {
         self.types.contains_key(&folded(name))

@@ -61,7 +61,7 @@ pub fn part_at(document: &Document, span: Span) -> Option<ProgramPart> {
     let at = document.chunk_at(span.start as usize)?;
     let inside = (span.start as usize).saturating_sub(at.start);
     let reading = at.chunk.reading();
-    let rungs = logic::rungs(&reading, document.target());
+    let rungs = logic::rungs(&reading, document.reader());
     let shifted = |span: Span| span.shifted(at.start);
     if network_of(reading.tree()).is_some_and(|header| header.touches(inside))
         && let Some(first) = rungs.first()

@@ -119,5 +119,6 @@ impl Call {
 
 /// `instance.name`
 pub(super) fn member(instance: &Term, name: &str) -> Term {
-    Term::new(Operand::Variable, &format_smolstr!("{}.{name}", instance.text), instance.span)
+    let name = format_smolstr!("{}.{name}", instance.text);
+    Term { storage: instance.storage, ..Term::new(Operand::Variable, &name, instance.span) }
 }

@@ -1,8 +1,9 @@
 //! Whether two stretches of program do the same.
 
 use super::decide::{Verdict, equal};
-use super::{Action, Deed, Effect, Formula, Formulas, Path, Run, Term};
-use crate::target::{Flow, Operand};
+use super::{Action, Atom, Deed, Effect, Formula, Formulas, Path, Run, Term};
+use crate::ladder::CoilKind;
+use crate::target::{DeviceKind, Flow};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 use std::collections::BTreeMap;
@@ -20,6 +21,8 @@ pub enum Comparison {
     Different {
         /// What differs: the bit, or the first operand of the action.
         what: String,
+        /// Where to look for it in a run.
+        place: Place,
         /// What it is on the left and on the right: the bit, or whether the action is done.
         sides: [bool; 2],
         /// Values of atoms for which they do, by the number of the atom.
@@ -31,13 +34,22 @@ pub enum Comparison {
     Undecided,
 }
 
+/// What differs between two runs.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum Place {
+    /// The bit with this key, at the end or where it is driven.
+    Bit(SmolStr),
+    /// The power of the event of this number, from 1.
+    Event(u32),
+}
+
 /// Compares what is done by paths run one after the other from the same state, step by step: the same things in the
 /// same order under equal conditions.
 pub fn compare(left: &[&Path], right: &[&Path], formulas: &mut Formulas) -> Comparison {
     compare_but(left, right, &FxHashSet::default(), formulas)
 }
 
-/// The same, where the right side may drive further bits of its own, `helpers` by their keys.
+/// The same, where the right side may have coils of further bits of its own, `helpers` by their keys.
 pub fn compare_but(
     left: &[&Path],
     right: &[&Path],
@@ -47,8 +59,9 @@ pub fn compare_but(
     let [left, mut right] = [run(left, formulas), run(right, formulas)];
     if !helpers.is_empty() {
         right.effects.retain(|effect| {
-            let mut terms = effect.action.terms.iter();
-            effect.event.is_some() || !terms.next().is_some_and(|term| helpers.contains(&term.key()))
+            let [term] = &effect.action.terms[..] else { return true };
+            let is_driven = effect.event.is_none() && effect.deed() == Deed::Coil(CoilKind::Plain);
+            !is_driven || !helpers.contains(&term.key())
         });
     }
     let pairs = left.effects.iter().zip(&right.effects);
@@ -57,7 +70,7 @@ pub fn compare_but(
     }
     for (left, right) in pairs {
         let sides = [left.guard, right.guard];
-        if let Some(difference) = difference(formulas, sides, || what(left)) {
+        if let Some(difference) = difference(formulas, sides, || place_of(left)) {
             return difference;
         }
     }
@@ -66,15 +79,21 @@ pub fn compare_but(
 
 /// Compares what has come of the same state when paths were run: the same events in the same order under equal
 /// conditions, and the same values of all bits at the end, whatever the way there. Of the paths the first `known` on
-/// either side are known to do the same.
+/// either side are known to do the same. With `may_be_off` there may be no power at the left rail.
 pub fn compare_outcome(
     left: &[&Path],
     right: &[&Path],
     known: [usize; 2],
+    may_be_off: bool,
     formulas: &mut Formulas,
 ) -> Comparison {
     let skipped = run(&left[..known[0].min(left.len())], &mut Formulas::default()).events() as usize;
-    let [left, right] = [run(left, formulas), run(right, formulas)];
+    let rail = if may_be_off { formulas.atom(Atom::Rail) } else { Formulas::TRUE };
+    let [left, right] = [left, right].map(|paths| {
+        let mut run = Run::by_outcome(rail);
+        paths.iter().for_each(|path| run.path(path, formulas));
+        run
+    });
     let events = |run: &Run<'_>| run.events() as usize;
     let pairs = || {
         let [left, right] = [&left, &right].map(|run| run.effects.iter().filter(|e| e.event.is_some()));
@@ -85,8 +104,17 @@ pub fn compare_outcome(
     }
     for (left, right) in pairs().skip(skipped) {
         let sides = [left.guard, right.guard];
-        if let Some(difference) = difference(formulas, sides, || what(left)) {
+        if let Some(difference) = difference(formulas, sides, || place_of(left)) {
             return difference;
+        }
+        for sides in left.reads.iter().zip(&right.reads).map(|(left, right)| [*left, *right]) {
+            if let Some(difference) = difference(formulas, sides, || place_of(left)) {
+                // What the call makes of it, nobody knows.
+                return match difference {
+                    Comparison::Different { .. } => Comparison::Undecided,
+                    other => other,
+                };
+            }
         }
         // What an event makes of bits that differ when it happens, nobody knows.
         if touches_bits(left.action) {
@@ -98,7 +126,9 @@ pub fn compare_outcome(
     bits.dedup_by(|(left, _), (right, _)| left == right);
     for (_, bit) in bits {
         let sides = [left.bit(bit, formulas), right.bit(bit, formulas)];
-        if let Some(difference) = difference(formulas, sides, || bit.text.to_string()) {
+        if let Some(difference) =
+            difference(formulas, sides, || (bit.text.to_string(), Place::Bit(bit.key())))
+        {
             return difference;
         }
     }
@@ -115,7 +145,7 @@ fn run<'p>(paths: &[&'p Path], formulas: &mut Formulas) -> Run<'p> {
 fn difference(
     formulas: &mut Formulas,
     [left, right]: [Formula; 2],
-    what: impl FnOnce() -> String,
+    what: impl FnOnce() -> (String, Place),
 ) -> Option<Comparison> {
     match equal(formulas, left, right) {
         Verdict::Equal => None,
@@ -123,9 +153,15 @@ fn difference(
         Verdict::Different(values) => {
             let value = |atom: u32| values.get(&atom).copied().unwrap_or(false);
             let sides = formulas.evaluate(&[left, right], value);
-            Some(Comparison::Different { what: what(), sides: [sides[0], sides[1]], values })
+            let (what, place) = what();
+            Some(Comparison::Different { what, place, sides: [sides[0], sides[1]], values })
         }
     }
+}
+
+fn place_of(effect: &Effect<'_>) -> (String, Place) {
+    let bit = || effect.action.terms.first().map(Term::key).unwrap_or_default();
+    (what(effect), effect.event.map_or_else(|| Place::Bit(bit()), Place::Event))
 }
 
 fn what(effect: &Effect<'_>) -> String {
@@ -136,18 +172,34 @@ fn what(effect: &Effect<'_>) -> String {
             let words = action.terms.iter().map(|term| term.text.as_str());
             std::iter::once(form.mnemonic().as_str()).chain(words).collect::<Vec<_>>().join(" ")
         }
+        (Deed::Compute(_), _) => action.terms.last().map(|term| term.text.to_string()).unwrap_or_default(),
         (_, term) => term.map(|term| term.text.to_string()).unwrap_or_default(),
     }
 }
 
-/// Whether an action looks at bits other than through its condition, or may change bits whose values are known. What
-/// it does when its condition fails depends on what these were before.
+/// Whether an action looks at bits other than through its condition and the operands of a call, or may change bits
+/// whose values are known, or decides what comes next. What it does when its condition fails depends on what was
+/// before.
 pub fn touches_bits(action: &Action) -> bool {
-    let Deed::Instruction(form) = action.deed else { return false };
-    let is_bit = |term: &Term| match term.operand {
-        Operand::Device(device) => device.kind.is_bit(),
-        Operand::Nibbles { .. } => true,
-        _ => false,
-    };
-    form.instruction.flow() != Flow::Straight || action.terms.iter().any(is_bit)
+    // States, timers and counters change in events only, and these come in the same order.
+    let is_bit = |term: &Term| term.operand.device().is_some_and(|device| is_driven(device.kind));
+    match action.deed {
+        Deed::Instruction(form) => {
+            form.instruction.flow() != Flow::Straight || action.terms.iter().any(is_bit)
+        }
+        Deed::Coil(_) => action.terms.first().is_some_and(covers_others),
+        Deed::Compute(_) => action.terms.last().is_some_and(covers_others),
+        Deed::Call(call) => call.changes(&action.terms).iter().any(covers_others),
+        Deed::Jump | Deed::Return => true,
+    }
+}
+
+/// Whether who writes to it may write to bits that have names of their own.
+fn covers_others(term: &Term) -> bool {
+    !term.is_lone() && term.operand.device().is_none_or(|device| is_driven(device.kind))
+}
+
+/// Whether coils drive single bits of this kind.
+fn is_driven(kind: DeviceKind) -> bool {
+    matches!(kind, DeviceKind::X | DeviceKind::Y | DeviceKind::M)
 }

@@ -162,11 +162,40 @@ impl Expression {
         }
     }
 
+    /// Calls `found` with all operands.
+    pub fn each_term(&mut self, found: &mut impl FnMut(&mut Term)) {
+        match self {
+            Expression::Constant(_) => {}
+            Expression::Contact(contact) => contact.terms.iter_mut().for_each(found),
+            Expression::Not(part) => part.each_term(found),
+            Expression::And(parts) | Expression::Or(parts) => {
+                parts.iter_mut().for_each(|part| part.each_term(found));
+            }
+        }
+    }
+
     /// The contacts, left to right and top to bottom.
     pub fn contacts(&self) -> Vec<&Contact> {
         let mut contacts = Vec::new();
         self.visit(&mut |contact| contacts.push(contact));
         contacts
+    }
+
+    /// The same connections with other conditions for contacts; the first error of `instead`, if there is one.
+    pub fn mapped<E>(
+        &self,
+        instead: &mut impl FnMut(&Contact) -> Result<Expression, E>,
+    ) -> Result<Expression, E> {
+        let mut all = |parts: &[Expression]| {
+            parts.iter().map(|part| part.mapped(instead)).collect::<Result<Vec<_>, E>>()
+        };
+        Ok(match self {
+            Expression::Constant(value) => Expression::Constant(*value),
+            Expression::And(parts) => Expression::and(all(parts)?),
+            Expression::Or(parts) => Expression::or(all(parts)?),
+            Expression::Contact(contact) => instead(contact)?,
+            Expression::Not(part) => Expression::Not(Box::new(part.mapped(instead)?)),
+        })
     }
 
     /// The expression that holds where this one does not, with the negation moved into its contacts: De Morgan's form.

@@ -39,6 +39,8 @@ pub enum Atom {
     },
     /// Whether power goes on behind the event of this number, from 1.
     Behind(u32),
+    /// Whether there is power at the left rail, where a master control or a step may leave it without.
+    Rail,
 }
 
 /// A device or variable at a moment of the scan.
@@ -46,8 +48,29 @@ pub enum Atom {
 pub struct Moment {
     /// Its name, as [`Term::key`](super::Term::key) has it; a 32-bit value has a `D` and a blank before it.
     pub name: SmolStr,
-    /// 0 for its value before the run; else a number that stands for what may have changed it.
+    /// 0 for its value before the run; else the number of the [`Step`] that may have changed it last.
     pub since: u32,
+}
+
+/// What may have changed a device in a run. Steps with equal numbers leave the same behind.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub enum Step {
+    /// An event.
+    Event {
+        /// Its number, from 1.
+        number: u32,
+        /// The step before, where more is left of that than the event itself leaves.
+        before: u32,
+    },
+    /// A bit that was driven.
+    Driven {
+        /// The step before.
+        before: u32,
+        /// The bit.
+        key: SmolStr,
+        /// Its value then, where steps of different runs are not known to be the same.
+        value: Option<Formula>,
+    },
 }
 
 /// What a formula is.
@@ -67,6 +90,8 @@ pub struct Formulas {
     numbers: FxHashMap<Node, Formula>,
     atoms: Vec<Atom>,
     atom_numbers: FxHashMap<Atom, u32>,
+    steps: Vec<Step>,
+    step_numbers: FxHashMap<Step, u32>,
 }
 
 impl Default for Formulas {
@@ -76,6 +101,8 @@ impl Default for Formulas {
             numbers: FxHashMap::default(),
             atoms: Vec::new(),
             atom_numbers: FxHashMap::default(),
+            steps: Vec::new(),
+            step_numbers: FxHashMap::default(),
         }
     }
 }
@@ -91,15 +118,8 @@ impl Formulas {
         Formula(u32::from(value))
     }
 
-    /// The formula that is this atom. M8000 is on in every scan of a running PLC, M8001 off.
+    /// The formula that is this atom.
     pub fn atom(&mut self, atom: Atom) -> Formula {
-        if let Atom::Bit(Moment { name, .. }) = &atom {
-            match name.as_str() {
-                ALWAYS_ON => return Formulas::TRUE,
-                ALWAYS_OFF => return Formulas::FALSE,
-                _ => {}
-            }
-        }
         let number = match self.atom_numbers.entry(atom) {
             Entry::Occupied(known) => *known.get(),
             Entry::Vacant(new) => {
@@ -108,6 +128,22 @@ impl Formulas {
             }
         };
         self.number(Node::Atom(number))
+    }
+
+    /// The number of a step, from 1.
+    pub fn step(&mut self, step: Step) -> u32 {
+        match self.step_numbers.entry(step) {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(new) => {
+                self.steps.push(new.key().clone());
+                *new.insert(self.steps.len() as u32)
+            }
+        }
+    }
+
+    /// The step with this number; nothing for 0, the start of the run.
+    pub fn step_at(&self, number: u32) -> Option<&Step> {
+        self.steps.get((number as usize).checked_sub(1)?)
     }
 
     /// Where `part` does not hold.
@@ -254,7 +290,3 @@ impl Formulas {
         }
     }
 }
-
-/// The relays that are on and off in every scan of a running FX PLC, from its device tables.
-const ALWAYS_ON: &str = "M8000";
-const ALWAYS_OFF: &str = "M8001";

@@ -2,19 +2,22 @@
 //!
 //! A rung begins with a load outside of parentheses, with an unconditional call, jump or return, or with a label before
 //! one of these, and goes on for as long as its current result is used: `LD a / ST y / AND b / ST z` is one rung with
-//! two outputs. A chunk of the document can hold several, for it goes on up to the next load. Three things make one
+//! two outputs. A chunk of the document can hold several, for it goes on up to the next load. Some things make one
 //! rung of several loads, unless a comment or a blank line stands between them:
 //!
 //! - A call of a function block and the load of its output, `--[TON]--( )`, if the output is only gone on from.
 //! - Calls of R_TRIG and F_TRIG and the rung behind them, if nobody else asks for their output: edge contacts.
 //! - A helper `Held1` that is stored and loaded again: the rung branches there.
+//! - A jump over calculations: they are done under its condition.
 
+mod computing;
 mod reader;
 
+use self::computing::Skips;
 use self::reader::Reader;
 use super::{Declared, Path, Refusal, Rung, Term};
 use crate::document::{DeclaredType, Scopes};
-use crate::il::iec::{Condition, IecTree, Item, ItemKind, ListForm, SectionKind};
+use crate::il::iec::{Condition, IecTree, Item, ItemKind, ListForm, OperandId, SectionKind};
 use crate::target::Operand;
 use crate::target::Width;
 use crate::target::iec::{ElementaryType, FunctionBlock, LiteralValue, OperatorRole};
@@ -176,6 +179,7 @@ struct Source<'a> {
     mistakes: Vec<u32>,
     /// Helpers that are used in other ways than to keep the power of a rung, by program unit and folded name.
     shown: FxHashSet<(Option<usize>, SmolStr)>,
+    skips: Skips,
 }
 
 impl<'a> Source<'a> {
@@ -197,7 +201,9 @@ impl<'a> Source<'a> {
             detectors: FxHashMap::default(),
             mistakes,
             shown: FxHashSet::default(),
+            skips: Skips::default(),
         };
+        source.skips = source.find_skips(pous);
         let starts = source.cut(pous);
         source.find_detectors(&starts, pous);
         source
@@ -220,6 +226,7 @@ impl<'a> Source<'a> {
             }
             let pou = (pous + starts.len()).checked_sub(1);
             let label = match item.kind {
+                ItemKind::Label { .. } if self.skips.covers(index) => None,
                 ItemKind::Label { name } if item.depth == 0 && !self.needs_result(index) => Some(name),
                 _ => None,
             };
@@ -231,7 +238,8 @@ impl<'a> Source<'a> {
                 Some(last) => label.is_some() || item.depth == 0 && self.begins(last, index),
             };
             if begins {
-                let goes_on = is_open && label.is_none() && self.may_go_on(index, pou);
+                let goes_on =
+                    is_open && label.is_none() && (self.skips.covers(index) || self.may_go_on(index, pou));
                 self.segments.push(Segment { labels: Vec::new(), items: index..index, pou, goes_on });
                 is_open = true;
             }
@@ -450,9 +458,17 @@ impl<'a> Source<'a> {
                 segments[at + 1..].iter().take(JOINED_MAX).take_while(|segment| segment.goes_on).count();
             let joined =
                 (more > 0).then(|| self.path(first.pou, first.items.start..segments[at + more].items.end));
+            // What a jump skips stays with it.
+            let skipped = segments[at + 1..]
+                .iter()
+                .take_while(|segment| self.skips.covers(segment.items.start) && !segment.items.is_empty());
+            let least = skipped.count();
             let (count, path) = match joined {
                 Some(Ok(path)) => (more + 1, Ok(path)),
-                _ => (1, self.path(first.pou, first.items.clone())),
+                _ => {
+                    let end = segments[at + least].items.end;
+                    (least + 1, self.path(first.pou, first.items.start..end))
+                }
             };
             let items = &self.tree.items[first.items.start..segments[at + count - 1].items.end];
             let label = || first.labels.last().copied().unwrap_or_default();
@@ -478,6 +494,12 @@ impl<'a> Source<'a> {
             return Err(Refusal::Unreadable);
         }
         Reader::new(self, pou, span).read(items).map(Some)
+    }
+
+    /// The term that an operand is, where it lies as declared.
+    fn term(&self, pou: Option<usize>, id: OperandId) -> Term {
+        let operand = self.tree.operand(id);
+        Term::new(operand.value, operand.span.of(self.text), operand.span).located(self.scopes, pou)
     }
 
     fn item(&self, index: usize) -> &'a Item {

@@ -42,7 +42,8 @@ pub(super) fn rungs(text: &str, tree: &LadderTree, target: &Target, declared: De
                     comments: std::mem::take(&mut comments),
                     span: rung.span,
                     is_list: false,
-                    path: path(text, tree, rung).map(Some),
+                    path: path(text, tree, rung)
+                        .map(|path| Some(path.located(declared.scopes, declared.pous.checked_sub(1)))),
                 });
             }
         }

@@ -4,7 +4,7 @@
 //! the devices is found by running it with formulas in place of bits.
 
 mod term;
-pub use term::Term;
+pub use term::{Storage, Term};
 
 mod expression;
 pub use expression::{Contact, Expression, Test};
@@ -17,6 +17,9 @@ pub use rung::{Network, Refusal, Rung};
 
 mod call;
 pub use call::{Argument, Call};
+
+mod computation;
+pub use computation::Computation;
 
 mod block;
 
@@ -34,7 +37,7 @@ mod apart;
 pub use apart::apart;
 
 mod formula;
-pub use formula::{Atom, Formula, Formulas, Moment};
+pub use formula::{Atom, Formula, Formulas, Moment, Step};
 
 mod run;
 pub use run::{Effect, Run};
@@ -49,7 +52,10 @@ mod minimal;
 pub use minimal::{Sum, sum_of_products};
 
 mod compare;
-pub use compare::{Comparison, compare, compare_but, compare_outcome, touches_bits};
+pub use compare::{Comparison, Place, compare, compare_but, compare_outcome, touches_bits};
+
+mod evaluate;
+pub use evaluate::{LeftBehind, Scan, State, evaluate};
 
 use crate::document::{Chunk, Scopes, Tree};
 use crate::target::Target;

@@ -1,9 +1,9 @@
 //! What power does in a rung: conditions that it passes, and what it drives behind them.
 
-use super::{Call, Expression, Term};
-use crate::document::coil_form;
+use super::{Call, Computation, Expression, Term};
+use crate::document::{Scopes, coil_form};
 use crate::ladder::CoilKind;
-use crate::target::{Form, Role};
+use crate::target::{Flow, Form, Role};
 use crate::text::Span;
 
 /// A path of power from the left rail, or from where it leaves another path: it passes all gates, then it drives one
@@ -58,6 +58,8 @@ pub enum Deed {
     Instruction(Form),
     /// Calls a function block; the operands are the instance and those of its pins.
     Call(Call),
+    /// Stores the result of a calculation with words; the operands are its inputs and the result.
+    Compute(Computation),
     /// Goes on at a network of the same program; the label is the operand.
     Jump,
     /// Leaves the program unit.
@@ -85,6 +87,11 @@ impl Deed {
     pub fn stands_alone(self) -> bool {
         matches!(self, Deed::Instruction(form) if form.instruction.role == Role::Standalone)
     }
+
+    /// Whether the program ends with it.
+    pub fn ends_program(self) -> bool {
+        matches!(self, Deed::Instruction(form) if form.instruction.flow() == Flow::ProgramEnd)
+    }
 }
 
 /// Coils that one instruction drives.
@@ -101,6 +108,19 @@ impl Action {
     }
 }
 
+impl Gate {
+    /// The one condition that gates are behind the one `before` them, if there is any; or the gate that is no
+    /// condition: power goes through something there, or nothing stands before an inverter.
+    pub fn condition(gates: &[Gate], before: Option<Expression>) -> Result<Option<Expression>, &Gate> {
+        gates.iter().try_fold(before, |before, gate| match (gate, before) {
+            (Gate::Pass(more), None) => Ok(Some(more.clone())),
+            (Gate::Pass(more), Some(before)) => Ok(Some(Expression::and([before, more.clone()]))),
+            (Gate::Invert, Some(before)) => Ok(Some(Expression::Not(Box::new(before)))),
+            (Gate::Invert, None) | (Gate::Through(_), _) => Err(gate),
+        })
+    }
+}
+
 impl Path {
     /// A path that drives this alone, as it stands.
     pub fn of_action(action: Action) -> Path {
@@ -112,6 +132,31 @@ impl Path {
         let mut actions = Vec::new();
         self.visit(&mut |action| actions.push(action), &mut |_| {});
         actions
+    }
+
+    /// The same with its variables where they lie as declared in program unit number `pou`.
+    pub fn located(mut self, scopes: &Scopes, pou: Option<usize>) -> Path {
+        if scopes.has_shared_storage() {
+            self.each_term(&mut |term| *term = term.clone().located(scopes, pou));
+        }
+        self
+    }
+
+    /// Calls `found` with all operands.
+    pub fn each_term(&mut self, found: &mut impl FnMut(&mut Term)) {
+        for gate in &mut self.gates {
+            match gate {
+                Gate::Pass(expression) => expression.each_term(found),
+                Gate::Invert => {}
+                Gate::Through(through) => through.terms.iter_mut().for_each(&mut *found),
+            }
+        }
+        for drive in &mut self.drives {
+            match drive {
+                Drive::Action(driven) => driven.terms.iter_mut().for_each(&mut *found),
+                Drive::Path(path) => path.each_term(found),
+            }
+        }
     }
 
     /// Calls `action` and `condition` with what the path consists of, in the order of execution.

@@ -1,10 +1,10 @@
 //! Runs paths with formulas in place of bits: what is done, under which conditions, in which order.
 
-use super::formula::{Atom, Moment};
-use super::{Action, Contact, Deed, Drive, Expression, Formula, Formulas, Gate, Path, Term, Test};
+use super::formula::{Atom, Moment, Step};
+use super::{Action, Contact, Deed, Drive, Expression, Formula, Formulas, Gate, Path, Storage, Term, Test};
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::target::iec::LiteralValue;
-use crate::target::{Access, Constant, DeviceKind, Flow, Operand, Width};
+use crate::target::{Access, Constant, DeviceKind, Flow, Location, Operand};
 use rustc_hash::FxHashMap;
 use smol_str::{SmolStr, format_smolstr};
 
@@ -17,6 +17,8 @@ pub struct Effect<'p> {
     pub guard: Formula,
     /// Its number among the events, from 1; nothing if it drives a bit whose value is known.
     pub event: Option<u32>,
+    /// What a call or a calculation is handed over: the value of each of its operands but the instance.
+    pub reads: Vec<Formula>,
 }
 
 impl Effect<'_> {
@@ -50,8 +52,12 @@ pub struct Run<'p> {
     changed: FxHashMap<SmolStr, u32>,
     /// The last event that may have changed any device of a kind; the last place is for variables.
     kinds: [u32; KINDS],
-    /// The last effect, counted from 1, that changed anything of a kind: what words made of such bits depend on.
+    /// The last step that changed anything of a kind: what words made of such bits depend on.
     touched: [u32; KINDS],
+    /// Whether what is compared is the outcome, not each effect in turn: steps then have their values.
+    by_outcome: bool,
+    /// The power at the left rail.
+    rail: Formula,
     /// The last event that may have set special relays: flags of arithmetic and of completion.
     flags: u32,
     /// Whether states are relays like others, as in a program without steps.
@@ -67,9 +73,11 @@ struct Driven<'p> {
     since: u32,
 }
 
-/// One for each kind of device, and one for variables.
-const KINDS: usize = DeviceKind::ALL.len() + 1;
-const VARIABLES: usize = KINDS - 1;
+/// One for each kind of device, one for variables, one for each area of addresses, and one for variables that may lie
+/// anywhere.
+const KINDS: usize = DeviceKind::ALL.len() + 5;
+const VARIABLES: usize = DeviceKind::ALL.len();
+const ANYWHERE: usize = KINDS - 1;
 
 impl<'p> Run<'p> {
     /// A run in which nothing was done.
@@ -81,6 +89,8 @@ impl<'p> Run<'p> {
             changed: FxHashMap::default(),
             kinds: [0; KINDS],
             touched: [0; KINDS],
+            by_outcome: false,
+            rail: Formulas::TRUE,
             flags: 0,
             has_plain_states: false,
         }
@@ -91,25 +101,29 @@ impl<'p> Run<'p> {
         Run { has_plain_states: true, ..Run::new() }
     }
 
+    /// The same for a comparison of outcomes, where effects need not pair. `rail` is the power at the left rail, which
+    /// is off in what a master control or a step leaves out.
+    pub fn by_outcome(rail: Formula) -> Run<'p> {
+        Run { by_outcome: true, rail, ..Run::new() }
+    }
+
     /// Runs a rung.
     pub fn path(&mut self, path: &'p Path, formulas: &mut Formulas) {
-        self.powered(path, Formulas::TRUE, formulas);
+        self.powered(path, self.rail, formulas);
     }
 
     /// Passes a rung that may be executed or not: nothing is known afterwards of what it drives.
     pub fn maybe(&mut self, path: &'p Path, formulas: &mut Formulas) {
         for action in path.actions() {
             let guard = formulas.atom(Atom::Behind(self.events + 1));
-            self.event(action, guard);
+            self.event(action, guard, formulas);
         }
     }
 
     /// Passes something that nobody can read, and that may change anything.
-    pub fn unread(&mut self) {
+    pub fn unread(&mut self, formulas: &mut Formulas) {
         self.events += 1;
-        self.kinds = [self.events; KINDS];
-        self.touched = [self.effects.len() as u32 + 1; KINDS];
-        self.flags = self.events;
+        self.change_all(formulas);
     }
 
     /// Lets time pass, in which the CPU may change the special relays that it owns.
@@ -142,7 +156,7 @@ impl<'p> Run<'p> {
         }
         let name = term.key();
         self.value(term, &name).unwrap_or_else(|| {
-            let of = self.moment(term, name);
+            let of = self.moment(term, name, formulas);
             formulas.atom(Atom::Bit(of))
         })
     }
@@ -205,7 +219,7 @@ impl<'p> Run<'p> {
                 ContactKind::Rising | ContactKind::Falling => {
                     let name = term.key();
                     let value = self.value(term, &name);
-                    let of = self.moment(term, name);
+                    let of = self.moment(term, name, formulas);
                     formulas.atom(Atom::Edge { of, value, rising: kind == ContactKind::Rising })
                 }
             },
@@ -214,17 +228,25 @@ impl<'p> Run<'p> {
         }
     }
 
-    /// The value that the run gave to `term`, whose key is `name`.
+    /// The value that the run gave to `term`, whose key is `name`, or that it always has.
     fn value(&self, term: &Term, name: &SmolStr) -> Option<Formula> {
-        let driven = self.driven.get(name)?;
-        (driven.since >= self.last_event(term, name)).then_some(driven.value)
+        let driven = self.driven.get(name).filter(|driven| driven.since >= self.last_event(term, name));
+        driven.map(|driven| driven.value).or_else(|| term.always().map(Formulas::constant))
     }
 
-    /// The moment at which `term`, whose key is `name`, is read.
-    fn moment(&self, term: &Term, name: SmolStr) -> Moment {
+    /// The moment at which `term`, whose key is `name`, is read as a bit.
+    fn moment(&self, term: &Term, name: SmolStr, formulas: &mut Formulas) -> Moment {
         // Words are made of bits, bits of words, and an index may lead anywhere: whatever wrote to the kind counts.
-        let since = if self.is_apart(term) { self.last_event(term, &name) } else { self.touched[slot(term)] };
+        let since = match self.is_apart(term) {
+            true => self.after(self.last_event(term, &name), formulas),
+            false => self.touched[slot(term)],
+        };
         Moment { name, since }
+    }
+
+    /// The step that an event is; 0 for none.
+    fn after(&self, event: u32, formulas: &mut Formulas) -> u32 {
+        if event == 0 { 0 } else { formulas.step(Step::Event { number: event, before: 0 }) }
     }
 
     /// The last event that may have changed `term`.
@@ -235,8 +257,7 @@ impl<'p> Run<'p> {
 
     /// The last event that may have changed `term` together with others.
     fn bulk(&self, term: &Term) -> u32 {
-        let is_flag = matches!(term.operand, Operand::Device(device)
-            if device.kind == DeviceKind::M && device.number >= FIRST_SPECIAL);
+        let is_flag = matches!(term.operand, Operand::Device(device) if device.is_special());
         self.kinds[slot(term)].max(if is_flag { self.flags } else { 0 })
     }
 
@@ -280,7 +301,7 @@ impl<'p> Run<'p> {
                 formulas.not(beyond)
             }
             (None, None) => {
-                let [word, other] = [left, right].map(|term| self.word(term, wide));
+                let [word, other] = [left, right].map(|term| self.word(term, wide, formulas));
                 match word == other {
                     true => Formulas::TRUE,
                     false => formulas.atom(Atom::AtLeast { word, other }),
@@ -297,14 +318,24 @@ impl<'p> Run<'p> {
         match number {
             _ if number <= least => Formulas::TRUE,
             _ if number > greatest => Formulas::FALSE,
-            _ => formulas.atom(Atom::Reaches { word: self.word(term, wide), number }),
+            _ => {
+                let word = self.word(term, wide, formulas);
+                formulas.atom(Atom::Reaches { word, number })
+            }
         }
     }
 
-    fn word(&self, term: &Term, wide: bool) -> Moment {
+    /// The moment at which `term` is read as a word.
+    fn word(&self, term: &Term, wide: bool, formulas: &mut Formulas) -> Moment {
         let key = term.key();
         let name = if wide { format_smolstr!("D {key}") } else { key.clone() };
-        Moment { name, ..self.moment(term, key) }
+        let since = match term.operand {
+            Operand::Literal(_) | Operand::Constant { index: None, .. } => 0,
+            // A variable whose type nobody knows was driven as a bit.
+            _ if self.driven.contains_key(&key) => self.touched[ANYWHERE],
+            _ => self.moment(term, key, formulas).since,
+        };
+        Moment { name, since }
     }
 
     fn act(&mut self, action: &'p Action, power: Formula, formulas: &mut Formulas) {
@@ -312,55 +343,108 @@ impl<'p> Run<'p> {
             Deed::Coil(CoilKind::Negated) => formulas.not(power),
             _ => power,
         };
-        let number = self.effects.len() as u32 + 1;
         if let Some((term, value)) = self.bit_driven(action, guard, formulas) {
-            self.effects.push(Effect { action, guard, event: None });
-            self.driven.insert(term.key(), Driven { term, value, since: self.events });
-            self.touched[slot(term)] = number;
+            self.effects.push(Effect { action, guard, event: None, reads: Vec::new() });
+            let key = term.key();
+            let known = self.by_outcome.then_some(value);
+            let place = slot(term);
+            // A variable in a place of its own is part of no word.
+            for slot in [place, ANYWHERE].into_iter().filter(|slot| *slot != VARIABLES) {
+                let before = self.touched[slot];
+                self.touched[slot] = formulas.step(Step::Driven { before, key: key.clone(), value: known });
+            }
+            self.driven.insert(key, Driven { term, value, since: self.events });
             return;
         }
-        self.event(action, guard);
+        self.event(action, guard, formulas);
     }
 
     /// Does something of which nothing is known afterwards.
-    fn event(&mut self, action: &'p Action, guard: Formula) {
-        let number = self.effects.len() as u32 + 1;
+    fn event(&mut self, action: &'p Action, guard: Formula, formulas: &mut Formulas) {
         self.events += 1;
-        self.effects.push(Effect { action, guard, event: Some(self.events) });
+        let reads = match action.deed {
+            Deed::Call(_) => action.terms.iter().skip(1).map(|term| self.bit(term, formulas)).collect(),
+            Deed::Compute(_) => action.terms.iter().map(|term| self.bit(term, formulas)).collect(),
+            _ => Vec::new(),
+        };
+        self.effects.push(Effect { action, guard, event: Some(self.events), reads });
+        self.change(action, formulas);
+    }
+
+    /// Notes what the event that just happened may have changed.
+    fn change(&mut self, action: &Action, formulas: &mut Formulas) {
         match action.deed {
             Deed::Coil(_) => {
                 if let Some(term) = action.terms.first() {
-                    self.changed.insert(term.key(), self.events);
-                    self.touched[slot(term)] = number;
-                    // Setting one state resets others; a word has its bits and those beside it.
-                    if !self.is_apart(term) {
-                        self.kinds[slot(term)] = self.events;
-                    }
+                    self.change_term(term, formulas);
                 }
             }
             Deed::Instruction(form) if form.instruction.flow() == Flow::Straight => {
                 for (term, spec) in action.terms.iter().zip(form.instruction.operands) {
                     if spec.access != Access::Read {
-                        self.kinds[slot(term)] = self.events;
-                        self.touched[slot(term)] = number;
+                        self.change_kind(slot(term), formulas);
                     }
                 }
                 self.flags = self.events;
             }
             Deed::Call(call) => {
-                self.touched[VARIABLES] = number;
+                self.touch(VARIABLES, formulas);
                 for changed in call.changes(&action.terms) {
-                    self.changed.insert(changed.key(), self.events);
+                    self.change_term(&changed, formulas);
+                }
+            }
+            Deed::Compute(_) => {
+                if let Some(result) = action.terms.last() {
+                    self.change_term(result, formulas);
                 }
             }
             // What is done meanwhile elsewhere, nobody knows here.
-            Deed::Instruction(_) => {
-                self.kinds = [self.events; KINDS];
-                self.touched = [number; KINDS];
-                self.flags = self.events;
-            }
+            Deed::Instruction(_) => self.change_all(formulas),
             Deed::Jump | Deed::Return => {}
         }
+    }
+
+    fn change_all(&mut self, formulas: &mut Formulas) {
+        self.kinds = [self.events; KINDS];
+        self.touched = [self.after(self.events, formulas); KINDS];
+        self.flags = self.events;
+    }
+
+    fn change_term(&mut self, term: &Term, formulas: &mut Formulas) {
+        self.changed.insert(term.key(), self.events);
+        match self.is_apart(term) {
+            true => self.touch(slot(term), formulas),
+            // Setting one state resets others; a word has its bits and those beside it.
+            false => self.change_kind(slot(term), formulas),
+        }
+    }
+
+    /// Anything of a kind may have changed. What may lie anywhere may be any variable.
+    fn change_kind(&mut self, slot: usize, formulas: &mut Formulas) {
+        let slots = if slot == ANYWHERE { VARIABLES..KINDS } else { slot..slot + 1 };
+        for slot in slots {
+            self.kinds[slot] = self.events;
+            self.touch(slot, formulas);
+        }
+    }
+
+    /// The last event changed something of a kind.
+    fn touch(&mut self, slot: usize, formulas: &mut Formulas) {
+        for slot in [slot, ANYWHERE] {
+            let step = Step::Event { number: self.events, before: self.touched[slot] };
+            self.touched[slot] = formulas.step(step);
+        }
+    }
+
+    /// Whether it is a bit by itself, so that a coil that writes to it does nothing else.
+    fn is_lone(&self, term: &Term) -> bool {
+        let is_state = matches!(term.operand, Operand::Device(device) if device.kind == DeviceKind::S);
+        term.is_lone() || (self.has_plain_states && is_state)
+    }
+
+    /// Whether nothing but writing to it changes it: a bit by itself, a timer or a counter.
+    fn is_apart(&self, term: &Term) -> bool {
+        self.is_lone(term) || matches!(term.operand, Operand::Device(device) if device.kind.has_preset())
     }
 
     /// The bit that a coil drives and its value then; nothing if more happens than that.
@@ -389,31 +473,6 @@ impl<'p> Run<'p> {
         };
         Some((term, value))
     }
-
-    /// Whether it is a bit by itself, so that writing to it changes nothing else. Setting a state resets others, and
-    /// the contact of a timer is no bit that a coil writes.
-    fn is_lone(&self, term: &Term) -> bool {
-        match &term.operand {
-            Operand::Device(device) => match device.kind {
-                DeviceKind::X | DeviceKind::Y | DeviceKind::M => true,
-                DeviceKind::S => self.has_plain_states,
-                _ => false,
-            },
-            Operand::Direct(address) => address.width == Width::Bit,
-            // `T1.Q` is a bit by itself, `Word.3` is not.
-            Operand::Variable => {
-                let is_part =
-                    |(_, last): (&str, &str)| last.starts_with(|c: char| c.is_ascii_digit() || c == '%');
-                !term.text.contains(['[', '^']) && !term.text.rsplit_once('.').is_some_and(is_part)
-            }
-            _ => false,
-        }
-    }
-
-    /// Whether nothing but writing to it changes it: a bit by itself, a timer or a counter.
-    fn is_apart(&self, term: &Term) -> bool {
-        self.is_lone(term) || matches!(term.operand, Operand::Device(device) if device.kind.has_preset())
-    }
 }
 
 impl Default for Run<'_> {
@@ -422,12 +481,15 @@ impl Default for Run<'_> {
     }
 }
 
-/// The first special relay.
-const FIRST_SPECIAL: u32 = 8000;
-
 /// The place of a term's kind.
 fn slot(term: &Term) -> usize {
-    term.operand.device().map_or(VARIABLES, |device| device.kind as usize)
+    let area = |location: Location| VARIABLES + 1 + location as usize;
+    match (term.operand, term.storage) {
+        (Operand::Direct(address), _) => area(address.location),
+        (Operand::Variable, Storage::At(address)) => area(address.location),
+        (Operand::Variable, Storage::Anywhere) => ANYWHERE,
+        _ => term.operand.device().map_or(VARIABLES, |device| device.kind as usize),
+    }
 }
 
 /// The whole number that a term is, in 16 or 32 bits.

@@ -1,6 +1,8 @@
 //! Words of a program as the logic compares them.
 
-use crate::target::{Constant, Operand};
+use crate::document::Scopes;
+use crate::il::iec::SectionKind;
+use crate::target::{Constant, DeviceKind, DirectAddress, Operand, Width};
 use crate::text::{Span, folded};
 use smol_str::{SmolStr, ToSmolStr, format_smolstr};
 use std::fmt;
@@ -14,16 +16,117 @@ pub struct Term {
     pub text: SmolStr,
     /// Where it stands in the chunk that it was read from; empty if it was not read.
     pub span: Span,
+    /// Where the variable that it names, or is a part of, lies in memory.
+    pub storage: Storage,
+}
+
+/// Where a variable of IEC 61131-3 lies in memory, so that two names of one place are one bit.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Storage {
+    /// In a place of its own.
+    #[default]
+    Own,
+    /// At an address, which other variables may have, too.
+    At(DirectAddress),
+    /// Where somebody else says, so that any other variable may lie there: VAR_IN_OUT, `AT %Q*`.
+    Anywhere,
+}
+
+impl Storage {
+    /// Where the variable `name`, or the one that `name` is a part of, lies as declared in program unit number `pou`.
+    pub fn declared(scopes: &Scopes, pou: Option<usize>, name: &str) -> Storage {
+        let root = &name[..name.find(['.', '[', '^']).unwrap_or(name.len())];
+        let Some(variable) = scopes.variable(pou, root) else { return Storage::Own };
+        let variable = match variable.section {
+            SectionKind::InOut => return Storage::Anywhere,
+            SectionKind::External => scopes.variable(None, root).unwrap_or(variable),
+            _ => variable,
+        };
+        match variable.address {
+            Some(address) if address.path[0].is_none() => Storage::Anywhere,
+            Some(address) => Storage::At(address),
+            None => Storage::Own,
+        }
+    }
 }
 
 impl Term {
     /// `text`, which reads as `operand`.
     pub fn new(operand: Operand, text: &str, span: Span) -> Term {
-        Term { operand, text: text.into(), span }
+        Term { operand, text: text.into(), span, storage: Storage::Own }
+    }
+
+    /// The same where it lies as declared in program unit number `pou`.
+    pub fn located(self, scopes: &Scopes, pou: Option<usize>) -> Term {
+        let storage = match self.operand {
+            Operand::Variable => Storage::declared(scopes, pou, &self.text),
+            _ => self.storage,
+        };
+        Term { storage, ..self }
+    }
+
+    /// The address that it is a name of, or is; nothing for a part of what lies at one.
+    pub fn address(&self) -> Option<DirectAddress> {
+        match (self.operand, self.storage) {
+            (Operand::Direct(address), _) => Some(address),
+            (Operand::Variable, Storage::At(address)) if !self.text.contains(['.', '[', '^']) => {
+                Some(address)
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether it is a bit by itself, so that writing to it changes nothing else but words that are made of bits.
+    /// Setting a state resets others, and the contact of a timer is no bit that a coil writes.
+    pub fn is_lone(&self) -> bool {
+        match &self.operand {
+            Operand::Device(device) => matches!(device.kind, DeviceKind::X | DeviceKind::Y | DeviceKind::M),
+            Operand::Direct(address) => address.width == Width::Bit,
+            // `T1.Q` is a bit by itself, `Word.3` is not, nor are parts of what lies at an address.
+            Operand::Variable => match self.storage {
+                Storage::Own => {
+                    let is_part =
+                        |(_, last): (&str, &str)| last.starts_with(|c: char| c.is_ascii_digit() || c == '%');
+                    !self.text.contains(['[', '^']) && !self.text.rsplit_once('.').is_some_and(is_part)
+                }
+                Storage::At(_) => self.address().is_some_and(|address| address.width == Width::Bit),
+                Storage::Anywhere => false,
+            },
+            _ => false,
+        }
+    }
+
+    /// Whether who writes to it may change `other`: the same, or what may lie in the same place.
+    pub fn may_cover(&self, other: &Term) -> bool {
+        let area = |term: &Term| match (term.operand, term.storage) {
+            (Operand::Direct(address), _) | (Operand::Variable, Storage::At(address)) => {
+                Some(address.location)
+            }
+            _ => None,
+        };
+        let is_variable = |term: &Term| matches!(term.operand, Operand::Variable | Operand::Direct(_));
+        let is_anywhere = [self, other].iter().any(|term| term.storage == Storage::Anywhere);
+        let is_apart = self.is_lone() && other.is_lone();
+        self == other
+            || is_anywhere && is_variable(self) && is_variable(other)
+            || !is_apart && area(self).is_some() && area(self) == area(other)
+    }
+
+    /// Its value in every scan, if it is a device that has only one.
+    pub fn always(&self) -> Option<bool> {
+        match self.operand {
+            Operand::Device(device) => device.always(),
+            _ => None,
+        }
     }
 
     /// What it means, in one spelling: `X10` for `x010`, `K16` for `H10`, names in lower case.
+    ///
+    /// Names of one address have its spelling.
     pub fn key(&self) -> SmolStr {
+        if let Some(address) = self.address() {
+            return address.to_smolstr();
+        }
         match &self.operand {
             Operand::Device(device) => device.to_smolstr(),
             Operand::Indexed { device, index } => format_smolstr!("{device}{index}"),
@@ -41,7 +144,6 @@ impl Term {
             Operand::Constant { value: Constant::Hexadecimal(value), index: None } if *value <= 0x7FFF => {
                 format_smolstr!("K{value}")
             }
-            Operand::Direct(address) => address.to_smolstr(),
             Operand::Text => self.text.clone(),
             _ => folded(&self.text),
         }

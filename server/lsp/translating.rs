@@ -13,7 +13,7 @@
 //! }
 //! ```
 //!
-//! It answers `{ forms: [{ to, text, certificate, notes: string[] }] }`, with `"all"` every form in a fixed order. The
+//! It answers `{ forms: [{ to, text, certificate, notes: string[] }] }`, with `"all"` every form, the shortest first. The
 //! `certificate` is that of the rung of which least is known: `"proved"` (the same bits are driven under equal
 //! conditions), `"construction"` (instructions with the same operands under equal conditions) or `"undecided"`. A note
 //! says, with the line, why a rung was kept as it is or not proved. Where there is no rung there are no forms. What is
@@ -84,7 +84,7 @@ impl Wanted {
         let argument = argument.ok_or_else(|| wrong("arguments[0]".to_string()))?;
         let asked = Asked::deserialize(argument).map_err(|reason| wrong(reason.to_string()))?;
         let forms = match (asked.to.as_str(), To::named(&asked.to)) {
-            ("all", _) if command == TRANSLATE => To::ALL.to_vec(),
+            ("all", _) if command == TRANSLATE => vec![To::Boolean, To::Ladder, To::Fx, To::Iec],
             (_, Some(to)) => vec![to],
             _ => {
                 let message = Message::new("translating.form").with("form", &asked.to);

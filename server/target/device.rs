@@ -122,6 +122,18 @@ impl Device {
     /// The special relay that is on while the CPU runs.
     pub const ALWAYS_ON: Device = Device::new(DeviceKind::M, 8000);
 
+    /// The special relay that is off while the CPU runs.
+    pub const ALWAYS_OFF: Device = Device::new(DeviceKind::M, 8001);
+
+    /// Its value in every scan of a running CPU, if it has only one.
+    pub fn always(self) -> Option<bool> {
+        match self {
+            Device::ALWAYS_ON => Some(true),
+            Device::ALWAYS_OFF => Some(false),
+            _ => None,
+        }
+    }
+
     /// Whether it is a special relay or register, which the CPU knows: M8000 and up, D8000 and up.
     pub fn is_special(self) -> bool {
         matches!(self.kind, DeviceKind::M | DeviceKind::D) && self.number >= 8000

@@ -1,10 +1,10 @@
 //! The proof that comes with a translation: the result is read again, as a file would be, and compared rung by rung.
 
 use super::source::{self, Source};
-use super::{To, Translation, from_boolean, page};
+use super::{To, Translation, dialect, from_boolean, page};
 use crate::document::Document;
-use crate::logic::{Comparison, Formulas, Path, compare_but};
-use crate::target::Target;
+use crate::logic::{Comparison, Formulas, Path, Storage, compare_but};
+use crate::target::{Operand, Target};
 use crate::text::{Message, folded};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
@@ -46,7 +46,8 @@ pub(super) fn add(
     translation: &mut Translation,
     is_cancelled: &dyn Fn() -> bool,
 ) -> Option<()> {
-    let mut written = read_again((document, target), to, &translation.text).into_iter().peekable();
+    let (written, is_declared) = read_again((document, target), to, &translation.text);
+    let mut written = written.into_iter().peekable();
     let helpers: FxHashSet<SmolStr> = translation.helpers.iter().map(|name| folded(name)).collect();
     for (source, translated) in sources.iter().zip(&mut translation.rungs) {
         if is_cancelled() {
@@ -58,6 +59,7 @@ pub(super) fn add(
                 Some(None) => None,
                 path => Some(path.flatten()),
             })
+            .map(|path| if is_declared { path } else { path.map(|path| located(path, document, source.pou)) })
             .collect();
         if translated.note.is_some() {
             // A list is carried along word by word; a drawing in a list is but a comment.
@@ -85,7 +87,26 @@ struct Written {
     path: Option<Option<Path>>,
 }
 
-fn read_again((document, target): (&Document, &'static Target), to: To, text: &str) -> Vec<Written> {
+/// The path of a result without declarations, where its variables lie as the source says: by its declarations, or as
+/// its devices do.
+fn located(path: Path, document: &Document, pou: Option<usize>) -> Path {
+    if !document.target().is_fx() {
+        return path.located(document.scopes(), pou);
+    }
+    let mut path = path;
+    path.each_term(&mut |term| {
+        if term.operand == Operand::Variable
+            && let Operand::Device(device) = Operand::read(&term.text, document.target().model)
+            && let Some(address) = dialect::address(device)
+        {
+            term.storage = Storage::At(address);
+        }
+    });
+    path
+}
+
+/// The rungs of the result, and whether it has declarations of its own.
+fn read_again((document, target): (&Document, &'static Target), to: To, text: &str) -> (Vec<Written>, bool) {
     let Some(notation) = page::notation(to) else {
         let (equations, problems) = from_boolean::read(text, document.reader());
         let equations = equations.into_iter();
@@ -93,15 +114,14 @@ fn read_again((document, target): (&Document, &'static Target), to: To, text: &s
         let mut written: Vec<_> =
             read.chain(problems.into_iter().map(|problem| (problem.span, None))).collect();
         written.sort_by_key(|(span, _)| *span);
-        return written
-            .into_iter()
-            .map(|(span, path)| Written { start: span.start as usize, path })
-            .collect();
+        let written = written.into_iter().map(|(span, path)| Written { start: span.start as usize, path });
+        return (written.collect(), false);
     };
     // The symbols of the project stand for devices there, too.
     let again = Document::with_comments(text, notation, target, document.comments().clone());
     let rungs = source::rungs(&again, None).into_iter();
-    rungs.map(|rung| Written { start: rung.span().start as usize, path: rung.rung.path.ok() }).collect()
+    let written = rungs.map(|rung| Written { start: rung.span().start as usize, path: rung.rung.path.ok() });
+    (written.collect(), !again.scopes().pous.is_empty())
 }
 
 fn judge(

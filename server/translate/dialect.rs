@@ -12,11 +12,16 @@
 //! | `RST C0` | `R C0`, a call of the block with this input alone |
 //! | `PLS M0`, `PLF M0` | the instance `PLS_M0 : R_TRIG`, `PLF_M0 : F_TRIG`, whose output is stored in `M0` |
 //! | `CJ P0` | `JMPC P0` |
+//! | `MOV`, `ADD`, `SUB` | `LD`, `ADD`, `SUB` and `ST`, jumped over where power does not reach them |
+//! | `INC D0`, `DEC D0` | the same with the operand `1`; `INT#1` stands for the `K1` of an ADD or SUB |
+//! | `RST D0` | a store of `0`; `INT#0` stands for the `K0` of a MOV |
+//! | `MOVP` and the like | the same behind an instance `Pulse1 : R_TRIG` |
 //! | `M8000`, `M8001` | `TRUE`, `FALSE` |
 //!
 //! `END` is dropped and put back. What has no counterpart keeps its words in a comment: retentive timers, counters of
-//! 32 bits, special relays, applied instructions, steps. The way back takes variables by their names where these are
-//! names of devices, others by their addresses.
+//! 32 bits, special relays, steps, and applied instructions for which IEC 61131-3 has no operator on an INT. The way
+//! back takes variables by their addresses, and by their names where they have none and these are names of devices that
+//! nothing else is.
 
 mod to_devices;
 mod to_variables;
@@ -24,21 +29,30 @@ mod to_variables;
 use super::To;
 use super::source::Program;
 use crate::document::Document;
+use crate::il::iec::PouKind;
 use crate::logic::{Path, Refusal};
 use crate::target::{Device, DeviceKind, DirectAddress, Location, Model, Target, Width};
+use std::cell::Cell;
+
+/// Instructions with the functions that do the same with 16 bits.
+const COMPUTED: [(&str, &str); 3] = [("MOV", "MOVE"), ("ADD", "ADD"), ("SUB", "SUB")];
+/// Those that do so with 1 and one register.
+const STEPPED: [(&str, &str); 2] = [("INC", "ADD"), ("DEC", "SUB")];
+/// What the instances begin with that detect the power of a pulse form.
+const PULSE: &str = "Pulse";
 
 /// The first byte of the states, in bits, and the first word of the data registers.
 const STATES: u32 = 1100 * 8;
 const REGISTERS: u32 = 1000;
-/// From here on relays and registers are special.
-const FIRST_SPECIAL: u32 = 8000;
 
-/// What the result of a translation is written for: the document's target where it is of the same family.
-pub(super) fn target(document: &Document, to: To) -> &'static Target {
+/// What the result of a translation is written for: the document's target where it is of the same family. An FX list
+/// can be `wanted` for another model.
+pub(super) fn target(document: &Document, to: To, wanted: Option<Model>) -> &'static Target {
     let own = document.target();
-    match to {
-        To::Iec => Target::of(Model::Iec),
-        To::Fx if !own.is_fx() => Target::of(Model::Fx2n),
+    match (to, wanted.map(Target::of).filter(|wanted| wanted.is_fx())) {
+        (To::Iec, _) => Target::of(Model::Iec),
+        (To::Fx, Some(wanted)) => wanted,
+        (To::Fx, None) if !own.is_fx() => Target::of(Model::Fx2n),
         _ => own,
     }
 }
@@ -54,26 +68,36 @@ pub(super) fn convert(document: &Document, (to, target): (To, &'static Target), 
     if document.target().is_fx() == target.is_fx() {
         return;
     }
-    let labels = to_devices::Labels::of(program);
+    let pulses = Cell::new(0);
+    let names = to_devices::Names::of(program, document.scopes(), target);
     for source in &mut program.rungs {
         let converted = match (&source.rung.path, target.is_fx()) {
-            (Ok(Some(path)), false) => to_variables::path(path, document.target()).map(Some),
-            (Ok(Some(path)), true) => {
-                to_devices::path(path, target, document.scopes(), source.pou, &labels).map(Some)
-            }
+            (Ok(Some(path)), false) => to_variables::path(path, document.target(), &pulses).map(Some),
+            // What a function or a block does it does for whoever calls it.
+            (Ok(Some(_)), true) if !is_of_program(document, source.pou) => Err(Refusal::NoCounterpart),
+            (Ok(Some(path)), true) => to_devices::path(path, target, &names).map(Some),
             (other, _) => other.clone(),
         };
         if target.is_fx() {
-            source.rung.labels.iter_mut().for_each(|label| *label = labels.of_label(label));
+            source.rung.labels.iter_mut().for_each(|label| *label = names.of_label(label));
         }
         // The words of the other language are no list in this one.
-        source.rung.is_list &= converted.is_ok();
+        source.rung.is_list = false;
         source.rung.path = converted;
     }
 }
 
-/// The address of the variable that stands for a device, if it is located.
+/// Whether a rung belongs to a program, not to a function or a block.
+fn is_of_program(document: &Document, pou: Option<usize>) -> bool {
+    let pou = pou.and_then(|pou| document.scopes().pous.get(pou));
+    pou.is_none_or(|pou| pou.kind == PouKind::Program)
+}
+
+/// The address of the variable that stands for a device, if it is located. The CPU's own relays and registers are not.
 pub(super) fn address(device: Device) -> Option<DirectAddress> {
+    if device.is_special() {
+        return None;
+    }
     let bit = |location: Location, number: u32| DirectAddress {
         location,
         width: Width::Bit,
@@ -82,9 +106,9 @@ pub(super) fn address(device: Device) -> Option<DirectAddress> {
     Some(match device.kind {
         DeviceKind::X => bit(Location::Input, device.number),
         DeviceKind::Y => bit(Location::Output, device.number),
-        DeviceKind::M if device.number < FIRST_SPECIAL => bit(Location::Memory, device.number),
+        DeviceKind::M => bit(Location::Memory, device.number),
         DeviceKind::S => bit(Location::Memory, STATES + device.number),
-        DeviceKind::D if device.number < FIRST_SPECIAL => DirectAddress {
+        DeviceKind::D => DirectAddress {
             location: Location::Memory,
             width: Width::Word,
             path: [Some(REGISTERS + device.number), None, None, None],

@@ -1,6 +1,7 @@
 //! Reads equations: `Y0 = (X0 + Y0)*[X1]`, `Y0 = (X0 ∨ Y0) ∧ ¬X1`, and both mixed.
 //!
-//! Grammar, a line each, `;` and `//` begin comments:
+//! Grammar, a line each; comments are those of an instruction list: `;` and `//` to the end of the line, `(* … *)`.
+//!
 //! ```text
 //! equation = left [ "=" sum ] ;  left = [mnemonic] operand… | "[" device "]" | "¬" device | label ":"
 //! sum      = product { ("+" | "∨" | "|") product }
@@ -32,10 +33,16 @@ pub fn read(text: &str, target: &Target) -> (Vec<Equation>, Vec<Diagnostic>) {
     let mut problems = Vec::new();
     let mut head = Vec::new();
     let mut start = 0;
-    for line in text.split_inclusive('\n') {
-        let end = line.find(';').into_iter().chain(line.find("//")).min().unwrap_or(line.len());
-        let (content, comment) = (line[..end].trim_end(), line[end..].trim_end());
-        if !comment.is_empty() {
+    let (alone, comments) = without_comments(text);
+    let mut comments = comments.into_iter().peekable();
+    for line in alone.split_inclusive('\n') {
+        let content = line.trim_end();
+        while let Some((at, comment)) = comments.next_if(|(at, _)| *at < start + line.len()) {
+            if comment.starts_with("(*") && !comment.ends_with("*)") {
+                let opener = Span::new(at, at + 2);
+                let message = Message::new("fx-syntax.unclosed-comment");
+                problems.push(Diagnostic::new("unclosed-comment", opener, message));
+            }
             head.push(comment.to_string());
         }
         let mut reader = Reader { text: content, at: 0, start, target, depth: 0 };
@@ -55,6 +62,35 @@ pub fn read(text: &str, target: &Target) -> (Vec<Equation>, Vec<Diagnostic>) {
         equations.push(Equation { head, span: Span::at(text.len()), path: None });
     }
     (equations, problems)
+}
+
+/// The text with blanks in the place of its comments, and these with where they start.
+fn without_comments(text: &str) -> (String, Vec<(usize, &str)>) {
+    let (mut alone, mut comments) = (String::with_capacity(text.len()), Vec::new());
+    let mut at = 0;
+    while let Some(start) = next_comment(&text[at..]).map(|start| at + start) {
+        let comment = &text[start..];
+        let length = match comment.starts_with("(*") {
+            true => comment[2..].find("*)").map_or(comment.len(), |end| 2 + end + 2),
+            false => comment.find('\n').unwrap_or(comment.len()),
+        };
+        let comment = comment[..length].trim_end();
+        comments.push((start, comment));
+        alone.push_str(&text[at..start]);
+        // Line ends stay, so that lines and offsets do.
+        alone.extend(comment.bytes().map(|byte| if byte == b'\n' { '\n' } else { ' ' }));
+        at = start + comment.len();
+    }
+    alone.push_str(&text[at..]);
+    (alone, comments)
+}
+
+/// Where the first comment of `text` starts.
+fn next_comment(text: &str) -> Option<usize> {
+    let pairs = text.bytes().zip(text.bytes().skip(1).chain([b'\n']));
+    pairs
+        .enumerate()
+        .find_map(|(at, pair)| matches!(pair, (b';', _) | (b'/', b'/') | (b'(', b'*')).then_some(at))
 }
 
 /// The instruction list that equations stand for, or what could not be read or written of them.

@@ -8,7 +8,7 @@ use crate::document::{DeclaredType, Document, Scopes, Tree};
 use crate::il::iec;
 use crate::logic::{Action, Deed, Expression, Path, Term, Test};
 use crate::target::iec::{LiteralValue, ParameterType};
-use crate::target::{Model, Operand, Target};
+use crate::target::{DeviceKind, Model, Operand, Target};
 use crate::text::folded;
 use rustc_hash::FxHashSet;
 use smol_str::{SmolStr, format_smolstr};
@@ -66,6 +66,12 @@ fn visit<'p>(path: &'p Path, found: &mut impl FnMut(&'p Term, Use)) {
                 found.borrow_mut()(term, Use::Type(kind));
             }
         }
+        Deed::Compute(_) => {
+            for term in &action.terms {
+                let other = action.terms.iter().find(|other| matches!(other.operand, Operand::Literal(_)));
+                found.borrow_mut()(term, Use::Beside(other.unwrap_or(term).clone()));
+            }
+        }
         Deed::Jump => action.terms.iter().for_each(|term| found.borrow_mut()(term, Use::Label)),
         _ => action.terms.iter().for_each(|term| found.borrow_mut()(term, Use::Bit)),
     };
@@ -99,7 +105,7 @@ pub(super) fn header(document: &Document, sources: &[Source], helpers: &[Helper]
             visit(path, &mut |term, usage| {
                 let name = root(term);
                 let is_whole = name.len() == term.text.len();
-                let declared = declared_type(scopes, name);
+                let declared = declared_type(scopes, name).or_else(|| block_of(document, name));
                 let by_use = type_by_use(&usage).filter(|_| is_whole);
                 let calls = matches!(usage, Use::Type(_));
                 let type_name = if calls { by_use.or(declared) } else { declared.or(by_use) };
@@ -141,6 +147,17 @@ fn declared_type(scopes: &Scopes, name: &str) -> Option<SmolStr> {
     match scopes.type_of(None, name)? {
         DeclaredType::Elementary(kind) => Some(kind.name().into()),
         DeclaredType::Named(name) => Some(name.to_uppercase().into()),
+        _ => None,
+    }
+}
+
+/// The block that stands for a timer or a counter of the FX family, also where nothing drives it.
+fn block_of(document: &Document, name: &str) -> Option<SmolStr> {
+    let model = document.target().model;
+    match Operand::read(name, model) {
+        Operand::Device(device) if device.kind.has_preset() && model != Model::Iec => {
+            Some(if device.kind == DeviceKind::T { "TON" } else { "CTU" }.into())
+        }
         _ => None,
     }
 }

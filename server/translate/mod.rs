@@ -4,6 +4,7 @@
 //! with what it was made of.
 
 mod source;
+pub use source::Source;
 
 mod page;
 
@@ -12,8 +13,11 @@ pub use certificate::Certificate;
 
 mod stack;
 
+mod counterexample;
+pub use counterexample::{Counterexample, Value};
+
 mod prove;
-pub use prove::{Counterexample, Proof, Value, prove};
+pub use prove::{Proof, prove};
 
 mod dialect;
 
@@ -31,6 +35,7 @@ pub mod from_boolean;
 
 use crate::document::Document;
 use crate::ladder::Style;
+use crate::target::Model;
 use crate::text::{Message, Span};
 use smol_str::SmolStr;
 use std::ops::Range;
@@ -79,11 +84,19 @@ pub struct Options {
     pub proves: bool,
     /// Whether it is a whole program, which in instruction list ends with END.
     pub is_whole: bool,
+    /// The model of the FX family that an FX list is for; without one that of the document, or else an FX2N.
+    pub model: Option<Model>,
 }
 
 impl Default for Options {
     fn default() -> Options {
-        Options { style: Style::default(), notation: Default::default(), proves: true, is_whole: true }
+        Options {
+            style: Style::default(),
+            notation: Default::default(),
+            proves: true,
+            is_whole: true,
+            model: None,
+        }
     }
 }
 
@@ -132,7 +145,7 @@ pub fn translate_unless(
     is_cancelled: &dyn Fn() -> bool,
 ) -> Option<Translation> {
     let mut program = source::program(document, part);
-    let target = dialect::target(document, to);
+    let target = dialect::target(document, to, options.model);
     dialect::convert(document, (to, target), &mut program);
     let is_whole = part.is_none();
     let mut translation = page::write(document, &program, (to, target), options, is_whole, is_cancelled)?;

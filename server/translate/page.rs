@@ -7,8 +7,8 @@ use super::to_iec::{self, Helpers};
 use super::{Options, To, Translated, Translation, to_boolean, to_fx, to_ladder};
 use crate::document::{Document, Notation};
 use crate::ladder::{Drawing, Style};
-use crate::logic::{Deed, Network, Path};
-use crate::target::{Flow, Form, Target};
+use crate::logic::{Network, Path};
+use crate::target::Target;
 use crate::text::Message;
 
 /// A rung in its new form.
@@ -42,8 +42,9 @@ pub(super) fn write(
         To::Iec => Helpers::beside(header::names(document, sources.iter())),
         _ => Helpers::default(),
     };
+    let is_moved = document.target().model != target.model;
     let mut unless_cancelled =
-        |source| (!is_cancelled()).then(|| body(source, (to, target), options, &mut helpers));
+        |source| (!is_cancelled()).then(|| body(source, (to, target), is_moved, options, &mut helpers));
     let bodies: Vec<Body> = sources.iter().map(&mut unless_cancelled).collect::<Option<_>>()?;
     let rails = bodies.iter().filter_map(|body| match body {
         Body::Drawing(drawing) => Some(drawing.rail_column_min()),
@@ -85,7 +86,13 @@ pub(super) fn write(
     Some(Translation { text: page.text, rungs, helpers })
 }
 
-fn body(source: &Source, (to, target): (To, &Target), options: &Options, helpers: &mut Helpers) -> Body {
+fn body(
+    source: &Source,
+    (to, target): (To, &Target),
+    is_moved: bool,
+    options: &Options,
+    helpers: &mut Helpers,
+) -> Body {
     let kept = |reason: Message| Body::Kept(source.rung.span.of(source.chunk.text()).to_string(), reason);
     let path = match &source.rung.path {
         Ok(None) => return Body::Nothing,
@@ -93,7 +100,13 @@ fn body(source: &Source, (to, target): (To, &Target), options: &Options, helpers
         Err(refusal) => return kept(refusal.message()),
     };
     let written = match to {
-        To::Fx => to_fx::lines(path, target).map(Body::Lines),
+        To::Fx => {
+            let lines = to_fx::lines(path, target);
+            // What a document has for its own model is not for the translation to judge.
+            let fit =
+                lines.and_then(|lines| if is_moved { to_fx::on_model(lines, target) } else { Ok(lines) });
+            fit.map(Body::Lines)
+        }
         To::Iec => {
             helpers.pou = source.pou;
             to_iec::lines(path, helpers).map(|lines| Body::Text(header::laid_out(&(lines.join("\n") + "\n"))))
@@ -114,10 +127,7 @@ fn drawing(path: &Path, target: &Target, options: &Options) -> Result<Body, Mess
 /// Whether the program ends with this rung.
 fn ends_program(source: &Source) -> bool {
     let Ok(Some(path)) = &source.rung.path else { return false };
-    path.actions().iter().any(|action| match action.deed {
-        Deed::Instruction(Form { instruction, .. }) => instruction.flow() == Flow::ProgramEnd,
-        _ => false,
-    })
+    path.actions().iter().any(|action| action.deed.ends_program())
 }
 
 struct Page {
@@ -139,24 +149,19 @@ impl Page {
         if !self.text.is_empty() && parts && !self.text.ends_with("\n\n") {
             self.text.push('\n');
         }
-        for comment in source.comments().filter(|comment| !is_network(comment)) {
+        if let Some(network) = &rung.network {
+            self.network(&network_text(network));
+        }
+        let mut end = None;
+        for (comment, span) in source.comments().zip(&rung.comments) {
+            if end.is_some_and(|end| source.has_blank_line(end, span.start)) {
+                self.line("");
+            }
+            end = Some(span.end);
             match self.to {
+                _ if is_network(comment) => self.network(comment.trim_start_matches([';', ' '])),
                 To::Iec => self.line(&header::comment(comment)),
                 _ => self.line(comment),
-            }
-        }
-        let mut networks: Vec<String> = rung.network.iter().map(network_text).collect();
-        networks.extend(
-            source
-                .comments()
-                .filter(|comment| is_network(comment))
-                .map(|comment| comment.trim_start_matches([';', ' ']).to_string()),
-        );
-        for network in networks {
-            match self.to {
-                To::Ladder => self.line(&network),
-                To::Iec => self.line(&format!("(* {network} *)")),
-                _ => self.line(&format!("; {network}")),
             }
         }
         for label in &rung.labels {
@@ -164,6 +169,15 @@ impl Page {
                 To::Fx => self.line(label),
                 _ => self.line(&format!("{label}:")),
             }
+        }
+    }
+
+    /// The line that begins a network: one of its own in a drawing, a comment in lists and among equations.
+    fn network(&mut self, text: &str) {
+        match self.to {
+            To::Ladder => self.line(text),
+            To::Iec => self.line(&format!("(* {text} *)")),
+            _ => self.line(&format!("; {text}")),
         }
     }
 

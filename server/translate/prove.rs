@@ -3,12 +3,12 @@
 //! Rungs are compared in step as far as they drive the same things in the same order. Where one program does so in
 //! another way, stretches between jumps, labels and the like are compared by what comes of them.
 
+use super::counterexample::{self, Counterexample};
 use super::source::{self, Source};
 use crate::document::Document;
-use crate::logic::{Atom, Comparison, Deed, Formulas, Path, compare, compare_outcome, touches_bits};
+use crate::logic::{Comparison, Deed, Formulas, Path, compare, compare_outcome, touches_bits};
 use crate::target::Flow;
 use crate::text::{Message, Span};
-use std::collections::BTreeMap;
 
 /// What is known of two programs.
 #[derive(Clone, PartialEq, Debug)]
@@ -29,35 +29,15 @@ pub enum Proof {
     },
 }
 
-/// A scan in which two programs differ.
-#[derive(Clone, PartialEq, Debug)]
-pub struct Counterexample {
-    /// Inputs and states at its start, by name.
-    pub inputs: BTreeMap<String, Value>,
-    /// Bits as they were one scan before, where it matters that they changed.
-    pub before: BTreeMap<String, bool>,
-    /// What differs: a bit, or an action that only one does.
-    pub what: String,
-    /// What it is on either side.
-    pub sides: [bool; 2],
-    /// The rungs on either side that differ, or where the stretch starts that does.
-    pub at: [Option<Span>; 2],
-}
-
-/// A value at the start of a scan.
-#[derive(Clone, PartialEq, Debug)]
-pub enum Value {
-    /// Of a bit, or of a condition that stands for itself.
-    Bit(bool),
-    /// Of a word.
-    Word(i64),
-}
-
 /// Compares two programs.
 pub fn prove(left: &Document, right: &Document) -> Proof {
     let sources = [source::rungs(left, None), source::rungs(right, None)];
-    let stretches = [stretches(&sources[0]), stretches(&sources[1])];
-    let mut prover = Prover { before: [Vec::new(), Vec::new()], is_reordered: false };
+    let stretches = [(left, &sources[0]), (right, &sources[1])].map(|(document, sources)| {
+        let unit = |pou: usize| document.scopes().pous.get(pou).map_or("", |pou| pou.name.as_str());
+        stretches(sources, unit)
+    });
+    let may_be_off = sources.iter().flatten().any(leaves_out);
+    let mut prover = Prover { before: [Vec::new(), Vec::new()], may_be_off, is_reordered: false };
     let [left, right] = &stretches;
     let outcome = left.iter().zip(right).try_for_each(|(left, right)| prover.stretches(left, right));
     match outcome {
@@ -71,8 +51,17 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
     }
 }
 
-/// Rungs that are executed one after the other, and what ends them: a label, a jump, or an instruction of which
-/// nobody knows which bits it looks at.
+/// Whether a rung begins a part of the program in which there may be no power at the left rail.
+fn leaves_out(source: &Source) -> bool {
+    let actions = source.rung.path.iter().flatten().flat_map(Path::actions);
+    actions.into_iter().any(|action| match action.deed {
+        Deed::Instruction(form) => matches!(form.instruction.flow(), Flow::SectionBegin | Flow::Step),
+        _ => false,
+    })
+}
+
+/// Rungs that are executed one after the other, and what ends them: a label, a jump, another program unit, or an
+/// instruction of which nobody knows which bits it looks at.
 #[derive(Default)]
 struct Stretch<'s> {
     rungs: Vec<(&'s Source, &'s Path)>,
@@ -81,6 +70,8 @@ struct Stretch<'s> {
 
 enum End<'s> {
     Label(Span, &'s str),
+    /// The program unit that begins, by its name.
+    Unit(Span, &'s str),
     Rung(&'s Source, &'s Path),
     /// A rung that cannot be read, by its words.
     Unread(&'s Source, Vec<&'s str>),
@@ -97,7 +88,7 @@ impl Stretch<'_> {
 impl End<'_> {
     fn span(&self) -> Span {
         match self {
-            End::Label(span, _) => *span,
+            End::Label(span, _) | End::Unit(span, _) => *span,
             End::Rung(source, _) | End::Unread(source, _) => source.span(),
         }
     }
@@ -105,18 +96,21 @@ impl End<'_> {
     /// Whether it is nothing but END.
     fn ends_program(&self) -> bool {
         let End::Rung(_, path) = self else { return false };
-        path.actions().iter().all(|action| match action.deed {
-            Deed::Instruction(form) => form.instruction.flow() == Flow::ProgramEnd,
-            _ => false,
-        })
+        path.actions().iter().all(|action| action.deed.ends_program())
     }
 }
 
 /// The stretches of a program. The END at its end is left out: a drawing may go without.
-fn stretches(sources: &[Source]) -> Vec<Stretch<'_>> {
+fn stretches<'s>(sources: &'s [Source], unit: impl Fn(usize) -> &'s str) -> Vec<Stretch<'s>> {
     let mut stretches = Vec::new();
     let mut open = Stretch::default();
+    let mut pou = sources.first().and_then(|source| source.pou);
     for source in sources {
+        if source.pou != pou {
+            pou = source.pou;
+            open.end = Some(End::Unit(source.span(), pou.map_or("", &unit)));
+            stretches.push(std::mem::take(&mut open));
+        }
         for label in &source.rung.labels {
             open.end = Some(End::Label(source.span(), label));
             stretches.push(std::mem::take(&mut open));
@@ -147,6 +141,8 @@ fn stretches(sources: &[Source]) -> Vec<Stretch<'_>> {
 struct Prover<'s> {
     /// The paths that are known to do the same, on either side.
     before: [Vec<&'s Path>; 2],
+    /// Whether a part of the program may be left out, so that there is no power at the left rail.
+    may_be_off: bool,
     is_reordered: bool,
 }
 
@@ -155,7 +151,8 @@ impl<'s> Prover<'s> {
         // What ends at different things does not start at the same ones, either.
         let is_alike = match (&left.end, &right.end) {
             (None, None) | (Some(End::Rung(..)), Some(End::Rung(..))) => true,
-            (Some(End::Label(_, left)), Some(End::Label(_, right))) => left == right,
+            (Some(End::Label(_, left)), Some(End::Label(_, right)))
+            | (Some(End::Unit(_, left)), Some(End::Unit(_, right))) => left.eq_ignore_ascii_case(right),
             (Some(End::Unread(_, left)), Some(End::Unread(_, right))) => left == right,
             _ => false,
         };
@@ -167,6 +164,11 @@ impl<'s> Prover<'s> {
         match (&left.end, &right.end) {
             (Some(End::Rung(left, left_path)), Some(End::Rung(right, right_path))) => {
                 self.rungs([&[(*left, *left_path)], &[(*right, *right_path)]])
+            }
+            // What stands here may come after other rungs than those before it, or knows other variables.
+            (Some(End::Label(..) | End::Unit(..) | End::Unread(..)), _) => {
+                self.before.iter_mut().for_each(Vec::clear);
+                Ok(())
             }
             _ => Ok(()),
         }
@@ -197,8 +199,11 @@ impl<'s> Prover<'s> {
         paths: &[Vec<&'s Path>; 2],
         sides: [&[(&'s Source, &'s Path)]; 2],
     ) -> Result<(), Proof> {
-        let mut formulas = Formulas::default();
-        let alone = compare_outcome(&paths[0], &paths[1], [0, 0], &mut formulas);
+        let compare = |left: &[&Path], right: &[&Path], known, may_be_off| {
+            let mut formulas = Formulas::default();
+            (compare_outcome(left, right, known, may_be_off, &mut formulas), formulas)
+        };
+        let (alone, _) = compare(&paths[0], &paths[1], [0, 0], self.may_be_off);
         if matches!(alone, Comparison::Same { .. }) {
             return Ok(());
         }
@@ -206,16 +211,25 @@ impl<'s> Prover<'s> {
         let [left, right] =
             [0, 1].map(|side| self.before[side].iter().chain(&paths[side]).copied().collect::<Vec<&Path>>());
         let known = [self.before[0].len(), self.before[1].len()];
-        let mut formulas = Formulas::default();
         let at = sides.map(|side| side.first().map(|(source, _)| source.span()));
         let undecided = |key| Err(Proof::Undecided { reason: Message::new(key), at });
-        match compare_outcome(&left, &right, known, &mut formulas) {
+        let (comparison, formulas) = compare(&left, &right, known, false);
+        match comparison {
+            // With no power at the rail they may do otherwise.
+            Comparison::Same { .. } if self.may_be_off => match compare(&left, &right, known, true) {
+                (Comparison::Same { .. }, _) => Ok(()),
+                _ => undecided("prove.undecided"),
+            },
             Comparison::Same { .. } => Ok(()),
             Comparison::Undecided => undecided("prove.undecided"),
             Comparison::Unlike => undecided("prove.unlike"),
-            Comparison::Different { what, sides: values_of, values } => {
+            Comparison::Different { what, place, sides: values_of, values } => {
+                // Formulas know less than a PLC: what they leave open may be what it never does.
+                let state = counterexample::state(&formulas, &values)
+                    .filter(|state| counterexample::is_confirmed(state, [&left, &right], &place, values_of));
+                let Some(state) = state else { return undecided("prove.unconfirmed") };
                 let at = sides.map(|side| rung_of(side, &what));
-                let (inputs, before) = inputs(&formulas, &values);
+                let (inputs, before) = counterexample::inputs(&state);
                 let found = Counterexample { inputs, before, what, sides: values_of, at };
                 Err(Proof::Different(Box::new(found)))
             }
@@ -253,49 +267,4 @@ fn rung_of(side: &[(&Source, &Path)], what: &str) -> Option<Span> {
     };
     let rung = side.iter().rfind(drives).or(side.first());
     rung.map(|(source, _)| source.span())
-}
-
-/// Values of atoms as values of devices, and as they were one scan before where a change matters.
-fn inputs(
-    formulas: &Formulas,
-    values: &BTreeMap<u32, bool>,
-) -> (BTreeMap<String, Value>, BTreeMap<String, bool>) {
-    let mut inputs = BTreeMap::new();
-    let mut before = BTreeMap::new();
-    let mut limits: BTreeMap<String, (i64, Option<i64>)> = BTreeMap::new();
-    let mut idle = Vec::new();
-    for (atom, value) in values {
-        match formulas.atom_at(*atom) {
-            Atom::Bit(of) => {
-                inputs.insert(of.name.to_string(), Value::Bit(*value));
-            }
-            Atom::Edge { of, rising, .. } if *value => {
-                inputs.insert(of.name.to_string(), Value::Bit(*rising));
-                before.insert(of.name.to_string(), !rising);
-            }
-            Atom::Edge { of, rising, .. } => idle.push((of.name.to_string(), *rising)),
-            Atom::Behind(_) => {}
-            Atom::Reaches { word, number } => {
-                let name = word.name.trim_start_matches("D ").to_string();
-                let (least, below) = limits.entry(name).or_insert((0, None));
-                match value {
-                    true => *least = (*least).max(*number),
-                    false => *below = Some(below.map_or(*number, |other| other.min(*number))),
-                }
-            }
-            Atom::AtLeast { word, other } => {
-                inputs.insert(format!("{} >= {}", word.name, other.name), Value::Bit(*value));
-            }
-        }
-    }
-    for (name, (least, below)) in limits {
-        let word = below.map_or(least, |below| least.min(below - 1));
-        inputs.insert(name, Value::Word(word));
-    }
-    for (name, rising) in idle {
-        // A bit that did not change has no edge of either kind.
-        let now = inputs.get(&name).map_or(rising, |value| *value == Value::Bit(true));
-        before.entry(name).or_insert(now);
-    }
-    (inputs, before)
 }

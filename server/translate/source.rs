@@ -3,12 +3,13 @@
 use crate::document::{Chunk, ChunkRef, Document, Notation, Tree, both};
 use crate::il::iec::{IecTree, ItemKind};
 use crate::ladder;
-use crate::logic::{self, Declared, Rung};
+use crate::logic::{self, Declared, Path, Rung};
 use crate::text::Span;
 use std::sync::Arc;
 
 /// A rung with its chunk.
-pub(super) struct Source {
+#[derive(Debug)]
+pub struct Source {
     /// Where the chunk starts in the document.
     pub start: usize,
     /// The chunk, in which the spans of the rung are places.
@@ -36,9 +37,46 @@ impl Source {
         self.rung.span.shifted(self.start)
     }
 
+    /// What it does, if it can be read and does something.
+    pub fn path(&self) -> Option<&Path> {
+        self.rung.path.as_ref().ok()?.as_ref()
+    }
+
+    /// Its text without the comments before it.
+    pub fn text(&self) -> &str {
+        self.rung.span.of(self.chunk.text())
+    }
+
+    /// The rungs of drawings and FX lists whose chunks lie in these bytes of `document`.
+    pub fn within(document: &Document, bytes: Span) -> Vec<Source> {
+        let mut found = Vec::new();
+        let mut offset = bytes.start as usize;
+        while offset < bytes.end as usize
+            && let Some(at) = document.chunk_at(offset)
+            && at.start >= offset
+        {
+            let rungs = logic::rungs(&at.chunk.reading(), document.reader()).into_iter();
+            found.extend(rungs.map(|rung| Source {
+                start: at.start,
+                chunk: at.chunk.clone(),
+                rung,
+                declarations: String::new(),
+                pou: None,
+            }));
+            offset = at.start + at.chunk.len();
+        }
+        found
+    }
+
     /// Its comments as written.
     pub fn comments(&self) -> impl Iterator<Item = &str> {
         self.rung.comments.iter().map(|comment| comment.of(self.chunk.text()).trim_end())
+    }
+
+    /// Whether there is a blank line between these offsets of the chunk, and nothing else.
+    pub fn has_blank_line(&self, start: u32, end: u32) -> bool {
+        let between = self.chunk.text().get(start as usize..end as usize).unwrap_or_default();
+        between.trim().is_empty() && between.matches('\n').count() > 1
     }
 
     /// Whether there is nothing of it but blank lines.

@@ -79,8 +79,17 @@ static WAYS: LazyLock<Ways> = LazyLock::new(|| {
     })
 });
 
-/// The instructions before each drive that give it what it wants; the fewest in all, with nothing kept at the end.
-pub(super) fn moves(wanted: &[Wants]) -> Vec<Vec<&'static str>> {
+/// What is done between the drives of a path.
+pub(super) struct Moves {
+    /// Whether the path has to begin with the inverse of its power.
+    pub is_turned: bool,
+    /// The instructions before each drive.
+    pub before: Vec<Vec<&'static str>>,
+}
+
+/// The instructions before each drive that give it what it wants; the fewest in all, with nothing kept at the end. If
+/// `may_turn`, the path may begin with the inverse of its power as well.
+pub(super) fn moves(wanted: &[Wants], may_turn: bool) -> Moves {
     // Mostly outputs alone, and perhaps a conditional path behind them.
     let is_plain = |(number, wants): (usize, &Wants)| match wants {
         Wants::Power => true,
@@ -88,12 +97,16 @@ pub(super) fn moves(wanted: &[Wants]) -> Vec<Vec<&'static str>> {
         Wants::Everything => number + 1 == wanted.len(),
     };
     if wanted.iter().enumerate().all(is_plain) {
-        return vec![Vec::new(); wanted.len()];
+        return Moves { is_turned: false, before: vec![Vec::new(); wanted.len()] };
     }
     // For each drive and state behind it the least number of instructions, and the state behind the drive before.
     let start = State { current: Held::Power, kept: Held::Other }.number();
+    let turned = State { current: Held::Inverse, kept: Held::Other }.number();
     let mut costs = [usize::MAX; STATES];
     costs[start] = 0;
+    if may_turn {
+        costs[turned] = 0;
+    }
     let mut table: Vec<[usize; STATES]> = Vec::with_capacity(wanted.len());
     for wants in wanted {
         let (mut next_costs, mut origins) = ([usize::MAX; STATES], [start; STATES]);
@@ -112,17 +125,17 @@ pub(super) fn moves(wanted: &[Wants]) -> Vec<Vec<&'static str>> {
     }
     let is_end = |state: &usize| State::of(*state).kept == Held::Other;
     let mut state = (0..STATES).filter(is_end).min_by_key(|state| costs[*state]).unwrap_or(start);
-    let mut moves = Vec::with_capacity(wanted.len());
+    let mut before = Vec::with_capacity(wanted.len());
     for (wants, origins) in wanted.iter().zip(&table).rev() {
         let from = origins[state];
         let ways =
             WAYS[from].iter().enumerate().filter(|(to, _)| behind(*wants, State::of(*to)) == Some(state));
         let way = ways.filter_map(|(_, way)| way.as_ref()).min_by_key(|way| way.len());
-        moves.push(way.cloned().unwrap_or_default());
+        before.push(way.cloned().unwrap_or_default());
         state = from;
     }
-    moves.reverse();
-    moves
+    before.reverse();
+    Moves { is_turned: state == turned, before }
 }
 
 /// The state behind a drive that starts in `state`; nothing if that is not what it wants.

@@ -33,16 +33,10 @@ impl Writer {
         power: Option<&Expression>,
         equations: &mut Vec<String>,
     ) -> Result<(), Message> {
-        let mut power = power.cloned();
-        for gate in &path.gates {
-            power = Some(match (gate, power) {
-                (Gate::Pass(expression), None) => expression.clone(),
-                (Gate::Pass(expression), Some(power)) => Expression::and([power, expression.clone()]),
-                (Gate::Invert, Some(power)) => Expression::Not(Box::new(power)),
-                (Gate::Invert, None) => return Err(Message::new("translate.no-condition")),
-                (Gate::Through(_), _) => return Err(Message::new("translate.not-boolean")),
-            });
-        }
+        let power = Gate::condition(&path.gates, power.cloned()).map_err(|gate| match gate {
+            Gate::Through(_) => Message::new("translate.not-boolean"),
+            _ => Message::new("translate.no-condition"),
+        })?;
         for drive in &path.drives {
             match drive {
                 Drive::Path(path) => self.path(path, power.as_ref(), equations)?,
@@ -72,6 +66,7 @@ impl Writer {
             }
             Deed::Instruction(form) => form.mnemonic(),
             Deed::Call(call) => call.block.name.to_string(),
+            Deed::Compute(computation) => computation.function.name.to_string(),
             Deed::Jump => "JMP".to_string(),
             Deed::Return => "RET".to_string(),
         };

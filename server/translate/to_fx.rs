@@ -1,14 +1,15 @@
 //! Writes a path of power as FX instruction list, in as few steps as its order of contacts and outputs allows.
 //!
-//! A contact costs its own instruction in any place. Joining costs an instruction more for each connection that is not
-//! the first part of the one around it, and branching one for each conditional path behind which the power is wanted
-//! again; the exhaustive search in the tests finds no shorter list.
+//! A contact costs its own instruction in any place, normally open or closed: contacts are turned over where that saves
+//! an inverter. Joining costs an instruction more for each connection that is not the first part of the one around it,
+//! and branching one for each conditional path behind which the power is wanted again; the exhaustive search in the
+//! tests finds no shorter list.
 
-use super::stack::{self, Wants};
+use super::stack::{self, Moves, Wants};
 use crate::document::coil_form;
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
-use crate::target::{Form, Limits, Model, Operand, Role, Target};
+use crate::target::{Device, Form, Limits, Operand, Role, Target};
 use crate::text::{Message, Span};
 use std::borrow::Cow;
 use std::fmt;
@@ -43,6 +44,26 @@ pub fn lines(path: &Path, target: &Target) -> Result<Vec<Line>, Message> {
     Ok(writer.lines)
 }
 
+/// `lines`, if `target` has all of their instructions and devices; else what it lacks.
+pub fn on_model(lines: Vec<Line>, target: &Target) -> Result<Vec<Line>, Message> {
+    let lacks = |word: &dyn fmt::Display| {
+        Message::new("translate.model-lacks").with("word", word).with("model", target.title)
+    };
+    for Line { form, terms } in &lines {
+        if !form.is_on(target.model) {
+            return Err(lacks(&form.mnemonic()));
+        }
+        for (place, term) in terms.iter().enumerate() {
+            let device = term.operand.device();
+            let is_there = device.is_none_or(|device| device.range_on(target).is_some());
+            if !is_there || !form.takes(place, &term.operand, target.model) {
+                return Err(lacks(term));
+            }
+        }
+    }
+    Ok(lines)
+}
+
 struct Writer {
     lines: Vec<Line>,
     /// How many powers are kept on the branch stack.
@@ -54,13 +75,16 @@ impl Writer {
     /// `is_first` if nothing is loaded yet.
     fn path(&mut self, path: &Path, is_first: bool) -> Result<(), Message> {
         let mut is_first = is_first;
-        for gate in &path.gates {
+        let wanted: Vec<Wants> = path.drives.iter().map(wants).collect();
+        let (front, gates) = if is_first { front(&path.gates, &wanted) } else { (None, &path.gates[..]) };
+        let moves = stack::moves(&wanted, front.is_some() && gates.is_empty());
+        if let Some(front) = front {
+            self.pass(&if moves.is_turned { front.negated() } else { front }, true)?;
+            is_first = false;
+        }
+        for gate in gates {
             match gate {
-                Gate::Pass(expression) => {
-                    let ways = self.limits.blocks as usize - usize::from(!is_first);
-                    let expression = within_blocks(expression, ways.max(1))?;
-                    self.expression(&expression, if is_first { Role::Load } else { Role::Series })?;
-                }
+                Gate::Pass(expression) => self.pass(expression, is_first)?,
                 Gate::Invert => self.bare("INV")?,
                 Gate::Through(action) => self.action(action)?,
             }
@@ -74,12 +98,17 @@ impl Writer {
                 Drive::Path(path) => self.path(path, true),
             });
         }
-        self.drives(&path.drives)
+        self.drives(&path.drives, &wanted, moves)
     }
 
-    fn drives(&mut self, drives: &[Drive]) -> Result<(), Message> {
-        let wanted: Vec<Wants> = drives.iter().map(wants).collect();
-        for ((drive, wanted), moves) in drives.iter().zip(&wanted).zip(stack::moves(&wanted)) {
+    fn pass(&mut self, expression: &Expression, is_first: bool) -> Result<(), Message> {
+        let ways = self.limits.blocks as usize - usize::from(!is_first);
+        let expression = within_blocks(expression, ways.max(1))?;
+        self.expression(&expression, if is_first { Role::Load } else { Role::Series })
+    }
+
+    fn drives(&mut self, drives: &[Drive], wanted: &[Wants], moves: Moves) -> Result<(), Message> {
+        for ((drive, wanted), moves) in drives.iter().zip(wanted).zip(moves.before) {
             for mnemonic in moves {
                 self.bare(mnemonic)?;
                 match mnemonic {
@@ -123,6 +152,7 @@ impl Writer {
                     self.expression(part, if number == 0 { Role::Load } else { joined })
                 })
             }
+            (Expression::Not(part), _) if is_turnable(part) => self.expression(&part.negated(), role),
             (Expression::Not(part), Role::Load) => {
                 self.expression(part, Role::Load)?;
                 self.bare("INV")
@@ -149,7 +179,7 @@ impl Writer {
         let form = match action.deed {
             Deed::Coil(kind) => coil_form(kind),
             Deed::Instruction(form) => Some(form),
-            Deed::Call(_) | Deed::Jump | Deed::Return => None,
+            Deed::Call(_) | Deed::Compute(_) | Deed::Jump | Deed::Return => None,
         };
         let form = form.ok_or_else(|| Message::new("translate.no-instruction"))?;
         self.lines.push(Line { form, terms: action.terms.clone() });
@@ -160,6 +190,28 @@ impl Writer {
         let form = Form::named(mnemonic).ok_or_else(|| Message::new("translate.no-instruction"))?;
         self.lines.push(Line { form, terms: Vec::new() });
         Ok(())
+    }
+}
+
+/// The contacts at the left rail together with the inverters behind them, where turning these contacts over saves
+/// inverters; and the gates that are left.
+fn front<'g>(gates: &'g [Gate], wanted: &[Wants]) -> (Option<Expression>, &'g [Gate]) {
+    let [Gate::Pass(expression), behind @ ..] = gates else { return (None, gates) };
+    let inverters = behind.iter().take_while(|gate| **gate == Gate::Invert).count();
+    if inverters == 0 && !wanted.contains(&Wants::Inverse) || !is_turnable(expression) {
+        return (None, gates);
+    }
+    let front = if inverters % 2 == 1 { expression.negated() } else { expression.clone() };
+    (Some(front), &behind[inverters..])
+}
+
+/// Whether there is an inverse instruction for each contact; edges have none.
+fn is_turnable(expression: &Expression) -> bool {
+    match expression {
+        Expression::Constant(_) => true,
+        Expression::Contact(contact) => contact.test.opposite().is_some(),
+        Expression::Not(_) => false,
+        Expression::And(parts) | Expression::Or(parts) => parts.iter().all(is_turnable),
     }
 }
 
@@ -183,12 +235,11 @@ fn wants(drive: &Drive) -> Wants {
 
 /// The contact that is on in each scan of a running FX PLC, M8000, or closed instead of open, so that it never is.
 pub(super) fn always(value: bool) -> Contact {
-    let text = "M8000";
-    let operand = Operand::read(text, Model::Fx2n);
+    let device = Device::ALWAYS_ON;
     let kind = if value { ContactKind::NormallyOpen } else { ContactKind::NormallyClosed };
     Contact {
         test: Test::Bit(kind),
-        terms: vec![Term::new(operand, text, Span::default())],
+        terms: vec![Term::new(Operand::Device(device), &device.to_string(), Span::default())],
         span: Span::default(),
     }
 }

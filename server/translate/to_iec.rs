@@ -4,7 +4,8 @@
 //! The current result survives ST, S and R, so outputs that share their power need no stack. Behind a conditional path
 //! the power is loaded again: a single contact that nothing changed meanwhile as it is, anything else from a helper, a
 //! variable that was stored before. An edge contact is the output of a detector called before the load; a function
-//! block is called with its first input stored, and its first output is loaded.
+//! block is called with its first input stored, and its first output is loaded. Calculations with words are jumped over
+//! where power does not reach them.
 
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, HELPER, Path, Term, Test};
@@ -43,6 +44,18 @@ impl Helpers {
     pub fn beside(names: impl IntoIterator<Item = SmolStr>) -> Helpers {
         let taken = names.into_iter().map(|name| folded(&name)).collect();
         Helpers { taken, ..Helpers::default() }
+    }
+
+    /// A new label.
+    fn label(&mut self) -> SmolStr {
+        let number = self.numbers.entry("").or_default();
+        loop {
+            *number += 1;
+            let name = format_smolstr!("Skip{number}");
+            if self.taken.insert(folded(&name)) {
+                return name;
+            }
+        }
     }
 
     /// A new variable.
@@ -167,6 +180,7 @@ impl Writer<'_> {
         }
         match action.deed {
             Deed::Jump | Deed::Return => return self.leave(action, ""),
+            Deed::Compute(_) => return self.computation(action),
             Deed::Call(call) if !call.is_input_operator() => return self.call(action, Some("TRUE".into())),
             _ if is_loaded => {}
             _ => self.lines.push("LD TRUE".into()),
@@ -177,13 +191,17 @@ impl Writer<'_> {
     fn drives(&mut self, path: &Path, inverse: bool, reloaded: Option<String>) -> Result<(), Message> {
         let mut is_lost = false;
         let mut held: Option<SmolStr> = None;
-        for (number, drive) in path.drives.iter().enumerate() {
+        let mut number = 0;
+        while let Some(drive) = path.drives.get(number) {
+            let computed = path.drives[number..].iter().map_while(computation_of);
+            let computed: Vec<&Action> = computed.collect();
+            number += computed.len().max(1);
             if std::mem::take(&mut is_lost) {
                 self.start();
                 let held = held.as_ref().map(|name| format!("LD {name}"));
                 self.lines.push(held.or_else(|| reloaded.clone()).unwrap_or_default());
             }
-            let is_last = number + 1 == path.drives.len();
+            let is_last = number == path.drives.len();
             if loses(drive) && !is_last {
                 if held.is_none() && reloaded.is_none() {
                     let name = self.helpers.held(self.held);
@@ -194,6 +212,7 @@ impl Writer<'_> {
                 is_lost = true;
             }
             match drive {
+                _ if !computed.is_empty() => self.computations(&computed)?,
                 Drive::Action(action) => self.action(action, inverse)?,
                 Drive::Path(inner) if !loses(drive) => self.inverted(inner, is_last)?,
                 Drive::Path(inner) => self.path(inner, false)?,
@@ -331,6 +350,35 @@ impl Writer<'_> {
         Ok(())
     }
 
+    /// Calculations that are done if the current result is on.
+    fn computations(&mut self, actions: &[&Action]) -> Result<(), Message> {
+        let label = self.helpers.label();
+        self.lines.push(format!("JMPCN {label}"));
+        actions.iter().try_for_each(|action| self.computation(action))?;
+        self.lines.push(format!("{label}:"));
+        Ok(())
+    }
+
+    /// `LD a`, `ADD b`, `ST c`
+    fn computation(&mut self, action: &Action) -> Result<(), Message> {
+        let operands = match action.deed {
+            Deed::Compute(computation) => {
+                computation.operands(&action.terms).map(|found| (computation, found))
+            }
+            _ => None,
+        };
+        let Some((computation, (inputs, result))) = operands else {
+            return Err(Message::new("translate.no-instruction"));
+        };
+        for (number, term) in inputs.iter().enumerate() {
+            let word = if number == 0 { "LD" } else { computation.function.name };
+            self.lines.push(format!("{word} {term}"));
+        }
+        self.lines.push(format!("ST {result}"));
+        self.driven.insert(result.key());
+        Ok(())
+    }
+
     fn leave(&mut self, action: &Action, condition: &str) -> Result<(), Message> {
         let word = if action.deed == Deed::Return { "RET" } else { "JMP" };
         let label = action.terms.first().map_or(String::new(), |label| format!(" {label}"));
@@ -413,6 +461,14 @@ fn called_next(path: &Path, number: usize) -> Option<&Action> {
     matches!(next.deed, Deed::Call(call) if !call.is_input_operator()).then_some(next)
 }
 
+/// The calculation that a drive is.
+fn computation_of(drive: &Drive) -> Option<&Action> {
+    match drive {
+        Drive::Action(action) => matches!(action.deed, Deed::Compute(_)).then_some(action),
+        Drive::Path(_) => None,
+    }
+}
+
 /// Whether an output has an instruction that wants the inverse of its power.
 fn is_invertible(drive: &Drive) -> bool {
     use CoilKind::{Negated, Plain};
@@ -422,7 +478,7 @@ fn is_invertible(drive: &Drive) -> bool {
 
 /// Whether the current result is no longer the power behind this.
 fn loses(drive: &Drive) -> bool {
-    let calls = |action: &Action| matches!(action.deed, Deed::Call(_));
+    let calls = |action: &Action| matches!(action.deed, Deed::Call(_) | Deed::Compute(_));
     match drive {
         Drive::Action(action) => calls(action),
         Drive::Path(path) => {
@@ -444,12 +500,11 @@ fn reloaded(path: &Path, gates: &[Gate], is_whole: bool) -> Option<String> {
         },
         _ => return None,
     };
-    let key = term.key();
     let mut is_changed = term.text.contains(['[', '^']);
     let mut changes = |action: &Action| {
         is_changed |= match action.deed {
-            Deed::Call(call) => call.changes(&action.terms).iter().any(|term| term.key() == key),
-            _ => action.terms.iter().any(|term| term.key() == key),
+            Deed::Call(call) => call.changes(&action.terms).iter().any(|changed| changed.may_cover(&term)),
+            _ => action.terms.iter().any(|changed| changed.may_cover(&term)),
         }
     };
     for drive in &path.drives {

@@ -126,6 +126,7 @@ impl Planner {
                 ElementKind::Instruction { form: Some(form), mnemonic }
             }
             Deed::Call(call) => return self.block(action, call, goes_on),
+            Deed::Compute(computation) => return self.computation(action, computation),
             Deed::Jump => {
                 let label = action.terms.first().ok_or_else(|| Message::new("translate.no-instruction"))?;
                 let label = self.word(&label.text);

@@ -240,6 +240,15 @@ function M.notify(message, level)
   vim.notify('Rungwise: ' .. message, level or vim.log.levels.INFO)
 end
 
+--- The client of a buffer that is to answer the user, who hears of it where there is none.
+function M.expect(buffer)
+  local running = M.clients(buffer)[1]
+  if not running then
+    M.notify(words.t('no language server for this buffer; see :checkhealth rungwise'), vim.log.levels.ERROR)
+  end
+  return running
+end
+
 --- Tells every server about changed settings.
 function M.send_settings()
   local settings = { rungwise = M.settings() }

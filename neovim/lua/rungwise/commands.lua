@@ -10,9 +10,8 @@ local notify = client.notify
 --- Runs the batch check on the program in the buffer and shows its summary.
 function M.check()
   local buffer = vim.api.nvim_get_current_buf()
-  local running = client.clients(buffer)[1]
+  local running = client.expect(buffer)
   if not running then
-    notify(t('no language server for this buffer; see :checkhealth rungwise'), vim.log.levels.ERROR)
     return
   end
   local params = { command = 'rungwise.check', arguments = { vim.uri_from_bufnr(buffer) } }

@@ -70,12 +70,12 @@ end
 function M.run(name, operand)
   local edit = M.edits[name]
   local buffer = vim.api.nvim_get_current_buf()
-  local running = client.clients(buffer)[1]
   if not edit then
     client.notify(t('there is no edit "%s"', name), vim.log.levels.ERROR)
     return
-  elseif not running then
-    client.notify(t('no language server for this buffer; see :checkhealth rungwise'), vim.log.levels.ERROR)
+  end
+  local running = client.expect(buffer)
+  if not running then
     return
   end
   local encoding = running.offset_encoding

@@ -66,9 +66,8 @@ end
 --- Shows the table of the devices that the program in the buffer uses.
 function M.usage()
   local buffer = vim.api.nvim_get_current_buf()
-  local running = client.clients(buffer)[1]
+  local running = client.expect(buffer)
   if not running then
-    client.notify(t('no language server for this buffer; see :checkhealth rungwise'), vim.log.levels.ERROR)
     return
   end
   local params = { command = 'rungwise.usage', arguments = { vim.uri_from_bufnr(buffer), { uses = false } } }

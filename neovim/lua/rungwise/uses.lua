@@ -48,9 +48,8 @@ end
 --- Lists the places where a device, an address or a variable is used; the one at the cursor if none is named.
 function M.list(name)
   local buffer = vim.api.nvim_get_current_buf()
-  local running = client.clients(buffer)[1]
+  local running = client.expect(buffer)
   if not running then
-    client.notify(t('no language server for this buffer; see :checkhealth rungwise'), vim.log.levels.ERROR)
     return
   end
   local wish = { text = false }

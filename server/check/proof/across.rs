@@ -24,8 +24,9 @@ const RUNGS_MAX: usize = 12;
 const DEPTH_MAX: usize = 3;
 /// Rungs with more words are left out, so that the look at all rungs stays cheap.
 const WORDS_MAX: usize = 64;
-/// So many rungs are proved in one check. More of them make sense only once some are mended.
-const PROOFS_MAX: usize = 500;
+/// So many rungs are proved in one check, the first in the order of execution, so that an edit has its answer while
+/// people type.
+const PROOFS_MAX: usize = 150;
 
 /// What is found in the whole program.
 pub(super) fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
@@ -87,7 +88,9 @@ impl<'c, 'a> Across<'c, 'a> {
         let mut words: Vec<Asked> = Vec::new();
         self.uses.each_rung(|rung| {
             let Some((_, first)) = rung.clone().next() else { return };
-            if rung.clone().count() > WORDS_MAX || self.is_list_of_units(&first) {
+            // Two contacts and an output are the least that can exclude each other.
+            let count = rung.size_hint().0;
+            if !(3..=WORDS_MAX).contains(&count) || self.is_list_of_units(&first) {
                 return;
             }
             words.clear();

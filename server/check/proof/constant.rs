@@ -82,7 +82,7 @@ pub(super) fn is_output(action: &Action) -> bool {
         Deed::Instruction(form) => {
             form.instruction.flow() == crate::target::Flow::Straight && !action.terms.is_empty()
         }
-        Deed::Call(_) | Deed::Jump | Deed::Return => false,
+        Deed::Call(_) | Deed::Compute(_) | Deed::Jump | Deed::Return => false,
     }
 }
 

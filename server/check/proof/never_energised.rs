@@ -12,7 +12,8 @@
 //! all that writes them: whatever needs a relay that is never on is never on, either, and so is a rung that asks for
 //! the opposite of what the rung of a relay above it asks for. That a panel writes such a relay is not considered, for
 //! its coil writes it anew in each scan. Relays that keep their value without power, that are set or reset, or that
-//! stand where a jump or a master control may leave them out are not followed.
+//! stand where a jump or a master control may leave them out are not followed. Of the rungs that may be such, the
+//! first hundred and fifty are proved in one check.
 //!
 //! ```lad
 //! |  X0    X0     Y0  |

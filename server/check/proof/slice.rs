@@ -78,7 +78,7 @@ impl Slice {
                 run.pause();
             }
             match &piece.path {
-                None => run.unread(),
+                None => run.unread(formulas),
                 Some(path) if piece.is_skipped => run.maybe(path, formulas),
                 Some(path) => {
                     let before = run.effects.len();
@@ -375,15 +375,12 @@ impl<'c, 'a> Collector<'c, 'a> {
     /// What is written only as one of several stands in no rung by its name.
     fn name_wanted(&self, number: u32, slice: &mut Slice) {
         let Some(one) = self.uses.of_name(number).next() else { return };
-        let Some(file) = self.context.files().get(one.file) else { return };
         let Some((key, source)) = self.source(number, &one) else { return };
-        let words = match self.uses.name(number).map(|name| name.key) {
-            // It may stand there as a part of an operand, `K1Y0`.
-            Some(Key::Device(device)) => device.to_string(),
-            _ => self.uses.words(&one),
-        };
-        let term = || Term::new(file.document.reader().read(&words), &words, Span::default());
-        slice.terms.entry(key.clone()).or_insert_with(term);
+        // It may stand there as a part of an operand, `K1Y0`. A variable is known by the rung that writes it, or not.
+        if let Some(Key::Device(device)) = self.uses.name(number).map(|name| name.key) {
+            let term = || Term::new(Operand::Device(device), &device.to_string(), Span::default());
+            slice.terms.entry(key.clone()).or_insert_with(term);
+        }
         slice.keys.entry(number).or_insert_with(|| key.clone());
         slice.sources.entry(key).or_insert(source);
     }
@@ -417,7 +414,7 @@ impl<'c, 'a> Collector<'c, 'a> {
         }
         let words = self.uses.words(one);
         let key = match name.key {
-            Key::Direct(address) if words.starts_with('%') => address.to_smolstr(),
+            Key::Direct(address) => address.to_smolstr(),
             _ => folded(&words),
         };
         let has_value = acts.has(&[Act::DeclareValue]);

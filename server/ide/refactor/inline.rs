@@ -1,6 +1,6 @@
 //! The condition of a relay in the place of its contacts, and the relay gone.
 
-use super::neighbourhood::{Neighbourhood, Placed};
+use super::neighbourhood::Neighbourhood;
 use super::{Change, Proposal};
 use crate::document::{ProjectView, Symbol};
 use crate::ide::bookkeeping::Book;
@@ -8,6 +8,7 @@ use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Test};
 use crate::target::{Device, DeviceKind, Flow};
 use crate::text::Message;
+use crate::translate::Source;
 use smol_str::SmolStr;
 
 pub(super) fn propose(around: &Neighbourhood<'_>, view: &ProjectView<'_>) -> Option<Proposal> {
@@ -17,7 +18,7 @@ pub(super) fn propose(around: &Neighbourhood<'_>, view: &ProjectView<'_>) -> Opt
     if relay.is_special(around.document) || !head.labels.is_empty() || head.network.is_some() {
         return None;
     }
-    let condition = condition_of(&path.gates)?;
+    let condition = Gate::condition(&path.gates, None).ok()??;
     let book = Book::of(view);
     let tally = book.devices.get(&relay.device).filter(|_| !book.is_in_run(relay.device))?;
     let others = around.rungs.get(around.here + 1..)?;
@@ -70,27 +71,13 @@ fn driven_relay(path: &Path) -> Option<(usize, Relay)> {
     })
 }
 
-/// What leads to the drives; nothing if power goes through something on the way.
-fn condition_of(gates: &[Gate]) -> Option<Expression> {
-    let mut condition = None;
-    for gate in gates {
-        condition = Some(match (gate, condition) {
-            (Gate::Pass(more), None) => more.clone(),
-            (Gate::Pass(more), Some(before)) => Expression::and([before, more.clone()]),
-            (Gate::Invert, Some(before)) => Expression::Not(Box::new(before)),
-            (Gate::Invert, None) | (Gate::Through(_), _) => return None,
-        });
-    }
-    condition
-}
-
 /// Whether each scan comes through the rung, and nothing jumps to it.
-fn runs_straight(placed: &Placed) -> bool {
+fn runs_straight(placed: &Source) -> bool {
     let Some(path) = placed.path() else { return matches!(placed.rung.path, Ok(None)) };
     let is_straight = |action: &&Action| match action.deed {
         Deed::Coil(_) => true,
         Deed::Instruction(form) => form.instruction.flow() == Flow::Straight,
-        Deed::Call(_) => true,
+        Deed::Call(_) | Deed::Compute(_) => true,
         Deed::Jump | Deed::Return => false,
     };
     placed.rung.labels.is_empty() && path.actions().iter().all(is_straight)
@@ -105,7 +92,7 @@ impl Relay {
     }
 
     /// How often the rung names it.
-    fn mentions(&self, placed: &Placed) -> u32 {
+    fn mentions(&self, placed: &Source) -> u32 {
         let own = placed.rung.span;
         let mentions = placed.chunk.mentions().iter().filter(|mention| {
             mention.symbol == Symbol::Device(self.device)
@@ -138,20 +125,13 @@ impl Relay {
     }
 
     fn within(&self, expression: &Expression, condition: &Expression) -> Option<Expression> {
-        let all = |parts: &[Expression]| -> Option<Vec<Expression>> {
-            parts.iter().map(|part| self.within(part, condition)).collect()
+        let instead = |contact: &Contact| match contact.test {
+            _ if !self.is_of(contact) => Ok(Expression::Contact(contact.clone())),
+            Test::Bit(ContactKind::NormallyOpen) => Ok(condition.clone()),
+            Test::Bit(ContactKind::NormallyClosed) => Ok(condition.negated()),
+            _ => Err(()),
         };
-        Some(match expression {
-            Expression::Contact(contact) if self.is_of(contact) => match contact.test {
-                Test::Bit(ContactKind::NormallyOpen) => condition.clone(),
-                Test::Bit(ContactKind::NormallyClosed) => condition.negated(),
-                _ => return None,
-            },
-            Expression::And(parts) => Expression::and(all(parts)?),
-            Expression::Or(parts) => Expression::or(all(parts)?),
-            Expression::Not(part) => Expression::Not(Box::new(self.within(part, condition)?)),
-            leaf => leaf.clone(),
-        })
+        expression.mapped(&mut { instead }).ok()
     }
 
     fn is_of(&self, contact: &Contact) -> bool {

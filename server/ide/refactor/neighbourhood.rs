@@ -1,58 +1,17 @@
 //! The rungs around the cursor, as the logic sees them.
 
 use super::steps_of;
-use crate::document::{Chunk, Document, Notation, Tree};
+use crate::document::{Document, Notation, Tree};
 use crate::il::fx::LineKind;
-use crate::logic::{self, Path, Rung};
+use crate::logic::Path;
 use crate::text::Span;
-use std::sync::Arc;
-
-/// A rung with its chunk.
-#[derive(Debug)]
-pub(super) struct Placed {
-    /// Where the chunk starts in the document.
-    pub start: usize,
-    pub chunk: Arc<Chunk>,
-    pub rung: Rung,
-}
-
-impl Placed {
-    /// Where it stands in the document.
-    pub fn span(&self) -> Span {
-        self.rung.span.shifted(self.start)
-    }
-
-    /// What it does, if it can be read and does something.
-    pub fn path(&self) -> Option<&Path> {
-        self.rung.path.as_ref().ok()?.as_ref()
-    }
-
-    /// Its text without the comments before it.
-    pub fn text(&self) -> &str {
-        self.rung.span.of(self.chunk.text())
-    }
-
-    /// The rungs whose chunks lie in these bytes of `document`.
-    pub fn within(document: &Document, bytes: Span) -> Vec<Placed> {
-        let mut placed = Vec::new();
-        let mut offset = bytes.start as usize;
-        while offset < bytes.end as usize
-            && let Some(at) = document.chunk_at(offset)
-            && at.start >= offset
-        {
-            let rungs = logic::rungs(&at.chunk.reading(), document.target()).into_iter();
-            placed.extend(rungs.map(|rung| Placed { start: at.start, chunk: at.chunk.clone(), rung }));
-            offset = at.start + at.chunk.len();
-        }
-        placed
-    }
-}
+use crate::translate::Source;
 
 /// The rung at the cursor, those before it in its chunk and in the chunk before, and some behind it.
 pub(super) struct Neighbourhood<'d> {
     pub document: &'d Document,
     /// In order.
-    pub rungs: Vec<Placed>,
+    pub rungs: Vec<Source>,
     /// The number of the rung at the cursor.
     pub here: usize,
 }
@@ -79,7 +38,7 @@ impl<'d> Neighbourhood<'d> {
                 break;
             }
         }
-        let rungs = Placed::within(document, Span::new(start, end));
+        let rungs = Source::within(document, Span::new(start, end));
         // A drawn rung has all of its lines; a list has them as well.
         let here =
             rungs.iter().position(|placed| placed.start == at.start && placed.span().touches(offset))?;
@@ -88,7 +47,7 @@ impl<'d> Neighbourhood<'d> {
     }
 
     /// The rung at the cursor.
-    pub fn rung(&self) -> &Placed {
+    pub fn rung(&self) -> &Source {
         &self.rungs[self.here]
     }
 

@@ -1,11 +1,12 @@
 //! The law of refactorings: what was written is read again, and does the same; everything around it stands as before.
 
 use super::Proposal;
-use super::neighbourhood::{Neighbourhood, Placed};
+use super::neighbourhood::Neighbourhood;
 use crate::document::{Document, Edit};
-use crate::ladder::CoilKind;
-use crate::logic::{Comparison, Deed, Effect, Formulas, Path, Run, Verdict, compare, equal};
+use crate::logic::{Comparison, Formulas, Path, compare, compare_but};
 use crate::text::{Span, TextEdit};
+use crate::translate::Source;
+use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
 /// Whether the document with `edits` is the one without, but for the changed rungs, and these do the same.
@@ -22,8 +23,8 @@ fn proved(around: &Neighbourhood<'_>, proposal: &Proposal, edits: &[TextEdit]) -
     let window = window(around, first.first, last.first + last.count)?;
     let grown = after.len() as i64 - around.document.len() as i64;
     let new_window = Span { start: window.start, end: u32::try_from(i64::from(window.end) + grown).ok()? };
-    let old = Placed::within(around.document, window);
-    let new = Placed::within(&after, new_window);
+    let old = Source::within(around.document, window);
+    let new = Source::within(&after, new_window);
     if !ends_chunk(&after, new_window) || !same_comments(&old, &new) {
         return None;
     }
@@ -46,7 +47,7 @@ fn proved(around: &Neighbourhood<'_>, proposal: &Proposal, edits: &[TextEdit]) -
         return None;
     }
     let behind = old.len() - (last.first + last.count - skipped);
-    let changed = |placed: &[Placed]| -> Option<Vec<Path>> {
+    let changed = |placed: &[Source]| -> Option<Vec<Path>> {
         let rungs = placed.get(first.first - skipped..placed.len().checked_sub(behind)?)?;
         let paths = rungs.iter().map(|placed| placed.rung.path.clone().ok());
         Some(paths.collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
@@ -79,18 +80,18 @@ fn ends_chunk(document: &Document, window: Span) -> bool {
     starts(window.start) && starts(window.end)
 }
 
-fn same_rung(left: &Placed, right: &Placed) -> Option<()> {
+fn same_rung(left: &Source, right: &Source) -> Option<()> {
     same_head(left, right)?;
     (left.text() == right.text()).then_some(())
 }
 
 /// The labels and the network of a rung.
-fn same_head(left: &Placed, right: &Placed) -> Option<()> {
+fn same_head(left: &Source, right: &Source) -> Option<()> {
     (left.rung.labels == right.rung.labels && left.rung.network == right.rung.network).then_some(())
 }
 
-fn same_comments(left: &[Placed], right: &[Placed]) -> bool {
-    let comments = |placed: &[Placed]| {
+fn same_comments(left: &[Source], right: &[Source]) -> bool {
+    let comments = |placed: &[Source]| {
         let all = placed.iter().flat_map(|placed| {
             let comments = placed.rung.comments.iter();
             comments.map(|comment| comment.of(placed.chunk.text()).trim_end().to_string())
@@ -105,23 +106,9 @@ fn same_comments(left: &[Placed], right: &[Placed]) -> bool {
 
 /// Whether both do the same if nobody looks at the relay with this key, which one of them drives.
 fn same_but_for(relay: &SmolStr, left: &[&Path], right: &[&Path]) -> bool {
-    let mut formulas = Formulas::default();
-    let [left, right] = [left, right].map(|paths| {
-        let mut run = Run::new();
-        paths.iter().for_each(|path| run.path(path, &mut formulas));
-        run.effects.retain(|effect| !drives(effect, relay));
-        run
-    });
-    if left.effects.len() != right.effects.len() {
-        return false;
-    }
-    let mut pairs = left.effects.iter().zip(&right.effects);
-    pairs.all(|(left, right)| {
-        left.is_like(right) && equal(&mut formulas, left.guard, right.guard) == Verdict::Equal
+    let relays = FxHashSet::from_iter([relay.clone()]);
+    [(left, right), (right, left)].into_iter().any(|(without, with)| {
+        let comparison = compare_but(without, with, &relays, &mut Formulas::default());
+        matches!(comparison, Comparison::Same { .. })
     })
-}
-
-fn drives(effect: &Effect<'_>, relay: &SmolStr) -> bool {
-    let [term] = &effect.action.terms[..] else { return false };
-    effect.action.deed == Deed::Coil(CoilKind::Plain) && term.key() == *relay
 }

@@ -1,13 +1,14 @@
 //! Writes refactored rungs in the words of the document: its notation, margins and line ends, comments kept.
 
 use super::Change;
-use super::neighbourhood::{Neighbourhood, Placed};
+use super::neighbourhood::Neighbourhood;
 use crate::document::{Document, Tree};
 use crate::ide::{Style, changes, drawing};
 use crate::il::fx::{FxLine, FxTree, LineKind};
 use crate::logic::Path;
 use crate::target::Flow;
 use crate::text::{Span, TextEdit};
+use crate::translate::Source;
 use crate::translate::{to_fx, to_ladder};
 
 /// The edits that write `changes`; nothing where something would be lost.
@@ -25,7 +26,7 @@ pub(super) fn edits(around: &Neighbourhood<'_>, changes: &[Change], style: Style
 }
 
 /// The lines of instructions of `rungs`, in bytes of the document, and `paths` in their place.
-fn list(document: &Document, rungs: &[Placed], paths: &[Path]) -> Option<(Span, String)> {
+fn list(document: &Document, rungs: &[Source], paths: &[Path]) -> Option<(Span, String)> {
     let first = Lines::of(rungs.first()?)?;
     let last = Lines::of(rungs.last()?)?;
     for (number, placed) in rungs.iter().enumerate() {
@@ -63,7 +64,7 @@ fn list(document: &Document, rungs: &[Placed], paths: &[Path]) -> Option<(Span, 
 
 /// The instructions of a rung of a list.
 struct Lines<'a> {
-    placed: &'a Placed,
+    placed: &'a Source,
     text: &'a str,
     /// First byte in the chunk of each line with an instruction, where it ends, and whether it names something.
     lines: Vec<(usize, usize)>,
@@ -82,7 +83,7 @@ struct Carried<'a> {
 
 impl<'a> Lines<'a> {
     /// Nothing if there are lines that would be lost or would be wrong: NOP, step numbers, labels between.
-    fn of(placed: &'a Placed) -> Option<Lines<'a>> {
+    fn of(placed: &'a Source) -> Option<Lines<'a>> {
         let text = placed.chunk.text();
         let reading = placed.chunk.reading();
         let Tree::Fx(tree) = reading.tree() else { return None };
@@ -153,7 +154,7 @@ fn instructions(tree: &FxTree) -> Option<Vec<&FxLine>> {
 }
 
 /// The lines of drawn `rungs`, in bytes of the document, and `paths` in their place.
-fn drawn(document: &Document, rungs: &[Placed], paths: &[Path], style: Style) -> Option<(Span, String)> {
+fn drawn(document: &Document, rungs: &[Source], paths: &[Path], style: Style) -> Option<(Span, String)> {
     let model = document.target().model;
     let plans: Option<Vec<to_ladder::Plan>> =
         paths.iter().map(|path| to_ladder::plan(path, model).ok()).collect();

@@ -96,8 +96,18 @@ impl<'s, 'a> Reader<'s, 'a> {
             }
             let item = self.source.item(index);
             self.at = index;
+            if self.is_fresh()
+                && let Some(items) = self.calculation(index)?
+            {
+                index += items;
+                continue;
+            }
             index += 1;
             match item.kind {
+                ItemKind::Jump { .. } if let Some(label) = self.skipped(index - 1, items.end) => {
+                    self.skip(index..label)?;
+                    index = label + 1;
+                }
                 ItemKind::Operation { operation, operand } => {
                     self.operation(index - 1, item, operation, operand)?
                 }
@@ -335,6 +345,36 @@ impl<'s, 'a> Reader<'s, 'a> {
         Ok(())
     }
 
+    /// The label behind the calculations that the jump at item `index` skips, if both stand before item `end`.
+    fn skipped(&self, index: usize, end: usize) -> Option<usize> {
+        self.source.skips.label(index).filter(|label| *label < end && self.frames.is_empty())
+    }
+
+    /// Calculations that are done if the current result is on.
+    fn skip(&mut self, items: Range<usize>) -> Result<(), Refusal> {
+        self.settle()?;
+        self.invert()?;
+        self.value = Value::Nothing;
+        let mut index = items.start;
+        while index < items.end {
+            self.at = index;
+            index += self.calculation(index)?.ok_or(Refusal::NotBoolean)?;
+        }
+        Ok(())
+    }
+
+    /// Drives the calculation that begins at item `index`; how many items it takes, if there is one.
+    fn calculation(&mut self, index: usize) -> Result<Option<usize>, Refusal> {
+        let Some(found) = self.source.calculation(self.pou, index) else { return Ok(None) };
+        let terms = found.operands.iter().map(|id| self.term(*id)).collect::<Result<Vec<_>, _>>()?;
+        if let Some(result) = terms.last() {
+            self.driven.insert(result.key(), index);
+        }
+        let span = self.source.item(index).span.to(self.source.item(index + found.items - 1).span);
+        self.builder.drive(Action { deed: Deed::Compute(found.computation), terms, span });
+        Ok(Some(found.items))
+    }
+
     fn is_fresh(&self) -> bool {
         self.builder.is_empty() && matches!(self.value, Value::Nothing) && self.frames.is_empty()
     }
@@ -389,7 +429,7 @@ impl<'s, 'a> Reader<'s, 'a> {
         let is_edge = word.rsplit_once('.').is_some_and(|(root, _)| self.edges.contains_key(&folded(root)));
         match self.source.value_kind(self.pou, &operand.value, word) {
             ValueKind::Invalid => Err(Refusal::Unreadable),
-            kind if kinds.contains(&kind) && !is_edge => Ok(Term::new(operand.value, word, operand.span)),
+            kind if kinds.contains(&kind) && !is_edge => Ok(self.source.term(self.pou, id)),
             _ => Err(Refusal::NotBoolean),
         }
     }

@@ -1,15 +1,21 @@
 //! Reads a function block on the power line.
 
-use crate::ladder::{Block, Element, PinWire};
-use crate::logic::{Action, Call, Deed, Refusal, Term};
+use crate::ladder::{Block, Element, Pin, PinWire};
+use crate::logic::{Action, Call, Computation, Deed, Refusal, Term};
 use crate::target::Operand;
-use crate::target::iec::FunctionBlock;
+use crate::target::iec::{EN, ENO, FunctionBlock};
 
 /// The call that a box is, and whether power goes on behind it.
 ///
 /// Power comes to one input of a standard block and goes on from its first output; the other pins have operands
-/// or nothing. Anything else, such as a box with EN or a circle at a pin, is refused.
+/// or nothing. A box without an instance is a calculation that power enables. Anything else, such as a circle at a pin
+/// or a block with EN, is refused.
 pub(super) fn call(text: &str, element: &Element, block: &Block) -> Result<(Action, bool), Refusal> {
+    if block.instance.is_none()
+        && let Some(computation) = block.type_text(text).and_then(Computation::named)
+    {
+        return Ok((self::computation(text, element, block, computation)?, false));
+    }
     let row = block.type_text(text).and_then(FunctionBlock::named).ok_or(Refusal::Element)?;
     let instance = block.instance.ok_or(Refusal::Element)?;
     let instance = Term::new(Operand::Variable, instance.of(text), instance);
@@ -44,4 +50,38 @@ pub(super) fn call(text: &str, element: &Element, block: &Block) -> Result<(Acti
     let power = power.ok_or(Refusal::Element)?;
     let (call, terms) = Call::new(row, power, instance, arguments).ok_or(Refusal::Element)?;
     Ok((Action { deed: Deed::Call(call), terms, span: element.span }, goes_on))
+}
+
+/// The calculation that a box with EN is, each of whose other pins has an operand.
+fn computation(
+    text: &str,
+    element: &Element,
+    block: &Block,
+    computation: Computation,
+) -> Result<Action, Refusal> {
+    let operand = |pin: &Pin| match pin.wire {
+        PinWire::Operand(index) if !pin.negated => {
+            let operand = element.operands.get(index).ok_or(Refusal::Element)?;
+            Ok(Term::new(operand.value, &element.operand_text(index, text), operand.span))
+        }
+        _ => Err(Refusal::Element),
+    };
+    let is = |pin: &Pin, name: &str| pin.formal(text).eq_ignore_ascii_case(name);
+    let (enable, inputs) = block.inputs.split_first().ok_or(Refusal::Element)?;
+    if !is(enable, EN.name) || enable.negated || enable.wire != PinWire::Power {
+        return Err(Refusal::Element);
+    }
+    let names = computation.function.inputs;
+    let in_order = inputs.len() == names.len()
+        && inputs.iter().zip(names).all(|(pin, parameter)| is(pin, parameter.name) || is(pin, ""));
+    // Where power goes on from ENO, something is drawn behind the box.
+    let is_idle = |pin: &&Pin| is(pin, ENO.name) && pin.wire == PinWire::Open;
+    let results: Vec<&Pin> = block.outputs.iter().filter(|pin| !is_idle(pin)).collect();
+    let [result] = &results[..] else { return Err(Refusal::Element) };
+    if !in_order || is(result, ENO.name) {
+        return Err(Refusal::Element);
+    }
+    let mut terms = inputs.iter().map(operand).collect::<Result<Vec<_>, _>>()?;
+    terms.push(operand(result)?);
+    Ok(Action { deed: Deed::Compute(computation), terms, span: element.span })
 }

@@ -1,10 +1,13 @@
 //! Paths of IEC 61131-3 in the words of the FX family.
 
 use super::super::source::Program;
-use super::{device_at, without};
+use super::{COMPUTED, PULSE, STEPPED, device_at, without};
 use crate::document::Scopes;
+use crate::il::iec::SectionKind;
 use crate::ladder::{CoilKind, ContactKind};
-use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Term, Test};
+use crate::logic::{
+    Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Storage, Term, Test,
+};
 use crate::target::iec::LiteralValue;
 use crate::target::{Device, DeviceKind, Form, Operand, Target};
 use crate::text::{Span, folded};
@@ -16,12 +19,18 @@ fn member(term: &Term) -> Option<(&str, &str)> {
     (term.operand == Operand::Variable).then(|| term.text.split_once('.')).flatten()
 }
 
-/// The pointers of the FX family for the labels of a program, by folded name.
-pub(super) struct Labels(FxHashMap<SmolStr, SmolStr>);
+/// What the names of a program stand for on the FX family, where each is one device.
+pub(super) struct Names {
+    /// The pointers for labels, by folded name.
+    labels: FxHashMap<SmolStr, SmolStr>,
+    /// The devices that cannot be named without an address: those at whose addresses something lies, and those whose
+    /// names are variables of several program units.
+    taken: FxHashSet<Device>,
+}
 
-impl Labels {
+impl Names {
     /// Labels that are names of pointers keep them, the others get the next free ones.
-    pub(super) fn of(program: &Program) -> Labels {
+    pub(super) fn of(program: &Program, scopes: &Scopes, target: &Target) -> Names {
         let mut labels = FxHashMap::default();
         let names = || program.rungs.iter().flat_map(|source| &source.rung.labels);
         for name in names().filter(|name| pointer(name).is_some()) {
@@ -36,35 +45,68 @@ impl Labels {
                 labels.insert(folded(name), pointer);
             }
         }
-        Labels(labels)
+        Names { labels, taken: taken_devices(program, scopes, target) }
     }
 
     /// The pointer for a label; one that nobody has stays as it is.
     pub(super) fn of_label(&self, label: &SmolStr) -> SmolStr {
-        self.0.get(&folded(label)).unwrap_or(label).clone()
+        self.labels.get(&folded(label)).unwrap_or(label).clone()
     }
+
+    /// Whether nothing else is this device than the variable of its name.
+    fn is_free(&self, device: Device) -> bool {
+        !self.taken.contains(&device)
+    }
+}
+
+fn taken_devices(program: &Program, scopes: &Scopes, target: &Target) -> FxHashSet<Device> {
+    let mut taken = FxHashSet::default();
+    let mut named = FxHashSet::default();
+    for (unit, pou) in scopes.own_pous().iter().enumerate() {
+        for variable in &pou.variables {
+            match (variable.address, Operand::read(&variable.name, target.model)) {
+                (Some(address), _) => taken.extend(device_at(address)),
+                (None, Operand::Device(device)) if variable.section == SectionKind::Local => {
+                    taken.extend((!named.insert(device) && unit > 0).then_some(device));
+                }
+                _ => {}
+            }
+        }
+    }
+    taken.extend(scopes.globals.values().filter_map(|variable| device_at(variable.address?)));
+    for path in program.rungs.iter().flat_map(|source| source.rung.path.iter().flatten()) {
+        let mut look = |term: &Term| match term.operand {
+            Operand::Direct(address) => taken.extend(device_at(address)),
+            _ => {}
+        };
+        path.clone().each_term(&mut |term| look(term));
+    }
+    taken
+}
+
+/// Whether a model of the family has it; what the target lacks is said of the instruction.
+fn is_known(device: Device) -> bool {
+    Target::ALL.into_iter().any(|target| device.range_on(target).is_some())
+}
+
+/// Whether an instance detects the power of a pulse form.
+fn is_pulse(name: &str) -> bool {
+    let stem = name.get(..PULSE.len()).is_some_and(|stem| stem.eq_ignore_ascii_case(PULSE));
+    stem && name.len() > PULSE.len() && name[PULSE.len()..].bytes().all(|byte| byte.is_ascii_digit())
 }
 
 fn pointer(name: &str) -> Option<u32> {
     name.strip_prefix(['P', 'p'])?.parse().ok()
 }
 
-/// `path` with devices of `target` for variables, as seen from POU number `pou`.
-pub(super) fn path(
-    path: &Path,
-    target: &Target,
-    scopes: &Scopes,
-    pou: Option<usize>,
-    labels: &Labels,
-) -> Result<Path, Refusal> {
-    Converter { target, scopes, pou, labels }.whole(path)
+/// `path` with devices of `target` for variables.
+pub(super) fn path(path: &Path, target: &Target, names: &Names) -> Result<Path, Refusal> {
+    Converter { target, names }.whole(path)
 }
 
 struct Converter<'a> {
     target: &'a Target,
-    scopes: &'a Scopes,
-    pou: Option<usize>,
-    labels: &'a Labels,
+    names: &'a Names,
 }
 
 impl Converter<'_> {
@@ -101,6 +143,11 @@ impl Converter<'_> {
                 }
             }
         }
+        // What IEC does in each scan, a contact that is always on drives.
+        let is_bare = |drive: &Drive| matches!(drive, Drive::Action(action) if !action.deed.stands_alone());
+        if path.gates.is_empty() && path.drives.iter().any(is_bare) {
+            converted.gates.push(Gate::Pass(Expression::Constant(true)));
+        }
         for drive in &path.drives {
             converted.drives.push(match drive {
                 Drive::Path(path) => match &path.gates[..] {
@@ -118,14 +165,21 @@ impl Converter<'_> {
         let (Deed::Call(call), [Drive::Action(coil)]) = (detector.deed, &path.drives[..]) else {
             return None;
         };
+        let instance = detector.terms.first()?;
+        let is_last = matches!(path.gates.last(), Some(Gate::Through(last)) if last == detector);
+        if call.block.name == "R_TRIG" && is_last && is_pulse(&instance.text) {
+            let Deed::Compute(computation) = coil.deed else { return None };
+            let action = self.calculation(computation, coil).ok()?;
+            // RST has no pulse form.
+            let Deed::Instruction(form) = action.deed else { return None };
+            return Some(Action { deed: Deed::Instruction(Form { pulse: true, ..form }), ..action });
+        }
         let (kind, prefix) = match call.block.name {
             "R_TRIG" => (CoilKind::Rising, "PLS_"),
             "F_TRIG" => (CoilKind::Falling, "PLF_"),
             _ => return None,
         };
         let relay = coil.terms.first().filter(|_| coil.deed == Deed::Coil(CoilKind::Plain))?;
-        let is_last = matches!(path.gates.last(), Some(Gate::Through(last)) if last == detector);
-        let instance = detector.terms.first()?;
         let named = instance.text.get(..prefix.len())?.eq_ignore_ascii_case(prefix)
             && instance.text[prefix.len()..].eq_ignore_ascii_case(&relay.text);
         let terms = vec![self.bit(relay).ok()?];
@@ -133,16 +187,7 @@ impl Converter<'_> {
     }
 
     fn expression(&self, expression: &Expression) -> Result<Expression, Refusal> {
-        let all = |parts: &[Expression]| -> Result<Vec<Expression>, Refusal> {
-            parts.iter().map(|part| self.expression(part)).collect()
-        };
-        Ok(match expression {
-            Expression::Constant(value) => Expression::Constant(*value),
-            Expression::Contact(contact) => self.contact(contact)?,
-            Expression::Not(part) => Expression::Not(Box::new(self.expression(part)?)),
-            Expression::And(parts) => Expression::and(all(parts)?),
-            Expression::Or(parts) => Expression::or(all(parts)?),
-        })
+        expression.mapped(&mut |contact| self.contact(contact))
     }
 
     fn contact(&self, contact: &Contact) -> Result<Expression, Refusal> {
@@ -191,21 +236,21 @@ impl Converter<'_> {
     /// The device of this name that the target has.
     fn named(&self, name: &str) -> Option<Device> {
         match Operand::read(name, self.target.model) {
-            Operand::Device(device) => device.range_on(self.target).map(|_| device),
+            Operand::Device(device) => is_known(device).then_some(device),
             _ => None,
         }
     }
 
-    /// The device that a variable stands for: by its name, or by its address.
+    /// The device that a variable stands for: by its address, or if it has none by its name.
     fn device(&self, term: &Term) -> Option<Device> {
-        let device = match term.operand {
-            Operand::Direct(address) => device_at(address),
-            Operand::Variable => self
-                .named(&term.text)
-                .or_else(|| device_at(self.scopes.variable(self.pou, &term.text)?.address?)),
-            _ => None,
+        let device = match term.storage {
+            Storage::Own if term.operand == Operand::Variable => {
+                self.named(&term.text).filter(|device| self.names.is_free(*device))
+            }
+            Storage::Anywhere => None,
+            _ => device_at(term.address()?),
         };
-        device.filter(|device| device.range_on(self.target).is_some())
+        device.filter(|device| is_known(*device))
     }
 
     fn term(&self, device: Device, span: Span) -> Term {
@@ -221,15 +266,43 @@ impl Converter<'_> {
         let (deed, terms) = match (action.deed, &action.terms[..]) {
             (Deed::Coil(_), [term]) => (action.deed, vec![self.bit(term)?]),
             (Deed::Jump, [label]) => {
-                let pointer = self.labels.of_label(&label.text);
+                let pointer = self.names.of_label(&label.text);
                 let operand = Operand::read(&pointer, self.target.model);
                 let form = without(Form::named("CJ").filter(|_| self::pointer(&pointer).is_some()))?;
                 (Deed::Instruction(form), vec![Term::new(operand, &pointer, label.span)])
             }
+            (Deed::Compute(computation), _) => return self.calculation(computation, action),
             (Deed::Call(call), [instance, ..]) => self.called(call, instance, &action.terms)?,
             _ => return Err(Refusal::NoCounterpart),
         };
         Ok(Action { deed, terms, span: action.span })
+    }
+
+    /// The instruction that a calculation is.
+    fn calculation(&self, computation: Computation, action: &Action) -> Result<Action, Refusal> {
+        let (inputs, result) = without(computation.operands(&action.terms))?;
+        let register = self.word(result)?;
+        without(matches!(register.operand, Operand::Device(_)).then_some(()))?;
+        let function = computation.function.name;
+        let row = |rows: &[(&'static str, &str)]| {
+            rows.iter().find(|(_, own)| *own == function).and_then(|(mnemonic, _)| Form::named(mnemonic))
+        };
+        let span = action.span;
+        match inputs {
+            [zero] if zero.text == "0" => {
+                let deed = Deed::Coil(CoilKind::Reset);
+                return Ok(Action { deed, terms: vec![register], span });
+            }
+            [left, one] if left == result && one.text == "1" && row(&STEPPED).is_some() => {
+                let deed = Deed::Instruction(without(row(&STEPPED))?);
+                return Ok(Action { deed, terms: vec![register], span });
+            }
+            _ => {}
+        }
+        let form = without(row(&COMPUTED))?;
+        let mut terms = inputs.iter().map(|term| self.word(term)).collect::<Result<Vec<_>, _>>()?;
+        terms.push(register);
+        Ok(Action { deed: Deed::Instruction(form), terms, span })
     }
 
     /// The output that the call of a timer or counter is.

@@ -1,27 +1,36 @@
 //! Paths of the FX family in the words of IEC 61131-3.
 
-use super::{FIRST_SPECIAL, address, without};
+use super::{COMPUTED, PULSE, STEPPED, address, without};
 use crate::ladder::{CoilKind, ContactKind};
-use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Term, Test};
+use crate::logic::{
+    Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Storage, Term, Test,
+};
 use crate::target::iec::FunctionBlock;
-use crate::target::{Constant, Device, DeviceKind, Flow, Form, Model, Operand, Target};
+use crate::target::{Constant, Device, DeviceKind, Form, Model, Operand, Target};
 use crate::text::Span;
 use smol_str::{SmolStr, ToSmolStr, format_smolstr};
+use std::cell::Cell;
 
 /// Whether a rung is but END, which IEC 61131-3 does not write.
 pub(super) fn is_end(path: &Path) -> bool {
     let [Drive::Action(action)] = &path.drives[..] else { return false };
-    path.gates.is_empty()
-        && matches!(action.deed, Deed::Instruction(form) if form.instruction.flow() == Flow::ProgramEnd)
+    path.gates.is_empty() && action.deed.ends_program()
 }
 
-/// `path`, written for `target`, with variables for devices.
-pub(super) fn path(path: &Path, target: &Target) -> Result<Path, Refusal> {
-    Converter { target }.path(path)
+/// `path`, written for `target`, with variables for devices. `pulses` counts the detectors of pulse forms.
+pub(super) fn path(path: &Path, target: &Target, pulses: &Cell<u32>) -> Result<Path, Refusal> {
+    let mut path = Converter { target, pulses }.path(path)?;
+    let computes = |drive: &Drive| matches!(drive, Drive::Action(Action { deed: Deed::Compute(_), .. }));
+    // Calculations need no load that is always on.
+    if path.gates == [Gate::Pass(Expression::Constant(true))] && path.drives.iter().all(computes) {
+        path.gates.clear();
+    }
+    Ok(path)
 }
 
 struct Converter<'t> {
     target: &'t Target,
+    pulses: &'t Cell<u32>,
 }
 
 impl Converter<'_> {
@@ -44,32 +53,16 @@ impl Converter<'_> {
     }
 
     fn expression(&self, expression: &Expression) -> Result<Expression, Refusal> {
-        let all = |parts: &[Expression]| -> Result<Vec<Expression>, Refusal> {
-            parts.iter().map(|part| self.expression(part)).collect()
-        };
-        Ok(match expression {
-            Expression::Constant(value) => Expression::Constant(*value),
-            Expression::Contact(contact) => self.contact(contact)?,
-            Expression::Not(part) => Expression::Not(Box::new(self.expression(part)?)),
-            Expression::And(parts) => Expression::and(all(parts)?),
-            Expression::Or(parts) => Expression::or(all(parts)?),
-        })
+        expression.mapped(&mut |contact| self.contact(contact))
     }
 
     fn contact(&self, contact: &Contact) -> Result<Expression, Refusal> {
         let terms = match (contact.test, &contact.terms[..]) {
-            (Test::Bit(kind), [term]) => {
-                let always = match term.key().as_str() {
-                    "M8000" => Some(true),
-                    "M8001" => Some(false),
-                    _ => None,
-                };
-                match (always, kind) {
-                    (Some(value), ContactKind::NormallyOpen) => return Ok(Expression::Constant(value)),
-                    (Some(value), ContactKind::NormallyClosed) => return Ok(Expression::Constant(!value)),
-                    _ => vec![self.bit(term)?],
-                }
-            }
+            (Test::Bit(kind), [term]) => match (term.always(), kind) {
+                (Some(value), ContactKind::NormallyOpen) => return Ok(Expression::Constant(value)),
+                (Some(value), ContactKind::NormallyClosed) => return Ok(Expression::Constant(!value)),
+                _ => vec![self.bit(term)?],
+            },
             (Test::Compare(operator), [left, right]) if !operator.is_wide() => {
                 vec![self.word(left)?, self.word(right)?]
             }
@@ -107,8 +100,8 @@ impl Converter<'_> {
     }
 
     fn located(&self, device: Device, span: Span) -> Result<Term, Refusal> {
-        without(address(device).filter(|_| device.number < FIRST_SPECIAL))?;
-        Ok(variable(&device.to_smolstr(), span))
+        let address = without(address(device))?;
+        Ok(Term { storage: Storage::At(address), ..variable(&device.to_smolstr(), span) })
     }
 
     /// Milliseconds for each step of a timer that forgets its time when power goes off.
@@ -134,11 +127,19 @@ impl Converter<'_> {
                         self.counter(device)?;
                         call("CTU", "R", &device.to_smolstr(), None, span).map(Drive::Action)
                     }
+                    (CoilKind::Reset, DeviceKind::D) => {
+                        let zero = literal("0", term.span);
+                        self.computed("MOVE", vec![zero, self.word(term)?], span).map(Drive::Action)
+                    }
                     (_, DeviceKind::T | DeviceKind::C | DeviceKind::D) => Err(Refusal::NoCounterpart),
                     (CoilKind::Rising, _) => self.pulse("R_TRIG", "PLS", term, span),
                     (CoilKind::Falling, _) => self.pulse("F_TRIG", "PLF", term, span),
                     _ => Ok(Drive::Action(Action { terms: vec![self.bit(term)?], ..action.clone() })),
                 }
+            }
+            (Deed::Instruction(form), _) if self.calculation(form, action).is_some() => {
+                let action = without(self.calculation(form, action))??;
+                if form.pulse { self.on_arrival(action) } else { Ok(Drive::Action(action)) }
             }
             (Deed::Instruction(form), [label]) if Form::named("CJ") == Some(form) => {
                 let label = variable(&label.key(), label.span);
@@ -146,6 +147,50 @@ impl Converter<'_> {
             }
             _ => Err(Refusal::NoCounterpart),
         }
+    }
+
+    /// What MOV, ADD, INC and their kin calculate; nothing for other instructions.
+    fn calculation(&self, form: Form, action: &Action) -> Option<Result<Action, Refusal>> {
+        let row = |rows: &[(&str, &'static str)]| {
+            let mut rows = rows.iter().filter(|_| !form.wide);
+            rows.find(|(own, _)| *own == form.instruction.mnemonic).map(|(_, function)| *function)
+        };
+        let words = || action.terms.iter().map(|term| self.word(term)).collect::<Result<Vec<_>, _>>();
+        if let Some(function) = row(&STEPPED) {
+            let one = literal("1", action.span);
+            let terms = words().and_then(|mut terms| {
+                let register = without(terms.pop())?;
+                Ok(vec![register.clone(), one, register])
+            });
+            return Some(terms.and_then(|terms| self.computed(function, terms, action.span)));
+        }
+        let function = row(&COMPUTED)?;
+        Some(words().and_then(|mut terms| {
+            let is_step = matches!(&terms[..], [left, _, result] if left == result);
+            // Plain ones stand for RST, INC and DEC.
+            for term in &mut terms {
+                if term.text == "0" && function == "MOVE" || term.text == "1" && is_step {
+                    *term = literal(&format_smolstr!("INT#{}", term.text), term.span);
+                }
+            }
+            self.computed(function, terms, action.span)
+        }))
+    }
+
+    fn computed(&self, function: &str, terms: Vec<Term>, span: Span) -> Result<Action, Refusal> {
+        let computation = without(Computation::named(function))?;
+        let (_, result) = without(computation.operands(&terms))?;
+        // The value of a counter belongs to its block.
+        without((result.address().is_some()).then_some(()))?;
+        Ok(Action { deed: Deed::Compute(computation), terms, span })
+    }
+
+    /// A calculation that is done when power arrives.
+    fn on_arrival(&self, action: Action) -> Result<Drive, Refusal> {
+        self.pulses.set(self.pulses.get() + 1);
+        let instance = format_smolstr!("{PULSE}{}", self.pulses.get());
+        let detector = call("R_TRIG", "CLK", &instance, None, action.span)?;
+        Ok(Drive::Path(Path { gates: vec![Gate::Through(detector)], drives: vec![Drive::Action(action)] }))
     }
 
     /// `OUT T0 K50`, `OUT C0 K10`
@@ -199,8 +244,11 @@ fn number(value: Constant, span: Span) -> Result<Term, Refusal> {
         Constant::Hexadecimal(bits) => i64::from(without(u16::try_from(bits).ok())? as i16),
         Constant::Real(_) => return Err(Refusal::NoCounterpart),
     };
-    let text = value.to_smolstr();
-    Ok(Term::new(Operand::read(&text, Model::Iec), &text, span))
+    Ok(literal(&value.to_smolstr(), span))
+}
+
+fn literal(text: &str, span: Span) -> Term {
+    Term::new(Operand::read(text, Model::Iec), text, span)
 }
 
 /// Milliseconds as a literal.

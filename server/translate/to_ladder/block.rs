@@ -3,8 +3,8 @@
 use super::Planner;
 use crate::ladder::reduce::Shape;
 use crate::ladder::{Block, Element, ElementKind, Pin, PinWire};
-use crate::logic::{Action, Call};
-use crate::target::iec::Parameter;
+use crate::logic::{Action, Call, Computation, Term};
+use crate::target::iec::{EN, ENO, Parameter};
 use crate::text::{Message, Span, Spanned};
 
 impl Planner {
@@ -28,6 +28,45 @@ impl Planner {
         Ok(self.add(element))
     }
 
+    /// The box of a calculation, which power enables.
+    pub(super) fn computation(
+        &mut self,
+        action: &Action,
+        computation: Computation,
+    ) -> Result<Shape, Message> {
+        let (inputs, result) =
+            computation.operands(&action.terms).ok_or_else(|| Message::new("translate.no-drawing"))?;
+        let type_name = self.word(computation.function.name);
+        let mut element = Element::new(ElementKind::Invert, Span::default(), 0, (0, 0));
+        let mut left = vec![self.pin(EN.name, PinWire::Power)];
+        for (parameter, term) in computation.function.inputs.iter().zip(inputs) {
+            let wire = self.operand(&mut element, term);
+            left.push(self.pin(parameter.name, wire));
+        }
+        let wire = self.operand(&mut element, result);
+        let right = vec![self.pin(ENO.name, PinWire::Open), self.pin(Computation::RESULT, wire)];
+        element.kind = ElementKind::Block(Box::new(Block {
+            instance: None,
+            type_name: Some(type_name),
+            rows: Vec::new(),
+            inputs: left,
+            outputs: right,
+            ldmicro: None,
+        }));
+        Ok(self.add(element))
+    }
+
+    /// What stands beside a pin of `element`.
+    fn operand(&mut self, element: &mut Element, term: &Term) -> PinWire {
+        let span = self.word(&term.text);
+        element.operands.push(Spanned::new(term.operand, span));
+        PinWire::Operand(element.operands.len() - 1)
+    }
+
+    fn pin(&mut self, name: &str, wire: PinWire) -> Pin {
+        Pin { name: Some(self.word(name)), implied: "", negated: false, row: 0, wire }
+    }
+
     /// The pins of one side. The first has the power, if there is any.
     fn pins(
         &mut self,
@@ -45,16 +84,11 @@ impl Planner {
         let mut pins = Vec::new();
         for parameter in names {
             let wire = match argument(parameter.name) {
-                Some(argument) => {
-                    let span = self.word(&argument.term.text);
-                    element.operands.push(Spanned::new(argument.term.operand, span));
-                    PinWire::Operand(element.operands.len() - 1)
-                }
+                Some(argument) => self.operand(element, &argument.term),
                 None if has_power && parameter.name == power => PinWire::Power,
                 None => PinWire::Open,
             };
-            let name = Some(self.word(parameter.name));
-            pins.push(Pin { name, implied: "", negated: false, row: 0, wire });
+            pins.push(self.pin(parameter.name, wire));
         }
         pins
     }

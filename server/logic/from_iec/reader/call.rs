@@ -38,8 +38,7 @@ impl Reader<'_, '_> {
         let block = self.block_of(instance).ok_or(Refusal::Element)?;
         self.settle()?;
         self.invert()?;
-        let called = self.source.tree.operand(instance);
-        let term = Term::new(called.value, called.span.of(self.source.text), called.span);
+        let term = self.source.term(self.pou, instance);
         let call = Call::new(block, input, term, std::iter::empty::<(&str, bool, Term)>());
         let (call, terms) = call.filter(|(call, _)| call.is_input_operator()).ok_or(Refusal::NotBoolean)?;
         self.builder.drive(Action { deed: Deed::Call(call), terms, span });
@@ -87,8 +86,8 @@ impl Reader<'_, '_> {
             _ => return Err(Refusal::Element),
         }
         let power_in = block.inputs.first().map_or("", |pin| pin.name);
-        let instance_term = Term::new(called.value, instance, called.span);
-        let (call, terms) = Call::new(block, power_in, instance_term, arguments).ok_or(Refusal::Element)?;
+        let own = self.source.term(self.pou, callee);
+        let (call, terms) = Call::new(block, power_in, own, arguments).ok_or(Refusal::Element)?;
         self.driven.extend(call.changes(&terms).iter().map(|term| (term.key(), self.at)));
         let action = Action { deed: Deed::Call(call), terms, span: item.span };
         match next.and_then(|next| self.loads(next, &output_of(block, instance))) {

@@ -1,0 +1,205 @@
+//! Runs paths with plain values, one scan from a given state: a second opinion on what the diagrams say, that shares
+//! nothing with them but the reading of rungs.
+
+use super::{Action, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
+use crate::ladder::{CoilKind, CompareOperator, ContactKind};
+use crate::target::iec::LiteralValue;
+use crate::target::{Constant, Device, DeviceKind, Form, Operand};
+use smol_str::{SmolStr, format_smolstr};
+use std::collections::BTreeMap;
+
+/// Devices and variables by their keys, see [`Term::key`]; what is left out is off, or 0.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct State {
+    /// Bits.
+    pub bits: BTreeMap<SmolStr, bool>,
+    /// Words; 32-bit values with a `D` and a blank before the key.
+    pub words: BTreeMap<SmolStr, i64>,
+    /// Bits one scan before, as contacts of edges saw them; those that are left out did not change.
+    pub before: BTreeMap<SmolStr, bool>,
+    /// What an event leaves behind whose working nobody knows, by its number from 1: timers, instructions, calls.
+    pub left_behind: BTreeMap<u32, LeftBehind>,
+}
+
+/// What an event leaves behind.
+#[derive(Clone, PartialEq, Eq, Debug, Default)]
+pub struct LeftBehind {
+    /// Bits that it changes.
+    pub bits: BTreeMap<SmolStr, bool>,
+    /// Words that it changes.
+    pub words: BTreeMap<SmolStr, i64>,
+    /// Whether power goes on behind it.
+    pub passes: bool,
+}
+
+/// What came of a scan.
+#[derive(Debug)]
+pub struct Scan<'s> {
+    state: &'s State,
+    bits: BTreeMap<SmolStr, bool>,
+    words: BTreeMap<SmolStr, i64>,
+    /// Whether each event had power, in order.
+    pub events: Vec<bool>,
+}
+
+/// One scan of `paths` from `state`.
+pub fn evaluate<'s>(paths: &[&Path], state: &'s State) -> Scan<'s> {
+    let (bits, words) = (state.bits.clone(), state.words.clone());
+    let mut scan = Scan { state, bits, words, events: Vec::new() };
+    paths.iter().for_each(|path| scan.path(path, true));
+    scan
+}
+
+impl<'s> Scan<'s> {
+    /// The bit with this key.
+    pub fn bit(&self, key: &str) -> bool {
+        self.bits.get(key).copied().unwrap_or(false)
+    }
+
+    fn path(&mut self, path: &Path, power: bool) {
+        let mut power = power;
+        for gate in &path.gates {
+            power = match gate {
+                Gate::Pass(expression) => power && self.holds(expression),
+                Gate::Invert => !power,
+                Gate::Through(action) => {
+                    self.act(action, power);
+                    match action.power_out() {
+                        Some(output) => self.value(&output),
+                        None => self.left_behind().is_some_and(|left| left.passes),
+                    }
+                }
+            };
+        }
+        for drive in &path.drives {
+            match drive {
+                Drive::Action(action) => self.act(action, power),
+                Drive::Path(path) => self.path(path, power),
+            }
+        }
+    }
+
+    fn holds(&self, expression: &Expression) -> bool {
+        match expression {
+            Expression::Constant(value) => *value,
+            Expression::Contact(contact) => self.conducts(contact),
+            Expression::Not(part) => !self.holds(part),
+            Expression::And(parts) => parts.iter().all(|part| self.holds(part)),
+            Expression::Or(parts) => parts.iter().any(|part| self.holds(part)),
+        }
+    }
+
+    fn conducts(&self, contact: &Contact) -> bool {
+        match (contact.test, &contact.terms[..]) {
+            (Test::Bit(kind), [term]) => {
+                let value = self.value(term);
+                let before = self.state.before.get(&term.key()).copied().unwrap_or(value);
+                match kind {
+                    ContactKind::NormallyOpen => value,
+                    ContactKind::NormallyClosed => !value,
+                    ContactKind::Rising => value && !before,
+                    ContactKind::Falling => !value && before,
+                }
+            }
+            (Test::Compare(operator), [left, right]) => {
+                let [left, right] = [left, right].map(|term| self.word(term, operator.is_wide()));
+                match operator {
+                    CompareOperator::Equal { .. } => left == right,
+                    CompareOperator::NotEqual { .. } => left != right,
+                    CompareOperator::Greater { .. } => left > right,
+                    CompareOperator::Less { .. } => left < right,
+                    CompareOperator::GreaterOrEqual { .. } => left >= right,
+                    CompareOperator::LessOrEqual { .. } => left <= right,
+                }
+            }
+            _ => false,
+        }
+    }
+
+    fn value(&self, term: &Term) -> bool {
+        match term.operand {
+            Operand::Literal(literal) if literal.value == LiteralValue::Bool(true) => true,
+            Operand::Device(Device::ALWAYS_ON) => true,
+            Operand::WordBit { word, bit } if self.words.contains_key(&*word.to_string()) => {
+                self.words[&*word.to_string()] >> bit & 1 == 1
+            }
+            _ => self.bit(&term.key()),
+        }
+    }
+
+    fn word(&self, term: &Term, wide: bool) -> i64 {
+        match term.operand {
+            Operand::Constant { value: Constant::Decimal(value), index: None } => value,
+            Operand::Constant { value: Constant::Hexadecimal(bits), index: None } => {
+                signed(bits, if wide { 32 } else { 16 })
+            }
+            Operand::Literal(literal) if let LiteralValue::Integer(value) = literal.value => {
+                i64::try_from(value).unwrap_or(0)
+            }
+            Operand::Nibbles { digits, first, index: None } => {
+                let bits = 0..u32::from(digits) * 4;
+                let on = |bit: &u32| self.bit(&Device::new(first.kind, first.number + bit).to_string());
+                let pattern = bits.filter(on).fold(0, |pattern, bit| pattern | 1 << bit);
+                signed(pattern, if wide { 32 } else { 16 })
+            }
+            _ => {
+                let key = term.key();
+                let key = if wide { format_smolstr!("D {key}") } else { key };
+                self.words.get(&key).copied().unwrap_or(0)
+            }
+        }
+    }
+
+    fn act(&mut self, action: &Action, power: bool) {
+        let power = power != (action.deed == Deed::Coil(CoilKind::Negated));
+        if let (Deed::Coil(kind), [term]) = (action.deed, &action.terms[..])
+            && term.is_lone()
+        {
+            let value = match kind {
+                CoilKind::Plain | CoilKind::Negated => Some(power),
+                CoilKind::Set => Some(power || self.value(term)),
+                CoilKind::Reset => Some(!power && self.value(term)),
+                _ => None,
+            };
+            if let Some(value) = value {
+                self.bits.insert(term.key(), value);
+                return;
+            }
+        }
+        let moved = self.moved(action, power);
+        self.events.push(power);
+        if let Some(left) = self.left_behind() {
+            self.bits.extend(left.bits.iter().map(|(key, value)| (key.clone(), *value)));
+            self.words.extend(left.words.iter().map(|(key, value)| (key.clone(), *value)));
+        }
+        self.words.extend(moved);
+    }
+
+    fn left_behind(&self) -> Option<&'s LeftBehind> {
+        self.state.left_behind.get(&(self.events.len() as u32))
+    }
+
+    /// The register that MOV or a calculation writes with what it holds then, as far as that is known.
+    fn moved(&self, action: &Action, power: bool) -> Option<(SmolStr, i64)> {
+        let register = action.terms.last()?;
+        let is_register = matches!(register.operand, Operand::Device(Device { kind: DeviceKind::D, .. }));
+        let copies = match action.deed {
+            Deed::Compute(computation) => computation.copies(),
+            Deed::Instruction(form) if Form::named("MOV") == Some(form) && is_register => true,
+            _ => return None,
+        };
+        let source = match power {
+            true if copies => action.terms.first()?,
+            true => return None,
+            false => register,
+        };
+        Some((register.key(), self.word(source, false)))
+    }
+}
+
+/// The number that the lowest `width` bits are.
+fn signed(bits: u64, width: u32) -> i64 {
+    let bits = bits & ((1 << width) - 1);
+    let value = i64::try_from(bits).unwrap_or(0);
+    if bits >> (width - 1) == 1 { value - (1 << width) } else { value }
+}

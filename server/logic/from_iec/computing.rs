@@ -1,0 +1,147 @@
+//! Calculations with words: `LD a / ADD b / ST c`, and those that a jump over them makes conditional:
+//!
+//! ```text
+//!     LD      Start
+//!     JMPCN   Skip1
+//!     LD      a
+//!     ADD     b
+//!     ST      c
+//! Skip1:
+//! ```
+
+use super::{Source, ValueKind, declares};
+use crate::document::DeclaredType;
+use crate::il::iec::{Condition, ItemKind, OperandId, Operation};
+use crate::logic::Computation;
+use crate::target::Operand;
+use crate::target::iec::OperatorRole;
+use crate::text::folded;
+use rustc_hash::{FxHashMap, FxHashSet};
+use smol_str::SmolStr;
+
+/// A calculation in a list.
+pub(super) struct Found {
+    pub computation: Computation,
+    /// Its inputs, then its result.
+    pub operands: Vec<OperandId>,
+    /// How many instructions it takes.
+    pub items: usize,
+}
+
+/// Jumps over calculations alone.
+#[derive(Default)]
+pub(super) struct Skips {
+    /// The item of the label for that of the jump.
+    labels: FxHashMap<usize, usize>,
+    /// The items behind the jump up to the label.
+    inside: FxHashSet<usize>,
+}
+
+impl Skips {
+    /// The label of the jump that item `index` is, if it only skips calculations.
+    pub fn label(&self, index: usize) -> Option<usize> {
+        self.labels.get(&index).copied()
+    }
+
+    /// Whether item `index` is skipped, or is the label behind.
+    pub fn covers(&self, index: usize) -> bool {
+        self.inside.contains(&index)
+    }
+}
+
+impl Source<'_> {
+    /// The jumps that only skip calculations, to labels that nobody else jumps to.
+    pub(super) fn find_skips(&self, pous: usize) -> Skips {
+        let mut mentions: FxHashMap<SmolStr, usize> = FxHashMap::default();
+        for item in &self.tree.items {
+            if let ItemKind::Label { name } | ItemKind::Jump { label: Some(name), .. } = item.kind {
+                *mentions.entry(folded(name.of(self.text))).or_default() += 1;
+            }
+        }
+        let mut skips = Skips::default();
+        let mut units = pous;
+        for (index, item) in self.tree.items.iter().enumerate() {
+            match item.kind {
+                ItemKind::Pou { .. } => units += 1,
+                ItemKind::Jump { condition: Condition::IfFalse, label: Some(label), .. }
+                    if item.depth == 0 =>
+                {
+                    let name = folded(label.of(self.text));
+                    let end = self.end_of_calculations(units.checked_sub(1), index + 1);
+                    let is_end = end > index + 1
+                        && matches!(self.tree.items.get(end).map(|item| item.kind),
+                            Some(ItemKind::Label { name: end }) if folded(end.of(self.text)) == name);
+                    if is_end && mentions.get(&name) == Some(&2) && !self.needs_result(end) {
+                        skips.labels.insert(index, end);
+                        skips.inside.extend(index + 1..=end);
+                    }
+                }
+                _ => {}
+            }
+        }
+        skips
+    }
+
+    fn end_of_calculations(&self, pou: Option<usize>, start: usize) -> usize {
+        let mut at = start;
+        while let Some(found) = self.calculation(pou, at) {
+            at += found.items;
+        }
+        at
+    }
+
+    /// The calculation that begins at item `index`, if one does whose result nothing else uses.
+    pub(super) fn calculation(&self, pou: Option<usize>, index: usize) -> Option<Found> {
+        let (load, first) = self.operation(index)?;
+        if load.operator.role != OperatorRole::Load {
+            return None;
+        }
+        let (mut store_at, mut operands, mut computation) =
+            (index + 1, vec![first], Computation::named("MOVE")?);
+        let (operation, second) = self.operation(store_at)?;
+        if operation.operator.role == (OperatorRole::Combine { comparison: false }) {
+            let name = if operation.operator.name == "&" { "AND" } else { operation.operator.name };
+            computation = Computation::named(name)?;
+            operands.push(second);
+            store_at += 1;
+        }
+        let (store, result) = self.operation(store_at)?;
+        let is_store = store.operator.role == OperatorRole::Store && !store.word.of(self.text).ends_with('?');
+        operands.push(result);
+        let is_last = self.tree.items.get(store_at + 1).is_none_or(|next| match next.kind {
+            ItemKind::Label { .. } => !self.needs_result(store_at + 1),
+            kind => declares(&kind) || self.starts_afresh(&kind),
+        });
+        let fits =
+            is_store && is_last && !self.feeds(store_at) && self.are_words(pou, computation, &operands);
+        fits.then_some(Found { computation, operands, items: store_at + 1 - index })
+    }
+
+    /// An operation outside of parentheses, without a negation.
+    fn operation(&self, index: usize) -> Option<(Operation, OperandId)> {
+        let item = self.tree.items.get(index)?;
+        match item.kind {
+            ItemKind::Operation { operation, operand: Some(id) } if item.depth == 0 && !operation.negated => {
+                Some((operation, id))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether operands are words, as far as they are declared. What can be done with bits as well must be told by one.
+    fn are_words(&self, pou: Option<usize>, computation: Computation, operands: &[OperandId]) -> bool {
+        let kinds = operands.iter().map(|id| {
+            let operand = self.tree.operand(*id);
+            let word = operand.span.of(self.text);
+            let kind = self.value_kind(pou, &operand.value, word);
+            // A structure has parts with names of their own.
+            let is_plain = operand.value != Operand::Variable
+                || matches!(self.scopes.type_of(pou, word), None | Some(DeclaredType::Elementary(_)));
+            (kind, is_plain)
+        });
+        let kinds: Vec<_> = kinds.collect();
+        let is_numeric = !computation.copies() && !computation.is_bitwise();
+        kinds.iter().all(|(kind, is_plain)| *is_plain && matches!(kind, ValueKind::Word | ValueKind::Unknown))
+            && (is_numeric || kinds.iter().any(|(kind, _)| *kind == ValueKind::Word))
+    }
+}

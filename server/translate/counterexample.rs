@@ -1,0 +1,218 @@
+//! The scan in which two programs differ, made of the values for which their formulas do, and confirmed by running both
+//! programs with them.
+
+use crate::logic::{Atom, Formulas, Moment, Path, Place, State, Step, evaluate};
+use crate::target::iec::LiteralValue;
+use crate::target::{Device, Model, Operand};
+use crate::text::Span;
+use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
+
+/// A scan in which two programs differ.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Counterexample {
+    /// Inputs and states at its start, by name.
+    pub inputs: BTreeMap<String, Value>,
+    /// Bits as they were one scan before, where it matters that they changed.
+    pub before: BTreeMap<String, bool>,
+    /// What differs: a bit, or an action that only one does.
+    pub what: String,
+    /// What it is on either side.
+    pub sides: [bool; 2],
+    /// The rungs on either side that differ, or where the stretch starts that does.
+    pub at: [Option<Span>; 2],
+}
+
+/// A value at the start of a scan.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Value {
+    /// Of a bit.
+    Bit(bool),
+    /// Of a word.
+    Word(i64),
+}
+
+/// Inputs and states by name, and bits as they were before, as a counterexample has them.
+pub(super) fn inputs(state: &State) -> (BTreeMap<String, Value>, BTreeMap<String, bool>) {
+    let bits = state.bits.iter().map(|(name, value)| (name.to_string(), Value::Bit(*value)));
+    let is_variable = |name: &str| integer(name).is_none() && !name.contains('#');
+    let words = state.words.iter().filter(|(name, _)| is_variable(name));
+    let words = words.map(|(name, value)| (name.trim_start_matches(WIDE).to_string(), Value::Word(*value)));
+    let before = state.before.iter().map(|(name, value)| (name.to_string(), *value));
+    (bits.chain(words).collect(), before.collect())
+}
+
+/// Whether the programs that `paths` are differ as said when they are run from `state`.
+pub(super) fn is_confirmed(state: &State, paths: [&[&Path]; 2], place: &Place, sides: [bool; 2]) -> bool {
+    let found = paths.map(|paths| {
+        let scan = evaluate(paths, state);
+        match place {
+            Place::Bit(key) => Some(scan.bit(key)),
+            Place::Event(number) => scan.events.get((*number as usize).checked_sub(1)?).copied(),
+        }
+    });
+    found == sides.map(Some)
+}
+
+/// What 32-bit values have before their names.
+const WIDE: &str = "D ";
+
+/// The state of the PLC in which atoms have these values; nothing if there is none, as words are numbers.
+pub(super) fn state(formulas: &Formulas, values: &BTreeMap<u32, bool>) -> Option<State> {
+    let mut state = State::default();
+    let mut bounds = Bounds::default();
+    let mut idle = Vec::new();
+    for (atom, value) in values {
+        match formulas.atom_at(*atom) {
+            Atom::Bit(of) => match event(formulas, of) {
+                None => _ = state.bits.insert(of.name.clone(), *value),
+                Some(event) => {
+                    let left = state.left_behind.entry(event).or_default();
+                    left.bits.insert(of.name.clone(), *value);
+                }
+            },
+            Atom::Edge { of, value: driven, rising } if *value => {
+                if driven.is_none() && of.since == 0 {
+                    state.bits.insert(of.name.clone(), *rising);
+                }
+                state.before.insert(of.name.clone(), !rising);
+            }
+            Atom::Edge { of, value: driven, rising } => idle.push((of, *driven, *rising)),
+            Atom::Behind(event) => state.left_behind.entry(*event).or_default().passes = *value,
+            Atom::Rail => {}
+            Atom::Reaches { word, number } => match value {
+                true => bounds.at_least(Some(word), None, *number),
+                false => bounds.at_least(None, Some(word), 1 - *number),
+            },
+            Atom::AtLeast { word, other } => match value {
+                true => bounds.at_least(Some(word), Some(other), 0),
+                false => bounds.at_least(Some(other), Some(word), 1),
+            },
+        }
+    }
+    for (of, driven, rising) in idle {
+        // A bit that did not change has no edge of either kind.
+        let now = match driven {
+            Some(driven) => {
+                let value = |atom: u32| values.get(&atom).copied().unwrap_or(false);
+                formulas.evaluate(&[driven], value)[0]
+            }
+            None => state.bits.get(&of.name).copied().unwrap_or(rising),
+        };
+        state.before.entry(of.name.clone()).or_insert(now);
+    }
+    for (word, number) in bounds.solved()? {
+        match event(formulas, &word) {
+            None => {
+                spread(&mut state, &word.name, number);
+                state.words.insert(word.name, number);
+            }
+            Some(event) => {
+                state.left_behind.entry(event).or_default().words.insert(word.name, number);
+            }
+        }
+    }
+    // What an event leaves as it found it was so before, unless that is known to be otherwise.
+    for left in state.left_behind.values() {
+        for (name, value) in &left.bits {
+            state.bits.entry(name.clone()).or_insert(*value);
+        }
+        for (name, value) in &left.words {
+            state.words.entry(name.clone()).or_insert(*value);
+        }
+    }
+    (!has_halves(&state)).then_some(state)
+}
+
+/// Whether a 32-bit value is there beside its own halves, of which nobody made sure that they fit.
+fn has_halves(state: &State) -> bool {
+    let is_half = |number: u32, kind| {
+        let half = Device::new(kind, number).to_string();
+        state.words.contains_key(half.as_str())
+    };
+    state.words.keys().filter_map(|name| name.strip_prefix(WIDE)).any(|name| {
+        match Operand::read(name, Model::Fx3u) {
+            Operand::Device(device) => {
+                is_half(device.number, device.kind) || is_half(device.number + 1, device.kind)
+            }
+            _ => false,
+        }
+    })
+}
+
+/// The event after which a device is read; nothing if that is its value at the start, or what was driven tells it.
+fn event(formulas: &Formulas, of: &Moment) -> Option<u32> {
+    match formulas.step_at(of.since)? {
+        Step::Event { number, .. } => Some(*number),
+        Step::Driven { .. } => None,
+    }
+}
+
+/// A word of bits gives them their values, as far as they have none.
+fn spread(state: &mut State, name: &str, number: i64) {
+    let name = name.trim_start_matches(WIDE);
+    let Operand::Nibbles { digits, first, index: None } = Operand::read(name, Model::Fx3u) else { return };
+    for bit in 0..u32::from(digits) * 4 {
+        let device = Device::new(first.kind, first.number + bit);
+        state.bits.entry(device.to_string().into()).or_insert(number >> bit & 1 == 1);
+    }
+}
+
+/// The whole number that a literal of IEC 61131-3 is.
+fn integer(name: &str) -> Option<i64> {
+    let Operand::Literal(literal) = Operand::read(name, Model::Iec) else { return None };
+    let LiteralValue::Integer(value) = literal.value else { return None };
+    i64::try_from(value).ok()
+}
+
+/// Words that are at least so much larger than others.
+#[derive(Default)]
+struct Bounds {
+    /// The number of each word; that of zero is 0.
+    numbers: FxHashMap<Moment, usize>,
+    words: Vec<Moment>,
+    /// The larger one, the smaller one, and by how much.
+    least: Vec<(usize, usize, i64)>,
+}
+
+impl Bounds {
+    /// `left` is at least `more` more than `right`, where nothing is zero.
+    fn at_least(&mut self, left: Option<&Moment>, right: Option<&Moment>, more: i64) {
+        let [left, right] = [left, right].map(|word| word.map_or(0, |word| self.number(word)));
+        self.least.push((left, right, more));
+    }
+
+    fn number(&mut self, word: &Moment) -> usize {
+        if let Some(known) = self.numbers.get(word) {
+            return *known;
+        }
+        self.words.push(word.clone());
+        let number = self.words.len();
+        self.numbers.insert(word.clone(), number);
+        if let Some(value) = integer(&word.name) {
+            self.least.extend([(number, 0, value), (0, number, -value)]);
+        }
+        number
+    }
+
+    /// The least numbers that fit, by the method of Bellman and Ford; nothing if there are none.
+    fn solved(&self) -> Option<Vec<(Moment, i64)>> {
+        let mut values = vec![0_i64; self.words.len() + 1];
+        for _ in 0..=values.len() {
+            let mut is_done = true;
+            for (left, right, more) in &self.least {
+                let least = values[*right].saturating_add(*more);
+                if values[*left] < least {
+                    values[*left] = least;
+                    is_done = false;
+                }
+            }
+            if is_done {
+                let zero = values[0];
+                let words = self.words.iter().cloned().zip(&values[1..]);
+                return Some(words.map(|(word, value)| (word, value.saturating_sub(zero))).collect());
+            }
+        }
+        None
+    }
+}
