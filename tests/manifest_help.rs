@@ -89,11 +89,11 @@ fn with(text: &str, label: &str) -> String {
 #[test]
 fn keys_and_tables_that_are_not_there_yet_are_proposed() {
     let keys = ["name", "target", "dialect", "files", "comments", "port"];
-    let tables = ["[format]", "[rules]", "[[task]]"];
+    let tables = ["[check]", "[format]", "[rules]", "[[task]]"];
     assert_eq!(labels("$0"), set(keys.into_iter().chain(tables)));
     let left = labels("target = \"fx2n\"\n$0\nname = \"a\"\n[rules]\n");
-    assert_eq!(left, set(["dialect", "files", "comments", "port", "[format]", "[[task]]"]));
-    assert_eq!(labels("[format]\nstyle = \"iec\"\n$0"), set(["width", "[rules]", "[[task]]"]));
+    assert_eq!(left, set(["dialect", "files", "comments", "port", "[check]", "[format]", "[[task]]"]));
+    assert_eq!(labels("[format]\nstyle = \"iec\"\n$0"), set(["width", "[check]", "[rules]", "[[task]]"]));
     // Each task has keys of its own, and a key in another table is no key of this one.
     let task = "name = \"x\"\n[[task]]\nname = \"a\"\n[[task]]\n$0";
     assert!(
@@ -108,6 +108,7 @@ fn keys_and_tables_that_are_not_there_yet_are_proposed() {
     assert_eq!(with("fo$0", "[format]"), "[format]");
     assert_eq!(with("ta$0 = 1", "target"), "target = 1", "a key that has a value is replaced alone");
     assert_eq!(with("ta$0", "target"), "target = \"${1|fx1s,fx1n,fx2n,fx3u,iec|}\"");
+    assert_eq!(with("[check]\nn$0", "never"), "[check]\nnever = [\"$1\"]");
     assert_eq!(with("[format]\nw$0", "width"), "[format]\nwidth = ${1:48}");
     assert_eq!(with("format = { $0 }", "style"), "format = { style = \"${1|iec,brackets,unicode|}\" }");
     assert_eq!(with("format = {$0}", "style"), "format = {style = \"${1|iec,brackets,unicode|}\"}");
@@ -128,7 +129,7 @@ fn values_are_the_words_and_files_that_fit() {
     assert_eq!(labels("rules = { open-circuit = \"$0\" }"), set(["error", "warning", "hint", "off"]));
     assert_eq!(labels("rules.open-circuit = \"$0\""), set(["error", "warning", "hint", "off"]));
     let codes = RULES.iter().map(|rule| rule.code).filter(|code| *code != "open-circuit");
-    let rules = labels("[rules]\nopen-circuit = \"off\"\n$0\n[format]\n[[task]]\n");
+    let rules = labels("[rules]\nopen-circuit = \"off\"\n$0\n[check]\n[format]\n[[task]]\n");
     assert_eq!(rules, set(codes.chain(["[[task]]"])));
     assert_eq!(labels("files = [$0"), set(["main.lad", "sub/motors.il"]));
     assert_eq!(labels("files = [$0]"), set(["main.lad", "sub/motors.il"]), "closed by the editor");
@@ -139,6 +140,7 @@ fn values_are_the_words_and_files_that_fit() {
     assert_eq!(labels("[[task]]\nprograms = [\"$0\"]"), set(["main.lad", "sub/motors.il"]));
     assert_eq!(labels("comments = \"$0\""), set(["devices.csv"]));
     assert_eq!(labels("[format]\nwidth = $0"), set(["48"]));
+    assert_eq!(with("[check]\nnever = $0", "[\"Y0 & Y1\"]"), "[check]\nnever = [\"Y0 & Y1\"]");
     assert_eq!(labels("target = \"fx2n\" $0"), set([]));
     assert_eq!(labels("files = [\"main.lad\"\ntarget = \"$0\""), set(targets), "behind a list that is open");
 }

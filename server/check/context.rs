@@ -66,6 +66,10 @@ pub struct ProgramContext<'a> {
     /// The only file about which the findings are wanted, if not all.
     wanted: Option<usize>,
     cancelled: Option<&'a AtomicBool>,
+    /// Names of which the project says that no two may be on together.
+    never: &'a [Vec<String>],
+    /// Whether there is no other program in the project.
+    is_all: bool,
     uses: OnceCell<Uses<'a>>,
     regions: OnceCell<Regions>,
 }
@@ -103,8 +107,15 @@ impl<'a> ProgramContext<'a> {
             file
         });
         let files = files.take_while(|file| file.start.saturating_add(file.document.len()) < MOST_BYTES);
-        let (uses, regions) = (OnceCell::new(), OnceCell::new());
-        ProgramContext { files: files.collect(), wanted, cancelled: None, uses, regions }
+        ProgramContext {
+            files: files.collect(),
+            wanted,
+            cancelled: None,
+            never: &[],
+            is_all: true,
+            uses: OnceCell::new(),
+            regions: OnceCell::new(),
+        }
     }
 
     /// The same program for work that nobody waits for any more once `flag` is set.
@@ -115,6 +126,22 @@ impl<'a> ProgramContext<'a> {
     /// Whether nobody waits for the findings any more. Rules that take long ask now and then, and end.
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.is_some_and(|flag| flag.load(Ordering::Relaxed))
+    }
+
+    /// The same where the project says that no two of some names may be on together; `is_all` says whether it has no
+    /// other program that they may be about.
+    pub fn with_never(self, never: &'a [Vec<String>], is_all: bool) -> Self {
+        ProgramContext { never, is_all, ..self }
+    }
+
+    /// Names of which no two may be on together, as the project says.
+    pub(super) fn never(&self) -> &'a [Vec<String>] {
+        self.never
+    }
+
+    /// Whether there is no other program in the project.
+    pub(super) fn is_all(&self) -> bool {
+        self.is_all
     }
 
     /// The files in order.
@@ -135,6 +162,14 @@ impl<'a> ProgramContext<'a> {
     /// The last file; nothing if there is none.
     pub fn last(&self) -> Option<ProgramFile<'a>> {
         self.files.last().copied()
+    }
+
+    /// The number of the line of its file in which something stands, from 1.
+    pub(super) fn line_at(&self, span: Span) -> usize {
+        self.file_at(span).map_or(1, |file| {
+            let at = span.start as usize - file.start;
+            file.document.line_at(at).0 + 1
+        })
     }
 
     /// What the program is written for.

@@ -4,7 +4,7 @@ use super::rule::ChunkJudge;
 use super::sense::unused;
 use super::suppression::Suppression;
 use super::{ChunkContext, ProgramContext, RULES, Rule, Run, program_around, programs, proofs};
-use crate::document::{Document, Found, LIMIT_BYTES, Page, ProjectView, Proofs};
+use crate::document::{Chunk, Document, Found, LIMIT_BYTES, Notation, Page, ProjectView, Proofs};
 use crate::text::{Diagnostic, Message, Severity, Span};
 use rustc_hash::{FxHashMap, FxHasher};
 use std::hash::{Hash, Hasher};
@@ -15,14 +15,19 @@ use std::sync::{Arc, LazyLock};
 /// So many pages are worth the start of threads: a page takes longer to judge than a thread to start.
 const WORTH_THREADS: usize = 4;
 
-/// What a project makes of the rules' severities: a code maps to its severity here, or to `None` if it is off.
+/// What a project makes of the rules.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
-pub struct Severities(pub FxHashMap<String, Option<Severity>>);
+pub struct Severities {
+    /// A code maps to its severity here, or to `None` if it is off.
+    pub grades: FxHashMap<String, Option<Severity>>,
+    /// Names of which no two may be on together, list by list.
+    pub never: Vec<Vec<String>>,
+}
 
 impl Severities {
     /// The severity of `code`; `None` if it is switched off.
     pub fn of(&self, code: &str) -> Option<Severity> {
-        match self.0.get(code) {
+        match self.grades.get(code) {
             Some(severity) => *severity,
             None => Some(DEFAULTS.get(code).copied().unwrap_or(Severity::Error)),
         }
@@ -150,7 +155,10 @@ pub fn batch(
     tell: &mut dyn FnMut(Vec<Diagnostic>),
 ) -> Option<Vec<Diagnostic>> {
     let files = program_around(view).into_iter().map(|number| (number, view.members()[number].document));
-    let context = ProgramContext::new(files, Some(view.here_number())).cancellable(view.cancelled());
+    let is_all = files.len() == view.members().len();
+    let context = ProgramContext::new(files, Some(view.here_number()))
+        .cancellable(view.cancelled())
+        .with_never(&severities.never, is_all);
     let here = view.here();
     let suppression = Suppression::of(here);
     let mut told = |found: &[Diagnostic]| {
@@ -175,8 +183,11 @@ pub fn project(view: &ProjectView<'_>, severities: &Severities) -> Vec<Vec<Diagn
         (0..view.members().len()).map(|number| realtime_once(document(number), severities)).collect();
     let mut of_programs: Vec<Vec<Diagnostic>> = vec![Vec::new(); by_file.len()];
     for program in programs(view).into_iter().take_while(|_| !view.is_cancelled()) {
+        let is_all = program.len() == view.members().len();
         let files = program.into_iter().map(|number| (number, document(number)));
-        let context = ProgramContext::new(files, None).cancellable(view.cancelled());
+        let context = ProgramContext::new(files, None)
+            .cancellable(view.cancelled())
+            .with_never(&severities.never, is_all);
         for (number, diagnostic) in judge_program(&context).unwrap_or_default() {
             of_programs[number].push(diagnostic);
         }
@@ -237,6 +248,10 @@ fn judge_page(
             if !context.is_worth_a_proof.get() {
                 chunk.keep_proofs(key, Proofs::default());
             }
+            for (start, list) in chunk.boxes() {
+                let own = judge_box(&list, document, pou_number.checked_sub(1));
+                found.extend(own.iter().map(|diagnostic| diagnostic.shifted(start)));
+            }
             found
         });
         diagnostics.extend(found.iter().map(|diagnostic| diagnostic.shifted(start)));
@@ -247,6 +262,17 @@ fn judge_page(
     page.accesses();
     page.size();
     diagnostics
+}
+
+/// The findings in a list that a drawing carries along, from its start.
+fn judge_box(list: &Chunk, document: &Document, pou: Option<usize>) -> Vec<Diagnostic> {
+    let mut found = list.problems().to_vec();
+    let mut context = ChunkContext::new(list, document, pou);
+    if document.target().is_fx() {
+        context.notation = Notation::FxIl;
+    }
+    CHUNK_JUDGES.iter().for_each(|judge| judge(&context, &mut found));
+    found
 }
 
 /// Messages that are graver or milder than the rest of their rule's.
@@ -262,9 +288,11 @@ fn with_severities(diagnostics: Vec<Diagnostic>, severities: &Severities) -> Vec
     let graded = diagnostics.into_iter().filter_map(|mut diagnostic| {
         let severity = severities.of(diagnostic.code)?;
         // A project that grades the rule itself has the last word.
-        let own = OWN_SEVERITIES.iter().find(|(key, _)| *key == diagnostic.message.key());
-        let own = own.filter(|_| !severities.0.contains_key(diagnostic.code));
-        diagnostic.severity = own.map_or(severity, |(_, severity)| *severity);
+        let key = diagnostic.message.key();
+        let not_proved = super::proof::NOT_PROVED.iter().map(|key| (*key, Severity::Warning));
+        let own = OWN_SEVERITIES.iter().copied().chain(not_proved).find(|(own, _)| *own == key);
+        let own = own.filter(|_| !severities.grades.contains_key(diagnostic.code));
+        diagnostic.severity = own.map_or(severity, |(_, severity)| severity);
         Some(diagnostic)
     });
     graded.collect()

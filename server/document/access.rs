@@ -20,6 +20,8 @@ use std::sync::Arc;
 pub enum Act {
     /// Its value is read.
     Read,
+    /// Its value is read by a contact that conducts while it is off: LDI, `|/|`.
+    ReadOff,
     /// An edge of it is read: LDP, `|P|`.
     ReadEdge,
     /// It gets the current result each time that the place is executed: OUT, ST, a drawn coil.
@@ -48,7 +50,8 @@ pub enum Act {
 
 impl Act {
     /// Those that read or may read the value.
-    pub const READS: &[Act] = &[Act::Read, Act::ReadEdge, Act::Change, Act::Pass, Act::Call, Act::CallInput];
+    pub const READS: &[Act] =
+        &[Act::Read, Act::ReadOff, Act::ReadEdge, Act::Change, Act::Pass, Act::Call, Act::CallInput];
 
     /// Those that write or may write it.
     pub const WRITES: &[Act] = &[
@@ -156,7 +159,7 @@ pub(super) struct OwnAccesses {
     joints: Box<[Joint]>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct OwnAccess {
     subject: Subject,
     act: Act,
@@ -167,7 +170,7 @@ struct OwnAccess {
 }
 
 /// What is named; nearly always it is a device, and a symbol is three times as large.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 enum Subject {
     Device(Device),
     Other(Box<Symbol>),
@@ -230,10 +233,17 @@ pub(super) fn of_chunk(chunk: &Chunk) -> OwnAccesses {
         Tree::Ladder(tree) => {
             let label = tree.header.as_ref().and_then(|header| header.label);
             own.joint(label, JointKind::Label);
-            for (number, rung) in tree.rungs.iter().enumerate() {
-                let number = number.min(usize::from(u16::MAX)) as u16;
+            let mut boxes = chunk.boxes().into_iter().peekable();
+            let mut number = 0;
+            for rung in &tree.rungs {
+                while let Some((start, list)) = boxes.next_if(|(start, _)| *start < rung.span.start as usize)
+                {
+                    own.boxed(start, &list, &mut number);
+                }
                 rung.graph.elements.iter().for_each(|element| own.element(element, number));
+                number = number.saturating_add(1);
             }
+            boxes.for_each(|(start, list)| own.boxed(start, &list, &mut number));
         }
         Tree::Iec(tree) => own.iec(tree),
     }
@@ -250,6 +260,20 @@ impl Collector<'_> {
     fn joint(&mut self, name: Option<Span>, kind: impl FnOnce(SmolStr) -> JointKind) {
         let Some(span) = name else { return };
         self.joints.push(Joint { span, pou: 0, kind: kind(folded(span.of(self.text))) });
+    }
+
+    /// A list in a box, which is a rung of its own.
+    fn boxed(&mut self, start: usize, list: &Chunk, rung: &mut u16) {
+        let own = list.accesses();
+        let moved = |access: &OwnAccess| OwnAccess {
+            span: access.span.shifted(start),
+            rung: *rung,
+            ..access.clone()
+        };
+        self.all.extend(own.all.iter().map(moved));
+        let joints = own.joints.iter();
+        self.joints.extend(joints.map(|joint| Joint { span: joint.span.shifted(start), ..joint.clone() }));
+        *rung = rung.saturating_add(list.size().rungs as u16);
     }
 
     fn element(&mut self, element: &Element, rung: u16) {
@@ -283,7 +307,12 @@ impl Collector<'_> {
                 continue;
             };
             let is_edge = operation.form.is_some_and(|form| form.instruction.is_edge_contact());
-            let act = if is_edge { Act::ReadEdge } else { act_of(spec) };
+            let is_inverse = operation.form.is_some_and(|form| form.instruction.is_inverse_contact());
+            let act = match act_of(spec) {
+                _ if is_edge => Act::ReadEdge,
+                Act::Read if is_inverse => Act::ReadOff,
+                act => act,
+            };
             let gates = operation.form.is_some_and(|form| form.instruction.flow() == Flow::SectionBegin);
             if gates && act.writes() {
                 // The relay of a master control is there to be read by what it gates.

@@ -2,8 +2,9 @@
 
 use super::access::{self, OwnAccesses};
 use super::allowance::{self, OwnAllowance};
+use super::exclusion::{self, Exclusion};
 use super::milestone::{self, Milestone};
-use super::{Mention, Notation, Size, Token, exported, mention, tokens};
+use super::{Mention, Notation, Size, Token, boxes, exported, mention, tokens};
 use crate::il::{fx, iec};
 use crate::ladder::{self, LadderTree, NameHabit};
 use crate::target::Target;
@@ -74,6 +75,7 @@ struct Outline {
     milestones: Box<[Milestone]>,
     accesses: OwnAccesses,
     allowances: Vec<OwnAllowance>,
+    exclusions: Box<[Exclusion]>,
     is_only_comments: bool,
 }
 
@@ -223,6 +225,15 @@ impl Chunk {
         })
     }
 
+    /// The lists in the boxes `{il … }` of a drawing in the order of the text, each with its start, as chunks of their
+    /// own.
+    pub fn boxes(&self) -> Vec<(usize, Chunk)> {
+        match self.known.kind {
+            Kind::Ladder => boxes::of_chunk(self, &self.known.dialect),
+            Kind::Fx | Kind::Iec | Kind::Tables => Vec::new(),
+        }
+    }
+
     /// Whether it is IEC declarations or statements, told without reading it.
     pub fn is_iec(&self) -> bool {
         matches!(self.known.kind, Kind::Iec | Kind::Tables)
@@ -285,6 +296,11 @@ impl Chunk {
         &self.outline().allowances
     }
 
+    /// The comments in it that exclude something, offsets from its start, without the units before it.
+    pub(super) fn exclusions(&self) -> &[Exclusion] {
+        &self.outline().exclusions
+    }
+
     /// Whether nothing is in it but comments and blank lines.
     pub(super) fn is_only_comments(&self) -> bool {
         self.outline().is_only_comments
@@ -298,6 +314,7 @@ impl Chunk {
                 milestones: milestone::of_chunk(&reading).into_boxed_slice(),
                 accesses: access::of_chunk(&reading),
                 allowances: allowance::of_chunk(&reading),
+                exclusions: exclusion::of_chunk(&reading),
                 is_only_comments: allowance::is_only_comments(reading.tree()),
             }
         })

@@ -91,7 +91,13 @@ pub(super) fn of_chunk(chunk: &Chunk) -> Vec<Mention> {
                 }
             }
         }
-        Tree::Ladder(tree) => of_ladder(chunk.text(), tree, &mut mentions),
+        Tree::Ladder(tree) => {
+            of_ladder(chunk.text(), tree, &mut mentions);
+            for (start, list) in chunk.boxes() {
+                let moved = |own: &Mention| Mention { span: own.span.shifted(start), ..own.clone() };
+                mentions.extend(list.mentions().iter().map(moved));
+            }
+        }
         Tree::Iec(tree) => super::scope::mentions(chunk.text(), tree, &mut mentions),
     }
     for operation in chunk.operations() {

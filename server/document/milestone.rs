@@ -5,8 +5,8 @@
 //! few milestones, and a rule passes over a program without looking at its lines.
 
 use super::{Chunk, Operation, Tree};
-use crate::il::fx::LineKind;
-use crate::ladder::ElementKind;
+use crate::il::fx::{FxLine, LineKind};
+use crate::ladder::{Element, ElementKind};
 use crate::target::{Device, Flow, Model, Operand};
 use crate::text::{Span, Spanned};
 use std::sync::Arc;
@@ -73,12 +73,7 @@ pub(super) fn of_chunk(chunk: &Chunk) -> Vec<Milestone> {
     match chunk.tree() {
         Tree::Fx(tree) => {
             for line in &tree.lines {
-                let kind = match line.kind {
-                    LineKind::Label(device) => MilestoneKind::Label(device),
-                    LineKind::Instruction(form) => MilestoneKind::Instruction(form.instruction.flow()),
-                    LineKind::Unknown => MilestoneKind::Unknown,
-                };
-                add(&mut milestones, kind, line.mnemonic, line.span, tree.operands(line).first());
+                add(&mut milestones, kind_of(line), line.mnemonic, line.span, tree.operands(line).first());
             }
         }
         Tree::Ladder(tree) => {
@@ -88,20 +83,52 @@ pub(super) fn of_chunk(chunk: &Chunk) -> Vec<Milestone> {
             {
                 add(&mut milestones, MilestoneKind::Label(device), label, label, None);
             }
-            for element in tree.rungs.iter().flat_map(|rung| &rung.graph.elements) {
-                if let ElementKind::Jump(label) = element.kind {
-                    let Some(device) = pointer(label.of(chunk.text())) else { continue };
-                    let first = Spanned::new(Operand::Device(device), label);
-                    let kind = MilestoneKind::Instruction(Flow::Jump);
-                    add(&mut milestones, kind, element.span, element.span.to(label), Some(&first));
-                } else if let Some(operation) = Operation::of_element(element) {
-                    add_element(&mut milestones, &operation);
+            let mut boxes = chunk.boxes().into_iter().peekable();
+            for rung in &tree.rungs {
+                while let Some((start, list)) = boxes.next_if(|(start, _)| *start < rung.span.start as usize)
+                {
+                    add_box(&mut milestones, start, &list);
                 }
+                rung.graph
+                    .elements
+                    .iter()
+                    .for_each(|element| add_drawn(&mut milestones, element, chunk.text()));
             }
+            boxes.for_each(|(start, list)| add_box(&mut milestones, start, &list));
         }
         Tree::Iec(_) => {}
     }
     milestones
+}
+
+/// The lines of a list in a box.
+fn add_box(milestones: &mut Vec<Milestone>, start: usize, list: &Chunk) {
+    let Tree::Fx(tree) = list.tree() else { return };
+    for line in &tree.lines {
+        let first =
+            tree.operands(line).first().map(|first| Spanned::new(first.value, first.span.shifted(start)));
+        let (word, span) = (line.mnemonic.shifted(start), line.span.shifted(start));
+        add(milestones, kind_of(line), word, span, first.as_ref());
+    }
+}
+
+fn kind_of(line: &FxLine) -> MilestoneKind {
+    match line.kind {
+        LineKind::Label(device) => MilestoneKind::Label(device),
+        LineKind::Instruction(form) => MilestoneKind::Instruction(form.instruction.flow()),
+        LineKind::Unknown => MilestoneKind::Unknown,
+    }
+}
+
+fn add_drawn(milestones: &mut Vec<Milestone>, element: &Element, text: &str) {
+    if let ElementKind::Jump(label) = element.kind {
+        let Some(device) = pointer(label.of(text)) else { return };
+        let first = Spanned::new(Operand::Device(device), label);
+        let kind = MilestoneKind::Instruction(Flow::Jump);
+        add(milestones, kind, element.span, element.span.to(label), Some(&first));
+    } else if let Some(operation) = Operation::of_element(element) {
+        add_element(milestones, &operation);
+    }
 }
 
 fn add_element(milestones: &mut Vec<Milestone>, operation: &Operation<'_>) {

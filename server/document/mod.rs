@@ -41,6 +41,12 @@ pub use access::{Access, Accesses, Act, Joint, JointKind, Part};
 mod allowance;
 pub use allowance::{Allowance, DIRECTIVE};
 
+mod boxes;
+pub use boxes::boxed;
+
+mod exclusion;
+pub use exclusion::{Exclusion, exclusive_names};
+
 mod tokens;
 pub use tokens::{Token, TokenKind};
 

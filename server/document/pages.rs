@@ -2,6 +2,7 @@
 //! rebuilds one page.
 
 use super::allowance::{self, OwnAllowance};
+use super::exclusion::{self, Exclusion};
 use super::{Accesses, Chunk, Found, Milestone, Names, Proofs, Size, access, chunk, milestone};
 use crate::ladder::NameHabit;
 use crate::text::Diagnostic;
@@ -23,6 +24,7 @@ pub struct Page {
     milestones: OnceLock<Arc<[Milestone]>>,
     accesses: OnceLock<Arc<Accesses>>,
     allowances: OnceLock<Arc<[(usize, OwnAllowance)]>>,
+    exclusions: OnceLock<Arc<[Exclusion]>>,
     found: chunk::Kept<Found>,
     proofs: chunk::Kept<Proofs>,
 }
@@ -44,6 +46,7 @@ impl Page {
             milestones: OnceLock::new(),
             accesses: OnceLock::new(),
             allowances: OnceLock::new(),
+            exclusions: OnceLock::new(),
             found: Mutex::new(None),
             proofs: Mutex::new(None),
         })
@@ -98,6 +101,11 @@ impl Page {
     /// The comments that allow something, each with the number of its chunk.
     pub(super) fn allowances(&self) -> &[(usize, OwnAllowance)] {
         self.allowances.get_or_init(|| allowance::of_page(&self.chunks).into())
+    }
+
+    /// The comments that exclude something, offsets from its start.
+    pub(super) fn exclusions(&self) -> &[Exclusion] {
+        self.exclusions.get_or_init(|| exclusion::of_page(&self.chunks).into())
     }
 
     /// Whether there are diagnostics under `key`.
@@ -166,6 +174,7 @@ impl Pages {
                 milestones: page.milestones.clone(),
                 accesses: page.accesses.clone(),
                 allowances: page.allowances.clone(),
+                exclusions: page.exclusions.clone(),
                 found: Mutex::new(None),
                 proofs: Mutex::new(None),
             }),

@@ -28,7 +28,8 @@ impl Size {
             }
             Tree::Ladder(tree) => {
                 let steps = chunk.operations().map(|operation| operation.steps());
-                Size { rungs: tree.rungs.len(), steps: steps.fold(0, u32::saturating_add) }
+                let drawn = Size { rungs: tree.rungs.len(), steps: steps.fold(0, u32::saturating_add) };
+                chunk.boxes().iter().map(|(_, list)| list.size()).chain([drawn]).sum()
             }
             Tree::Iec(tree) => {
                 let acts = tree.items.iter().any(|item| {

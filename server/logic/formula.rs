@@ -220,6 +220,33 @@ impl Formulas {
         formulas.iter().map(|formula| values.get(formula).copied().unwrap_or(false)).collect()
     }
 
+    /// The formulas with others in place of their atoms.
+    pub fn replaced(
+        &mut self,
+        formulas: &[Formula],
+        mut other: impl FnMut(&mut Formulas, u32) -> Formula,
+    ) -> Vec<Formula> {
+        let mut made: FxHashMap<Formula, Formula> = FxHashMap::default();
+        for part in self.parts_of(formulas.iter().copied()) {
+            let node = self.node(part).clone();
+            let of = |part: &Formula| made.get(part).copied().unwrap_or(*part);
+            let new = match node {
+                Node::Constant(_) => part,
+                Node::Atom(number) => other(self, number),
+                Node::Not(inner) => self.not(of(&inner)),
+                Node::And(parts) => self.and(parts.iter().map(of)),
+                Node::Or(parts) => self.or(parts.iter().map(of)),
+            };
+            made.insert(part, new);
+        }
+        formulas.iter().map(|formula| made.get(formula).copied().unwrap_or(*formula)).collect()
+    }
+
+    /// How many parts the formulas have.
+    pub fn size_of(&self, formulas: impl IntoIterator<Item = Formula>) -> usize {
+        self.parts_of(formulas).len()
+    }
+
     /// The formulas and all their parts, each once, parts first.
     pub(super) fn parts_of(&self, formulas: impl IntoIterator<Item = Formula>) -> Vec<Formula> {
         let mut waiting: Vec<Formula> = formulas.into_iter().collect();

@@ -6,6 +6,7 @@ use super::builder::Builder;
 use super::from_fx;
 use super::from_iec;
 use super::{Action, Contact, Declared, Deed, Expression, Gate, Network, Path, Refusal, Rung, Term, Test};
+use crate::document::boxed;
 use crate::il::{fx, iec};
 use crate::ladder::reduce::{NotSeriesParallel, Shape, reduce};
 use crate::ladder::{self, Element, ElementKind, Graph, LadderTree};
@@ -67,13 +68,6 @@ pub(super) fn rungs(text: &str, tree: &LadderTree, target: &Target, declared: De
         first.network = network;
     }
     rungs
-}
-
-/// The list in a box `{il … }`, in which a drawing carries along what has no drawing, and where it starts there.
-fn boxed(comment: &str) -> Option<(&str, usize)> {
-    let inside = comment.strip_prefix("{il")?.strip_suffix('}')?;
-    let list = inside.trim_start();
-    (list.len() < inside.len()).then(|| (list.trim_end(), "{il".len() + inside.len() - list.len()))
 }
 
 /// The rung that such a list is.

@@ -48,6 +48,9 @@ pub use effort::Effort;
 mod decide;
 pub use decide::{Verdict, equal, is_never};
 
+mod scans;
+pub use scans::{Exclusion, Scans, Source};
+
 mod minimal;
 pub use minimal::{Sum, sum_of_products};
 

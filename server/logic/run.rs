@@ -60,6 +60,8 @@ pub struct Run<'p> {
     rail: Formula,
     /// The last event that may have set special relays: flags of arithmetic and of completion.
     flags: u32,
+    /// Whether states are relays like others, as in a program without steps.
+    has_plain_states: bool,
 }
 
 /// A bit that was driven.
@@ -90,7 +92,13 @@ impl<'p> Run<'p> {
             by_outcome: false,
             rail: Formulas::TRUE,
             flags: 0,
+            has_plain_states: false,
         }
+    }
+
+    /// The same for a program without steps, in which states are relays like others.
+    pub fn without_steps() -> Run<'p> {
+        Run { has_plain_states: true, ..Run::new() }
     }
 
     /// The same for a comparison of outcomes, where effects need not pair. `rail` is the power at the left rail, which
@@ -102,6 +110,26 @@ impl<'p> Run<'p> {
     /// Runs a rung.
     pub fn path(&mut self, path: &'p Path, formulas: &mut Formulas) {
         self.powered(path, self.rail, formulas);
+    }
+
+    /// Passes a rung that may be executed or not: nothing is known afterwards of what it drives.
+    pub fn maybe(&mut self, path: &'p Path, formulas: &mut Formulas) {
+        for action in path.actions() {
+            let guard = formulas.atom(Atom::Behind(self.events + 1));
+            self.event(action, guard, formulas);
+        }
+    }
+
+    /// Passes something that nobody can read, and that may change anything.
+    pub fn unread(&mut self, formulas: &mut Formulas) {
+        self.events += 1;
+        self.change_all(formulas);
+    }
+
+    /// Lets time pass, in which the CPU may change the special relays that it owns.
+    pub fn pause(&mut self) {
+        self.events += 1;
+        self.flags = self.events;
     }
 
     /// How many events there were.
@@ -215,7 +243,7 @@ impl<'p> Run<'p> {
     /// The moment at which `term`, whose key is `name`, is read as a bit.
     fn moment(&self, term: &Term, name: SmolStr, formulas: &mut Formulas) -> Moment {
         // Words are made of bits, bits of words: whatever wrote to the kind counts.
-        let since = match term.is_lone() {
+        let since = match self.is_apart(term) {
             true => self.after(self.last_event(term, &name), formulas),
             false if leads_anywhere(term) => self.touched[ANYWHERE],
             false => self.touched[slot(term)],
@@ -335,6 +363,11 @@ impl<'p> Run<'p> {
             self.driven.insert(key, Driven { term, value, since: self.events });
             return;
         }
+        self.event(action, guard, formulas);
+    }
+
+    /// Does something of which nothing is known afterwards.
+    fn event(&mut self, action: &'p Action, guard: Formula, formulas: &mut Formulas) {
         self.events += 1;
         let reads = match action.deed {
             Deed::Call(_) => action.terms.iter().skip(1).map(|term| self.bit(term, formulas)).collect(),
@@ -374,18 +407,20 @@ impl<'p> Run<'p> {
                 }
             }
             // What is done meanwhile elsewhere, nobody knows here.
-            Deed::Instruction(_) => {
-                self.kinds = [self.events; KINDS];
-                self.touched = [self.after(self.events, formulas); KINDS];
-                self.flags = self.events;
-            }
+            Deed::Instruction(_) => self.change_all(formulas),
             Deed::Jump | Deed::Return => {}
         }
     }
 
+    fn change_all(&mut self, formulas: &mut Formulas) {
+        self.kinds = [self.events; KINDS];
+        self.touched = [self.after(self.events, formulas); KINDS];
+        self.flags = self.events;
+    }
+
     fn change_term(&mut self, term: &Term, formulas: &mut Formulas) {
         self.changed.insert(term.key(), self.events);
-        match term.is_lone() {
+        match self.is_apart(term) {
             true => self.touch(slot(term), formulas),
             // Setting one state resets others; a word has its bits and those beside it.
             false => self.change_kind(slot(term), formulas),
@@ -409,6 +444,17 @@ impl<'p> Run<'p> {
         }
     }
 
+    /// Whether it is a bit by itself, so that a coil that writes to it does nothing else.
+    fn is_lone(&self, term: &Term) -> bool {
+        let is_state = matches!(term.operand, Operand::Device(device) if device.kind == DeviceKind::S);
+        term.is_lone() || (self.has_plain_states && is_state)
+    }
+
+    /// Whether nothing but writing to it changes it: a bit by itself, a timer or a counter.
+    fn is_apart(&self, term: &Term) -> bool {
+        self.is_lone(term) || matches!(term.operand, Operand::Device(device) if device.kind.has_preset())
+    }
+
     /// The bit that a coil drives and its value then; nothing if more happens than that.
     fn bit_driven(
         &self,
@@ -417,7 +463,7 @@ impl<'p> Run<'p> {
         formulas: &mut Formulas,
     ) -> Option<(&'p Term, Formula)> {
         let [term] = &action.terms[..] else { return None };
-        if !term.is_lone() {
+        if !self.is_lone(term) {
             return None;
         }
         let value = match action.deed {

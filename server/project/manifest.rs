@@ -1,11 +1,12 @@
 //! The manifest `rungwise.toml`.
 
 use crate::check::Severities;
-use crate::document::Notation;
+use crate::document::{Notation, exclusive_names};
 use crate::target::Target;
 use crate::text::{Message, Severity, Span};
 use serde::Deserialize;
 use std::collections::BTreeMap;
+use std::ops::Range;
 use toml::de::DeTable;
 
 /// A project's settings. Every one has a default, so an empty manifest is one.
@@ -24,6 +25,8 @@ pub struct Manifest {
     pub comments: Option<String>,
     /// Severity of rules: a code maps to `error`, `warning`, `hint` or `off`.
     pub rules: BTreeMap<String, String>,
+    /// What the checker is to prove.
+    pub check: CheckSettings,
     /// What the formatter writes.
     pub format: FormatSettings,
     /// Tasks of the program.
@@ -31,6 +34,14 @@ pub struct Manifest {
     pub tasks: Vec<TaskSettings>,
     /// The serial port of the PLC.
     pub port: Option<String>,
+}
+
+/// What the checker is to prove of the programs.
+#[derive(Clone, PartialEq, Eq, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct CheckSettings {
+    /// Outputs, relays or variables of which no two may be on together, as `Y0 & Y1`.
+    pub never: Vec<String>,
 }
 
 /// Nobody reads wider ladder; a width beyond it is a slip of the finger that would fill the memory.
@@ -141,7 +152,11 @@ impl Manifest {
     /// The rules' severities.
     pub fn severities(&self) -> Severities {
         let pairs = self.rules.iter().filter_map(|(code, word)| Some((code.clone(), severity_named(word)?)));
-        Severities(pairs.collect())
+        let names = |line: &String| {
+            let (names, _) = exclusive_names(line);
+            names.iter().map(|name| name.of(line).to_string()).collect()
+        };
+        Severities { grades: pairs.collect(), never: self.check.never.iter().map(names).collect() }
     }
 
     fn validated(self, text: &str) -> Result<Manifest, ManifestError> {
@@ -159,6 +174,12 @@ impl Manifest {
         if let Some(word) = self.dialect.as_deref().filter(|word| dialect_named(word).is_none()) {
             return fail("manifest.dialect", word, Part::Value, &["dialect"]);
         }
+        for (number, line) in self.check.never.iter().enumerate() {
+            if let Err((message, within)) = exclusion(line) {
+                let start = item(text, &["check", "never"], number).start as usize;
+                return Err(ManifestError { message, span: within.shifted(start) });
+            }
+        }
         for (code, word) in &self.rules {
             if crate::check::Rule::named(code).is_none() {
                 return fail("manifest.rule", code, Part::Key, &["rules", code]);
@@ -169,6 +190,36 @@ impl Manifest {
         }
         Ok(self)
     }
+}
+
+/// What is wrong with a line such as `Y0 & Y1`, and where in it.
+fn exclusion(line: &str) -> Result<(), (Message, Span)> {
+    let (names, end) = exclusive_names(line);
+    let behind = line[end..].trim();
+    if !behind.is_empty() || names.len() < 2 {
+        let message = Message::new("manifest.never").with("line", line);
+        return Err((message, Span::new(0, line.len())));
+    }
+    for (number, name) in names.iter().enumerate() {
+        let is_again = |other: &Span| other.of(line).eq_ignore_ascii_case(name.of(line));
+        if names[..number].iter().any(is_again) {
+            return Err((Message::new("manifest.never-twice").with("name", name.of(line)), *name));
+        }
+    }
+    Ok(())
+}
+
+/// Where the item of this number stands in the list under `keys`, without its quotes.
+fn item(text: &str, keys: &[&str], number: usize) -> Span {
+    let Ok(table) = DeTable::parse(text) else { return Span::default() };
+    let mut table = Some(table.get_ref());
+    let mut found = None;
+    for key in keys {
+        let value = table.and_then(|table| table.get(*key));
+        found = value.and_then(|value| value.get_ref().as_array()).and_then(|list| list.get(number));
+        table = value.and_then(|value| value.get_ref().as_table());
+    }
+    found.map_or(Span::default(), |value| within_quotes(text, value.span()))
 }
 
 /// What of an entry is meant.
@@ -191,8 +242,12 @@ fn place(text: &str, keys: &[&str], part: Part) -> Span {
         };
         table = value.get_ref().as_table();
     }
+    within_quotes(text, span)
+}
+
+/// A word is meant without its quotes.
+fn within_quotes(text: &str, span: Range<usize>) -> Span {
     let (start, end) = (at_character(text, span.start), at_character(text, span.end));
-    // A word is meant without its quotes.
     let quotes = text
         .get(start..end)
         .and_then(|entry| entry.chars().next())

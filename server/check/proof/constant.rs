@@ -85,7 +85,7 @@ pub(super) fn value_of(formula: Formula, formulas: &mut Formulas) -> Option<bool
 }
 
 /// Whether it drives or does something, and does not steer the program.
-fn is_output(action: &Action) -> bool {
+pub(super) fn is_output(action: &Action) -> bool {
     match action.deed {
         Deed::Coil(_) => true,
         Deed::Instruction(form) => {

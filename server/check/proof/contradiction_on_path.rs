@@ -76,7 +76,7 @@ use crate::text::{Diagnostic, Message, Severity};
 pub(super) const RULE: Rule = Rule {
     code: "contradiction-on-path",
     severity: Severity::Hint,
-    run: Run::Chunk(super::check),
+    run: Run::Both(super::check, super::across::check),
     source: include_str!("contradiction_on_path.rs"),
 };
 

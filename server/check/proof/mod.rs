@@ -27,6 +27,13 @@ mod never_energised;
 
 mod always_energised;
 
+mod across;
+
+mod slice;
+
+mod mutual_exclusion;
+pub(super) use mutual_exclusion::NOT_PROVED;
+
 /// The rules of this group.
 pub(super) const RULES: &[&Rule] = &[
     &contradiction_on_path::RULE,
@@ -34,6 +41,7 @@ pub(super) const RULES: &[&Rule] = &[
     &redundant_branch::RULE,
     &never_energised::RULE,
     &always_energised::RULE,
+    &mutual_exclusion::RULE,
 ];
 
 /// What is found at once: contradictions are seen by looking at contacts two by two.

@@ -8,6 +8,13 @@
 //! What is switched off by a contact that never conducts in any program, NOT M8000 or M8001, is meant so and not
 //! reported.
 //!
+//! Relays are followed over the rungs of a file, in lists for the FX family and in drawings, where one plain coil is
+//! all that writes them: whatever needs a relay that is never on is never on, either, and so is a rung that asks for
+//! the opposite of what the rung of a relay above it asks for. That a panel writes such a relay is not considered, for
+//! its coil writes it anew in each scan. Relays that keep their value without power, that are set or reset, or that
+//! stand where a jump or a master control may leave them out are not followed. Of the rungs that may be such, the
+//! first hundred and fifty are proved in one check.
+//!
 //! ```lad
 //! |  X0    X0     Y0  |
 //!                 ^^
@@ -38,6 +45,30 @@
 //! OUT Y0
 //! LD M8001
 //! OUT Y1
+//! END
+//! ```
+//!
+//! ```fx
+//! LD X0
+//! ANI X1
+//! OUT M0
+//! LD M0
+//! AND X1
+//! OUT Y0
+//!     ^^
+//! LD Y0
+//! OUT Y1
+//!     ^^
+//! END
+//! ```
+//!
+//! ```fx
+//! LD X0
+//! ANI X1
+//! OUT M0
+//! LDI M0
+//! AND X1
+//! OUT Y0
 //! END
 //! ```
 //!

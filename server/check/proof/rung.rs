@@ -146,6 +146,16 @@ impl Look {
     }
 }
 
+/// Whether part of the conditions never changes, which was meant so.
+pub(super) fn has_constant(path: &Path) -> bool {
+    let mut found = false;
+    path.visit(&mut |_| {}, &mut |condition| {
+        condition.visit(&mut |contact| found |= contact.terms.iter().all(is_constant));
+        found |= matches!(condition, Expression::Constant(_));
+    });
+    found
+}
+
 /// Whether it has one value in each scan, as M8000 has.
 fn is_constant(term: &Term) -> bool {
     match term.operand {

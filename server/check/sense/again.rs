@@ -1,11 +1,13 @@
 //! Timers and counters, and instances of their blocks, that are driven in more than one place.
 
+use super::free::next_free;
+use super::rungs::MOST_MENDED;
 use super::uses::{Key, Name, Use};
 use crate::check::ProgramContext;
 use crate::document::{Act, DeclaredType};
 use crate::target::DeviceKind;
 use crate::target::iec::FunctionBlock;
-use crate::text::{Diagnostic, Message};
+use crate::text::{Diagnostic, Message, TextEdit};
 
 /// So many places before one are compared with it, besides the first.
 const COMPARED: usize = 16;
@@ -52,9 +54,21 @@ pub(super) fn driven_again(
                 _ => "driven-again.counter-instance",
             });
             let related = Message::new("driven-again.first").with("name", &words);
-            found.push(
-                Diagnostic::new(code, one.span, message.with("name", words)).related(other.span, related),
-            );
+            let diagnostic = Diagnostic::new(code, one.span, message.with("name", &words));
+            let diagnostic = diagnostic.related(other.span, related);
+            let free = match name.key {
+                Key::Device(device) if found.len() < MOST_MENDED => {
+                    next_free(uses, device, 1, context.target())
+                }
+                _ => None,
+            };
+            found.push(match free {
+                Some(free) => {
+                    let title = Message::new("driven-again.free").with("free", free).with("name", words);
+                    diagnostic.fix(title, vec![TextEdit::new(one.span, free.to_string())])
+                }
+                None => diagnostic,
+            });
         }
     }
 }

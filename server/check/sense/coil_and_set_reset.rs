@@ -73,10 +73,12 @@
 //! ```
 
 use super::coils::Coils;
+use super::free::symbol_of;
+use super::rungs::MOST_MENDED;
 use super::uses::Use;
 use crate::check::{ProgramContext, Rule, Run};
 use crate::document::Act;
-use crate::text::{Diagnostic, Message, Severity};
+use crate::text::{Diagnostic, Message, Severity, TextEdit};
 
 pub(super) const RULE: Rule = Rule {
     code: "coil-and-set-reset",
@@ -112,10 +114,28 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
                 _ => "coil-and-set-reset.reset",
             });
             let related = Message::new("coil-and-set-reset.coil").with("name", &name);
-            found.push(
-                Diagnostic::new(RULE.code, latch.span, message.with("name", &name))
-                    .related(coil.span, related),
-            );
+            let diagnostic = Diagnostic::new(RULE.code, latch.span, message.with("name", &name));
+            let diagnostic = diagnostic.related(coil.span, related);
+            let has_set = driven.all.iter().any(|one| one.access.act == Act::Set);
+            let is_one = writes.len() == 1 && !has_set && found.len() < MOST_MENDED;
+            found.push(match is_one.then(|| latched(context, coil)).flatten() {
+                Some(edit) => {
+                    let title = Message::new("coil-and-set-reset.latch").with("name", &name);
+                    diagnostic.fix(title, vec![edit])
+                }
+                None => diagnostic,
+            });
         }
     }
+}
+
+/// Has the coil set its device: what is reset elsewhere and never set was meant to hold.
+fn latched(context: &ProgramContext<'_>, coil: &Use) -> Option<TextEdit> {
+    let (symbol, words) = symbol_of(context.uses(), coil)?;
+    let set = match words.to_ascii_uppercase().as_str() {
+        "OUT" => "SET",
+        "( )" => "(S)",
+        _ => return None,
+    };
+    Some(TextEdit::new(symbol, set))
 }

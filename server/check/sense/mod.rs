@@ -3,12 +3,14 @@
 use super::Rule;
 
 mod uses;
-pub(super) use uses::Uses;
+pub(super) use uses::{Key, Name, Use, Uses};
 
 mod regions;
 pub(super) use regions::Regions;
 
 mod rungs;
+
+mod free;
 
 mod coils;
 
@@ -17,6 +19,7 @@ mod double_coil;
 mod coil_and_set_reset;
 
 mod relays;
+pub(super) use relays::is_general;
 
 mod set_without_reset;
 

@@ -42,11 +42,13 @@
 //! +--| |---[DADD D0 D2 D4]+
 //! ```
 
+use super::free::next_free;
+use super::rungs::MOST_MENDED;
 use super::uses::{Key, Use};
 use crate::check::{ProgramContext, Rule, Run};
 use crate::document::Part;
 use crate::target::Device;
-use crate::text::{Diagnostic, Message, Severity};
+use crate::text::{Diagnostic, Message, Severity, TextEdit};
 
 pub(super) const RULE: Rule = Rule {
     code: "overlapping-words",
@@ -84,6 +86,28 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
         };
         let message = Message::new(key).with("name", second).with("first", device);
         let related = Message::new("overlapping-words.related").with("name", second).with("first", device);
-        found.push(Diagnostic::new(RULE.code, one.span, message).related(pair.span, related));
+        let diagnostic = Diagnostic::new(RULE.code, one.span, message).related(pair.span, related);
+        found.push(match moved(context, number, device) {
+            Some((free, edits)) => {
+                let title = Message::new("overlapping-words.move").with("first", device).with("free", free);
+                diagnostic.fix(title, edits)
+            }
+            None => diagnostic,
+        });
     }
+}
+
+/// Gives a number of 32 bits, which is only ever used as a whole, a pair of registers of its own in all places.
+fn moved(context: &ProgramContext<'_>, number: u32, device: Device) -> Option<(Device, Vec<TextEdit>)> {
+    let uses = context.uses();
+    let mut all = uses.of_name(number);
+    let is_alone = all.len() <= MOST_MENDED && !device.is_special();
+    let words = device.to_string();
+    // A symbol or a part of an operand is no place for the bare name of another register.
+    let is_plain = |one: Use| one.access.part == Part::Pair && uses.words(&one).eq_ignore_ascii_case(&words);
+    if !is_alone || !all.all(is_plain) {
+        return None;
+    }
+    let free = next_free(uses, device, 2, context.target())?;
+    Some((free, uses.of_name(number).map(|one| TextEdit::new(one.span, free.to_string())).collect()))
 }

@@ -160,7 +160,8 @@ fn late(uses: &Uses<'_>, number: u32) -> Option<(Use, Use)> {
     }
     let mut others = uses.of_name(number).filter(|one| !one.in_rung_of(&coil));
     let first = others.next()?;
-    let reads = |one: &Use| matches!(one.access.act, Act::Read | Act::ReadEdge) && one.is_whole();
+    let reads =
+        |one: &Use| matches!(one.access.act, Act::Read | Act::ReadOff | Act::ReadEdge) && one.is_whole();
     let is_above = |one: &Use| one.span.start < coil.span.start && one.file == coil.file;
     let is_late = |one: &Use| one.access.act == Act::Declare || (reads(one) && is_above(one));
     let rest_is_late = others.all(|one| is_late(&one));

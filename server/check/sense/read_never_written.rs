@@ -89,7 +89,7 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let wiring = Wiring::of(context);
     let is_own = |name: &Name<'_>| may_only_the_program_write(context, &wiring, name);
     for (number, name) in uses.names().filter(|(_, name)| is_own(name)) {
-        if !uses.acts(number).has(&[Act::Read, Act::ReadEdge]) {
+        if !uses.acts(number).has(&[Act::Read, Act::ReadOff, Act::ReadEdge]) {
             continue;
         }
         let Some(read) = uses.of_name(number).find(is_read) else { continue };
@@ -120,7 +120,7 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
 }
 
 fn is_read(one: &Use) -> bool {
-    let reads = matches!(one.access.act, Act::Read | Act::ReadEdge);
+    let reads = matches!(one.access.act, Act::Read | Act::ReadOff | Act::ReadEdge);
     reads && (one.access.part == Part::Pair || one.access.count == 1)
 }
 

@@ -18,6 +18,8 @@ pub struct Regions {
     skips: Vec<(u32, u32)>,
     /// From each offset on, the last start and the first end of the skips that cover it.
     covers: Vec<(u32, Option<(u32, u32)>)>,
+    /// What may be executed several times in a scan: from a label to the last jump back to it, from FOR to NEXT.
+    loops: Vec<(u32, u32)>,
     /// Whether there are steps.
     pub has_steps: bool,
     is_fx: bool,
@@ -40,6 +42,11 @@ impl Region {
     /// Whether the place is executed in every scan: in no step and no routine.
     pub fn is_plain(self) -> bool {
         self == Region::default()
+    }
+
+    /// Whether its place in the text is its place in the scan, if it is executed at all.
+    pub fn is_in_order(self) -> bool {
+        self.routine.is_none() && self.step.is_none() && self.section == 0
     }
 
     fn is_interrupt(self) -> bool {
@@ -66,6 +73,7 @@ impl Regions {
         let mut region = Region::default();
         let mut labels: FxHashMap<Device, u32> = FxHashMap::default();
         let mut jumps: Vec<(u32, Device)> = Vec::new();
+        let mut opened: Vec<u32> = Vec::new();
         for statement in context.executed() {
             let before = region;
             match statement.kind {
@@ -78,6 +86,13 @@ impl Regions {
                 StatementKind::Instruction(flow) => {
                     region.pass(flow, &statement);
                     regions.has_steps |= flow == Flow::Step;
+                    match flow {
+                        Flow::LoopBegin => opened.push(statement.span.start),
+                        Flow::LoopEnd => {
+                            regions.loops.extend(opened.pop().map(|start| (start, statement.span.end)));
+                        }
+                        _ => {}
+                    }
                     if flow == Flow::Jump {
                         jumps.extend(statement.device().map(|label| (statement.span.end, label)));
                     }
@@ -88,6 +103,13 @@ impl Regions {
                 regions.regions.push((statement.span.start, region));
             }
         }
+        // A loop that is left open reaches to the end.
+        regions.loops.extend(opened.into_iter().map(|start| (start, u32::MAX)));
+        let back = |(end, label): &(u32, Device)| {
+            let start = labels.get(label).copied().filter(|_| *label != END_POINTER)?;
+            (start < *end).then_some((start, *end))
+        };
+        regions.loops.extend(jumps.iter().filter_map(back));
         let behind = |(start, label): (u32, Device)| {
             // END needs no label; what stands behind the main program is another part anyway.
             let end = if label == END_POINTER { u32::MAX } else { *labels.get(&label)? };
@@ -121,6 +143,7 @@ impl Regions {
                 for (start, label) in unit.jumps {
                     // Accesses of other units have other names, so the end of the file will do for that of the unit.
                     let label = label.map_or(Some(end), |label| unit.labels.get(label.as_str()).copied());
+                    regions.loops.extend(label.filter(|label| *label <= start).map(|label| (label, start)));
                     regions.skips.extend(label.filter(|label| start < *label).map(|label| (start, label)));
                 }
             }
@@ -176,6 +199,11 @@ impl Regions {
     /// Whether a jump may pass over the place at an offset.
     pub fn may_be_skipped(&self, offset: u32) -> bool {
         self.cover(offset).is_some()
+    }
+
+    /// Whether a scan may come to the place at an offset more than once.
+    pub fn may_be_repeated(&self, offset: u32) -> bool {
+        self.loops.iter().any(|(start, end)| *start <= offset && offset < *end)
     }
 
     /// Whether a jump may pass over `one` in a scan in which `other` is executed.

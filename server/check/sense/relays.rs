@@ -10,7 +10,7 @@ use rustc_hash::FxHashSet;
 
 /// Whether it is a relay or a register of the general range: none that the CPU knows, none that keeps its value without
 /// power and may have it from another day or from a panel, and none that the model lacks, which its own rule reports.
-pub(super) fn is_general(device: Device, target: &Target) -> bool {
+pub fn is_general(device: Device, target: &Target) -> bool {
     let is_kind = matches!(device.kind, DeviceKind::M | DeviceKind::D);
     is_kind && !device.is_special() && device.range_on(target).is_some_and(|range| !range.latched)
 }

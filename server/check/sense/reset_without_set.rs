@@ -66,11 +66,12 @@
 //! END_PROGRAM
 //! ```
 
-use super::relays::{first_of, is_latchable, is_written_in_row};
+use super::relays::{first_of, is_latchable, is_latched, is_written_in_row};
+use super::rungs::PlainRung;
 use super::uses::Key;
 use crate::check::{ProgramContext, Rule, Run};
 use crate::document::Act;
-use crate::text::{Diagnostic, Message, Severity};
+use crate::text::{Diagnostic, Message, Severity, TextEdit};
 
 pub(super) const RULE: Rule = Rule {
     code: "reset-without-set",
@@ -94,6 +95,17 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
         }
         let key = if counts { "reset-without-set.undriven" } else { "reset-without-set.found" };
         let message = Message::new(key).with("name", uses.words(&reset));
-        found.push(Diagnostic::new(RULE.code, reset.span, message));
+        let diagnostic = Diagnostic::new(RULE.code, reset.span, message);
+        // Of what keeps its value without power nobody knows what it was before.
+        let begins_off = matches!(name.key, Key::Device(device) if !is_latched(device, context.target()));
+        let is_only = uses.of_name(number).filter(|one| one.access.act == Act::Reset).count() == 1;
+        let rung = (begins_off && is_only).then(|| PlainRung::of(uses, &reset)).flatten();
+        found.push(match rung {
+            Some(rung) => {
+                let title = Message::new("reset-without-set.remove").with("name", uses.words(&reset));
+                diagnostic.fix(title, vec![TextEdit::new(rung.all, "")])
+            }
+            None => diagnostic,
+        });
     }
 }

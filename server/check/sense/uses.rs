@@ -3,7 +3,7 @@
 
 use crate::check::ProgramContext;
 use crate::check::statements::is_fx_program;
-use crate::document::{Access, Act, Chunk, Notation, Page, Part, Symbol, Variable};
+use crate::document::{Access, Act, Chunk, Notation, Page, Part, Scopes, Symbol, Variable};
 use crate::target::{Device, DeviceKind, DirectAddress, Flow};
 use crate::text::Span;
 use rustc_hash::FxHashMap;
@@ -29,6 +29,8 @@ pub struct Uses<'a> {
     lists: Vec<bool>,
     /// Where each name is written.
     written: OnceCell<Vec<Vec<u32>>>,
+    /// Where the program ends.
+    end: u32,
     /// Whether it is a program for an FX.
     pub is_fx: bool,
 }
@@ -152,6 +154,7 @@ impl<'a> Uses<'a> {
             written_rows: Rows::default(),
             lists: context.files().iter().map(|file| file.document.notation() != Notation::Ladder).collect(),
             written: OnceCell::new(),
+            end,
             is_fx: context.files().first().is_some_and(|file| is_fx_program(file.document)),
         };
         uses.number_names(context);
@@ -242,6 +245,47 @@ impl<'a> Uses<'a> {
         self.names.iter().enumerate().map(|(number, name)| (number as u32, name))
     }
 
+    /// The name with this number.
+    pub fn name(&self, number: u32) -> Option<&Name<'a>> {
+        self.names.get(number as usize)
+    }
+
+    /// The number of what a declared name means in a unit of a file, or that of a direct address; units are counted as
+    /// [`Key::Local`] does.
+    pub fn named(&self, scopes: &'a Scopes, file: usize, unit: usize, symbol: &'a Symbol) -> Option<u32> {
+        self.numbers.get(&name_of(symbol, file, unit, scopes).key).copied()
+    }
+
+    /// All that is accessed from one offset to another, each with the number of its name, in order.
+    pub fn within(&self, start: u32, end: u32) -> impl Iterator<Item = (u32, Use)> {
+        let first = self.pages.partition_point(|page| page.start <= start as usize).saturating_sub(1);
+        let pages = self.pages.iter().enumerate().skip(first);
+        let pages = pages.take_while(move |(_, page)| page.start < end as usize);
+        pages.flat_map(move |(number, page)| {
+            let all = &page.page.accesses().all;
+            let at = |offset: u32| {
+                all.partition_point(|access| (access.span.start as usize + page.start) < offset as usize)
+            };
+            let places = at(start)..at(end);
+            places.map(move |place| (page.table[all[place].name as usize], self.at(number, place)))
+        })
+    }
+
+    /// The chunk at an offset with its start, and how many units of its file have started when it ends.
+    pub fn chunk_at(&self, offset: u32) -> Option<(usize, &'a Chunk, usize)> {
+        let behind = self.pages.partition_point(|page| page.start <= offset as usize);
+        let page = self.pages.get(behind.checked_sub(1)?)?;
+        let (mut start, mut pous) = (page.start, page.pous);
+        for chunk in page.page.chunks() {
+            pous += chunk.pou_starts();
+            if (offset as usize) < start + chunk.len() {
+                return Some((start, chunk, pous));
+            }
+            start += chunk.len();
+        }
+        None
+    }
+
     /// All that is done with a name.
     pub fn acts(&self, number: u32) -> Acts {
         self.acts.get(number as usize).copied().unwrap_or_default()
@@ -301,6 +345,22 @@ impl<'a> Uses<'a> {
             .map(move |(place, access)| (page.table[access.name as usize], self.at(number, first + place)))
     }
 
+    /// Calls `visit` with what each rung accesses, each with the number of its name.
+    pub fn each_rung<'u>(&'u self, mut visit: impl FnMut(RungUses<'u, 'a>)) {
+        for (number, page) in self.pages.iter().enumerate() {
+            let all = &page.page.accesses().all;
+            let length = (self.end as usize).saturating_sub(page.start);
+            let length = all.partition_point(|access| (access.span.start as usize) < length);
+            let mut first = 0;
+            for rung in
+                all[..length].chunk_by(|one, other| (one.chunk, one.rung) == (other.chunk, other.rung))
+            {
+                visit(RungUses { uses: self, page: number, places: first..first + rung.len() });
+                first += rung.len();
+            }
+        }
+    }
+
     /// The chunk of `one`, with its start in the program.
     pub fn chunk(&self, one: &Use) -> Option<(usize, &'a Chunk)> {
         let page = self.pages.get(one.page)?;
@@ -333,12 +393,30 @@ impl<'a> Uses<'a> {
     }
 }
 
-fn name_of<'a>(
-    symbol: &'a Symbol,
-    file: usize,
-    started: usize,
-    scopes: &'a crate::document::Scopes,
-) -> Name<'a> {
+/// What a rung accesses, in order.
+#[derive(Clone)]
+pub struct RungUses<'u, 'a> {
+    uses: &'u Uses<'a>,
+    page: usize,
+    places: std::ops::Range<usize>,
+}
+
+impl Iterator for RungUses<'_, '_> {
+    type Item = (u32, Use);
+
+    fn next(&mut self) -> Option<(u32, Use)> {
+        let place = self.places.next()?;
+        let page = &self.uses.pages[self.page];
+        let name = page.table[page.page.accesses().all[place].name as usize];
+        Some((name, self.uses.at(self.page, place)))
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        self.places.size_hint()
+    }
+}
+
+fn name_of<'a>(symbol: &'a Symbol, file: usize, started: usize, scopes: &'a Scopes) -> Name<'a> {
     let plain = |key| Name { key, variable: None };
     match symbol {
         Symbol::Device(device) => plain(Key::Device(*device)),
