@@ -6,7 +6,9 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 /// The findings in a document, and the other files of its project that they were found with.
 #[derive(Debug, Default)]
-pub(super) struct Known(Mutex<Option<(Vec<Weak<Open>>, Arc<[Diagnostic]>)>>);
+pub(super) struct Known(Mutex<Option<Kept>>);
+
+type Kept = (Vec<Weak<Open>>, Arc<[Diagnostic]>);
 
 impl Clone for Known {
     /// What is made of a document, with another text or among others, is judged anew.
