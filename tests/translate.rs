@@ -413,6 +413,29 @@ fn contacts_behind_a_step_begin_anew() {
     assert!(refused.rungs[0].note.is_some());
 }
 
+#[test]
+fn branches_that_nest_too_deep_are_written_output_by_output() {
+    let nested = |last: &str| {
+        let down: String = (0..12).map(|number| format!("MPS\nAND M{number}\n")).collect();
+        let up: String = (0..12).map(|number| format!("MPP\nANI X{number}\nOUT Y{number}\n")).collect();
+        format!("LD X20\n{down}OUT {last}\n{}", up.replace("ANI X8", "ANI X10").replace("ANI X9", "ANI X11"))
+    };
+    let text = nested("Y20").replace("OUT Y8", "OUT Y12").replace("OUT Y9", "OUT Y13");
+    let drawn = translate(&list(&text), None, To::Ladder, &Options::default());
+    let listed = certain(&drawing(&drawn.text), To::Fx);
+    assert!(!listed.contains("MPS") && listed.matches("LD X20\n").count() == 13, "{listed}");
+    assert!(matches!(prove(&list(&listed), &drawing(&drawn.text)), Proof::Equal { .. }));
+    // What is driven first and read then would not be the same any more.
+    let drawn = translate(&list(&nested("M3")), None, To::Ladder, &Options::default());
+    let kept = translate(&drawing(&drawn.text), None, To::Fx, &Options::default());
+    assert_eq!(
+        kept.rungs[0].note.as_ref().map(|note| note.key()),
+        Some("translate.branches"),
+        "{}",
+        kept.text
+    );
+}
+
 /// The bits that a proof gives for a scan, and as they were one scan before.
 fn bits_of(found: &rungwise::translate::Counterexample) -> (Bits, Bits) {
     let now: Bits = found

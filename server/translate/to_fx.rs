@@ -8,7 +8,9 @@
 use super::stack::{self, Moves, Wants};
 use crate::document::coil_form;
 use crate::ladder::{CoilKind, ContactKind};
-use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
+use crate::logic::{
+    Action, Comparison, Contact, Deed, Drive, Expression, Formulas, Gate, Path, Term, Test, compare,
+};
 use crate::target::{Device, Form, Limits, Operand, Role, Target};
 use crate::text::{Message, Span};
 use std::borrow::Cow;
@@ -38,10 +40,45 @@ impl fmt::Display for Line {
 }
 
 /// The instructions of `path`, or why there are none for it on `target`.
+///
+/// What branches deeper than the target keeps powers is written output by output, where that is proved to be the same.
 pub fn lines(path: &Path, target: &Target) -> Result<Vec<Line>, Message> {
+    let reason = match written(std::slice::from_ref(path), target) {
+        Err(reason) if reason.key() == TOO_MANY_BRANCHES => reason,
+        written => return written,
+    };
+    let mut single = Vec::new();
+    one_by_one(path, &mut Vec::new(), &mut single).ok_or_else(|| reason.clone())?;
+    let all: Vec<&Path> = single.iter().collect();
+    match compare(&[path], &all, &mut Formulas::default()) {
+        Comparison::Same { .. } => written(&single, target),
+        _ => Err(reason),
+    }
+}
+
+const TOO_MANY_BRANCHES: &str = "translate.branches";
+
+fn written(paths: &[Path], target: &Target) -> Result<Vec<Line>, Message> {
     let mut writer = Writer { lines: Vec::new(), branches: 0, limits: target.limits };
-    writer.path(path, true)?;
+    paths.iter().try_for_each(|path| writer.path(path, true))?;
     Ok(writer.lines)
+}
+
+/// A path for each output, with all that leads to it; nothing where power goes through something on the way.
+fn one_by_one(path: &Path, before: &mut Vec<Gate>, found: &mut Vec<Path>) -> Option<()> {
+    if path.gates.iter().any(|gate| matches!(gate, Gate::Through(_))) {
+        return None;
+    }
+    let start = before.len();
+    before.extend(path.gates.iter().cloned());
+    for drive in &path.drives {
+        match drive {
+            Drive::Action(_) => found.push(Path { gates: before.clone(), drives: vec![drive.clone()] }),
+            Drive::Path(path) => one_by_one(path, before, found)?,
+        }
+    }
+    before.truncate(start);
+    Some(())
 }
 
 /// `lines`, if `target` has all of their instructions and devices; else what it lacks.
@@ -124,7 +161,7 @@ impl Writer {
                     _ => {}
                 }
                 if self.branches > self.limits.branches {
-                    return Err(Message::new("translate.branches").with("limit", self.limits.branches));
+                    return Err(Message::new(TOO_MANY_BRANCHES).with("limit", self.limits.branches));
                 }
             }
             match drive {
