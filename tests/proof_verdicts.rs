@@ -161,3 +161,25 @@ fn declarations_count() {
     assert_eq!(word(&prove(&text("A"), &text("A"))), "equal");
     assert_ne!(word(&prove(&text("A"), &text("a"))), "equal");
 }
+
+#[test]
+fn an_fx_program_is_compared_with_one_of_iec_61131_3() {
+    let list = "LD X0\nOR Y0\nANI X1\nOUT Y0\nLD Y0\nOUT T0 K50\nLD T0\nOUT Y1\nEND\n";
+    let list = Document::new(list, Notation::FxIl, Target::of(Model::Fx2n));
+    let iec = |timer: &str, contact: &str| {
+        let variables =
+            "X0 AT %IX0.0 : BOOL; Stop AT %IX0.1 : BOOL; Y0 AT %QX0.0 : BOOL; Y1 AT %QX0.1 : BOOL;";
+        let text = format!(
+            "PROGRAM p\nVAR\n{variables} T0 : TON;\nEND_VAR\nLD X0\nOR Y0\nANDN Stop\nST Y0\n\
+             CAL T0(IN := Y0, PT := {timer})\n{contact} T0.Q\nST Y1\nEND_PROGRAM\n"
+        );
+        Document::new(&text, Notation::IecIl, Target::of(Model::Iec))
+    };
+    for (timer, contact, expected) in
+        [("T#5s", "LD", "equal"), ("T#5s", "LDN", "different"), ("T#6s", "LD", "undecided")]
+    {
+        let other = iec(timer, contact);
+        assert_eq!(word(&prove(&list, &other)), expected, "{timer} {contact}");
+        assert_eq!(word(&prove(&other, &list)), expected, "{timer} {contact}");
+    }
+}

@@ -4,13 +4,13 @@
 //! another way, stretches between jumps, labels and the like are compared by what comes of them.
 
 use super::counterexample::{self, Counterexample};
-use super::declared;
 use super::source::{self, Source};
+use super::{To, declared, dialect};
 use crate::document::Document;
 use crate::logic::{
     Comparison, Deed, Effort, Path, Place, compare, compare_outcome, may_drive, touches_bits,
 };
-use crate::target::Flow;
+use crate::target::{Flow, Model, Target};
 use crate::text::{Message, Span};
 
 /// What is known of two programs.
@@ -32,9 +32,17 @@ pub enum Proof {
     },
 }
 
-/// Compares two programs.
+/// Compares two programs. If one is for the FX family and the other of IEC 61131-3, the devices of the one are the
+/// variables that a translation gives them.
 pub fn prove(left: &Document, right: &Document) -> Proof {
-    let sources = [source::rungs(left, None), source::rungs(right, None)];
+    let is_mixed = left.target().is_fx() != right.target().is_fx();
+    let sources = [left, right].map(|document| {
+        let mut program = source::program(document, None);
+        if is_mixed && document.target().is_fx() {
+            dialect::convert(document, (To::Iec, Target::of(Model::Iec)), &mut program);
+        }
+        program.rungs
+    });
     let stretches = [(left, &sources[0]), (right, &sources[1])].map(|(document, sources)| {
         let unit = |pou: usize| document.scopes().pous.get(pou).map_or("", |pou| pou.name.as_str());
         stretches(sources, unit)
