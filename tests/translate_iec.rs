@@ -225,11 +225,7 @@ fn detectors_of_edges_are_contacts() {
     let calls = "CAL up(\nCLK := a\n)\nCAL down(\nCLK := b\n)\n";
     let (drawn, back) = round(&program(&variables, &format!("{calls}LD up.Q\nAND c\nOR down.Q\nS y")));
     assert!(drawn.contains("|P|") && drawn.contains("|N|"), "{drawn}");
-    let expected =
-        format!("{calls}LD up.Q\nAND c\nOR down.Q\nS y").replace("up", "Rise1").replace("down", "Fall1");
-    assert_eq!(body(&back).join("\n"), expected);
-    let declared = back.contains("Rise1 : R_TRIG;") && back.contains("Fall1 : F_TRIG;");
-    assert!(declared, "{back}");
+    assert_eq!(body(&back).join("\n"), format!("{calls}LD up.Q\nAND c\nOR down.Q\nS y"));
     // Who else asks for the output gets it from the block.
     let (drawn, back) = round(&program(&variables, "CAL up(\nCLK := a\n)\nLD up.Q\nST y\nLD up.Q\nST z"));
     assert!(drawn.contains("R_TRIG") && !drawn.contains("|P|"), "{drawn}");
@@ -768,4 +764,70 @@ fn there_and_back(name: &str, document: &Document) -> Vec<String> {
         }
     }
     said
+}
+
+#[test]
+fn coils_of_edges_are_stores_of_detectors() {
+    let drawn = "
+|   a        b                 y |
++--| |--+---| |---------------(P)+
+|       |    c                 z |
+|       +---| |-----------+---(N)+
+|                         |    w |
+|                         +---( )+
+";
+    let written = certain(&drawing(drawn), To::Iec);
+    let expected = [
+        "LD a", "AND b", "ST PLS_y.CLK", "CAL PLS_y", "LD PLS_y.Q", "ST y", "LD a", "AND c", "ST Held1",
+        "ST PLF_z.CLK", "CAL PLF_z", "LD PLF_z.Q", "ST z", "LD Held1", "ST w",
+    ];
+    assert_eq!(body(&written), expected, "{written}");
+    assert!(written.contains("PLS_y : R_TRIG;") && written.contains("PLF_z : F_TRIG;"), "{written}");
+    assert!(problems(&written).is_empty(), "{:?}\n{written}", problems(&written));
+    let again = certain(&list(&written), To::Ladder);
+    assert!(again.contains("(P)") && again.contains("(N)") && !again.contains("CLK"), "{again}");
+    // The detectors that are declared already serve once more.
+    assert_eq!(certain(&drawing(&again), To::Iec), written);
+    // Two coils of one variable have a detector each, and on the FX family they are PLS and PLF.
+    let text = "LD X0\nPLS M0\nLD X0\nAND X1\nPLF M1\nLD X2\nOR X3\nPLS M0\nEND\n";
+    let written = certain(&fx(text), To::Iec);
+    assert!(written.contains("CAL     PLS_M0_2"), "{written}");
+    assert_eq!(certain(&list(&written), To::Fx), text, "{written}");
+    let drawn = certain(&list(&written), To::Ladder);
+    assert_eq!(drawn.matches("(P)").count(), 2, "{drawn}");
+    assert_eq!(certain(&drawing(&drawn), To::Fx), text, "{drawn}");
+}
+
+#[test]
+fn what_sees_more_of_a_detector_is_no_coil_of_an_edge() {
+    let variables = format!("{BITS} PLS_y, Edge : R_TRIG;");
+    for calls in [
+        "LD a\nST PLS_y.CLK\nCAL PLS_y\nLD PLS_y.Q\nST y\nS z",
+        "LD a\nST PLS_y.CLK\nCAL PLS_y\nLD PLS_y.Q\nST z",
+        "LD a\nST PLS_y.CLK\nCAL PLS_y\nLDN PLS_y.Q\nST y",
+        "LD a\nST PLS_y.CLK\nCAL PLS_y\nLD PLS_y.Q\nST y\nLD PLS_y.Q\nST z",
+        "LD a\nST Edge.CLK\nCAL Edge\nLD Edge.Q\nST y",
+    ] {
+        let drawn = to(&list(&program(&variables, calls)), To::Ladder).text;
+        assert!(drawn.contains("CLK") && !drawn.contains("(P)"), "{calls}\n{drawn}");
+    }
+}
+
+#[test]
+fn detectors_keep_their_names() {
+    let variables = format!("{BITS} Edge, Other : R_TRIG; Drop : F_TRIG;");
+    let text = program(
+        &variables,
+        "CAL Edge(\nCLK := a\n)\nLD Edge.Q\nST y\nCAL Other(\nCLK := b\n)\nCAL Drop(\nCLK := c\n)\nLD Other.Q\nAND Drop.Q\nS z",
+    );
+    let (drawn, back) = round(&text);
+    assert!(drawn.contains("|P|") && !drawn.contains("Rise"), "{drawn}");
+    assert_eq!(body(&back), body(&text), "{drawn}");
+    assert!(!back.contains("Rise1") && !back.contains("Fall1"), "{back}");
+    // What is used elsewhere is not taken, whether that can be read or not.
+    let text = program(&variables, "CAL Edge(\nCLK := a\n)\nLD Edge.Q\nST y\nLD Other.M\nADD n\nMUL Drop\nST k");
+    let drawn = to(&list(&text), To::Ladder).text;
+    let more = drawn.replace("END_PROGRAM", "|  a      z |\n+--|P|---( )+\n\nEND_PROGRAM");
+    let back = to(&drawing(&more), To::Iec).text;
+    assert!(back.contains("Rise1 : R_TRIG;") && back.contains("CAL     Rise1("), "{back}");
 }

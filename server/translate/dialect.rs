@@ -10,7 +10,7 @@
 //! | `OUT T0 K50` | the instance `T0 : TON`, called with `PT := T#5s` by the unit of the timer; contact `T0.Q` |
 //! | `OUT C0 K10` | the instance `C0 : CTU`, called with `PV := 10`; contact `C0.Q`, value `C0.CV` |
 //! | `RST C0` | `R C0`, a call of the block with this input alone |
-//! | `PLS M0`, `PLF M0` | the instance `PLS_M0 : R_TRIG`, `PLF_M0 : F_TRIG`, whose output is stored in `M0` |
+//! | `PLS M0`, `PLF M0` | coils of edges: the instance `PLS_M0 : R_TRIG`, `PLF_M0 : F_TRIG`, its output stored in `M0` |
 //! | `CJ P0` | `JMPC P0` |
 //! | `MOV`, `ADD`, `SUB` | `LD`, `ADD`, `SUB` and `ST`, jumped over where power does not reach them |
 //! | `INC D0`, `DEC D0` | the same with the operand `1`; `INT#1` stands for the `K1` of an ADD or SUB |

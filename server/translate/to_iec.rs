@@ -3,12 +3,12 @@
 //!
 //! The current result survives ST, S and R, so outputs that share their power need no stack. Behind a conditional path
 //! the power is loaded again: a single contact that nothing changed meanwhile as it is, anything else from a helper, a
-//! variable that was stored before. An edge contact is the output of a detector called before the load; a function
-//! block is called with its first input stored, and its first output is loaded. Calculations with words are jumped over
-//! where power does not reach them.
+//! variable that was stored before. An edge contact is the output of a detector called before the load, a coil of an
+//! edge that of one called behind it; a function block is called with its first input stored, and its first output is
+//! loaded. Calculations with words are jumped over where power does not reach them.
 
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
-use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, HELPER, Path, Term, Test};
+use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, HELPER, Path, Term, Test, pulse_name};
 use crate::text::{Message, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
@@ -26,6 +26,9 @@ pub struct Helpers {
     numbers: FxHashMap<&'static str, usize>,
     /// The helpers that keep power in each program unit, by depth.
     held: FxHashMap<Option<usize>, Vec<SmolStr>>,
+    /// Variables that the source declares and nothing in it names, by program unit and type, in the order of their
+    /// declaration: a drawing has no word for the detector of an edge contact, so that is what it is called.
+    spare: FxHashMap<(Option<usize>, &'static str), Vec<SmolStr>>,
 }
 
 /// A variable that a translation needs.
@@ -44,6 +47,35 @@ impl Helpers {
     pub fn beside(names: impl IntoIterator<Item = SmolStr>) -> Helpers {
         let taken = names.into_iter().map(|name| folded(&name)).collect();
         Helpers { taken, ..Helpers::default() }
+    }
+
+    /// Variables of program unit `pou` that may be taken in place of new ones.
+    pub fn spare(&mut self, pou: Option<usize>, type_name: &'static str, name: SmolStr) {
+        self.spare.entry((pou, type_name)).or_default().push(name);
+    }
+
+    /// The first spare variable of this type whose name will do.
+    fn take(&mut self, type_name: &'static str, will_do: impl Fn(&str) -> bool) -> Option<SmolStr> {
+        let spare = self.spare.get_mut(&(self.pou, type_name))?;
+        let place = spare.iter().position(|name| will_do(name))?;
+        Some(spare.remove(place))
+    }
+
+    /// The detector of a coil of an edge.
+    fn pulse(&mut self, coil: CoilKind, type_name: &'static str, variable: &str) -> SmolStr {
+        let stem = pulse_name(coil, variable);
+        let mut number = 1;
+        loop {
+            let name = if number == 1 { stem.clone() } else { format_smolstr!("{stem}_{number}") };
+            if let Some(spare) = self.take(type_name, |spare| spare.eq_ignore_ascii_case(&name)) {
+                return spare;
+            }
+            if self.taken.insert(folded(&name)) {
+                self.declared.push(Helper { name: name.clone(), type_name, pou: self.pou });
+                return name;
+            }
+            number += 1;
+        }
     }
 
     /// A new label.
@@ -76,7 +108,7 @@ impl Helpers {
         if let Some(known) = self.held.get(&self.pou).and_then(|held| held.get(depth)) {
             return known.clone();
         }
-        let name = self.declare(HELPER, "BOOL");
+        let name = self.take("BOOL", |_| true).unwrap_or_else(|| self.declare(HELPER, "BOOL"));
         self.held.entry(self.pou).or_default().push(name.clone());
         name
     }
@@ -327,7 +359,9 @@ impl Writer<'_> {
         if self.driven.contains(&term.key()) {
             return Err(Message::new("translate.edge-of-driven").with("operand", &term.text));
         }
-        let name = self.helpers.declare(stem, type_name);
+        let is_contact = |name: &str| !name.starts_with("PLS_") && !name.starts_with("PLF_");
+        let spare = self.helpers.take(type_name, is_contact);
+        let name = spare.unwrap_or_else(|| self.helpers.declare(stem, type_name));
         let call = format!("CAL {name}(\nCLK := {}\n)", term.text);
         self.lines.insert(self.group, call);
         self.group += 1;
@@ -337,6 +371,9 @@ impl Writer<'_> {
     fn action(&mut self, action: &Action, inverse: bool) -> Result<(), Message> {
         let word = match (action.deed, inverse) {
             (Deed::Call(_), _) => return self.call(action, None),
+            (Deed::Coil(coil @ (CoilKind::Rising | CoilKind::Falling)), false) => {
+                return self.pulse(action, coil);
+            }
             (Deed::Jump | Deed::Return, _) => return self.leave(action, if inverse { "CN" } else { "C" }),
             (Deed::Coil(CoilKind::Plain), false) | (Deed::Coil(CoilKind::Negated), true) => "ST",
             (Deed::Coil(CoilKind::Plain), true) | (Deed::Coil(CoilKind::Negated), false) => "STN",
@@ -346,6 +383,18 @@ impl Writer<'_> {
         };
         let [term] = &action.terms[..] else { return Err(Message::new("translate.no-instruction")) };
         self.lines.push(format!("{word} {term}"));
+        self.driven.insert(term.key());
+        Ok(())
+    }
+
+    /// A coil of an edge: the output of a detector, stored.
+    fn pulse(&mut self, action: &Action, coil: CoilKind) -> Result<(), Message> {
+        let [term] = &action.terms[..] else { return Err(Message::new("translate.no-instruction")) };
+        let type_name = if coil == CoilKind::Rising { "R_TRIG" } else { "F_TRIG" };
+        let name = self.helpers.pulse(coil, type_name, &term.text);
+        self.lines.extend([format!("ST {name}.CLK"), format!("CAL {name}")]);
+        self.start();
+        self.lines.extend([format!("LD {name}.Q"), format!("ST {term}")]);
         self.driven.insert(term.key());
         Ok(())
     }
@@ -478,7 +527,10 @@ fn is_invertible(drive: &Drive) -> bool {
 
 /// Whether the current result is no longer the power behind this.
 fn loses(drive: &Drive) -> bool {
-    let calls = |action: &Action| matches!(action.deed, Deed::Call(_) | Deed::Compute(_));
+    use CoilKind::{Falling, Rising};
+    let calls = |action: &Action| {
+        matches!(action.deed, Deed::Call(_) | Deed::Compute(_) | Deed::Coil(Rising | Falling))
+    };
     match drive {
         Drive::Action(action) => calls(action),
         Drive::Path(path) => {

@@ -131,8 +131,7 @@ impl<'s, 'a> Reader<'s, 'a> {
                     self.input_operator(input.of(self.source.text), instance, item.span)?;
                 }
                 ItemKind::Call { condition: Condition::Always, callee: Some(callee), parameters, .. } => {
-                    let next = (index < items.end).then(|| self.source.item(index));
-                    index += usize::from(self.call(item, callee, parameters, next)?);
+                    index += self.call(item, callee, parameters)?;
                 }
                 _ => return Err(Refusal::NotBoolean),
             }

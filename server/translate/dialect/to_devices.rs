@@ -160,30 +160,21 @@ impl Converter<'_> {
         Ok(converted)
     }
 
-    /// The coil of PLS or PLF that the detector at the end of the gates of `path` and the output behind it are.
+    /// The pulse form that the detector at the end of the gates of `path` and the calculation behind it are.
     fn pulsed(&self, detector: &Action, path: &Path) -> Option<Action> {
-        let (Deed::Call(call), [Drive::Action(coil)]) = (detector.deed, &path.drives[..]) else {
+        let (Deed::Call(call), [Drive::Action(driven)]) = (detector.deed, &path.drives[..]) else {
             return None;
         };
+        let Deed::Compute(computation) = driven.deed else { return None };
         let instance = detector.terms.first()?;
         let is_last = matches!(path.gates.last(), Some(Gate::Through(last)) if last == detector);
-        if call.block.name == "R_TRIG" && is_last && is_pulse(&instance.text) {
-            let Deed::Compute(computation) = coil.deed else { return None };
-            let action = self.calculation(computation, coil).ok()?;
-            // RST has no pulse form.
-            let Deed::Instruction(form) = action.deed else { return None };
-            return Some(Action { deed: Deed::Instruction(Form { pulse: true, ..form }), ..action });
+        if call.block.name != "R_TRIG" || !is_last || !is_pulse(&instance.text) {
+            return None;
         }
-        let (kind, prefix) = match call.block.name {
-            "R_TRIG" => (CoilKind::Rising, "PLS_"),
-            "F_TRIG" => (CoilKind::Falling, "PLF_"),
-            _ => return None,
-        };
-        let relay = coil.terms.first().filter(|_| coil.deed == Deed::Coil(CoilKind::Plain))?;
-        let named = instance.text.get(..prefix.len())?.eq_ignore_ascii_case(prefix)
-            && instance.text[prefix.len()..].eq_ignore_ascii_case(&relay.text);
-        let terms = vec![self.bit(relay).ok()?];
-        (is_last && named).then_some(Action { deed: Deed::Coil(kind), terms, span: coil.span })
+        let action = self.calculation(computation, driven).ok()?;
+        // RST has no pulse form.
+        let Deed::Instruction(form) = action.deed else { return None };
+        Some(Action { deed: Deed::Instruction(Form { pulse: true, ..form }), ..action })
     }
 
     fn expression(&self, expression: &Expression) -> Result<Expression, Refusal> {

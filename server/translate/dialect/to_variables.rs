@@ -132,8 +132,6 @@ impl Converter<'_> {
                         self.computed("MOVE", vec![zero, self.word(term)?], span).map(Drive::Action)
                     }
                     (_, DeviceKind::T | DeviceKind::C | DeviceKind::D) => Err(Refusal::NoCounterpart),
-                    (CoilKind::Rising, _) => self.pulse("R_TRIG", "PLS", term, span),
-                    (CoilKind::Falling, _) => self.pulse("F_TRIG", "PLF", term, span),
                     _ => Ok(Drive::Action(Action { terms: vec![self.bit(term)?], ..action.clone() })),
                 }
             }
@@ -210,14 +208,6 @@ impl Converter<'_> {
             }
             _ => Err(Refusal::NoCounterpart),
         }
-    }
-
-    /// `PLS M0`: a detector, and its output in the relay.
-    fn pulse(&self, block: &str, prefix: &str, relay: &Term, span: Span) -> Result<Drive, Refusal> {
-        let relay = self.bit(relay)?;
-        let detector = call(block, "CLK", &format_smolstr!("{prefix}_{relay}"), None, span)?;
-        let coil = Action { deed: Deed::Coil(CoilKind::Plain), terms: vec![relay], span };
-        Ok(Drive::Path(Path { gates: vec![Gate::Through(detector)], drives: vec![Drive::Action(coil)] }))
     }
 }
 
