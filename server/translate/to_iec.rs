@@ -213,6 +213,7 @@ impl Writer<'_> {
         match action.deed {
             Deed::Jump | Deed::Return => return self.leave(action, ""),
             Deed::Compute(_) => return self.computation(action),
+            Deed::Call(call) if call.is_enabled() => return self.conditional_call(action, "CAL"),
             Deed::Call(call) if !call.is_input_operator() => return self.call(action, Some("TRUE".into())),
             _ if is_loaded => {}
             _ => self.lines.push("LD TRUE".into()),
@@ -370,6 +371,9 @@ impl Writer<'_> {
 
     fn action(&mut self, action: &Action, inverse: bool) -> Result<(), Message> {
         let word = match (action.deed, inverse) {
+            (Deed::Call(call), _) if call.is_enabled() => {
+                return self.conditional_call(action, if inverse { "CALCN" } else { "CALC" });
+            }
             (Deed::Call(_), _) => return self.call(action, None),
             (Deed::Coil(coil @ (CoilKind::Rising | CoilKind::Falling)), false) => {
                 return self.pulse(action, coil);
@@ -444,10 +448,18 @@ impl Writer<'_> {
             None if call.is_input_operator() => self.lines.push(format!("{} {instance}", call.power_in())),
             None => {
                 self.lines.push(format!("ST {instance}.{}", call.power_in()));
-                self.lines.push(call_text(call, instance, None, &action.terms));
+                self.lines.push(call_text("CAL", call, None, &action.terms));
             }
-            power => self.lines.push(call_text(call, instance, power, &action.terms)),
+            power => self.lines.push(call_text("CAL", call, power, &action.terms)),
         }
+        self.driven.extend(call.changes(&action.terms).iter().map(Term::key));
+        Ok(())
+    }
+
+    /// A call that the current result enables, or that is always done, as `word` says.
+    fn conditional_call(&mut self, action: &Action, word: &str) -> Result<(), Message> {
+        let Deed::Call(call) = action.deed else { return Err(Message::new("translate.no-instruction")) };
+        self.lines.push(call_text(word, call, None, &action.terms));
         self.driven.extend(call.changes(&action.terms).iter().map(Term::key));
         Ok(())
     }
@@ -460,7 +472,8 @@ impl Writer<'_> {
     }
 }
 
-fn call_text(call: Call, instance: &Term, power: Option<String>, terms: &[Term]) -> String {
+fn call_text(word: &str, call: Call, power: Option<String>, terms: &[Term]) -> String {
+    let instance = terms.first().map_or("", |term| term.text.as_str());
     let arguments = call.arguments(terms).into_iter().map(|argument| {
         let sign = if argument.is_output { "=>" } else { ":=" };
         format!("{} {sign} {}", argument.name, argument.term)
@@ -468,8 +481,8 @@ fn call_text(call: Call, instance: &Term, power: Option<String>, terms: &[Term])
     let power = power.map(|operand| format!("{} := {operand}", call.power_in()));
     let list: Vec<String> = power.into_iter().chain(arguments).collect();
     match list.is_empty() {
-        true => format!("CAL {instance}"),
-        false => format!("CAL {instance}(\n{}\n)", list.join(",\n")),
+        true => format!("{word} {instance}"),
+        false => format!("{word} {instance}(\n{}\n)", list.join(",\n")),
     }
 }
 
@@ -507,7 +520,8 @@ fn called_next(path: &Path, number: usize) -> Option<&Action> {
         (Some(Gate::Through(action)), _) | (None, [Drive::Action(action)]) => action,
         _ => return None,
     };
-    matches!(next.deed, Deed::Call(call) if !call.is_input_operator()).then_some(next)
+    let takes = |call: Call| !call.is_input_operator() && !call.is_enabled();
+    matches!(next.deed, Deed::Call(call) if takes(call)).then_some(next)
 }
 
 /// The calculation that a drive is.
@@ -522,7 +536,10 @@ fn computation_of(drive: &Drive) -> Option<&Action> {
 fn is_invertible(drive: &Drive) -> bool {
     use CoilKind::{Negated, Plain};
     let Drive::Action(action) = drive else { return false };
-    matches!(action.deed, Deed::Coil(Plain | Negated) | Deed::Jump | Deed::Return)
+    match action.deed {
+        Deed::Call(call) => call.is_enabled(),
+        deed => matches!(deed, Deed::Coil(Plain | Negated) | Deed::Jump | Deed::Return),
+    }
 }
 
 /// Whether the current result is no longer the power behind this.

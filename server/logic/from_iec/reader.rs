@@ -130,8 +130,11 @@ impl<'s, 'a> Reader<'s, 'a> {
                     self.settle()?;
                     self.input_operator(input.of(self.source.text), instance, item.span)?;
                 }
-                ItemKind::Call { condition: Condition::Always, callee: Some(callee), parameters, .. } => {
-                    index += self.call(item, callee, parameters)?;
+                ItemKind::Call { condition, callee: Some(callee), parameters, .. } => {
+                    index += match condition {
+                        Condition::Always => self.call(item, callee, parameters)?,
+                        _ => self.conditional_call(item, callee, parameters, condition)?,
+                    };
                 }
                 _ => return Err(Refusal::NotBoolean),
             }

@@ -2,10 +2,10 @@
 
 use super::super::{is_pulse_name, output_of};
 use super::{Edge, Reader, Value};
-use crate::il::iec::{Direction, Item, ItemKind, OperandId, Parameter, ParameterValue, Run};
+use crate::il::iec::{Condition, Direction, Item, ItemKind, OperandId, Parameter, ParameterValue, Run};
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{Action, Call, Deed, Expression, Gate, Refusal, Term};
-use crate::target::iec::{FunctionBlock, OperatorRole};
+use crate::target::iec::{EN, FunctionBlock, OperatorRole};
 use crate::text::{Span, folded};
 
 impl<'a> Reader<'_, 'a> {
@@ -65,30 +65,40 @@ impl<'a> Reader<'_, 'a> {
             return Err(Refusal::NotBoolean);
         }
         let mut power = None;
+        let mut enable = None;
         let mut arguments = Vec::with_capacity(parameters.len());
         for (place, parameter) in parameters.iter().enumerate() {
             let (name, is_output, id) =
                 argument(parameter, text, || block.inputs.get(place).map(|pin| pin.name))?;
             let is_power = block.inputs.first().is_some_and(|first| first.name.eq_ignore_ascii_case(name));
             match is_power && !is_output {
+                _ if name.eq_ignore_ascii_case(EN.name) && !is_output => enable = Some(id),
                 true => power = Some(id),
                 false => arguments.push((name, is_output, self.term(id)?)),
             }
         }
-        match (power, fed) {
-            (Some(id), None) => {
-                let contact = self.contact(id, ContactKind::NormallyOpen)?;
-                self.builder.pass(Expression::Contact(contact)).ok_or(Refusal::TooDeep)?;
-            }
-            (None, Some(_)) => {}
-            _ => return Err(Refusal::Element),
-        }
         let power_in = block.inputs.first().map_or("", |pin| pin.name);
+        let (wired, power_in) = match (power, fed.is_some(), enable) {
+            (Some(id), false, None) => (Some(id), power_in),
+            (None, true, None) => (None, power_in),
+            (power, false, enable) => {
+                if let Some(id) = power {
+                    arguments.push((power_in, false, self.term(id)?));
+                }
+                (enable, EN.name)
+            }
+            _ => return Err(Refusal::Element),
+        };
+        if let Some(id) = wired {
+            let contact = self.contact(id, ContactKind::NormallyOpen)?;
+            self.builder.pass(Expression::Contact(contact)).ok_or(Refusal::TooDeep)?;
+        }
         let own = self.source.term(self.pou, callee);
         let (call, terms) = Call::new(block, power_in, own, arguments).ok_or(Refusal::Element)?;
         self.driven.extend(call.changes(&terms).iter().map(|term| (term.key(), self.at)));
         let action = Action { deed: Deed::Call(call), terms, span: item.span };
-        match self.next(1).and_then(|next| self.loads(next, &output_of(block, instance))) {
+        let output = self.next(1).filter(|_| !call.is_enabled());
+        match output.and_then(|next| self.loads(next, &output_of(block, instance))) {
             None => {
                 self.builder.drive(action);
                 self.value = Value::Nothing;
@@ -103,6 +113,35 @@ impl<'a> Reader<'_, 'a> {
                 Ok(1)
             }
         }
+    }
+
+    /// `CALC`, `CALCN`: the current result enables the call. Nothing is known of it behind that.
+    pub(super) fn conditional_call(
+        &mut self,
+        item: &Item,
+        callee: OperandId,
+        parameters: Run,
+        condition: Condition,
+    ) -> Result<usize, Refusal> {
+        if !self.frames.is_empty() {
+            return Err(Refusal::NotBoolean);
+        }
+        let block = self.block_of(callee).ok_or(Refusal::Element)?;
+        let mut arguments = Vec::new();
+        for (place, parameter) in parameters.of(&self.source.tree.parameters).iter().enumerate() {
+            let positional = || block.inputs.get(place).map(|pin| pin.name);
+            let (name, is_output, id) = argument(parameter, self.source.text, positional)?;
+            arguments.push((name, is_output, self.term(id)?));
+        }
+        self.settle()?;
+        self.is_inverted ^= condition == Condition::IfFalse;
+        self.invert()?;
+        let own = self.source.term(self.pou, callee);
+        let (call, terms) = Call::new(block, EN.name, own, arguments).ok_or(Refusal::Element)?;
+        self.driven.extend(call.changes(&terms).iter().map(|term| (term.key(), self.at)));
+        self.builder.drive(Action { deed: Deed::Call(call), terms, span: item.span });
+        self.value = Value::Nothing;
+        Ok(0)
     }
 
     /// The item of the rung that stands so many behind the one that is read.
