@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use rungwise::document::{Document, Notation};
 use rungwise::ide::{self, Style};
 use rungwise::target::{Model, Target};
+use rungwise::text::Language;
 use rungwise::translate::{Certificate, Options, Proof, To, Translated, Translation, prove, translate};
 use std::collections::HashMap;
 use std::path::Path;
@@ -515,42 +516,93 @@ fn variables_are_devices_by_their_addresses() {
     assert_eq!(written, expected);
 }
 
+/// The note of the first rung, in English.
+fn note(translation: &Translation) -> String {
+    translation.rungs[0].note.as_ref().map(|note| note.render(Language::English)).unwrap_or_default()
+}
+
 #[test]
 fn what_has_no_counterpart_keeps_its_words() {
-    for (rung, words) in [
-        ("LD X0\nOUT T246 K5", "OUT T246 K5"),
-        ("LD X0\nDMOV K5 D0", "DMOV K5 D0"),
-        ("LD X0\nMOV K4M0 D0", "MOV K4M0 D0"),
-        ("LD X0\nMOV T0 D0", "MOV T0 D0"),
-        ("LD X0\nMOV D0 C0", "MOV D0 C0"),
-        ("LD X0\nMOVP K5 D0Z0", "MOVP K5 D0Z0"),
-        ("LD X0\nMUL D0 D1 D2", "MUL D0 D1 D2"),
-        ("LD X0\nWAND D0 D1 D2", "WAND D0 D1 D2"),
-        ("LD X0\nBMOV D0 D10 K5", "BMOV D0 D10 K5"),
-        ("LD X0\nZRST M0 M10", "ZRST M0 M10"),
-        ("LD X0\nRST T0", "RST T0"),
-        ("LD M8013\nOUT Y0", "LD M8013"),
-        ("LD X0\nOUT C200 K5", "OUT C200 K5"),
-        ("LDD>= D0 K5\nOUT Y0", "LDD>= D0 K5"),
-        ("STL S0\nOUT Y0", "STL S0"),
+    for (rung, words, lack) in [
+        ("LD X0\nOUT T246 K5", "OUT T246 K5", "T246"),
+        ("LD X0\nDMOV K5 D0", "DMOV K5 D0", "DMOV"),
+        ("LD X0\nMOV K4M0 D0", "MOV K4M0 D0", "K4M0"),
+        ("LD X0\nMOV T0 D0", "MOV T0 D0", "T0"),
+        ("LD X0\nMOV D0 C0", "MOV D0 C0", "MOV"),
+        ("LD X0\nMOVP K5 D0Z0", "MOVP K5 D0Z0", "D0Z0"),
+        ("LD X0\nMUL D0 D1 D2", "MUL D0 D1 D2", "MUL"),
+        ("LD X0\nWAND D0 D1 D2", "WAND D0 D1 D2", "WAND"),
+        ("LD X0\nBMOV D0 D10 K5", "BMOV D0 D10 K5", "BMOV"),
+        ("LD X0\nZRST M0 M10", "ZRST M0 M10", "ZRST"),
+        ("LD X0\nRST T0", "RST T0", "T0"),
+        ("LD M8013\nOUT Y0", "LD M8013", "M8013"),
+        ("LD X0\nOUT C200 K5", "OUT C200 K5", "C200"),
+        ("LDD>= D0 K5\nOUT Y0", "LDD>= D0 K5", "D>= D0 K5"),
+        ("STL S0\nOUT Y0", "STL S0", "STL"),
     ] {
         let translation = to(&fx(&format!("{rung}\nEND\n")), To::Iec);
-        let first = &translation.rungs[0];
-        assert_eq!(first.note.as_ref().map(|note| note.key()), Some("logic.no-counterpart"), "{rung}");
-        assert_eq!(first.certificate, Some(Certificate::Undecided));
+        assert_eq!(
+            note(&translation),
+            format!("`{lack}` has no counterpart in the other language"),
+            "{rung}"
+        );
+        assert_eq!(translation.rungs[0].certificate, Some(Certificate::Undecided));
         assert!(translation.text.contains(&format!("(* {words} *)")), "{}", translation.text);
         assert!(problems(&translation.text).is_empty(), "{}", translation.text);
     }
-    for body in
-        ["LD a\nST y", "LD X0\nST T0.IN\nCAL T0(\nPT := T#50ms\n)", "LD X0\nRETC", "LD X0\nJMPC nowhere"]
-    {
+    for (body, lack) in [
+        ("LD a\nST y", "a"),
+        ("LD X0\nST T0.IN\nCAL T0(\nPT := T#50ms\n)", "T0 : TON"),
+        ("LD X0\nRETC", "RET"),
+        ("LD X0\nJMPC nowhere", "nowhere"),
+        ("LD X0\nCALC T0(\nPT := T#5s\n)", "T0 : TON"),
+    ] {
         let translation = to(&list(&program("a, y : BOOL; X0 AT %IX0.0 : BOOL; T0 : TON;", body)), To::Fx);
-        assert_eq!(
-            translation.rungs[0].note.as_ref().map(|note| note.key()),
-            Some("logic.no-counterpart"),
-            "{body}"
-        );
+        assert_eq!(note(&translation), format!("`{lack}` has no counterpart in the other language"), "{body}");
+        let note = translation.rungs[0].note.as_ref().unwrap();
+        let said = note.render(Language::SimplifiedChinese);
+        assert_eq!(said, format!("`{lack}` 在另一种语言中没有对应物"), "{body}");
     }
+}
+
+#[test]
+fn types_decide_how_words_compare() {
+    let variables = "x AT %QX0.0 : BOOL; n, k : INT; D5 : REAL; i AT %MW1000 : INT; j AT %MW1001 : INT; \
+                     u AT %MW1002 : UINT; v AT %MW1003 : UINT; w AT %MW1004 : WORD; d AT %MW1006 : DINT;";
+    for (condition, expected) in [
+        ("LD i\nGT j", "LD> D0 D1"),
+        ("LD i\nLE -5", "LD<= D0 K-5"),
+        ("LD u\nEQ v", "LD= D2 D3"),
+        ("LD u\nNE 7", "LD<> D2 K7"),
+        ("LD w\nEQ 7", "LD= D4 K7"),
+    ] {
+        let written = certain(&list(&program(variables, &format!("{condition}\nST x"))), To::Fx);
+        assert_eq!(written, format!("{expected}\nOUT Y0\nEND\n"));
+    }
+    let order = |word: &str, kind: &str| {
+        format!("`{word}` is of type {kind}, and the FX family compares words with a sign")
+    };
+    let other = |word: &str, kind: &str| {
+        format!("`{word}` is of type {kind}, with which no instruction of 16 bits calculates")
+    };
+    for (condition, reason) in [
+        ("LD u\nGT 5", order("u", "UINT")),
+        ("LD 5\nLT v", order("v", "UINT")),
+        ("LD u\nEQ -5", order("u", "UINT")),
+        ("LD w\nGE 5", order("w", "WORD")),
+        ("LD %MW1007\nGE 5", order("%MW1007", "WORD")),
+        ("LD u\nEQ i", order("u", "UINT")),
+        ("LD D5\nGT 5", other("D5", "REAL")),
+        ("LD d\nEQ 5", other("d", "DINT")),
+    ] {
+        let translation = to(&list(&program(variables, &format!("{condition}\nST x"))), To::Fx);
+        assert_eq!(note(&translation), reason, "{condition}\n{}", translation.text);
+        assert!(!translation.text.contains("OUT Y0\nEND"), "{}", translation.text);
+    }
+    // Sums are the same with and without a sign; other types have no instruction.
+    let sum = |body: &str| to(&list(&program(variables, body)), To::Fx);
+    assert_eq!(sum("LD u\nADD v\nST u").text, "LD M8000\nADD D2 D3 D2\nEND\n");
+    assert_eq!(note(&sum("LD D5\nADD D5\nST D5")), other("D5", "REAL"));
 }
 
 #[test]

@@ -30,8 +30,10 @@ use super::To;
 use super::source::Program;
 use crate::document::Document;
 use crate::il::iec::PouKind;
-use crate::logic::{Path, Refusal};
+use crate::logic::{Action, Contact, Deed, Path, Refusal, Test};
 use crate::target::{Device, DeviceKind, DirectAddress, Location, Model, Target, Width};
+use crate::text::Message;
+use smol_str::{SmolStr, format_smolstr};
 use std::cell::Cell;
 
 /// Instructions with the functions that do the same with 16 bits.
@@ -71,19 +73,23 @@ pub(super) fn convert(document: &Document, (to, target): (To, &'static Target), 
     let pulses = Cell::new(0);
     let names = to_devices::Names::of(program, document.scopes(), target);
     for source in &mut program.rungs {
-        let converted = match (&source.rung.path, target.is_fx()) {
-            (Ok(Some(path)), false) => to_variables::path(path, document.target(), &pulses).map(Some),
-            // What a function or a block does it does for whoever calls it.
-            (Ok(Some(_)), true) if !is_of_program(document, source.pou) => Err(Refusal::NoCounterpart),
-            (Ok(Some(path)), true) => to_devices::path(path, target, &names).map(Some),
-            (other, _) => other.clone(),
-        };
         if target.is_fx() {
             source.rung.labels.iter_mut().for_each(|label| *label = names.of_label(label));
         }
         // The words of the other language are no list in this one.
         source.rung.is_list = false;
-        source.rung.path = converted;
+        let Ok(Some(path)) = &source.rung.path else { continue };
+        let converted = match target.is_fx() {
+            false => to_variables::path(path, document.target(), &pulses),
+            // What a function or a block does it does for whoever calls it.
+            true if !is_of_program(document, source.pou) => {
+                let unit = source.pou.and_then(|pou| document.scopes().pous.get(pou));
+                Err(unit.map_or(Lack::Unnamed, |unit| Lack::Word(unit.name.clone())))
+            }
+            true => to_devices::path(path, target, &names, (document.scopes(), source.pou)),
+        };
+        source.note = converted.as_ref().err().map(Lack::message);
+        source.rung.path = converted.map(Some).map_err(|_| Refusal::NoCounterpart);
     }
 }
 
@@ -137,7 +143,72 @@ pub(super) fn device_at(address: DirectAddress) -> Option<Device> {
     (self::address(device) == Some(address)).then_some(device)
 }
 
-/// A refusal where nothing stands for it in the other language.
-fn without<T>(counterpart: Option<T>) -> Result<T, Refusal> {
-    counterpart.ok_or(Refusal::NoCounterpart)
+/// What has nothing that stands for it in the other language.
+#[derive(Clone, PartialEq, Eq, Debug)]
+enum Lack {
+    /// Something within the word that is looked at.
+    Unnamed,
+    /// A device, a variable, an instruction.
+    Word(SmolStr),
+    /// A variable of a type that the other language does not calculate with.
+    Type(SmolStr, &'static str),
+    /// A variable of a type that the other language compares otherwise.
+    Order(SmolStr, &'static str),
+}
+
+impl Lack {
+    /// The sentence that says it.
+    fn message(&self) -> Message {
+        match self {
+            Lack::Unnamed => Refusal::NoCounterpart.message(),
+            Lack::Word(word) => Message::new("translate.no-counterpart").with("word", word),
+            Lack::Type(word, kind) => {
+                Message::new("translate.type").with("word", word).with("type", *kind)
+            }
+            Lack::Order(word, kind) => {
+                Message::new("translate.order").with("word", word).with("type", *kind)
+            }
+        }
+    }
+
+    /// The same, said of `word` if it has no name so far.
+    fn named(self, word: impl AsRef<str>) -> Lack {
+        match self {
+            Lack::Unnamed if !word.as_ref().is_empty() => Lack::Word(word.as_ref().into()),
+            lack => lack,
+        }
+    }
+
+    /// The same, said of what an action is called if it has no name so far: its instruction, else its operands.
+    fn of_action(self, action: &Action) -> Lack {
+        match action.deed {
+            Deed::Instruction(form) => self.named(form.mnemonic()),
+            Deed::Compute(computation) => self.named(computation.function.name),
+            Deed::Call(call) => {
+                let instance = action.terms.first().map_or("", |term| term.text.as_str());
+                self.named(format_smolstr!("{instance} : {}", call.block.name))
+            }
+            Deed::Return => self.named("RET"),
+            Deed::Coil(_) | Deed::Jump => {
+                self.named(action.terms.first().map_or("", |term| term.text.as_str()))
+            }
+        }
+    }
+
+    /// The same, said of a contact if it has no name so far.
+    fn of_contact(self, contact: &Contact) -> Lack {
+        let words: Vec<&str> = contact.terms.iter().map(|term| term.text.as_str()).collect();
+        match contact.test {
+            Test::Compare(operator) => {
+                let wide = if operator.is_wide() { "D" } else { "" };
+                self.named(format_smolstr!("{wide}{} {}", operator.sign(), words.join(" ")))
+            }
+            Test::Bit(_) => self.named(words.join(" ")),
+        }
+    }
+}
+
+/// A lack where nothing stands for it in the other language.
+fn without<T>(counterpart: Option<T>) -> Result<T, Lack> {
+    counterpart.ok_or(Lack::Unnamed)
 }

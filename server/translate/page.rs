@@ -100,7 +100,7 @@ fn body(
     let path = match &source.rung.path {
         Ok(None) => return Body::Nothing,
         Ok(Some(path)) => path,
-        Err(refusal) => return kept(refusal.message()),
+        Err(refusal) => return kept(source.note.clone().unwrap_or_else(|| refusal.message())),
     };
     let written = match to {
         To::Fx => {
