@@ -558,7 +558,11 @@ fn what_has_no_counterpart_keeps_its_words() {
         ("LD X0\nCALC T0(\nPT := T#5s\n)", "T0 : TON"),
     ] {
         let translation = to(&list(&program("a, y : BOOL; X0 AT %IX0.0 : BOOL; T0 : TON;", body)), To::Fx);
-        assert_eq!(note(&translation), format!("`{lack}` has no counterpart in the other language"), "{body}");
+        assert_eq!(
+            note(&translation),
+            format!("`{lack}` has no counterpart in the other language"),
+            "{body}"
+        );
         let note = translation.rungs[0].note.as_ref().unwrap();
         let said = note.render(Language::SimplifiedChinese);
         assert_eq!(said, format!("`{lack}` 在另一种语言中没有对应物"), "{body}");
@@ -831,8 +835,21 @@ fn coils_of_edges_are_stores_of_detectors() {
 ";
     let written = certain(&drawing(drawn), To::Iec);
     let expected = [
-        "LD a", "AND b", "ST PLS_y.CLK", "CAL PLS_y", "LD PLS_y.Q", "ST y", "LD a", "AND c", "ST Held1",
-        "ST PLF_z.CLK", "CAL PLF_z", "LD PLF_z.Q", "ST z", "LD Held1", "ST w",
+        "LD a",
+        "AND b",
+        "ST PLS_y.CLK",
+        "CAL PLS_y",
+        "LD PLS_y.Q",
+        "ST y",
+        "LD a",
+        "AND c",
+        "ST Held1",
+        "ST PLF_z.CLK",
+        "CAL PLF_z",
+        "LD PLF_z.Q",
+        "ST z",
+        "LD Held1",
+        "ST w",
     ];
     assert_eq!(body(&written), expected, "{written}");
     assert!(written.contains("PLS_y : R_TRIG;") && written.contains("PLF_z : F_TRIG;"), "{written}");
@@ -878,7 +895,8 @@ fn detectors_keep_their_names() {
     assert_eq!(body(&back), body(&text), "{drawn}");
     assert!(!back.contains("Rise1") && !back.contains("Fall1"), "{back}");
     // What is used elsewhere is not taken, whether that can be read or not.
-    let text = program(&variables, "CAL Edge(\nCLK := a\n)\nLD Edge.Q\nST y\nLD Other.M\nADD n\nMUL Drop\nST k");
+    let text =
+        program(&variables, "CAL Edge(\nCLK := a\n)\nLD Edge.Q\nST y\nLD Other.M\nADD n\nMUL Drop\nST k");
     let drawn = to(&list(&text), To::Ladder).text;
     let more = drawn.replace("END_PROGRAM", "|  a      z |\n+--|P|---( )+\n\nEND_PROGRAM");
     let back = to(&drawing(&more), To::Iec).text;

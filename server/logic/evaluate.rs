@@ -199,7 +199,9 @@ impl<'s> Scan<'s> {
             (Deed::Coil(CoilKind::Falling), _) if own.is_some() => !power && left,
             (Deed::Coil(CoilKind::Set), Some(_)) => power || before,
             (Deed::Coil(CoilKind::Reset), Some(_)) => !power && before,
-            (Deed::Call(call), _) if !call.is_enabled() => self.output_after(call, &action.terms, power, key).unwrap_or(left),
+            (Deed::Call(call), _) if !call.is_enabled() => {
+                self.output_after(call, &action.terms, power, key).unwrap_or(left)
+            }
             (Deed::Instruction(form), _) if power && Form::named("ZRST") == Some(form) => false,
             _ if !power && is_idle_without_power(action) => before,
             _ => left,

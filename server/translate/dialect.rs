@@ -10,7 +10,7 @@
 //! | `OUT T0 K50` | the instance `T0 : TON`, called with `PT := T#5s` by the unit of the timer; contact `T0.Q` |
 //! | `OUT C0 K10` | the instance `C0 : CTU`, called with `PV := 10`; contact `C0.Q`, value `C0.CV` |
 //! | `RST C0` | `R C0`, a call of the block with this input alone |
-//! | `PLS M0`, `PLF M0` | coils of edges: the instance `PLS_M0 : R_TRIG`, `PLF_M0 : F_TRIG`, its output stored in `M0` |
+//! | `PLS M0`, `PLF M0` | coils of edges: `PLS_M0 : R_TRIG`, `PLF_M0 : F_TRIG`, the output stored in `M0` |
 //! | `CJ P0` | `JMPC P0` |
 //! | `MOV`, `ADD`, `SUB` | `LD`, `ADD`, `SUB` and `ST`, jumped over where power does not reach them |
 //! | `INC D0`, `DEC D0` | the same with the operand `1`; `INT#1` stands for the `K1` of an ADD or SUB |
@@ -23,17 +23,17 @@
 //! back takes variables by their addresses, and by their names where they have none and these are names of devices that
 //! nothing else is.
 
+mod lack;
 mod to_devices;
 mod to_variables;
 
+use self::lack::{Lack, without};
 use super::To;
 use super::source::Program;
 use crate::document::Document;
 use crate::il::iec::PouKind;
-use crate::logic::{Action, Contact, Deed, Path, Refusal, Test};
+use crate::logic::{Path, Refusal};
 use crate::target::{Device, DeviceKind, DirectAddress, Location, Model, Target, Width};
-use crate::text::Message;
-use smol_str::{SmolStr, format_smolstr};
 use std::cell::Cell;
 
 /// Instructions with the functions that do the same with 16 bits.
@@ -141,74 +141,4 @@ pub(super) fn device_at(address: DirectAddress) -> Option<Device> {
         _ => return None,
     };
     (self::address(device) == Some(address)).then_some(device)
-}
-
-/// What has nothing that stands for it in the other language.
-#[derive(Clone, PartialEq, Eq, Debug)]
-enum Lack {
-    /// Something within the word that is looked at.
-    Unnamed,
-    /// A device, a variable, an instruction.
-    Word(SmolStr),
-    /// A variable of a type that the other language does not calculate with.
-    Type(SmolStr, &'static str),
-    /// A variable of a type that the other language compares otherwise.
-    Order(SmolStr, &'static str),
-}
-
-impl Lack {
-    /// The sentence that says it.
-    fn message(&self) -> Message {
-        match self {
-            Lack::Unnamed => Refusal::NoCounterpart.message(),
-            Lack::Word(word) => Message::new("translate.no-counterpart").with("word", word),
-            Lack::Type(word, kind) => {
-                Message::new("translate.type").with("word", word).with("type", *kind)
-            }
-            Lack::Order(word, kind) => {
-                Message::new("translate.order").with("word", word).with("type", *kind)
-            }
-        }
-    }
-
-    /// The same, said of `word` if it has no name so far.
-    fn named(self, word: impl AsRef<str>) -> Lack {
-        match self {
-            Lack::Unnamed if !word.as_ref().is_empty() => Lack::Word(word.as_ref().into()),
-            lack => lack,
-        }
-    }
-
-    /// The same, said of what an action is called if it has no name so far: its instruction, else its operands.
-    fn of_action(self, action: &Action) -> Lack {
-        match action.deed {
-            Deed::Instruction(form) => self.named(form.mnemonic()),
-            Deed::Compute(computation) => self.named(computation.function.name),
-            Deed::Call(call) => {
-                let instance = action.terms.first().map_or("", |term| term.text.as_str());
-                self.named(format_smolstr!("{instance} : {}", call.block.name))
-            }
-            Deed::Return => self.named("RET"),
-            Deed::Coil(_) | Deed::Jump => {
-                self.named(action.terms.first().map_or("", |term| term.text.as_str()))
-            }
-        }
-    }
-
-    /// The same, said of a contact if it has no name so far.
-    fn of_contact(self, contact: &Contact) -> Lack {
-        let words: Vec<&str> = contact.terms.iter().map(|term| term.text.as_str()).collect();
-        match contact.test {
-            Test::Compare(operator) => {
-                let wide = if operator.is_wide() { "D" } else { "" };
-                self.named(format_smolstr!("{wide}{} {}", operator.sign(), words.join(" ")))
-            }
-            Test::Bit(_) => self.named(words.join(" ")),
-        }
-    }
-}
-
-/// A lack where nothing stands for it in the other language.
-fn without<T>(counterpart: Option<T>) -> Result<T, Lack> {
-    counterpart.ok_or(Lack::Unnamed)
 }

@@ -7,112 +7,14 @@
 //! edge that of one called behind it; a function block is called with its first input stored, and its first output is
 //! loaded. Calculations with words are jumped over where power does not reach them.
 
+mod helpers;
+pub use helpers::{Helper, Helpers};
+
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
-use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, HELPER, Path, Term, Test, pulse_name};
-use crate::text::{Message, folded};
-use rustc_hash::{FxHashMap, FxHashSet};
-use smol_str::{SmolStr, format_smolstr};
-
-/// The names of a program, and the variables that its translation needs beyond them.
-#[derive(Clone, Debug, Default)]
-pub struct Helpers {
-    /// All names, folded.
-    taken: FxHashSet<SmolStr>,
-    /// The helpers in order.
-    pub declared: Vec<Helper>,
-    /// The program unit for which helpers are made.
-    pub pou: Option<usize>,
-    /// The last number of each type of helper.
-    numbers: FxHashMap<&'static str, usize>,
-    /// The helpers that keep power in each program unit, by depth.
-    held: FxHashMap<Option<usize>, Vec<SmolStr>>,
-    /// Variables that the source declares and nothing in it names, by program unit and type, in the order of their
-    /// declaration: a drawing has no word for the detector of an edge contact, so that is what it is called.
-    spare: FxHashMap<(Option<usize>, &'static str), Vec<SmolStr>>,
-}
-
-/// A variable that a translation needs.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub struct Helper {
-    /// Its name.
-    pub name: SmolStr,
-    /// `BOOL`, `R_TRIG`, `F_TRIG`.
-    pub type_name: &'static str,
-    /// The program unit that declares it.
-    pub pou: Option<usize>,
-}
-
-impl Helpers {
-    /// Helpers with names beside these.
-    pub fn beside(names: impl IntoIterator<Item = SmolStr>) -> Helpers {
-        let taken = names.into_iter().map(|name| folded(&name)).collect();
-        Helpers { taken, ..Helpers::default() }
-    }
-
-    /// Variables of program unit `pou` that may be taken in place of new ones.
-    pub fn spare(&mut self, pou: Option<usize>, type_name: &'static str, name: SmolStr) {
-        self.spare.entry((pou, type_name)).or_default().push(name);
-    }
-
-    /// The first spare variable of this type whose name will do.
-    fn take(&mut self, type_name: &'static str, will_do: impl Fn(&str) -> bool) -> Option<SmolStr> {
-        let spare = self.spare.get_mut(&(self.pou, type_name))?;
-        let place = spare.iter().position(|name| will_do(name))?;
-        Some(spare.remove(place))
-    }
-
-    /// The detector of a coil of an edge.
-    fn pulse(&mut self, coil: CoilKind, type_name: &'static str, variable: &str) -> SmolStr {
-        let stem = pulse_name(coil, variable);
-        let mut number = 1;
-        loop {
-            let name = if number == 1 { stem.clone() } else { format_smolstr!("{stem}_{number}") };
-            if let Some(spare) = self.take(type_name, |spare| spare.eq_ignore_ascii_case(&name)) {
-                return spare;
-            }
-            if self.taken.insert(folded(&name)) {
-                self.declared.push(Helper { name: name.clone(), type_name, pou: self.pou });
-                return name;
-            }
-            number += 1;
-        }
-    }
-
-    /// A new label.
-    fn label(&mut self) -> SmolStr {
-        let number = self.numbers.entry("").or_default();
-        loop {
-            *number += 1;
-            let name = format_smolstr!("Skip{number}");
-            if self.taken.insert(folded(&name)) {
-                return name;
-            }
-        }
-    }
-
-    /// A new variable.
-    fn declare(&mut self, stem: &str, type_name: &'static str) -> SmolStr {
-        let number = self.numbers.entry(type_name).or_default();
-        loop {
-            *number += 1;
-            let name = format_smolstr!("{stem}{number}");
-            if self.taken.insert(folded(&name)) {
-                self.declared.push(Helper { name: name.clone(), type_name, pou: self.pou });
-                return name;
-            }
-        }
-    }
-
-    /// The variable that keeps the power of the path at this depth, from 0.
-    fn held(&mut self, depth: usize) -> SmolStr {
-        if let Some(known) = self.held.get(&self.pou).and_then(|held| held.get(depth)) {
-            return known.clone();
-        }
-        let name = self.take("BOOL", |_| true).unwrap_or_else(|| self.declare(HELPER, "BOOL"));
-        self.held.entry(self.pou).or_default().push(name.clone());
-        name
-    }
-}
+use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
+use crate::text::Message;
+use rustc_hash::FxHashSet;
+use smol_str::SmolStr;
 
 /// The lines of `path`, not yet laid out, or why it has none.
 pub fn lines(path: &Path, helpers: &mut Helpers) -> Result<Vec<String>, Message> {
@@ -360,9 +262,7 @@ impl Writer<'_> {
         if self.driven.contains(&term.key()) {
             return Err(Message::new("translate.edge-of-driven").with("operand", &term.text));
         }
-        let is_contact = |name: &str| !name.starts_with("PLS_") && !name.starts_with("PLF_");
-        let spare = self.helpers.take(type_name, is_contact);
-        let name = spare.unwrap_or_else(|| self.helpers.declare(stem, type_name));
+        let name = self.helpers.detector(stem, type_name);
         let call = format!("CAL {name}(\nCLK := {}\n)", term.text);
         self.lines.insert(self.group, call);
         self.group += 1;

@@ -258,13 +258,15 @@ impl Converter<'_> {
     fn compared(&self, operator: CompareOperator, sides: [&Term; 2]) -> Result<(), Lack> {
         use CompareOperator::{Equal, NotEqual};
         let types = sides.map(|term| self.type_of(term));
-        let unsigned = |kind: &ElementaryType| *kind != ElementaryType::Int;
-        let Some((kind, term)) = types.iter().zip(sides).find_map(|(kind, term)| {
-            kind.as_ref().filter(|kind| unsigned(kind)).map(|kind| (*kind, term))
-        }) else {
-            return Ok(());
+        let unsigned = types.iter().zip(sides).find_map(|(kind, term)| {
+            let kind = kind.filter(|kind| *kind != ElementaryType::Int)?;
+            Some((kind, term))
+        });
+        let Some((kind, term)) = unsigned else { return Ok(()) };
+        let is_negative = |term: &Term| match term.operand {
+            Operand::Literal(literal) => matches!(literal.value, LiteralValue::Integer(..0)),
+            _ => false,
         };
-        let is_negative = |term: &Term| matches!(term.operand, Operand::Literal(literal) if matches!(literal.value, LiteralValue::Integer(value) if value < 0));
         let is_pattern = matches!(operator, Equal { .. } | NotEqual { .. })
             && types.iter().flatten().all(|other| *other == kind)
             && !sides.into_iter().any(is_negative);
