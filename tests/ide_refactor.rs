@@ -157,11 +157,15 @@ fn an_inversion_has_two_forms() {
     let (title, spread) = after(&list(text), "X0", "rung.invertContacts");
     assert_eq!(title, "De Morgan: invert the contacts instead of the whole (saves 1 step)");
     assert_eq!(spread, "LDI X0\nANI X1\nOUT Y0\n");
-    let (title, whole) = after(&list(&spread), "X0", "rung.invertWhole");
-    assert_eq!(title, "De Morgan: invert the whole instead of its contacts (1 step more)");
-    assert_eq!(whole, text);
-    let drawn = drawn(text);
-    assert_eq!(listed(&after(&drawn, "X0", "rung.invertContacts").1), spread);
+    // A list is written in the fewest steps; a drawing shows the inverter.
+    assert!(!is_offered(&list(&spread), "X0", "rung.invertWhole"));
+    let open = drawn(&spread);
+    let (title, whole) = after(&open, "X0", "rung.invertWhole");
+    assert_eq!(title, "De Morgan: invert the whole instead of its contacts");
+    assert_ne!(whole, open.text());
+    assert_eq!(listed(&whole), spread);
+    let (_, contacts) = after(&drawn(text), "X0", "rung.invertContacts");
+    assert_eq!(contacts, open.text());
     assert!(!is_offered(&list("LDP X0\nOR X1\nINV\nOUT Y0\n"), "X0", "rung.invertContacts"));
     assert!(!is_offered(&list("LDI X0\nAND X1\nOUT Y0\n"), "X0", "rung.invertWhole"));
 }

@@ -55,6 +55,7 @@ mod markdown;
 mod mistakes;
 mod plain_instructions;
 mod proof_memory;
+mod proof_verdicts;
 mod rules;
 mod rules_across;
 mod rules_boxes;

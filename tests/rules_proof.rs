@@ -53,7 +53,9 @@ fn what_is_proved_is_told_once() {
         ("LD M0; RST M0; ANI M0; OUT Y1", &[]),
         ("LD M0; MOV K0 K4M0; ANI M0; OUT Y1", &[]),
         // Timers and counters change when they are driven.
-        ("LD T0; OUT T0 K5; ANI T0; OUT Y0", &[]),
+        // A timer with power keeps its contact on.
+        ("LD T0; OUT T0 K5; ANI T0; OUT Y0", &["never-energised Y0"]),
+        ("LD T0; OR X0; OUT T0 K5; ANI T0; OUT Y0", &[]),
         ("LD X0; INV; AND X0; OUT Y0", &["never-energised Y0"]),
         // Makes no difference.
         ("LD X0; AND X1; AND X0; OUT Y0", &["redundant-contact AND X0"]),

@@ -68,6 +68,19 @@ fn coils_of_parts_that_do_not_run_together_are_no_double_coils() {
 }
 
 #[test]
+fn a_coil_that_is_read_before_the_second_one_is_not_joined_with_it() {
+    let twice = |between: &str| {
+        let text = format!("LD X0\nOUT M0\n{between}LD X1\nOUT M0\nLD M0\nOUT Y2\nEND\n");
+        let mut found = judged(Notation::FxIl, &text);
+        found.retain(|one| one.code == "double-coil");
+        let [one] = &found[..] else { panic!("{text}{found:?}") };
+        (one.message.key(), one.fixes.len())
+    };
+    assert_eq!(twice(""), ("double-coil.found", 1));
+    assert_eq!(twice("LD M0\nOUT Y1\n"), ("double-coil.read-between", 0));
+}
+
+#[test]
 fn a_coil_and_a_latch_of_one_step_disturb_each_other() {
     check_lines(
         "coil-and-set-reset",

@@ -382,6 +382,37 @@ fn comments_and_networks_keep_their_places() {
     );
 }
 
+#[test]
+fn comments_behind_the_end_stay_behind_it() {
+    for text in ["LD X0\nOUT Y0\nEND\n; after\n", "LD X0\nOUT Y0\nEND\n\n; after\n; all\n"] {
+        assert_eq!(certain(&list(text), To::Fx), text);
+        let (again, drawn) = there_and_back(text);
+        assert!(drawn.contains("--+\n\n; after\n"), "{drawn}");
+        assert_eq!(again.replace("END\n\n", "END\n"), text.replace("END\n\n", "END\n"));
+    }
+}
+
+#[test]
+fn contacts_behind_a_step_begin_anew() {
+    let text = "STL S20\nLD X0\nOR X1\nAND X2\nSET S21\nSTL S21\nOUT Y0\nRET\nEND\n";
+    let (again, drawn) = there_and_back(text);
+    assert_eq!(again, text);
+    assert!(drawn.contains("--[STL S20]-"), "{drawn}");
+    // Outputs may branch behind a step; what branches with contacts would need a result that there is not.
+    let branched = "\
+|                                          Y0  |
++--[STL S20]--+----------------------------( )-+
+|             |   X1                       S21 |
+|             +---| |----------------------(S)-+
+";
+    let translation = translate(&drawing(branched), None, To::Fx, &Options::default());
+    let [rung] = &translation.rungs[..] else { panic!("{translation:?}") };
+    assert_eq!(rung.certificate, Some(Certificate::Undecided));
+    assert_eq!(rung.note.as_ref().map(|note| note.key()), Some("translate.step-branch"));
+    let refused = translate(&list("STL S20\nAND X1\nSET S21\n"), None, To::Ladder, &Options::default());
+    assert!(refused.rungs[0].note.is_some());
+}
+
 /// The bits that a proof gives for a scan, and as they were one scan before.
 fn bits_of(found: &rungwise::translate::Counterexample) -> (Bits, Bits) {
     let now: Bits = found

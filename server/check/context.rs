@@ -45,6 +45,13 @@ impl<'a> ChunkContext<'a> {
         }
     }
 
+    /// A list that a drawing carries along, as a chunk of its own.
+    pub fn of_box(list: &'a Chunk, document: &'a Document, pou: Option<usize>) -> ChunkContext<'a> {
+        let own = ChunkContext::new(list, document, pou);
+        let notation = if document.target().is_fx() { Notation::FxIl } else { own.notation };
+        ChunkContext { notation, ..own }
+    }
+
     /// What is out of order in a chunk of FX instruction list. One with something unreadable is not judged: the missing
     /// words would be missed here once more.
     pub(super) fn rung(&self) -> Option<(&'a FxTree, &[rung::Finding])> {

@@ -4,7 +4,7 @@ use super::rule::ChunkJudge;
 use super::sense::unused;
 use super::suppression::Suppression;
 use super::{ChunkContext, ProgramContext, RULES, Rule, Run, program_around, programs, proofs};
-use crate::document::{Chunk, Document, Found, LIMIT_BYTES, Notation, Page, ProjectView, Proofs};
+use crate::document::{Chunk, Document, Found, LIMIT_BYTES, Page, ProjectView, Proofs};
 use crate::text::{Diagnostic, Message, Severity, Span};
 use rustc_hash::{FxHashMap, FxHasher};
 use std::hash::{Hash, Hasher};
@@ -245,7 +245,7 @@ fn judge_page(
             let mut found = chunk.problems().to_vec();
             let context = ChunkContext::new(chunk, document, pou_number.checked_sub(1));
             CHUNK_JUDGES.iter().for_each(|judge| judge(&context, &mut found));
-            if !context.is_worth_a_proof.get() {
+            if !context.is_worth_a_proof.get() && chunk.boxes().is_empty() {
                 chunk.keep_proofs(key, Proofs::default());
             }
             for (start, list) in chunk.boxes() {
@@ -267,10 +267,7 @@ fn judge_page(
 /// The findings in a list that a drawing carries along, from its start.
 fn judge_box(list: &Chunk, document: &Document, pou: Option<usize>) -> Vec<Diagnostic> {
     let mut found = list.problems().to_vec();
-    let mut context = ChunkContext::new(list, document, pou);
-    if document.target().is_fx() {
-        context.notation = Notation::FxIl;
-    }
+    let context = ChunkContext::of_box(list, document, pou);
     CHUNK_JUDGES.iter().for_each(|judge| judge(&context, &mut found));
     found
 }

@@ -88,15 +88,23 @@ impl Walk<'_> {
             return Some(known);
         }
         let reading = chunk.reading();
-        let context = ChunkContext::new(&reading, self.document, pou_number.checked_sub(1));
+        let pou = pou_number.checked_sub(1);
         let mut prover = Prover::new(thrift, self.is_cancelled);
-        for rule in RULES.iter() {
-            if let Run::Proof(judge) = rule.run {
-                judge(&context, &mut prover);
-            }
+        judge(&ChunkContext::new(&reading, self.document, pou), &mut prover);
+        for (start, list) in chunk.boxes() {
+            let context = ChunkContext::of_box(&list, self.document, pou);
+            prover.inside(start, |prover| judge(&context, prover));
         }
         let proofs = prover.finished()?;
         chunk.keep_proofs(key, proofs.clone());
         Some(proofs)
+    }
+}
+
+fn judge(context: &ChunkContext<'_>, prover: &mut Prover<'_>) {
+    for rule in RULES.iter() {
+        if let Run::Proof(judge) = rule.run {
+            judge(context, prover);
+        }
     }
 }

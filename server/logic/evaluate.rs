@@ -187,12 +187,12 @@ impl<'s> Scan<'s> {
     fn bit_after(&self, action: &Action, power: bool, key: &str, left: bool) -> bool {
         let before = self.bit(key);
         let own = action.terms.first().filter(|term| term.key() == key);
-        let kind = own.and_then(|term| term.operand.device()).map(|device| (device.kind, device.number));
-        match (action.deed, kind) {
-            (Deed::Coil(CoilKind::Plain), Some((DeviceKind::T, number))) if number < FIRST_RETENTIVE => {
+        let device = own.and_then(|term| term.operand.device());
+        match (action.deed, device) {
+            (Deed::Coil(CoilKind::Plain), Some(timer)) if timer.is_forgetful_timer() => {
                 power && (before || left)
             }
-            (Deed::Coil(CoilKind::Plain), Some((DeviceKind::T | DeviceKind::C, _))) => {
+            (Deed::Coil(CoilKind::Plain), Some(device)) if device.kind.has_preset() => {
                 before || power && left
             }
             (Deed::Coil(CoilKind::Rising), _) if own.is_some() => power && left,
@@ -246,9 +246,6 @@ impl<'s> Scan<'s> {
         Some((register.key(), self.word(source, false)))
     }
 }
-
-/// Timers from this number on keep their time without power (T246 to T255 of the FX1N, FX2N and FX3U).
-const FIRST_RETENTIVE: u32 = 246;
 
 /// Whether an action changes nothing while it has no power.
 fn is_idle_without_power(action: &Action) -> bool {

@@ -29,7 +29,8 @@ fn path(text: &str, tree: &FxTree) -> Result<Option<Path>, Refusal> {
     if !tree.problems.is_empty() {
         return Err(Refusal::Unreadable);
     }
-    let mut reader = Reader { text, tree, builder: Builder::new(), blocks: Vec::new(), kept: Vec::new() };
+    let (builder, blocks, kept) = (Builder::new(), Vec::new(), Vec::new());
+    let mut reader = Reader { text, tree, builder, blocks, kept, is_at_step: false };
     for line in &tree.lines {
         match line.kind {
             LineKind::Instruction(form) => reader.instruction(form, line)?,
@@ -50,6 +51,8 @@ struct Reader<'a> {
     blocks: Vec<Block>,
     /// The branch stack: the places whose power is kept.
     kept: Vec<usize>,
+    /// Whether a step was loaded and no contact behind it: outputs may stand there, and contacts begin anew.
+    is_at_step: bool,
 }
 
 impl Reader<'_> {
@@ -57,6 +60,9 @@ impl Reader<'_> {
         let is_fresh = self.builder.is_empty() && self.blocks.is_empty();
         let role = form.instruction.role;
         if is_fresh && !matches!(role, Role::Load | Role::StepLoad | Role::Standalone) {
+            return Err(Refusal::NoCurrentResult);
+        }
+        if self.is_at_step && self.blocks.is_empty() && !matches!(role, Role::Load | Role::Output) {
             return Err(Refusal::NoCurrentResult);
         }
         match role {
@@ -94,6 +100,7 @@ impl Reader<'_> {
             Role::StepLoad => {
                 let action = self.action(form, line);
                 self.builder.gate(Gate::Through(action)).ok_or(Refusal::TooDeep)?;
+                self.is_at_step = true;
             }
             Role::Output => {
                 self.settle()?;
@@ -125,7 +132,8 @@ impl Reader<'_> {
     fn settle(&mut self) -> Result<(), Refusal> {
         match self.blocks.len() {
             0 => Ok(()),
-            1 if self.builder.is_empty() => {
+            1 if self.builder.is_empty() || self.is_at_step => {
+                self.is_at_step = false;
                 let block = self.blocks.pop().ok_or(Refusal::Blocks)?;
                 self.builder.pass(block.condition).ok_or(Refusal::TooDeep)
             }

@@ -339,7 +339,7 @@ impl<'p> Run<'p> {
         let since = match term.operand {
             Operand::Literal(_) | Operand::Constant { index: None, .. } => 0,
             // A variable whose type nobody knows was driven as a bit.
-            _ if self.driven.contains_key(&key) => self.touched[ANYWHERE],
+            Operand::Variable if self.driven.contains_key(&key) => self.touched[ANYWHERE],
             _ => self.moment(term, key, formulas).since,
         };
         Moment { name, since }
@@ -363,7 +363,14 @@ impl<'p> Run<'p> {
             self.driven.insert(key, Driven { term, value, since: self.events });
             return;
         }
+        let own = action.terms.first().filter(|_| matches!(action.deed, Deed::Coil(_)));
+        let before = own.map(|own| self.bit(own, formulas));
         self.event(action, guard, formulas);
+        let (Some(term), Some(before)) = (own, before) else { return };
+        let after = self.bit(term, formulas);
+        if let Some(value) = known_after(action, guard, [before, after], formulas) {
+            self.driven.insert(term.key(), Driven { term, value, since: self.events });
+        }
     }
 
     /// Does something of which nothing is known afterwards.
@@ -505,6 +512,32 @@ fn leads_anywhere(term: &Term) -> bool {
         Operand::Nibbles { first, .. } => first.is_special(),
         _ => false,
     }
+}
+
+/// What the bit of a coil is afterwards whose event leaves it as `after` says, as far as its working is known: a timer
+/// does not run without power, SET leaves nothing off, a pulse comes with power alone.
+fn known_after(
+    action: &Action,
+    guard: Formula,
+    [before, after]: [Formula; 2],
+    formulas: &mut Formulas,
+) -> Option<Formula> {
+    let device = action.terms.first().and_then(|term| match term.operand {
+        Operand::Device(device) => Some(device),
+        _ => None,
+    })?;
+    let idle = formulas.not(guard);
+    Some(match action.deed {
+        Deed::Coil(CoilKind::Plain) if device.is_forgetful_timer() => {
+            let on = formulas.or([before, after]);
+            formulas.and([guard, on])
+        }
+        Deed::Coil(CoilKind::Rising) => formulas.and([guard, after]),
+        Deed::Coil(CoilKind::Falling) => formulas.and([idle, after]),
+        Deed::Coil(CoilKind::Set) => formulas.or([guard, before]),
+        Deed::Coil(CoilKind::Reset) => formulas.and([idle, before]),
+        _ => return None,
+    })
 }
 
 /// The place of a term's kind.

@@ -130,6 +130,11 @@ impl Device {
     /// See [`Device::FIRST_SCAN`].
     pub const OFF_AT_FIRST: Device = Device::new(DeviceKind::M, 8003);
 
+    /// Whether it is a timer that forgets its time without power. T246 to T255 of the FX1N, FX2N and FX3U keep it.
+    pub fn is_forgetful_timer(self) -> bool {
+        self.kind == DeviceKind::T && self.number < 246
+    }
+
     /// Its value in every scan of a running CPU, if it has only one.
     pub fn always(self) -> Option<bool> {
         match self {

@@ -68,12 +68,9 @@ pub(super) fn write(
         page.head(source);
         let start = page.text.len();
         let note = page.body(body, source);
-        rungs.push(Translated {
-            span: source.span(),
-            result: start..page.text.len(),
-            certificate: None,
-            note,
-        });
+        let end = page.text.len();
+        page.comments(source, true);
+        rungs.push(Translated { span: source.span(), result: start..end, certificate: None, note });
     }
     page.declare(&program.tail);
     if needs_header {
@@ -144,7 +141,8 @@ impl Page {
     /// What stands above a rung: a blank line, comments, the network's name, labels.
     fn head(&mut self, source: &Source) {
         let rung = &source.rung;
-        let has_head = !rung.comments.is_empty() || rung.network.is_some();
+        let has_comments = rung.comments.iter().any(|comment| !source.is_behind(comment));
+        let has_head = has_comments || rung.network.is_some();
         // Rungs that are drawn need a blank line between them; lists breathe only where there is something to say.
         // The load behind a call would go on with its rung.
         let is_called = self.to == To::Iec && self.text.ends_with(")\n");
@@ -155,9 +153,25 @@ impl Page {
         if let Some(network) = &rung.network {
             self.network(&network_text(network));
         }
-        let mut end = None;
-        for (comment, span) in source.comments().zip(&rung.comments) {
-            if end.is_some_and(|end| source.has_blank_line(end, span.start)) {
+        self.comments(source, false);
+        for label in &rung.labels {
+            match self.to {
+                To::Fx => self.line(label),
+                _ => self.line(&format!("{label}:")),
+            }
+        }
+    }
+
+    /// The comments of a rung: those above and beside it, or those `behind` it at the end of the program.
+    fn comments(&mut self, source: &Source, behind: bool) {
+        let mut end = behind.then_some(source.rung.span.end);
+        for (comment, span) in source.comments().zip(&source.rung.comments) {
+            if source.is_behind(span) != behind {
+                continue;
+            }
+            // Directly below a drawing it would be a part of it.
+            let is_below_drawing = self.to == To::Ladder && self.text.ends_with("+\n");
+            if is_below_drawing || end.is_some_and(|end| source.has_blank_line(end, span.start)) {
                 self.line("");
             }
             end = Some(span.end);
@@ -165,12 +179,6 @@ impl Page {
                 _ if is_network(comment) => self.network(comment.trim_start_matches([';', ' '])),
                 To::Iec => self.line(&header::comment(comment)),
                 _ => self.line(comment),
-            }
-        }
-        for label in &rung.labels {
-            match self.to {
-                To::Fx => self.line(label),
-                _ => self.line(&format!("{label}:")),
             }
         }
     }

@@ -76,6 +76,15 @@ impl Source {
         self.rung.comments.iter().map(|comment| comment.of(self.chunk.text()).trim_end())
     }
 
+    /// Whether a comment stands below the rung, as behind END.
+    pub fn is_behind(&self, comment: &Span) -> bool {
+        if matches!(self.rung.path, Ok(None)) {
+            return false;
+        }
+        let below = self.chunk.text().get(self.rung.span.end as usize..comment.start as usize);
+        below.is_some_and(|between| between.contains('\n'))
+    }
+
     /// Whether there is a blank line between these offsets of the chunk, and nothing else.
     pub fn has_blank_line(&self, start: u32, end: u32) -> bool {
         let between = self.chunk.text().get(start as usize..end as usize).unwrap_or_default();

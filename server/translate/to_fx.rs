@@ -82,13 +82,20 @@ impl Writer {
             self.pass(&if moves.is_turned { front.negated() } else { front }, true)?;
             is_first = false;
         }
+        // Behind a step there is no current result: outputs may follow, and contacts begin anew.
+        let mut is_at_step = false;
         for gate in gates {
             match gate {
-                Gate::Pass(expression) => self.pass(expression, is_first)?,
+                Gate::Pass(expression) => self.pass(expression, is_first || is_at_step)?,
+                Gate::Invert if is_at_step => return Err(Message::new("translate.step-branch")),
                 Gate::Invert => self.bare("INV")?,
                 Gate::Through(action) => self.action(action)?,
             }
+            is_at_step = matches!(gate, Gate::Through(action) if is_step(action));
             is_first = false;
+        }
+        if is_at_step && wanted.iter().any(|wants| *wants != Wants::Power) {
+            return Err(Message::new("translate.step-branch"));
         }
         if is_first {
             return path.drives.iter().try_for_each(|drive| match drive {
@@ -203,6 +210,10 @@ fn front<'g>(gates: &'g [Gate], wanted: &[Wants]) -> (Option<Expression>, &'g [G
     }
     let front = if inverters % 2 == 1 { expression.negated() } else { expression.clone() };
     (Some(front), &behind[inverters..])
+}
+
+fn is_step(action: &Action) -> bool {
+    matches!(action.deed, Deed::Instruction(form) if form.instruction.role == Role::StepLoad)
 }
 
 /// Whether there is an inverse instruction for each contact; edges have none.

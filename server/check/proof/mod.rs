@@ -108,6 +108,15 @@ impl<'a> Prover<'a> {
         (!(self.is_cancelled)()).then(|| Proofs { found: self.found.into(), effort: self.effort + 1 })
     }
 
+    /// Proves what `judge` does of a list that starts so many bytes behind the chunk's start.
+    pub fn inside(&mut self, start: usize, judge: impl FnOnce(&mut Self)) {
+        let known = self.found.len();
+        judge(self);
+        for found in &mut self.found[known..] {
+            *found = found.shifted(start);
+        }
+    }
+
     fn goes_on(&self) -> bool {
         self.effort < CHUNK && !(self.is_cancelled)()
     }

@@ -115,17 +115,11 @@ impl Slice {
     }
 }
 
-/// The contact of a timer is off when power does not reach its coil.
+/// The output of a TON is off when power does not reach its input.
 fn timer_fact(run: &Run<'_>, number: usize, formulas: &mut Formulas) -> Option<Formula> {
     let effect = run.effects.get(number)?;
     let guard = effect.guard;
     let contact = match effect.deed() {
-        logic::Deed::Coil(crate::ladder::CoilKind::Plain) => {
-            let term = effect.action.terms.first()?;
-            let device = term.operand.device().filter(|device| device.kind == DeviceKind::T)?;
-            // Those that keep their time keep their contact, too; they are the last ones of all models that have any.
-            (device.number < FIRST_RETENTIVE_TIMER).then(|| term.clone())?
-        }
         logic::Deed::Call(call) if call.block.name == "TON" && call.power_in() == "IN" => {
             call.output(&effect.action.terms)?
         }
@@ -135,9 +129,6 @@ fn timer_fact(run: &Run<'_>, number: usize, formulas: &mut Formulas) -> Option<F
     let idle = formulas.not(contact);
     Some(formulas.or([idle, guard]))
 }
-
-/// T246 to T255 are retentive on the models that have them, from their device tables.
-const FIRST_RETENTIVE_TIMER: u32 = 246;
 
 /// A stretch of the program with one or more rungs that run one after the other.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -35,6 +35,11 @@ impl Driven {
         }
         Driven { all, reads, is_output }
     }
+
+    /// Whether something reads what `all[one]` writes before `all[other]` writes again.
+    pub fn is_read_between(&self, one: usize, other: usize) -> bool {
+        self.reads[other] > self.reads[one + 1]
+    }
 }
 
 impl<'c, 'a> Coils<'c, 'a> {
@@ -87,7 +92,7 @@ impl<'c, 'a> Coils<'c, 'a> {
         }
         // In Instruction List of IEC 61131-3 a variable is often used for one result after another, and given a value
         // that a later statement may change.
-        let is_read = driven.reads[other] > driven.reads[one + 1];
+        let is_read = driven.is_read_between(one, other);
         !self.regions.may_skip(second, first) && (driven.is_output || !is_read)
     }
 

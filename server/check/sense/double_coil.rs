@@ -94,16 +94,22 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
         let places: Vec<usize> = (0..driven.all.len()).filter(|place| is_coil(&driven.all[*place])).collect();
         for (number, one) in places.iter().enumerate() {
             let Some(winner) = coils.undone_by(&driven, *one, &places[number + 1..]) else { continue };
+            let is_read_between = driven.is_read_between(*one, winner);
             let (loser, winner) = (&driven.all[*one], &driven.all[winner]);
             let name = context.uses().words(loser);
-            let message = match loser.file == winner.file {
-                true => Message::new("double-coil.found").with("rung", winner.rung),
-                false => Message::new("double-coil.elsewhere"),
+            let message = match (loser.file == winner.file, is_read_between) {
+                (true, false) => Message::new("double-coil.found").with("rung", winner.rung),
+                (true, true) => Message::new("double-coil.read-between").with("rung", winner.rung),
+                (false, _) => Message::new("double-coil.elsewhere"),
             };
             let related = Message::new("double-coil.winner").with("name", &name);
             let diagnostic = Diagnostic::new(RULE.code, loser.span, message.with("name", &name))
                 .related(winner.span, related);
-            let is_pair = places.len() == 2 && loser.access.act == winner.access.act && mended < MOST_MENDED;
+            // Who reads it between would read something else if both were one.
+            let is_pair = places.len() == 2
+                && !is_read_between
+                && loser.access.act == winner.access.act
+                && mended < MOST_MENDED;
             let joined = is_pair.then(|| joined(context.uses(), loser, winner)).flatten();
             mended += usize::from(joined.is_some());
             found.push(match joined {

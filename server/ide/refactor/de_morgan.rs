@@ -19,8 +19,8 @@ pub(super) fn propose(around: &Neighbourhood<'_>) -> Vec<Proposal> {
 }
 
 /// With each inversion moved into the contacts before it; nothing if there is none, or it stays before an edge.
-fn spread(path: &Path) -> Option<Path> {
-    let path = with_conditions(path, &|condition, _| without_inversion(condition));
+fn spread(original: &Path) -> Option<Path> {
+    let path = with_conditions(original, &|condition, _| without_inversion(condition));
     let mut spread = path.clone();
     if let [Gate::Pass(condition), Gate::Invert, rest @ ..] = &path.gates[..] {
         spread.gates = [&[Gate::Pass(condition.negated())], rest].concat();
@@ -32,7 +32,7 @@ fn spread(path: &Path) -> Option<Path> {
         spread.drives = vec![Drive::Action(plain)];
     } else if path.gates.iter().all(|gate| *gate != Gate::Invert) && !has_inversion(&path) {
         // Inside of a condition there was one, or there was none anywhere.
-        return Some(path);
+        return (path != *original).then_some(path);
     }
     (!has_inversion(&spread)).then_some(spread)
 }

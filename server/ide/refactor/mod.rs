@@ -105,7 +105,8 @@ pub(super) fn at(view: &ProjectView<'_>, span: Span, style: Style) -> Vec<Refact
         extract::propose(&around, view, span),
         inline::propose(&around, view),
     ];
-    let proposals = proposals.into_iter().flatten().chain(de_morgan::propose(&around));
+    // De Morgan's form says more than that it is shorter.
+    let proposals = de_morgan::propose(&around).into_iter().chain(proposals.into_iter().flatten());
     let mut refactorings: Vec<Refactoring> = Vec::new();
     for proposal in proposals {
         let Some(refactoring) = finished(&around, proposal, style) else { continue };

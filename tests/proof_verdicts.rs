@@ -1,0 +1,163 @@
+//! What a proof says of two programs: never equal where a PLC would tell them apart, never different where it would not,
+//! and a plain answer wherever there is one.
+
+use rungwise::document::{Document, Notation};
+use rungwise::target::{Model, Target};
+use rungwise::translate::{Proof, prove};
+
+/// The verdict on two FX lists; instructions are separated by semicolons, END is left out.
+fn verdict(left: &str, right: &str) -> &'static str {
+    let document = |text: &str| {
+        let text = format!("{}\nEND\n", text.replace(';', "\n"));
+        Document::new(&text, Notation::FxIl, Target::of(Model::Fx3u))
+    };
+    word(&prove(&document(left), &document(right)))
+}
+
+fn word(proof: &Proof) -> &'static str {
+    match proof {
+        Proof::Equal { .. } => "equal",
+        Proof::Different(_) => "different",
+        Proof::Undecided { .. } => "undecided",
+    }
+}
+
+/// All pairs for which the verdict, either way round, is not as `is_right` wants it.
+fn check(pairs: &[(&str, &str)], is_right: impl Fn(&str) -> bool) {
+    let both = pairs.iter().flat_map(|(left, right)| [(*left, *right), (*right, *left)]);
+    let wrong: Vec<_> = both
+        .map(|(left, right)| (verdict(left, right), left, right))
+        .filter(|(verdict, ..)| !is_right(verdict))
+        .collect();
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn what_looks_elsewhere_is_never_equal() {
+    check(
+        &[
+            // An index register changes what a name means.
+            (
+                "LD= D0Z0 K5;OUT Y0;LD X0;INC Z0;LD= D0Z0 K5;OUT Y1",
+                "LD= D0Z0 K5;OUT Y0;LD X0;INC Z0;LD Y0;OUT Y1",
+            ),
+            (
+                "LD= D0Z0 K5;OUT Y0;LD X0;RST Z0;LD= D0Z0 K5;OUT Y1",
+                "LD= D0Z0 K5;OUT Y0;LD X0;RST Z0;LD Y0;OUT Y1",
+            ),
+            // The carry goes in, the mode says which way data go, the relay how a counter counts.
+            ("LD X0;OUT M8022;LD X1;RCL D0 K1", "LD X2;OUT M8022;LD X1;RCL D0 K1"),
+            (
+                "LD X0;OUT M8024;LD X1;BMOV D0 D10 K5;LD X2;OUT M8024",
+                "LD X3;OUT M8024;LD X1;BMOV D0 D10 K5;LD X2;OUT M8024",
+            ),
+            (
+                "LD X0;OUT M8200;LD X1;OUT C200 K5;LD X2;OUT M8200",
+                "LDI X0;OUT M8200;LD X1;OUT C200 K5;LD X2;OUT M8200",
+            ),
+            // Instructions that name nothing they write.
+            ("LD X3;OUT Y20;LD X0;REF X0 K8;LD X3;OUT Y21", "LD X3;OUT Y20;LD X0;REF X0 K8;LD Y20;OUT Y21"),
+            (
+                "LD S0;OUT Y20;LD X0;IST X20 S20 S27;LD S0;OUT Y21",
+                "LD S0;OUT Y20;LD X0;IST X20 S20 S27;LD Y20;OUT Y21",
+            ),
+            ("LD S900;OUT Y20;LD X0;ANR;LD S900;OUT Y21", "LD S900;OUT Y20;LD X0;ANR;LD Y20;OUT Y21"),
+            (
+                "LD= K1M8020 K1;OUT Y20;LD X0;ADD D0 D1 D2;LD= K1M8020 K1;OUT Y21",
+                "LD= K1M8020 K1;OUT Y20;LD X0;ADD D0 D1 D2;LD Y20;OUT Y21",
+            ),
+            // Power may be missing at the left rail.
+            ("LD X7;MC N0 M100;LD X0;OUT Y0;MCR N0", "LD X7;MC N0 M100;LD X0;SET Y0;LDI X0;RST Y0;MCR N0"),
+        ],
+        |verdict| verdict != "equal",
+    );
+}
+
+#[test]
+fn what_ends_each_scan_alike_is_never_different() {
+    check(
+        &[
+            // The order does not matter, though one stands between that looks at bits.
+            ("LD X0;OUT Y0;LD X1;MOV K1Y10 D0", "LD X1;MOV K1Y10 D0;LD X0;OUT Y0"),
+            ("LD X0;OUT Y0;LD X1;CMP D0 K5 M10", "LD X1;CMP D0 K5 M10;LD X0;OUT Y0"),
+            // A timer without power is off, and so is what was reset; what was set is on.
+            ("LD X0;OUT T0 K10;LD T0;OUT Y0", "LD X0;OUT T0 K10;LD T0;AND X0;OUT Y0"),
+            ("LD X0;RST C0;LD C0;OUT Y0", "LD X0;RST C0;LD C0;ANI X0;OUT Y0"),
+            ("LD X0;ZRST M0 M5;LD M2;OUT Y0", "LD X0;ZRST M0 M5;LD M2;ANI X0;OUT Y0"),
+            ("LD X0;PLS M0;LD M0;OUT Y0", "LD X0;PLS M0;LD M0;AND X0;OUT Y0"),
+            ("LD X0;SET S0;LD S0;OUT Y0", "LD X0;SET S0;LD S0;OR X0;OUT Y0"),
+            ("LD M8000;MOV K5 D0;LD= D0 K5;OUT Y0", "LD M8000;MOV K5 D0;LD M8000;OUT Y0"),
+            // Numbers are numbers.
+            ("LD>= D0 D1;AND>= D1 D2;OUT Y0", "LD>= D0 D1;AND>= D1 D2;AND>= D0 D2;OUT Y0"),
+            ("LD= K1X0 K0;OUT Y0", "LDI X0;ANI X1;ANI X2;ANI X3;OUT Y0"),
+            ("LDD= D0 K0;OUT Y0", "LD= D0 K0;AND= D1 K0;OUT Y0"),
+            // An edge of a bit that was not changed in between is the same edge.
+            ("LD M0;OUT M0;LDP M0;OUT Y0", "LDP M0;OUT Y0;LD M0;OUT M0"),
+        ],
+        |verdict| verdict != "different",
+    );
+}
+
+#[test]
+fn what_is_the_same_is_equal() {
+    check(
+        &[
+            ("LD M8002;OUT Y0", "LDI M8003;OUT Y0"),
+            ("LD M8000;AND X0;OUT Y0", "LD X0;ANI M8001;OUT Y0"),
+            ("LD X0;OUT Y0;END;LD X1;OUT Y1", "LD X0;OUT Y0;END;LD X2;OUT Y1"),
+            ("LD X0;OUT M0;LD M0;OUT Y0", "LD X0;OUT M0;LD X0;OUT Y0"),
+            ("LD X0;OR X1;OUT Y0", "LDI X0;ANI X1;INV;OUT Y0"),
+        ],
+        |verdict| verdict == "equal",
+    );
+}
+
+#[test]
+fn what_differs_is_different() {
+    check(
+        &[
+            ("LD X0;OUT Y0;LD X1;MOV K5 D0", "LDI X0;OUT Y0;LD X1;MOV K5 D0"),
+            ("LD X0;OUT T0 K10;LD T0;OUT Y0", "LD X0;OUT T0 K10;LDI T0;OUT Y0"),
+            ("LD T0;OUT Y0;LD X0;OUT T0 K10;LD T0;OUT Y1", "LD T0;OUT Y0;LD X0;OUT T0 K10;LD Y0;OUT Y1"),
+            ("LD X1;CJ P0;LD X0;OUT M0;P0;LD M0;OUT Y0", "LD X1;CJ P0;LD X0;OUT M0;P0;LD X0;OUT Y0"),
+            ("LD X0;SET Y0;LD X1;RST Y0", "LD X1;RST Y0;LD X0;SET Y0"),
+            ("LD X0;OUT Y0;LD X1;OUT K1M0", "LD X0;ANI X2;OUT Y0;LD X1;OUT K1M0"),
+            ("LD X0;OUT Y0;LD X1;MOV D0 K1M0", "LD X0;ANI X2;OUT Y0;LD X1;MOV D0 K1M0"),
+        ],
+        |verdict| verdict == "different",
+    );
+}
+
+#[test]
+fn declarations_count() {
+    let list = |variables: &str| {
+        let text = format!("PROGRAM p\n{variables}\nEND_VAR\nLD n\nGT lim\nST y\nEND_PROGRAM\n");
+        Document::new(&text, Notation::IecIl, Target::of(Model::Iec))
+    };
+    let first = list("VAR lim : INT := 5; n : INT; y : BOOL;");
+    for same in ["VAR lim : INT := 5; n : INT; y : BOOL;", "VAR n , LIM:int; y : bool; END_VAR VAR"] {
+        let lim = same.contains(":= 5");
+        assert_eq!(word(&prove(&first, &list(same))) == "equal", lim, "{same}");
+    }
+    for other in [
+        "VAR lim : INT := 50; n : INT; y : BOOL;",
+        "VAR CONSTANT lim : INT := 5; n : INT; y : BOOL;",
+        "VAR RETAIN lim : INT := 5; n : INT; y : BOOL;",
+        "VAR lim : UINT := 5; n : UINT; y : BOOL;",
+        "VAR lim AT %MW5 : INT := 5; n : INT; y : BOOL;",
+    ] {
+        let proof = prove(&first, &list(other));
+        let Proof::Undecided { reason, at } = &proof else { panic!("{other}: {}", word(&proof)) };
+        assert_eq!(reason.key(), "prove.declared", "{other}");
+        let named = at[1].map(|span| list(other).slice(span).to_string());
+        assert_eq!(named.as_deref(), Some("lim"), "{other}");
+    }
+    let text = |capital: &str| {
+        let text = format!(
+            "PROGRAM p\nVAR s : STRING; y : BOOL; END_VAR\nLD s\nEQ '{capital}'\nST y\nEND_PROGRAM\n"
+        );
+        Document::new(&text, Notation::IecIl, Target::of(Model::Iec))
+    };
+    assert_eq!(word(&prove(&text("A"), &text("A"))), "equal");
+    assert_ne!(word(&prove(&text("A"), &text("a"))), "equal");
+}
