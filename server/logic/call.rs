@@ -50,8 +50,8 @@ impl Call {
     const ENABLE: u8 = u8::MAX;
 
     /// A call of `instance` with its terms in order, where power drives the input called `power`, or `EN`. `arguments`
-    /// gives for each other pin its formal name in any letter case, whether it is an output, and its operand. Nothing if
-    /// the block has no such pin, or one is there twice, or power drives it.
+    /// gives for each other pin its formal name in any letter case, whether it is an output, and its operand. Nothing
+    /// if the block has no such pin, or one is there twice, or power drives it.
     pub fn new(
         block: &'static FunctionBlock,
         power: &str,
