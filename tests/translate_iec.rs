@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use rungwise::document::{Document, Notation};
 use rungwise::ide::{self, Style};
 use rungwise::target::{Model, Target};
+use rungwise::text::Language;
 use rungwise::translate::{Certificate, Options, Proof, To, Translated, Translation, prove, translate};
 use std::collections::HashMap;
 use std::path::Path;
@@ -225,11 +226,7 @@ fn detectors_of_edges_are_contacts() {
     let calls = "CAL up(\nCLK := a\n)\nCAL down(\nCLK := b\n)\n";
     let (drawn, back) = round(&program(&variables, &format!("{calls}LD up.Q\nAND c\nOR down.Q\nS y")));
     assert!(drawn.contains("|P|") && drawn.contains("|N|"), "{drawn}");
-    let expected =
-        format!("{calls}LD up.Q\nAND c\nOR down.Q\nS y").replace("up", "Rise1").replace("down", "Fall1");
-    assert_eq!(body(&back).join("\n"), expected);
-    let declared = back.contains("Rise1 : R_TRIG;") && back.contains("Fall1 : F_TRIG;");
-    assert!(declared, "{back}");
+    assert_eq!(body(&back).join("\n"), format!("{calls}LD up.Q\nAND c\nOR down.Q\nS y"));
     // Who else asks for the output gets it from the block.
     let (drawn, back) = round(&program(&variables, "CAL up(\nCLK := a\n)\nLD up.Q\nST y\nLD up.Q\nST z"));
     assert!(drawn.contains("R_TRIG") && !drawn.contains("|P|"), "{drawn}");
@@ -247,7 +244,7 @@ fn function_blocks_stand_on_the_power_line() {
     assert!(drawn.contains("| TON  |") && drawn.contains("|IN   Q|") && drawn.contains("CV|--n"), "{drawn}");
     assert_eq!(body(&back), body(&text));
     // A box that is not the standard's, or is called otherwise, is kept.
-    for call in ["CALC T1", "CAL T1", "CAL n(\nIN := a\n)", "CAL T1(\nIN := a,\nXX := b\n)"] {
+    for call in ["CAL n(\nIN := a\n)", "CAL T1(\nIN := a,\nXX := b\n)"] {
         let translation = to(&list(&program(&variables, &format!("LD a\n{call}"))), To::Ladder);
         assert!(
             translation.text.contains(&format!("{{il\nLD a\n{call}\n}}")) || translation.text.contains(call),
@@ -519,42 +516,97 @@ fn variables_are_devices_by_their_addresses() {
     assert_eq!(written, expected);
 }
 
+/// The note of the first rung, in English.
+fn note(translation: &Translation) -> String {
+    translation.rungs[0].note.as_ref().map(|note| note.render(Language::English)).unwrap_or_default()
+}
+
 #[test]
 fn what_has_no_counterpart_keeps_its_words() {
-    for (rung, words) in [
-        ("LD X0\nOUT T246 K5", "OUT T246 K5"),
-        ("LD X0\nDMOV K5 D0", "DMOV K5 D0"),
-        ("LD X0\nMOV K4M0 D0", "MOV K4M0 D0"),
-        ("LD X0\nMOV T0 D0", "MOV T0 D0"),
-        ("LD X0\nMOV D0 C0", "MOV D0 C0"),
-        ("LD X0\nMOVP K5 D0Z0", "MOVP K5 D0Z0"),
-        ("LD X0\nMUL D0 D1 D2", "MUL D0 D1 D2"),
-        ("LD X0\nWAND D0 D1 D2", "WAND D0 D1 D2"),
-        ("LD X0\nBMOV D0 D10 K5", "BMOV D0 D10 K5"),
-        ("LD X0\nZRST M0 M10", "ZRST M0 M10"),
-        ("LD X0\nRST T0", "RST T0"),
-        ("LD M8013\nOUT Y0", "LD M8013"),
-        ("LD X0\nOUT C200 K5", "OUT C200 K5"),
-        ("LDD>= D0 K5\nOUT Y0", "LDD>= D0 K5"),
-        ("STL S0\nOUT Y0", "STL S0"),
+    for (rung, words, lack) in [
+        ("LD X0\nOUT T246 K5", "OUT T246 K5", "T246"),
+        ("LD X0\nDMOV K5 D0", "DMOV K5 D0", "DMOV"),
+        ("LD X0\nMOV K4M0 D0", "MOV K4M0 D0", "K4M0"),
+        ("LD X0\nMOV T0 D0", "MOV T0 D0", "T0"),
+        ("LD X0\nMOV D0 C0", "MOV D0 C0", "MOV"),
+        ("LD X0\nMOVP K5 D0Z0", "MOVP K5 D0Z0", "D0Z0"),
+        ("LD X0\nMUL D0 D1 D2", "MUL D0 D1 D2", "MUL"),
+        ("LD X0\nWAND D0 D1 D2", "WAND D0 D1 D2", "WAND"),
+        ("LD X0\nBMOV D0 D10 K5", "BMOV D0 D10 K5", "BMOV"),
+        ("LD X0\nZRST M0 M10", "ZRST M0 M10", "ZRST"),
+        ("LD X0\nRST T0", "RST T0", "T0"),
+        ("LD M8013\nOUT Y0", "LD M8013", "M8013"),
+        ("LD X0\nOUT C200 K5", "OUT C200 K5", "C200"),
+        ("LDD>= D0 K5\nOUT Y0", "LDD>= D0 K5", "D>= D0 K5"),
+        ("STL S0\nOUT Y0", "STL S0", "STL"),
     ] {
         let translation = to(&fx(&format!("{rung}\nEND\n")), To::Iec);
-        let first = &translation.rungs[0];
-        assert_eq!(first.note.as_ref().map(|note| note.key()), Some("logic.no-counterpart"), "{rung}");
-        assert_eq!(first.certificate, Some(Certificate::Undecided));
+        assert_eq!(
+            note(&translation),
+            format!("`{lack}` has no counterpart in the other language"),
+            "{rung}"
+        );
+        assert_eq!(translation.rungs[0].certificate, Some(Certificate::Undecided));
         assert!(translation.text.contains(&format!("(* {words} *)")), "{}", translation.text);
         assert!(problems(&translation.text).is_empty(), "{}", translation.text);
     }
-    for body in
-        ["LD a\nST y", "LD X0\nST T0.IN\nCAL T0(\nPT := T#50ms\n)", "LD X0\nRETC", "LD X0\nJMPC nowhere"]
-    {
+    for (body, lack) in [
+        ("LD a\nST y", "a"),
+        ("LD X0\nST T0.IN\nCAL T0(\nPT := T#50ms\n)", "T0 : TON"),
+        ("LD X0\nRETC", "RET"),
+        ("LD X0\nJMPC nowhere", "nowhere"),
+        ("LD X0\nCALC T0(\nPT := T#5s\n)", "T0 : TON"),
+    ] {
         let translation = to(&list(&program("a, y : BOOL; X0 AT %IX0.0 : BOOL; T0 : TON;", body)), To::Fx);
         assert_eq!(
-            translation.rungs[0].note.as_ref().map(|note| note.key()),
-            Some("logic.no-counterpart"),
+            note(&translation),
+            format!("`{lack}` has no counterpart in the other language"),
             "{body}"
         );
+        let note = translation.rungs[0].note.as_ref().unwrap();
+        let said = note.render(Language::SimplifiedChinese);
+        assert_eq!(said, format!("`{lack}` 在另一种语言中没有对应物"), "{body}");
     }
+}
+
+#[test]
+fn types_decide_how_words_compare() {
+    let variables = "x AT %QX0.0 : BOOL; n, k : INT; D5 : REAL; i AT %MW1000 : INT; j AT %MW1001 : INT; \
+                     u AT %MW1002 : UINT; v AT %MW1003 : UINT; w AT %MW1004 : WORD; d AT %MW1006 : DINT;";
+    for (condition, expected) in [
+        ("LD i\nGT j", "LD> D0 D1"),
+        ("LD i\nLE -5", "LD<= D0 K-5"),
+        ("LD u\nEQ v", "LD= D2 D3"),
+        ("LD u\nNE 7", "LD<> D2 K7"),
+        ("LD w\nEQ 7", "LD= D4 K7"),
+    ] {
+        let written = certain(&list(&program(variables, &format!("{condition}\nST x"))), To::Fx);
+        assert_eq!(written, format!("{expected}\nOUT Y0\nEND\n"));
+    }
+    let order = |word: &str, kind: &str| {
+        format!("`{word}` is of type {kind}, and the FX family compares words with a sign")
+    };
+    let other = |word: &str, kind: &str| {
+        format!("`{word}` is of type {kind}, with which no instruction of 16 bits calculates")
+    };
+    for (condition, reason) in [
+        ("LD u\nGT 5", order("u", "UINT")),
+        ("LD 5\nLT v", order("v", "UINT")),
+        ("LD u\nEQ -5", order("u", "UINT")),
+        ("LD w\nGE 5", order("w", "WORD")),
+        ("LD %MW1007\nGE 5", order("%MW1007", "WORD")),
+        ("LD u\nEQ i", order("u", "UINT")),
+        ("LD D5\nGT 5", other("D5", "REAL")),
+        ("LD d\nEQ 5", other("d", "DINT")),
+    ] {
+        let translation = to(&list(&program(variables, &format!("{condition}\nST x"))), To::Fx);
+        assert_eq!(note(&translation), reason, "{condition}\n{}", translation.text);
+        assert!(!translation.text.contains("OUT Y0\nEND"), "{}", translation.text);
+    }
+    // Sums are the same with and without a sign; other types have no instruction.
+    let sum = |body: &str| to(&list(&program(variables, body)), To::Fx);
+    assert_eq!(sum("LD u\nADD v\nST u").text, "LD M8000\nADD D2 D3 D2\nEND\n");
+    assert_eq!(note(&sum("LD D5\nADD D5\nST D5")), other("D5", "REAL"));
 }
 
 #[test]
@@ -703,9 +755,10 @@ const KEPT: &[(&str, &[&str])] = &[
     // `dbg 1` prints the current result, and `jmpcn down` before it leaves it standing.
     ("echidna-x-blink", &[THERE_NOT_BOOLEAN, THERE_NOT_BOOLEAN, BACK_NOT_BOOLEAN, BACK_NOT_BOOLEAN]),
     ("echidna-x-ctu", &[THERE_NOT_BOOLEAN, BACK_NOT_BOOLEAN]),
-    // Blocks that are declared in the program, or called without their first input.
+    // A block that is declared in the program.
     ("echidna-x-fb", &[THERE_BLOCK, BACK_BLOCK]),
-    ("echidna-x-rtc", &[THERE_BLOCK, BACK_BLOCK]),
+    // `dbg`, which prints the current result.
+    ("echidna-x-rtc", &[THERE_NOT_BOOLEAN, BACK_NOT_BOOLEAN]),
     // XOR of a byte, and its conversion.
     ("echidna-x-tutorial-example1", &[THERE_NOT_BOOLEAN, BACK_NOT_BOOLEAN]),
     ("echidna-x-tutorial-example2", &[THERE_NOT_BOOLEAN, BACK_NOT_BOOLEAN]),
@@ -768,4 +821,132 @@ fn there_and_back(name: &str, document: &Document) -> Vec<String> {
         }
     }
     said
+}
+
+#[test]
+fn coils_of_edges_are_stores_of_detectors() {
+    let drawn = "
+|   a        b                 y |
++--| |--+---| |---------------(P)+
+|       |    c                 z |
+|       +---| |-----------+---(N)+
+|                         |    w |
+|                         +---( )+
+";
+    let written = certain(&drawing(drawn), To::Iec);
+    let expected = [
+        "LD a",
+        "AND b",
+        "ST PLS_y.CLK",
+        "CAL PLS_y",
+        "LD PLS_y.Q",
+        "ST y",
+        "LD a",
+        "AND c",
+        "ST Held1",
+        "ST PLF_z.CLK",
+        "CAL PLF_z",
+        "LD PLF_z.Q",
+        "ST z",
+        "LD Held1",
+        "ST w",
+    ];
+    assert_eq!(body(&written), expected, "{written}");
+    assert!(written.contains("PLS_y : R_TRIG;") && written.contains("PLF_z : F_TRIG;"), "{written}");
+    assert!(problems(&written).is_empty(), "{:?}\n{written}", problems(&written));
+    let again = certain(&list(&written), To::Ladder);
+    assert!(again.contains("(P)") && again.contains("(N)") && !again.contains("CLK"), "{again}");
+    // The detectors that are declared already serve once more.
+    assert_eq!(certain(&drawing(&again), To::Iec), written);
+    // Two coils of one variable have a detector each, and on the FX family they are PLS and PLF.
+    let text = "LD X0\nPLS M0\nLD X0\nAND X1\nPLF M1\nLD X2\nOR X3\nPLS M0\nEND\n";
+    let written = certain(&fx(text), To::Iec);
+    assert!(written.contains("CAL     PLS_M0_2"), "{written}");
+    assert_eq!(certain(&list(&written), To::Fx), text, "{written}");
+    let drawn = certain(&list(&written), To::Ladder);
+    assert_eq!(drawn.matches("(P)").count(), 2, "{drawn}");
+    assert_eq!(certain(&drawing(&drawn), To::Fx), text, "{drawn}");
+}
+
+#[test]
+fn what_sees_more_of_a_detector_is_no_coil_of_an_edge() {
+    let variables = format!("{BITS} PLS_y, Edge : R_TRIG;");
+    for calls in [
+        "LD a\nST PLS_y.CLK\nCAL PLS_y\nLD PLS_y.Q\nST y\nS z",
+        "LD a\nST PLS_y.CLK\nCAL PLS_y\nLD PLS_y.Q\nST z",
+        "LD a\nST PLS_y.CLK\nCAL PLS_y\nLDN PLS_y.Q\nST y",
+        "LD a\nST PLS_y.CLK\nCAL PLS_y\nLD PLS_y.Q\nST y\nLD PLS_y.Q\nST z",
+        "LD a\nST Edge.CLK\nCAL Edge\nLD Edge.Q\nST y",
+    ] {
+        let drawn = to(&list(&program(&variables, calls)), To::Ladder).text;
+        assert!(drawn.contains("CLK") && !drawn.contains("(P)"), "{calls}\n{drawn}");
+    }
+}
+
+#[test]
+fn detectors_keep_their_names() {
+    let variables = format!("{BITS} Edge, Other : R_TRIG; Drop : F_TRIG;");
+    let text = program(
+        &variables,
+        "CAL Edge(\nCLK := a\n)\nLD Edge.Q\nST y\nCAL Other(\nCLK := b\n)\nCAL Drop(\nCLK := c\n)\nLD Other.Q\nAND Drop.Q\nS z",
+    );
+    let (drawn, back) = round(&text);
+    assert!(drawn.contains("|P|") && !drawn.contains("Rise"), "{drawn}");
+    assert_eq!(body(&back), body(&text), "{drawn}");
+    assert!(!back.contains("Rise1") && !back.contains("Fall1"), "{back}");
+    // What is used elsewhere is not taken, whether that can be read or not.
+    let text =
+        program(&variables, "CAL Edge(\nCLK := a\n)\nLD Edge.Q\nST y\nLD Other.M\nADD n\nMUL Drop\nST k");
+    let drawn = to(&list(&text), To::Ladder).text;
+    let more = drawn.replace("END_PROGRAM", "|  a      z |\n+--|P|---( )+\n\nEND_PROGRAM");
+    let back = to(&drawing(&more), To::Iec).text;
+    assert!(back.contains("Rise1 : R_TRIG;") && back.contains("CAL     Rise1("), "{back}");
+}
+
+#[test]
+fn calls_under_a_condition_are_boxes_with_enable() {
+    let variables = format!("{BITS} T1 : TON; C1 : CTU;");
+    let text = program(
+        &variables,
+        "LD a\nCALC T1(\nIN := b,\nPT := T#5s\n)\nLD a\nANDN b\nCALCN C1(\nCU := c,\nPV := 10,\nCV => n\n)\nLD T1.Q\nST y\nCAL T1(\nPT := T#1s\n)\nLD T1.Q\nST z",
+    );
+    let (drawn, back) = round(&text);
+    assert!(drawn.contains("|EN ENO|") || drawn.contains("|EN  ENO|"), "{drawn}");
+    assert_eq!(body(&back), body(&text), "{drawn}");
+    // EN as a parameter is the same condition; that of one contact inverted is its opposite.
+    for (one, other) in [
+        ("CAL T1(\nEN := a,\nIN := b\n)", "LD a\nCALC T1(\nIN := b\n)"),
+        ("LD a\nCALCN T1", "LDN a\nCALC T1"),
+    ] {
+        let (_, back) = round(&program(&variables, one));
+        assert_eq!(body(&back).join("\n"), other);
+    }
+    // The power of several is kept, for the call leaves no current result behind.
+    let (drawn, back) = round(&program(&variables, "LD a\nOR b\nST Held1\nCALC T1\nLD Held1\nST y"));
+    assert!(drawn.contains("( )"), "{drawn}");
+    assert!(back.contains("CALC"), "{back}");
+    for kept in ["LD a\nCALC T1\nST y", "LD a\nCALC T1(\nXX := b\n)", "LD a\nAND( b\nCALC T1\n)\nST y"] {
+        let translation = to(&list(&program(&variables, kept)), To::Ladder);
+        assert!(translation.rungs.iter().any(|rung| rung.note.is_some()), "{kept}\n{}", translation.text);
+    }
+}
+
+#[test]
+fn a_call_without_its_condition_changes_nothing() {
+    let one = |body: &str| list(&program(&format!("{BITS} T1 : TON;"), body));
+    let base = "LD a\nCALC T1(\nIN := b\n)\nLD T1.Q\nST y";
+    assert!(matches!(prove(&one(base), &one(base)), Proof::Equal { .. }));
+    for other in [
+        base.replace("CALC", "CALCN"),
+        base.replace("LD a", "LD c"),
+        base.replace("IN := b", "IN := c"),
+        base.replace("LD a\nCALC", "CAL"),
+        base.replace("LD a\nCALC T1(\nIN := b\n)", "CAL T1(\nIN := a\n)"),
+    ] {
+        assert!(!matches!(prove(&one(base), &one(&other)), Proof::Equal { .. }), "{other}");
+    }
+    // Bits that are on without power stay as they were, whatever a call might leave.
+    let both = "LD a\nANDN a\nCALC T1(\nIN := b\n)\nLD T1.Q\nST y";
+    let proof = prove(&one(both), &one(&both.replace("LD T1.Q", "LDN T1.Q")));
+    assert!(matches!(proof, Proof::Different(_)), "{proof:?}");
 }

@@ -1,12 +1,13 @@
-//! Calls of function blocks on the power line.
+//! Calls of function blocks on the power line, and under a condition.
 
 use super::Term;
 use crate::target::Operand;
-use crate::target::iec::FunctionBlock;
+use crate::target::iec::{EN, FunctionBlock};
 use smol_str::format_smolstr;
 use std::fmt;
 
-/// A call of a standard function block: power drives an input, and goes on from its first output.
+/// A call of a standard function block: power drives an input, and goes on from its first output. Or power enables the
+/// call, `EN` of a box and `CALC` of instruction list: without it nothing of the instance changes.
 ///
 /// The terms of its action are the instance, then the operands of the other inputs and outputs in the order of their
 /// declaration, as far as they have any.
@@ -15,7 +16,7 @@ pub struct Call {
     /// The block.
     pub block: &'static FunctionBlock,
     /// The place of the input that power drives, mostly the first; another one where an input operator such as `R C1`
-    /// calls the block.
+    /// calls the block, and [`Call::ENABLE`] where it enables the call.
     power: u8,
     /// Which pins have operands: a bit for each input in order, then one for each output.
     given: u32,
@@ -45,22 +46,27 @@ impl fmt::Debug for Call {
 }
 
 impl Call {
-    /// A call of `instance` with its terms in order, where power drives the input called `power`. `arguments` gives
-    /// for each other pin its formal name in any letter case, whether it is an output, and its operand. Nothing if the
-    /// block has no such pin, or one is there twice, or power drives it.
+    /// The place of EN, which is before all inputs of its own that a block can have.
+    const ENABLE: u8 = u8::MAX;
+
+    /// A call of `instance` with its terms in order, where power drives the input called `power`, or `EN`. `arguments`
+    /// gives for each other pin its formal name in any letter case, whether it is an output, and its operand. Nothing
+    /// if the block has no such pin, or one is there twice, or power drives it.
     pub fn new(
         block: &'static FunctionBlock,
         power: &str,
         instance: Term,
         arguments: impl IntoIterator<Item = (impl AsRef<str>, bool, Term)>,
     ) -> Option<(Call, Vec<Term>)> {
-        let power = block.inputs.iter().position(|pin| pin.name.eq_ignore_ascii_case(power))?;
-        let mut call = Call { block, power: power as u8, given: 0 };
+        let is_enabled = power.eq_ignore_ascii_case(EN.name);
+        let own = block.inputs.iter().position(|pin| pin.name.eq_ignore_ascii_case(power));
+        let power = if is_enabled { Call::ENABLE } else { u8::try_from(own?).ok()? };
+        let mut call = Call { block, power, given: 0 };
         let mut placed: Vec<(usize, Term)> = Vec::new();
         for (name, is_output, term) in arguments {
             let pins = if is_output { block.outputs } else { block.inputs };
             let number = pins.iter().position(|pin| pin.name.eq_ignore_ascii_case(name.as_ref()))?;
-            if number == power && !is_output {
+            if number == usize::from(power) && !is_output {
                 return None;
             }
             let place = number + if is_output { block.inputs.len() } else { 0 };
@@ -77,7 +83,15 @@ impl Call {
 
     /// The input that power drives.
     pub fn power_in(self) -> &'static str {
-        self.block.inputs.get(self.power as usize).map_or("", |pin| pin.name)
+        match self.is_enabled() {
+            true => EN.name,
+            false => self.block.inputs.get(self.power as usize).map_or("", |pin| pin.name),
+        }
+    }
+
+    /// Whether power enables the call and drives none of the block's own inputs.
+    pub fn is_enabled(self) -> bool {
+        self.power == Call::ENABLE
     }
 
     /// Whether an input operator of instruction list is the whole of it: `R C1`.
@@ -90,8 +104,11 @@ impl Call {
         self.block.outputs.first().map_or("", |pin| pin.name)
     }
 
-    /// The variable from which power goes on: `T1.Q` for the instance `T1`.
+    /// The variable from which power goes on: `T1.Q` for the instance `T1`; nothing behind a call that power enables.
     pub fn output(self, terms: &[Term]) -> Option<Term> {
+        if self.is_enabled() {
+            return None;
+        }
         Some(member(terms.first()?, self.power_out()))
     }
 

@@ -195,11 +195,13 @@ impl<'s> Scan<'s> {
             (Deed::Coil(CoilKind::Plain), Some(device)) if device.kind.has_preset() => {
                 before || power && left
             }
-            (Deed::Coil(CoilKind::Rising), Some(_)) => power && left,
-            (Deed::Coil(CoilKind::Falling), Some(_)) => !power && left,
+            (Deed::Coil(CoilKind::Rising), _) if own.is_some() => power && left,
+            (Deed::Coil(CoilKind::Falling), _) if own.is_some() => !power && left,
             (Deed::Coil(CoilKind::Set), Some(_)) => power || before,
             (Deed::Coil(CoilKind::Reset), Some(_)) => !power && before,
-            (Deed::Call(call), _) => self.output_after(call, &action.terms, power, key).unwrap_or(left),
+            (Deed::Call(call), _) if !call.is_enabled() => {
+                self.output_after(call, &action.terms, power, key).unwrap_or(left)
+            }
             (Deed::Instruction(form), _) if power && Form::named("ZRST") == Some(form) => false,
             _ if !power && is_idle_without_power(action) => before,
             _ => left,
@@ -247,7 +249,11 @@ impl<'s> Scan<'s> {
 
 /// Whether an action changes nothing while it has no power.
 fn is_idle_without_power(action: &Action) -> bool {
-    matches!(action.deed, Deed::Instruction(form) if form.instruction.flow() == Flow::Straight)
+    match action.deed {
+        Deed::Instruction(form) => form.instruction.flow() == Flow::Straight,
+        Deed::Call(call) => call.is_enabled(),
+        _ => false,
+    }
 }
 
 /// The number that the lowest `width` bits are.

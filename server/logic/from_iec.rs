@@ -7,6 +7,7 @@
 //!
 //! - A call of a function block and the load of its output, `--[TON]--( )`, if the output is only gone on from.
 //! - Calls of R_TRIG and F_TRIG and the rung behind them, if nobody else asks for their output: edge contacts.
+//! - The call of `PLS_M7` and the store of its output in `M7`: a coil of an edge.
 //! - A helper `Held1` that is stored and loaded again: the rung branches there.
 //! - A jump over calculations: they are done under its condition.
 
@@ -18,12 +19,13 @@ use self::reader::Reader;
 use super::{Declared, Path, Refusal, Rung, Term};
 use crate::document::{DeclaredType, Scopes};
 use crate::il::iec::{Condition, IecTree, Item, ItemKind, ListForm, OperandId, SectionKind};
+use crate::ladder::CoilKind;
 use crate::target::Operand;
 use crate::target::Width;
 use crate::target::iec::{ElementaryType, FunctionBlock, LiteralValue, OperatorRole};
 use crate::text::{Severity, Span, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
-use smol_str::SmolStr;
+use smol_str::{SmolStr, format_smolstr};
 use std::ops::Range;
 
 /// The rungs of a piece of a file.
@@ -159,7 +161,10 @@ struct Region {
 struct Detector {
     /// Its name standing alone: in a call, or handed over.
     bare: u32,
-    /// Its output read: first and last place.
+    /// Its input stored to.
+    fed: u32,
+    /// Its output read: how often, first and last place.
+    read: u32,
     reads: Option<Span>,
     /// Whether another part of it is used.
     is_opened: bool,
@@ -407,9 +412,11 @@ impl<'a> Source<'a> {
             match member {
                 None => detector.bare += 1,
                 Some(member) if member.eq_ignore_ascii_case("Q") => {
+                    detector.read += 1;
                     detector.reads =
                         Some(detector.reads.map_or(operand.span, |reads| reads.to(operand.span)));
                 }
+                Some(member) if member.eq_ignore_ascii_case("CLK") => detector.fed += 1,
                 Some(_) => detector.is_opened = true,
             }
         }
@@ -423,12 +430,27 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Whether nobody but the instructions in `span` asks for the output of this detector, which is called once.
+    /// Whether nobody but the instructions in `span` asks for the output of this detector, which is called once with
+    /// its input.
     fn is_edge(&self, pou: Option<usize>, instance: &str, span: Span) -> bool {
-        self.detectors.get(&(pou, folded(instance))).is_some_and(|detector| {
+        self.detector(pou, instance).is_some_and(|detector| {
             let inside = |reads: Span| span.start <= reads.start && reads.end <= span.end;
-            detector.bare == 1 && !detector.is_opened && detector.reads.is_some_and(inside)
+            detector.fed == 0 && detector.reads.is_some_and(inside)
         })
+    }
+
+    /// Whether this detector is stored to once, called once, and asked once.
+    fn is_pulse(&self, pou: Option<usize>, instance: &str) -> bool {
+        self.detector(pou, instance).is_some_and(|detector| detector.fed == 1 && detector.read == 1)
+    }
+
+    /// A detector that is called in one place, and that nobody outside of its program unit knows.
+    fn detector(&self, pou: Option<usize>, instance: &str) -> Option<&Detector> {
+        let name = folded(instance);
+        let is_own = pou.is_none()
+            || self.scopes.variable(pou, &name).is_some_and(|found| found.section == SectionKind::Local);
+        let detector = self.detectors.get(&(pou, name));
+        detector.filter(|detector| is_own && detector.bare == 1 && !detector.is_opened)
     }
 
     /// What an operand can be, as far as it is declared.
@@ -511,7 +533,7 @@ impl<'a> Source<'a> {
 const JOINED_MAX: usize = 64;
 
 /// `Held1`: so the translation from drawings names the helpers that keep power.
-fn is_helper_name(name: &str) -> bool {
+pub fn is_helper_name(name: &str) -> bool {
     let number = name.get(..HELPER.len()).filter(|stem| stem.eq_ignore_ascii_case(HELPER));
     number.is_some()
         && name.len() > HELPER.len()
@@ -520,6 +542,25 @@ fn is_helper_name(name: &str) -> bool {
 
 /// What the names of helpers begin with that keep the power of a rung.
 pub const HELPER: &str = "Held";
+
+/// The name of the detector that stands for a coil of an edge, `--(P)--`: `PLS_M7` or `PLF_M7` for the variable `M7`,
+/// whose dots and brackets are underscores there. Several for one variable get numbers.
+pub fn pulse_name(coil: CoilKind, variable: &str) -> SmolStr {
+    let prefix = if coil == CoilKind::Rising { "PLS_" } else { "PLF_" };
+    let words = variable.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty());
+    format_smolstr!("{prefix}{}", words.collect::<Vec<_>>().join("_"))
+}
+
+/// Whether `name` is that of a detector for a coil of an edge of `variable`: `PLS_M7`, `PLS_M7_2`.
+fn is_pulse_name(name: &str, coil: CoilKind, variable: &str) -> bool {
+    let (name, stem) = (folded(name), folded(&pulse_name(coil, variable)));
+    let is_number = |rest: &str| !rest.is_empty() && rest.bytes().all(|byte| byte.is_ascii_digit());
+    match name.strip_prefix(stem.as_str()) {
+        Some("") => true,
+        Some(rest) => rest.strip_prefix('_').is_some_and(is_number),
+        None => false,
+    }
+}
 
 /// What an operand can be.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -28,7 +28,7 @@ mod builder;
 mod from_fx;
 
 mod from_iec;
-pub use from_iec::{HELPER, declarations};
+pub use from_iec::{HELPER, declarations, is_helper_name, pulse_name};
 
 mod from_ladder;
 pub use from_ladder::of_graph;

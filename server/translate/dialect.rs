@@ -10,7 +10,7 @@
 //! | `OUT T0 K50` | the instance `T0 : TON`, called with `PT := T#5s` by the unit of the timer; contact `T0.Q` |
 //! | `OUT C0 K10` | the instance `C0 : CTU`, called with `PV := 10`; contact `C0.Q`, value `C0.CV` |
 //! | `RST C0` | `R C0`, a call of the block with this input alone |
-//! | `PLS M0`, `PLF M0` | the instance `PLS_M0 : R_TRIG`, `PLF_M0 : F_TRIG`, whose output is stored in `M0` |
+//! | `PLS M0`, `PLF M0` | coils of edges: `PLS_M0 : R_TRIG`, `PLF_M0 : F_TRIG`, the output stored in `M0` |
 //! | `CJ P0` | `JMPC P0` |
 //! | `MOV`, `ADD`, `SUB` | `LD`, `ADD`, `SUB` and `ST`, jumped over where power does not reach them |
 //! | `INC D0`, `DEC D0` | the same with the operand `1`; `INT#1` stands for the `K1` of an ADD or SUB |
@@ -23,9 +23,11 @@
 //! back takes variables by their addresses, and by their names where they have none and these are names of devices that
 //! nothing else is.
 
+mod lack;
 mod to_devices;
 mod to_variables;
 
+use self::lack::{Lack, without};
 use super::To;
 use super::source::Program;
 use crate::document::Document;
@@ -71,19 +73,23 @@ pub(super) fn convert(document: &Document, (to, target): (To, &'static Target), 
     let pulses = Cell::new(0);
     let names = to_devices::Names::of(program, document.scopes(), target);
     for source in &mut program.rungs {
-        let converted = match (&source.rung.path, target.is_fx()) {
-            (Ok(Some(path)), false) => to_variables::path(path, document.target(), &pulses).map(Some),
-            // What a function or a block does it does for whoever calls it.
-            (Ok(Some(_)), true) if !is_of_program(document, source.pou) => Err(Refusal::NoCounterpart),
-            (Ok(Some(path)), true) => to_devices::path(path, target, &names).map(Some),
-            (other, _) => other.clone(),
-        };
         if target.is_fx() {
             source.rung.labels.iter_mut().for_each(|label| *label = names.of_label(label));
         }
         // The words of the other language are no list in this one.
         source.rung.is_list = false;
-        source.rung.path = converted;
+        let Ok(Some(path)) = &source.rung.path else { continue };
+        let converted = match target.is_fx() {
+            false => to_variables::path(path, document.target(), &pulses),
+            // What a function or a block does it does for whoever calls it.
+            true if !is_of_program(document, source.pou) => {
+                let unit = source.pou.and_then(|pou| document.scopes().pous.get(pou));
+                Err(unit.map_or(Lack::Unnamed, |unit| Lack::Word(unit.name.clone())))
+            }
+            true => to_devices::path(path, target, &names, (document.scopes(), source.pou)),
+        };
+        source.note = converted.as_ref().err().map(Lack::message);
+        source.rung.path = converted.map(Some).map_err(|_| Refusal::NoCounterpart);
     }
 }
 
@@ -135,9 +141,4 @@ pub(super) fn device_at(address: DirectAddress) -> Option<Device> {
         _ => return None,
     };
     (self::address(device) == Some(address)).then_some(device)
-}
-
-/// A refusal where nothing stands for it in the other language.
-fn without<T>(counterpart: Option<T>) -> Result<T, Refusal> {
-    counterpart.ok_or(Refusal::NoCounterpart)
 }

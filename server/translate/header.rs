@@ -3,11 +3,11 @@
 
 use super::dialect;
 use super::source::Source;
-use super::to_iec::Helper;
+use super::to_iec::{Helper, Helpers};
 use crate::document::{DeclaredType, Document, Scopes, Tree};
-use crate::il::iec;
-use crate::logic::{Action, Deed, Expression, Path, Term, Test};
-use crate::target::iec::{LiteralValue, ParameterType};
+use crate::il::iec::{self, SectionKind};
+use crate::logic::{Action, Deed, Expression, Path, Term, Test, is_helper_name};
+use crate::target::iec::{ElementaryType, LiteralValue, ParameterType};
 use crate::target::{DeviceKind, Model, Operand, Target};
 use crate::text::folded;
 use rustc_hash::FxHashSet;
@@ -32,6 +32,40 @@ pub(super) fn names<'s>(document: &Document, sources: impl Iterator<Item = &'s S
         }
     }
     names
+}
+
+/// `helpers` with the variables of each program unit that may be taken in place of new ones: detectors of edges and
+/// keepers of power that nothing in the rungs names.
+pub(super) fn with_spare(mut helpers: Helpers, document: &Document, sources: &[Source]) -> Helpers {
+    let mut named: FxHashSet<(Option<usize>, SmolStr)> = FxHashSet::default();
+    for source in sources {
+        match &source.rung.path {
+            Ok(path) => path.iter().for_each(|path| {
+                visit(path, &mut |term, _| _ = named.insert((source.pou, folded(root(term)))));
+            }),
+            Err(_) => {
+                let text = source.rung.span.of(source.chunk.text());
+                let words = text.split(|c: char| !c.is_alphanumeric() && c != '_');
+                named.extend(words.map(|word| (source.pou, folded(word))));
+            }
+        }
+    }
+    for (unit, pou) in document.scopes().own_pous().iter().enumerate() {
+        for variable in &pou.variables {
+            let is_plain = variable.section == SectionKind::Local && variable.address.is_none();
+            if !is_plain || named.contains(&(Some(unit), folded(&variable.name))) {
+                continue;
+            }
+            let type_name = match &variable.declared {
+                DeclaredType::Elementary(ElementaryType::Bool) if is_helper_name(&variable.name) => "BOOL",
+                DeclaredType::Named(name) if name.eq_ignore_ascii_case("R_TRIG") => "R_TRIG",
+                DeclaredType::Named(name) if name.eq_ignore_ascii_case("F_TRIG") => "F_TRIG",
+                _ => continue,
+            };
+            helpers.spare(Some(unit), type_name, variable.name.clone());
+        }
+    }
+    helpers
 }
 
 /// What the use of a variable says about its type.

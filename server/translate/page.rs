@@ -39,7 +39,10 @@ pub(super) fn write(
 ) -> Option<Translation> {
     let sources = &program.rungs;
     let mut helpers = match to {
-        To::Iec => Helpers::beside(header::names(document, sources.iter())),
+        To::Iec => {
+            let helpers = Helpers::beside(header::names(document, sources.iter()));
+            if is_whole { header::with_spare(helpers, document, sources) } else { helpers }
+        }
         _ => Helpers::default(),
     };
     let is_moved = document.target().model != target.model;
@@ -94,7 +97,7 @@ fn body(
     let path = match &source.rung.path {
         Ok(None) => return Body::Nothing,
         Ok(Some(path)) => path,
-        Err(refusal) => return kept(refusal.message()),
+        Err(refusal) => return kept(source.note.clone().unwrap_or_else(|| refusal.message())),
     };
     let written = match to {
         To::Fx => {

@@ -4,7 +4,7 @@ use crate::document::{Chunk, ChunkRef, Document, Notation, Tree, both};
 use crate::il::iec::{IecTree, ItemKind};
 use crate::ladder;
 use crate::logic::{self, Declared, Path, Rung};
-use crate::text::Span;
+use crate::text::{Message, Span};
 use std::sync::Arc;
 
 /// A rung with its chunk.
@@ -20,6 +20,8 @@ pub struct Source {
     pub declarations: String,
     /// The number of the program unit that it belongs to.
     pub pou: Option<usize>,
+    /// Why it has no words in the language that it is translated to.
+    pub note: Option<Message>,
 }
 
 /// A program, or a part of one.
@@ -62,6 +64,7 @@ impl Source {
                 rung,
                 declarations: String::new(),
                 pou: None,
+                note: None,
             }));
             offset = at.start + at.chunk.len();
         }
@@ -176,7 +179,7 @@ impl Reader<'_> {
             }
             let declarations = std::mem::take(&mut self.program.tail);
             let pou = self.pous.checked_sub(1);
-            let source = Source { start, chunk: chunk.clone(), rung, declarations, pou };
+            let source = Source { start, chunk: chunk.clone(), rung, declarations, pou, note: None };
             match !source.is_blank() && self.touches(source.span()) {
                 true => self.program.rungs.push(source),
                 false => self.program.tail = source.declarations,

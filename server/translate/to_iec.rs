@@ -3,84 +3,18 @@
 //!
 //! The current result survives ST, S and R, so outputs that share their power need no stack. Behind a conditional path
 //! the power is loaded again: a single contact that nothing changed meanwhile as it is, anything else from a helper, a
-//! variable that was stored before. An edge contact is the output of a detector called before the load; a function
-//! block is called with its first input stored, and its first output is loaded. Calculations with words are jumped over
-//! where power does not reach them.
+//! variable that was stored before. An edge contact is the output of a detector called before the load, a coil of an
+//! edge that of one called behind it; a function block is called with its first input stored, and its first output is
+//! loaded. Calculations with words are jumped over where power does not reach them.
+
+mod helpers;
+pub use helpers::{Helper, Helpers};
 
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
-use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, HELPER, Path, Term, Test};
-use crate::text::{Message, folded};
-use rustc_hash::{FxHashMap, FxHashSet};
-use smol_str::{SmolStr, format_smolstr};
-
-/// The names of a program, and the variables that its translation needs beyond them.
-#[derive(Clone, Debug, Default)]
-pub struct Helpers {
-    /// All names, folded.
-    taken: FxHashSet<SmolStr>,
-    /// The helpers in order.
-    pub declared: Vec<Helper>,
-    /// The program unit for which helpers are made.
-    pub pou: Option<usize>,
-    /// The last number of each type of helper.
-    numbers: FxHashMap<&'static str, usize>,
-    /// The helpers that keep power in each program unit, by depth.
-    held: FxHashMap<Option<usize>, Vec<SmolStr>>,
-}
-
-/// A variable that a translation needs.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub struct Helper {
-    /// Its name.
-    pub name: SmolStr,
-    /// `BOOL`, `R_TRIG`, `F_TRIG`.
-    pub type_name: &'static str,
-    /// The program unit that declares it.
-    pub pou: Option<usize>,
-}
-
-impl Helpers {
-    /// Helpers with names beside these.
-    pub fn beside(names: impl IntoIterator<Item = SmolStr>) -> Helpers {
-        let taken = names.into_iter().map(|name| folded(&name)).collect();
-        Helpers { taken, ..Helpers::default() }
-    }
-
-    /// A new label.
-    fn label(&mut self) -> SmolStr {
-        let number = self.numbers.entry("").or_default();
-        loop {
-            *number += 1;
-            let name = format_smolstr!("Skip{number}");
-            if self.taken.insert(folded(&name)) {
-                return name;
-            }
-        }
-    }
-
-    /// A new variable.
-    fn declare(&mut self, stem: &str, type_name: &'static str) -> SmolStr {
-        let number = self.numbers.entry(type_name).or_default();
-        loop {
-            *number += 1;
-            let name = format_smolstr!("{stem}{number}");
-            if self.taken.insert(folded(&name)) {
-                self.declared.push(Helper { name: name.clone(), type_name, pou: self.pou });
-                return name;
-            }
-        }
-    }
-
-    /// The variable that keeps the power of the path at this depth, from 0.
-    fn held(&mut self, depth: usize) -> SmolStr {
-        if let Some(known) = self.held.get(&self.pou).and_then(|held| held.get(depth)) {
-            return known.clone();
-        }
-        let name = self.declare(HELPER, "BOOL");
-        self.held.entry(self.pou).or_default().push(name.clone());
-        name
-    }
-}
+use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
+use crate::text::Message;
+use rustc_hash::FxHashSet;
+use smol_str::SmolStr;
 
 /// The lines of `path`, not yet laid out, or why it has none.
 pub fn lines(path: &Path, helpers: &mut Helpers) -> Result<Vec<String>, Message> {
@@ -181,6 +115,7 @@ impl Writer<'_> {
         match action.deed {
             Deed::Jump | Deed::Return => return self.leave(action, ""),
             Deed::Compute(_) => return self.computation(action),
+            Deed::Call(call) if call.is_enabled() => return self.conditional_call(action, "CAL"),
             Deed::Call(call) if !call.is_input_operator() => return self.call(action, Some("TRUE".into())),
             _ if is_loaded => {}
             _ => self.lines.push("LD TRUE".into()),
@@ -327,7 +262,7 @@ impl Writer<'_> {
         if self.driven.contains(&term.key()) {
             return Err(Message::new("translate.edge-of-driven").with("operand", &term.text));
         }
-        let name = self.helpers.declare(stem, type_name);
+        let name = self.helpers.detector(stem, type_name);
         let call = format!("CAL {name}(\nCLK := {}\n)", term.text);
         self.lines.insert(self.group, call);
         self.group += 1;
@@ -336,7 +271,13 @@ impl Writer<'_> {
 
     fn action(&mut self, action: &Action, inverse: bool) -> Result<(), Message> {
         let word = match (action.deed, inverse) {
+            (Deed::Call(call), _) if call.is_enabled() => {
+                return self.conditional_call(action, if inverse { "CALCN" } else { "CALC" });
+            }
             (Deed::Call(_), _) => return self.call(action, None),
+            (Deed::Coil(coil @ (CoilKind::Rising | CoilKind::Falling)), false) => {
+                return self.pulse(action, coil);
+            }
             (Deed::Jump | Deed::Return, _) => return self.leave(action, if inverse { "CN" } else { "C" }),
             (Deed::Coil(CoilKind::Plain), false) | (Deed::Coil(CoilKind::Negated), true) => "ST",
             (Deed::Coil(CoilKind::Plain), true) | (Deed::Coil(CoilKind::Negated), false) => "STN",
@@ -346,6 +287,18 @@ impl Writer<'_> {
         };
         let [term] = &action.terms[..] else { return Err(Message::new("translate.no-instruction")) };
         self.lines.push(format!("{word} {term}"));
+        self.driven.insert(term.key());
+        Ok(())
+    }
+
+    /// A coil of an edge: the output of a detector, stored.
+    fn pulse(&mut self, action: &Action, coil: CoilKind) -> Result<(), Message> {
+        let [term] = &action.terms[..] else { return Err(Message::new("translate.no-instruction")) };
+        let type_name = if coil == CoilKind::Rising { "R_TRIG" } else { "F_TRIG" };
+        let name = self.helpers.pulse(coil, type_name, &term.text);
+        self.lines.extend([format!("ST {name}.CLK"), format!("CAL {name}")]);
+        self.start();
+        self.lines.extend([format!("LD {name}.Q"), format!("ST {term}")]);
         self.driven.insert(term.key());
         Ok(())
     }
@@ -395,10 +348,18 @@ impl Writer<'_> {
             None if call.is_input_operator() => self.lines.push(format!("{} {instance}", call.power_in())),
             None => {
                 self.lines.push(format!("ST {instance}.{}", call.power_in()));
-                self.lines.push(call_text(call, instance, None, &action.terms));
+                self.lines.push(call_text("CAL", call, None, &action.terms));
             }
-            power => self.lines.push(call_text(call, instance, power, &action.terms)),
+            power => self.lines.push(call_text("CAL", call, power, &action.terms)),
         }
+        self.driven.extend(call.changes(&action.terms).iter().map(Term::key));
+        Ok(())
+    }
+
+    /// A call that the current result enables, or that is always done, as `word` says.
+    fn conditional_call(&mut self, action: &Action, word: &str) -> Result<(), Message> {
+        let Deed::Call(call) = action.deed else { return Err(Message::new("translate.no-instruction")) };
+        self.lines.push(call_text(word, call, None, &action.terms));
         self.driven.extend(call.changes(&action.terms).iter().map(Term::key));
         Ok(())
     }
@@ -411,7 +372,8 @@ impl Writer<'_> {
     }
 }
 
-fn call_text(call: Call, instance: &Term, power: Option<String>, terms: &[Term]) -> String {
+fn call_text(word: &str, call: Call, power: Option<String>, terms: &[Term]) -> String {
+    let instance = terms.first().map_or("", |term| term.text.as_str());
     let arguments = call.arguments(terms).into_iter().map(|argument| {
         let sign = if argument.is_output { "=>" } else { ":=" };
         format!("{} {sign} {}", argument.name, argument.term)
@@ -419,8 +381,8 @@ fn call_text(call: Call, instance: &Term, power: Option<String>, terms: &[Term])
     let power = power.map(|operand| format!("{} := {operand}", call.power_in()));
     let list: Vec<String> = power.into_iter().chain(arguments).collect();
     match list.is_empty() {
-        true => format!("CAL {instance}"),
-        false => format!("CAL {instance}(\n{}\n)", list.join(",\n")),
+        true => format!("{word} {instance}"),
+        false => format!("{word} {instance}(\n{}\n)", list.join(",\n")),
     }
 }
 
@@ -458,7 +420,8 @@ fn called_next(path: &Path, number: usize) -> Option<&Action> {
         (Some(Gate::Through(action)), _) | (None, [Drive::Action(action)]) => action,
         _ => return None,
     };
-    matches!(next.deed, Deed::Call(call) if !call.is_input_operator()).then_some(next)
+    let takes = |call: Call| !call.is_input_operator() && !call.is_enabled();
+    matches!(next.deed, Deed::Call(call) if takes(call)).then_some(next)
 }
 
 /// The calculation that a drive is.
@@ -473,12 +436,18 @@ fn computation_of(drive: &Drive) -> Option<&Action> {
 fn is_invertible(drive: &Drive) -> bool {
     use CoilKind::{Negated, Plain};
     let Drive::Action(action) = drive else { return false };
-    matches!(action.deed, Deed::Coil(Plain | Negated) | Deed::Jump | Deed::Return)
+    match action.deed {
+        Deed::Call(call) => call.is_enabled(),
+        deed => matches!(deed, Deed::Coil(Plain | Negated) | Deed::Jump | Deed::Return),
+    }
 }
 
 /// Whether the current result is no longer the power behind this.
 fn loses(drive: &Drive) -> bool {
-    let calls = |action: &Action| matches!(action.deed, Deed::Call(_) | Deed::Compute(_));
+    use CoilKind::{Falling, Rising};
+    let calls = |action: &Action| {
+        matches!(action.deed, Deed::Call(_) | Deed::Compute(_) | Deed::Coil(Rising | Falling))
+    };
     match drive {
         Drive::Action(action) => calls(action),
         Drive::Path(path) => {

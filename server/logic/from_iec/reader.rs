@@ -130,9 +130,11 @@ impl<'s, 'a> Reader<'s, 'a> {
                     self.settle()?;
                     self.input_operator(input.of(self.source.text), instance, item.span)?;
                 }
-                ItemKind::Call { condition: Condition::Always, callee: Some(callee), parameters, .. } => {
-                    let next = (index < items.end).then(|| self.source.item(index));
-                    index += usize::from(self.call(item, callee, parameters, next)?);
+                ItemKind::Call { condition, callee: Some(callee), parameters, .. } => {
+                    index += match condition {
+                        Condition::Always => self.call(item, callee, parameters)?,
+                        _ => self.conditional_call(item, callee, parameters, condition)?,
+                    };
                 }
                 _ => return Err(Refusal::NotBoolean),
             }

@@ -1,15 +1,15 @@
 //! Paths of IEC 61131-3 in the words of the FX family.
 
 use super::super::source::Program;
-use super::{COMPUTED, PULSE, STEPPED, device_at, without};
-use crate::document::Scopes;
+use super::{COMPUTED, Lack, PULSE, STEPPED, device_at, without};
+use crate::document::{DeclaredType, Scopes};
 use crate::il::iec::SectionKind;
-use crate::ladder::{CoilKind, ContactKind};
+use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::logic::{
-    Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Storage, Term, Test,
+    Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test,
 };
-use crate::target::iec::LiteralValue;
-use crate::target::{Device, DeviceKind, Form, Operand, Target};
+use crate::target::iec::{ElementaryType, LiteralValue};
+use crate::target::{Device, DeviceKind, Form, Operand, Target, Width};
 use crate::text::{Span, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, ToSmolStr, format_smolstr};
@@ -99,25 +99,32 @@ fn pointer(name: &str) -> Option<u32> {
     name.strip_prefix(['P', 'p'])?.parse().ok()
 }
 
-/// `path` with devices of `target` for variables.
-pub(super) fn path(path: &Path, target: &Target, names: &Names) -> Result<Path, Refusal> {
-    Converter { target, names }.whole(path)
+/// `path` of a program unit with devices of `target` for variables.
+pub(super) fn path(
+    path: &Path,
+    target: &Target,
+    names: &Names,
+    (scopes, pou): (&Scopes, Option<usize>),
+) -> Result<Path, Lack> {
+    Converter { target, names, scopes, pou }.whole(path)
 }
 
 struct Converter<'a> {
     target: &'a Target,
     names: &'a Names,
+    scopes: &'a Scopes,
+    pou: Option<usize>,
 }
 
 impl Converter<'_> {
     /// A path from the left rail. Behind a timer or counter the power is its contact, which begins a path of its own.
-    fn whole(&self, path: &Path) -> Result<Path, Refusal> {
+    fn whole(&self, path: &Path) -> Result<Path, Lack> {
         let through = path
             .gates
             .iter()
             .rposition(|gate| matches!(gate, Gate::Through(action) if self.pulsed(action, path).is_none()));
         let Some(through) = through else { return self.path(path) };
-        let Gate::Through(action) = &path.gates[through] else { return Err(Refusal::NoCounterpart) };
+        let Gate::Through(action) = &path.gates[through] else { return Err(Lack::Unnamed) };
         let before =
             Path { gates: path.gates[..through].to_vec(), drives: vec![Drive::Action(action.clone())] };
         let output = without(action.power_out())?;
@@ -130,14 +137,14 @@ impl Converter<'_> {
         Ok(Path { gates: Vec::new(), drives })
     }
 
-    fn path(&self, path: &Path) -> Result<Path, Refusal> {
+    fn path(&self, path: &Path) -> Result<Path, Lack> {
         let mut converted = Path::default();
         for gate in &path.gates {
             match gate {
                 Gate::Pass(expression) => converted.gates.push(Gate::Pass(self.expression(expression)?)),
                 Gate::Invert => converted.gates.push(Gate::Invert),
                 Gate::Through(action) => {
-                    let coil = without(self.pulsed(action, path))?;
+                    let coil = without(self.pulsed(action, path)).map_err(|lack| lack.of_action(action))?;
                     converted.drives.push(Drive::Action(coil));
                     return Ok(converted);
                 }
@@ -151,46 +158,42 @@ impl Converter<'_> {
         for drive in &path.drives {
             converted.drives.push(match drive {
                 Drive::Path(path) => match &path.gates[..] {
-                    [Gate::Through(action)] => Drive::Action(without(self.pulsed(action, path))?),
+                    [Gate::Through(action)] => {
+                        let coil = without(self.pulsed(action, path)).map_err(|lack| lack.of_action(action));
+                        Drive::Action(coil?)
+                    }
                     _ => Drive::Path(self.path(path)?),
                 },
-                Drive::Action(action) => Drive::Action(self.action(action)?),
+                Drive::Action(action) => {
+                    Drive::Action(self.action(action).map_err(|lack| lack.of_action(action))?)
+                }
             });
         }
         Ok(converted)
     }
 
-    /// The coil of PLS or PLF that the detector at the end of the gates of `path` and the output behind it are.
+    /// The pulse form that the detector at the end of the gates of `path` and the calculation behind it are.
     fn pulsed(&self, detector: &Action, path: &Path) -> Option<Action> {
-        let (Deed::Call(call), [Drive::Action(coil)]) = (detector.deed, &path.drives[..]) else {
+        let (Deed::Call(call), [Drive::Action(driven)]) = (detector.deed, &path.drives[..]) else {
             return None;
         };
+        let Deed::Compute(computation) = driven.deed else { return None };
         let instance = detector.terms.first()?;
         let is_last = matches!(path.gates.last(), Some(Gate::Through(last)) if last == detector);
-        if call.block.name == "R_TRIG" && is_last && is_pulse(&instance.text) {
-            let Deed::Compute(computation) = coil.deed else { return None };
-            let action = self.calculation(computation, coil).ok()?;
-            // RST has no pulse form.
-            let Deed::Instruction(form) = action.deed else { return None };
-            return Some(Action { deed: Deed::Instruction(Form { pulse: true, ..form }), ..action });
+        if call.block.name != "R_TRIG" || !is_last || !is_pulse(&instance.text) {
+            return None;
         }
-        let (kind, prefix) = match call.block.name {
-            "R_TRIG" => (CoilKind::Rising, "PLS_"),
-            "F_TRIG" => (CoilKind::Falling, "PLF_"),
-            _ => return None,
-        };
-        let relay = coil.terms.first().filter(|_| coil.deed == Deed::Coil(CoilKind::Plain))?;
-        let named = instance.text.get(..prefix.len())?.eq_ignore_ascii_case(prefix)
-            && instance.text[prefix.len()..].eq_ignore_ascii_case(&relay.text);
-        let terms = vec![self.bit(relay).ok()?];
-        (is_last && named).then_some(Action { deed: Deed::Coil(kind), terms, span: coil.span })
+        let action = self.calculation(computation, driven).ok()?;
+        // RST has no pulse form.
+        let Deed::Instruction(form) = action.deed else { return None };
+        Some(Action { deed: Deed::Instruction(Form { pulse: true, ..form }), ..action })
     }
 
-    fn expression(&self, expression: &Expression) -> Result<Expression, Refusal> {
-        expression.mapped(&mut |contact| self.contact(contact))
+    fn expression(&self, expression: &Expression) -> Result<Expression, Lack> {
+        expression.mapped(&mut |contact| self.contact(contact).map_err(|lack| lack.of_contact(contact)))
     }
 
-    fn contact(&self, contact: &Contact) -> Result<Expression, Refusal> {
+    fn contact(&self, contact: &Contact) -> Result<Expression, Lack> {
         let terms = match (contact.test, &contact.terms[..]) {
             (Test::Bit(kind), [term]) => {
                 if let Operand::Literal(literal) = term.operand
@@ -199,18 +202,26 @@ impl Converter<'_> {
                     return match kind {
                         ContactKind::NormallyOpen => Ok(Expression::Constant(value)),
                         ContactKind::NormallyClosed => Ok(Expression::Constant(!value)),
-                        _ => Err(Refusal::NoCounterpart),
+                        _ => Err(Lack::Unnamed),
                     };
                 }
                 vec![self.bit(term)?]
             }
-            (Test::Compare(_), [left, right]) => vec![self.word(left)?, self.word(right)?],
-            _ => return Err(Refusal::NoCounterpart),
+            (Test::Compare(operator), [left, right]) => {
+                let words = vec![self.word(left)?, self.word(right)?];
+                self.compared(operator, [left, right])?;
+                words
+            }
+            _ => return Err(Lack::Unnamed),
         };
         Ok(Expression::Contact(Contact { terms, ..contact.clone() }))
     }
 
-    fn bit(&self, term: &Term) -> Result<Term, Refusal> {
+    fn bit(&self, term: &Term) -> Result<Term, Lack> {
+        self.own_bit(term).map_err(|lack| lack.named(&term.text))
+    }
+
+    fn own_bit(&self, term: &Term) -> Result<Term, Lack> {
         use DeviceKind::{C, M, S, T, X, Y};
         if let Some((instance, member)) = member(term) {
             let device = without(self.named(instance).filter(|device| matches!(device.kind, T | C)))?;
@@ -220,9 +231,51 @@ impl Converter<'_> {
         without(matches!(device.kind, X | Y | M | S).then(|| self.term(device, term.span)))
     }
 
-    fn word(&self, term: &Term) -> Result<Term, Refusal> {
+    /// A word of 16 bits, of which ADD and its kin make the same whether it has a sign or not.
+    fn word(&self, term: &Term) -> Result<Term, Lack> {
+        use ElementaryType::{Int, Uint, Word};
+        if let Some(kind) = self.type_of(term)
+            && !matches!(kind, Int | Uint | Word)
+        {
+            return Err(Lack::Type(term.text.clone(), kind.name()));
+        }
+        self.own_word(term).map_err(|lack| lack.named(&term.text))
+    }
+
+    /// The elementary type of a variable that is declared, or of an address.
+    fn type_of(&self, term: &Term) -> Option<ElementaryType> {
+        match term.operand {
+            Operand::Direct(address) if address.width == Width::Word => Some(ElementaryType::Word),
+            Operand::Variable => match self.scopes.type_of(self.pou, &term.text)? {
+                DeclaredType::Elementary(kind) => Some(kind),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// Whether two words compare as the FX family does it: with a sign, which counts but for equality of patterns.
+    fn compared(&self, operator: CompareOperator, sides: [&Term; 2]) -> Result<(), Lack> {
+        use CompareOperator::{Equal, NotEqual};
+        let types = sides.map(|term| self.type_of(term));
+        let unsigned = types.iter().zip(sides).find_map(|(kind, term)| {
+            let kind = kind.filter(|kind| *kind != ElementaryType::Int)?;
+            Some((kind, term))
+        });
+        let Some((kind, term)) = unsigned else { return Ok(()) };
+        let is_negative = |term: &Term| match term.operand {
+            Operand::Literal(literal) => matches!(literal.value, LiteralValue::Integer(..0)),
+            _ => false,
+        };
+        let is_pattern = matches!(operator, Equal { .. } | NotEqual { .. })
+            && types.iter().flatten().all(|other| *other == kind)
+            && !sides.into_iter().any(is_negative);
+        if is_pattern { Ok(()) } else { Err(Lack::Order(term.text.clone(), kind.name())) }
+    }
+
+    fn own_word(&self, term: &Term) -> Result<Term, Lack> {
         if let Operand::Literal(literal) = term.operand {
-            let LiteralValue::Integer(value) = literal.value else { return Err(Refusal::NoCounterpart) };
+            let LiteralValue::Integer(value) = literal.value else { return Err(Lack::Unnamed) };
             return self.constant(without(i16::try_from(value).ok())?.into(), term.span);
         }
         if let Some((instance, member)) = member(term) {
@@ -257,12 +310,12 @@ impl Converter<'_> {
         Term::new(Operand::Device(device), &device.to_smolstr(), span)
     }
 
-    fn constant(&self, value: i64, span: Span) -> Result<Term, Refusal> {
+    fn constant(&self, value: i64, span: Span) -> Result<Term, Lack> {
         let text = format_smolstr!("K{value}");
         Ok(Term::new(Operand::read(&text, self.target.model), &text, span))
     }
 
-    fn action(&self, action: &Action) -> Result<Action, Refusal> {
+    fn action(&self, action: &Action) -> Result<Action, Lack> {
         let (deed, terms) = match (action.deed, &action.terms[..]) {
             (Deed::Coil(_), [term]) => (action.deed, vec![self.bit(term)?]),
             (Deed::Jump, [label]) => {
@@ -273,13 +326,13 @@ impl Converter<'_> {
             }
             (Deed::Compute(computation), _) => return self.calculation(computation, action),
             (Deed::Call(call), [instance, ..]) => self.called(call, instance, &action.terms)?,
-            _ => return Err(Refusal::NoCounterpart),
+            _ => return Err(Lack::Unnamed),
         };
         Ok(Action { deed, terms, span: action.span })
     }
 
     /// The instruction that a calculation is.
-    fn calculation(&self, computation: Computation, action: &Action) -> Result<Action, Refusal> {
+    fn calculation(&self, computation: Computation, action: &Action) -> Result<Action, Lack> {
         let (inputs, result) = without(computation.operands(&action.terms))?;
         let register = self.word(result)?;
         without(matches!(register.operand, Operand::Device(_)).then_some(()))?;
@@ -306,7 +359,7 @@ impl Converter<'_> {
     }
 
     /// The output that the call of a timer or counter is.
-    fn called(&self, call: Call, instance: &Term, terms: &[Term]) -> Result<(Deed, Vec<Term>), Refusal> {
+    fn called(&self, call: Call, instance: &Term, terms: &[Term]) -> Result<(Deed, Vec<Term>), Lack> {
         let device = without(self.named(&instance.text))?;
         let own = self.term(device, instance.span);
         let arguments = call.arguments(terms);
@@ -320,15 +373,15 @@ impl Converter<'_> {
             ("TON", DeviceKind::T, "IN", [preset]) if preset.name == "PT" => {
                 let range = without(device.range_on(self.target).filter(|range| !range.latched))?;
                 let Operand::Literal(literal) = preset.term.operand else {
-                    return Err(Refusal::NoCounterpart);
+                    return Err(Lack::Unnamed);
                 };
-                let LiteralValue::Time(time) = literal.value else { return Err(Refusal::NoCounterpart) };
+                let LiteralValue::Time(time) = literal.value else { return Err(Lack::Unnamed) };
                 let unit = i64::from(range.timer_unit_ms) * 1_000_000;
                 let steps = without((unit > 0 && time % unit == 0).then(|| time / unit))?;
                 let steps = without((0..=i64::from(i16::MAX)).contains(&steps).then_some(steps))?;
                 Ok((Deed::Coil(CoilKind::Plain), vec![own, self.constant(steps, preset.term.span)?]))
             }
-            _ => Err(Refusal::NoCounterpart),
+            _ => Err(Lack::Unnamed),
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Paths of the FX family in the words of IEC 61131-3.
 
-use super::{COMPUTED, PULSE, STEPPED, address, without};
+use super::{COMPUTED, Lack, PULSE, STEPPED, address, without};
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{
-    Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Storage, Term, Test,
+    Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test,
 };
 use crate::target::iec::FunctionBlock;
 use crate::target::{Constant, Device, DeviceKind, Form, Model, Operand, Target};
@@ -18,7 +18,7 @@ pub(super) fn is_end(path: &Path) -> bool {
 }
 
 /// `path`, written for `target`, with variables for devices. `pulses` counts the detectors of pulse forms.
-pub(super) fn path(path: &Path, target: &Target, pulses: &Cell<u32>) -> Result<Path, Refusal> {
+pub(super) fn path(path: &Path, target: &Target, pulses: &Cell<u32>) -> Result<Path, Lack> {
     let mut path = Converter { target, pulses }.path(path)?;
     let computes = |drive: &Drive| matches!(drive, Drive::Action(Action { deed: Deed::Compute(_), .. }));
     // Calculations need no load that is always on.
@@ -34,29 +34,29 @@ struct Converter<'t> {
 }
 
 impl Converter<'_> {
-    fn path(&self, path: &Path) -> Result<Path, Refusal> {
+    fn path(&self, path: &Path) -> Result<Path, Lack> {
         let mut converted = Path::default();
         for gate in &path.gates {
             converted.gates.push(match gate {
                 Gate::Pass(expression) => Gate::Pass(self.expression(expression)?),
                 Gate::Invert => Gate::Invert,
-                Gate::Through(_) => return Err(Refusal::NoCounterpart),
+                Gate::Through(action) => return Err(Lack::Unnamed.of_action(action)),
             });
         }
         for drive in &path.drives {
             converted.drives.push(match drive {
                 Drive::Path(path) => Drive::Path(self.path(path)?),
-                Drive::Action(action) => self.action(action)?,
+                Drive::Action(action) => self.action(action).map_err(|lack| lack.of_action(action))?,
             });
         }
         Ok(converted)
     }
 
-    fn expression(&self, expression: &Expression) -> Result<Expression, Refusal> {
-        expression.mapped(&mut |contact| self.contact(contact))
+    fn expression(&self, expression: &Expression) -> Result<Expression, Lack> {
+        expression.mapped(&mut |contact| self.contact(contact).map_err(|lack| lack.of_contact(contact)))
     }
 
-    fn contact(&self, contact: &Contact) -> Result<Expression, Refusal> {
+    fn contact(&self, contact: &Contact) -> Result<Expression, Lack> {
         let terms = match (contact.test, &contact.terms[..]) {
             (Test::Bit(kind), [term]) => match (term.always(), kind) {
                 (Some(value), ContactKind::NormallyOpen) => return Ok(Expression::Constant(value)),
@@ -66,13 +66,17 @@ impl Converter<'_> {
             (Test::Compare(operator), [left, right]) if !operator.is_wide() => {
                 vec![self.word(left)?, self.word(right)?]
             }
-            _ => return Err(Refusal::NoCounterpart),
+            _ => return Err(Lack::Unnamed),
         };
         Ok(Expression::Contact(Contact { terms, ..contact.clone() }))
     }
 
-    fn bit(&self, term: &Term) -> Result<Term, Refusal> {
-        let Operand::Device(device) = term.operand else { return Err(Refusal::NoCounterpart) };
+    fn bit(&self, term: &Term) -> Result<Term, Lack> {
+        self.own_bit(term).map_err(|lack| lack.named(&term.text))
+    }
+
+    fn own_bit(&self, term: &Term) -> Result<Term, Lack> {
+        let Operand::Device(device) = term.operand else { return Err(Lack::Unnamed) };
         match device.kind {
             DeviceKind::X | DeviceKind::Y | DeviceKind::M | DeviceKind::S => self.located(device, term.span),
             DeviceKind::T => {
@@ -83,11 +87,15 @@ impl Converter<'_> {
                 self.counter(device)?;
                 Ok(variable(&format_smolstr!("{device}.Q"), term.span))
             }
-            _ => Err(Refusal::NoCounterpart),
+            _ => Err(Lack::Unnamed),
         }
     }
 
-    fn word(&self, term: &Term) -> Result<Term, Refusal> {
+    fn word(&self, term: &Term) -> Result<Term, Lack> {
+        self.own_word(term).map_err(|lack| lack.named(&term.text))
+    }
+
+    fn own_word(&self, term: &Term) -> Result<Term, Lack> {
         match term.operand {
             Operand::Device(device) if device.kind == DeviceKind::D => self.located(device, term.span),
             Operand::Device(device) if device.kind == DeviceKind::C => {
@@ -95,33 +103,33 @@ impl Converter<'_> {
                 Ok(variable(&format_smolstr!("{device}.CV"), term.span))
             }
             Operand::Constant { value, index: None } => number(value, term.span),
-            _ => Err(Refusal::NoCounterpart),
+            _ => Err(Lack::Unnamed),
         }
     }
 
-    fn located(&self, device: Device, span: Span) -> Result<Term, Refusal> {
+    fn located(&self, device: Device, span: Span) -> Result<Term, Lack> {
         let address = without(address(device))?;
         Ok(Term { storage: Storage::At(address), ..variable(&device.to_smolstr(), span) })
     }
 
     /// Milliseconds for each step of a timer that forgets its time when power goes off.
-    fn timer_unit(&self, device: Device) -> Result<i64, Refusal> {
+    fn timer_unit(&self, device: Device) -> Result<i64, Lack> {
         let range = without(device.range_on(self.target).filter(|range| !range.latched))?;
         Ok(i64::from(range.timer_unit_ms))
     }
 
-    fn counter(&self, device: Device) -> Result<(), Refusal> {
+    fn counter(&self, device: Device) -> Result<(), Lack> {
         without((device.number < 200).then_some(()))
     }
 
-    fn action(&self, action: &Action) -> Result<Drive, Refusal> {
+    fn action(&self, action: &Action) -> Result<Drive, Lack> {
         let span = action.span;
         match (action.deed, &action.terms[..]) {
             (Deed::Coil(CoilKind::Plain), [timed, preset]) => {
                 self.preset(timed, preset, span).map(Drive::Action)
             }
             (Deed::Coil(kind), [term]) => {
-                let Operand::Device(device) = term.operand else { return Err(Refusal::NoCounterpart) };
+                let Operand::Device(device) = term.operand else { return Err(Lack::Unnamed) };
                 match (kind, device.kind) {
                     (CoilKind::Reset, DeviceKind::C) => {
                         self.counter(device)?;
@@ -131,9 +139,7 @@ impl Converter<'_> {
                         let zero = literal("0", term.span);
                         self.computed("MOVE", vec![zero, self.word(term)?], span).map(Drive::Action)
                     }
-                    (_, DeviceKind::T | DeviceKind::C | DeviceKind::D) => Err(Refusal::NoCounterpart),
-                    (CoilKind::Rising, _) => self.pulse("R_TRIG", "PLS", term, span),
-                    (CoilKind::Falling, _) => self.pulse("F_TRIG", "PLF", term, span),
+                    (_, DeviceKind::T | DeviceKind::C | DeviceKind::D) => Err(Lack::Unnamed),
                     _ => Ok(Drive::Action(Action { terms: vec![self.bit(term)?], ..action.clone() })),
                 }
             }
@@ -145,12 +151,12 @@ impl Converter<'_> {
                 let label = variable(&label.key(), label.span);
                 Ok(Drive::Action(Action { deed: Deed::Jump, terms: vec![label], span }))
             }
-            _ => Err(Refusal::NoCounterpart),
+            _ => Err(Lack::Unnamed),
         }
     }
 
     /// What MOV, ADD, INC and their kin calculate; nothing for other instructions.
-    fn calculation(&self, form: Form, action: &Action) -> Option<Result<Action, Refusal>> {
+    fn calculation(&self, form: Form, action: &Action) -> Option<Result<Action, Lack>> {
         let row = |rows: &[(&str, &'static str)]| {
             let mut rows = rows.iter().filter(|_| !form.wide);
             rows.find(|(own, _)| *own == form.instruction.mnemonic).map(|(_, function)| *function)
@@ -177,7 +183,7 @@ impl Converter<'_> {
         }))
     }
 
-    fn computed(&self, function: &str, terms: Vec<Term>, span: Span) -> Result<Action, Refusal> {
+    fn computed(&self, function: &str, terms: Vec<Term>, span: Span) -> Result<Action, Lack> {
         let computation = without(Computation::named(function))?;
         let (_, result) = without(computation.operands(&terms))?;
         // The value of a counter belongs to its block.
@@ -186,7 +192,7 @@ impl Converter<'_> {
     }
 
     /// A calculation that is done when power arrives.
-    fn on_arrival(&self, action: Action) -> Result<Drive, Refusal> {
+    fn on_arrival(&self, action: Action) -> Result<Drive, Lack> {
         self.pulses.set(self.pulses.get() + 1);
         let instance = format_smolstr!("{PULSE}{}", self.pulses.get());
         let detector = call("R_TRIG", "CLK", &instance, None, action.span)?;
@@ -194,8 +200,8 @@ impl Converter<'_> {
     }
 
     /// `OUT T0 K50`, `OUT C0 K10`
-    fn preset(&self, device: &Term, preset: &Term, span: Span) -> Result<Action, Refusal> {
-        let Operand::Device(device) = device.operand else { return Err(Refusal::NoCounterpart) };
+    fn preset(&self, device: &Term, preset: &Term, span: Span) -> Result<Action, Lack> {
+        let Operand::Device(device) = device.operand else { return Err(Lack::Unnamed) };
         match (device.kind, preset.operand) {
             (DeviceKind::T, Operand::Constant { value: Constant::Decimal(steps), index: None })
                 if steps >= 0 =>
@@ -208,16 +214,8 @@ impl Converter<'_> {
                 self.counter(device)?;
                 call("CTU", "CU", &device.to_smolstr(), Some(("PV", self.word(preset)?)), span)
             }
-            _ => Err(Refusal::NoCounterpart),
+            _ => Err(Lack::Unnamed),
         }
-    }
-
-    /// `PLS M0`: a detector, and its output in the relay.
-    fn pulse(&self, block: &str, prefix: &str, relay: &Term, span: Span) -> Result<Drive, Refusal> {
-        let relay = self.bit(relay)?;
-        let detector = call(block, "CLK", &format_smolstr!("{prefix}_{relay}"), None, span)?;
-        let coil = Action { deed: Deed::Coil(CoilKind::Plain), terms: vec![relay], span };
-        Ok(Drive::Path(Path { gates: vec![Gate::Through(detector)], drives: vec![Drive::Action(coil)] }))
     }
 }
 
@@ -227,7 +225,7 @@ fn call(
     instance: &SmolStr,
     argument: Option<(&str, Term)>,
     span: Span,
-) -> Result<Action, Refusal> {
+) -> Result<Action, Lack> {
     let block = without(FunctionBlock::named(block))?;
     let arguments = argument.into_iter().map(|(name, term)| (name, false, term));
     let (call, terms) = without(Call::new(block, power, variable(instance, span), arguments))?;
@@ -238,11 +236,11 @@ fn variable(name: &str, span: Span) -> Term {
     Term::new(Operand::Variable, name, span)
 }
 
-fn number(value: Constant, span: Span) -> Result<Term, Refusal> {
+fn number(value: Constant, span: Span) -> Result<Term, Lack> {
     let value = match value {
         Constant::Decimal(value) => value,
         Constant::Hexadecimal(bits) => i64::from(without(u16::try_from(bits).ok())? as i16),
-        Constant::Real(_) => return Err(Refusal::NoCounterpart),
+        Constant::Real(_) => return Err(Lack::Unnamed),
     };
     Ok(literal(&value.to_smolstr(), span))
 }

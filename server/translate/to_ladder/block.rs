@@ -17,6 +17,14 @@ impl Planner {
         let mut element = Element::new(ElementKind::Invert, Span::default(), 0, (0, 0));
         let inputs = self.pins(&mut element, action, call, (call.block.inputs, false), true);
         let outputs = self.pins(&mut element, action, call, (call.block.outputs, true), goes_on);
+        let [inputs, outputs] = match call.is_enabled() {
+            true => {
+                let enable = [self.pin(EN.name, PinWire::Power), self.pin(ENO.name, PinWire::Open)];
+                let [enable, enabled] = enable.map(|pin| vec![pin]);
+                [[enable, inputs].concat(), [enabled, outputs].concat()]
+            }
+            false => [inputs, outputs],
+        };
         element.kind = ElementKind::Block(Box::new(Block {
             instance: Some(instance),
             type_name: Some(type_name),

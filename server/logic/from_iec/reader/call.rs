@@ -1,14 +1,14 @@
 //! Calls of function blocks, and edge contacts.
 
-use super::super::output_of;
+use super::super::{is_pulse_name, output_of};
 use super::{Edge, Reader, Value};
-use crate::il::iec::{Direction, Item, ItemKind, OperandId, Parameter, ParameterValue, Run};
-use crate::ladder::ContactKind;
+use crate::il::iec::{Condition, Direction, Item, ItemKind, OperandId, Parameter, ParameterValue, Run};
+use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{Action, Call, Deed, Expression, Gate, Refusal, Term};
-use crate::target::iec::{FunctionBlock, OperatorRole};
+use crate::target::iec::{EN, FunctionBlock, OperatorRole};
 use crate::text::{Span, folded};
 
-impl Reader<'_, '_> {
+impl<'a> Reader<'_, 'a> {
     /// Power is stored for the block that is called next.
     pub(super) fn feed(&mut self, id: OperandId, negated: bool) -> Result<(), Refusal> {
         let path = self.source.tree.operand(id).span.of(self.source.text);
@@ -46,14 +46,9 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// A call; tells whether `next`, the load of its output, goes on from it.
-    pub(super) fn call(
-        &mut self,
-        item: &Item,
-        callee: OperandId,
-        parameters: Run,
-        next: Option<&Item>,
-    ) -> Result<bool, Refusal> {
+    /// A call; tells how many of the items behind it belong to it: the load of its output, which goes on from it, and
+    /// for a coil of an edge the store, too.
+    pub(super) fn call(&mut self, item: &Item, callee: OperandId, parameters: Run) -> Result<usize, Refusal> {
         let text = self.source.text;
         let called = self.source.tree.operand(callee);
         let instance = called.span.of(text);
@@ -61,40 +56,53 @@ impl Reader<'_, '_> {
         let parameters = parameters.of(&self.source.tree.parameters);
         let fed = self.fed.take();
         if fed.is_none() && self.is_edge(instance, parameters)? {
-            return Ok(false);
+            return Ok(0);
+        }
+        if fed.is_some() && parameters.is_empty() && self.pulse(instance, block, item)? {
+            return Ok(2);
         }
         if fed.as_ref().is_some_and(|fed| *fed != folded(instance)) || fed.is_none() && !self.is_fresh() {
             return Err(Refusal::NotBoolean);
         }
         let mut power = None;
+        let mut enable = None;
         let mut arguments = Vec::with_capacity(parameters.len());
         for (place, parameter) in parameters.iter().enumerate() {
             let (name, is_output, id) =
                 argument(parameter, text, || block.inputs.get(place).map(|pin| pin.name))?;
             let is_power = block.inputs.first().is_some_and(|first| first.name.eq_ignore_ascii_case(name));
             match is_power && !is_output {
+                _ if name.eq_ignore_ascii_case(EN.name) && !is_output => enable = Some(id),
                 true => power = Some(id),
                 false => arguments.push((name, is_output, self.term(id)?)),
             }
         }
-        match (power, fed) {
-            (Some(id), None) => {
-                let contact = self.contact(id, ContactKind::NormallyOpen)?;
-                self.builder.pass(Expression::Contact(contact)).ok_or(Refusal::TooDeep)?;
-            }
-            (None, Some(_)) => {}
-            _ => return Err(Refusal::Element),
-        }
         let power_in = block.inputs.first().map_or("", |pin| pin.name);
+        let (wired, power_in) = match (power, fed.is_some(), enable) {
+            (Some(id), false, None) => (Some(id), power_in),
+            (None, true, None) => (None, power_in),
+            (power, false, enable) => {
+                if let Some(id) = power {
+                    arguments.push((power_in, false, self.term(id)?));
+                }
+                (enable, EN.name)
+            }
+            _ => return Err(Refusal::Element),
+        };
+        if let Some(id) = wired {
+            let contact = self.contact(id, ContactKind::NormallyOpen)?;
+            self.builder.pass(Expression::Contact(contact)).ok_or(Refusal::TooDeep)?;
+        }
         let own = self.source.term(self.pou, callee);
         let (call, terms) = Call::new(block, power_in, own, arguments).ok_or(Refusal::Element)?;
         self.driven.extend(call.changes(&terms).iter().map(|term| (term.key(), self.at)));
         let action = Action { deed: Deed::Call(call), terms, span: item.span };
-        match next.and_then(|next| self.loads(next, &output_of(block, instance))) {
+        let output = self.next(1).filter(|_| !call.is_enabled());
+        match output.and_then(|next| self.loads(next, &output_of(block, instance))) {
             None => {
                 self.builder.drive(action);
                 self.value = Value::Nothing;
-                Ok(false)
+                Ok(0)
             }
             Some(negated) => {
                 self.builder.gate(Gate::Through(action)).ok_or(Refusal::TooDeep)?;
@@ -102,9 +110,80 @@ impl Reader<'_, '_> {
                     self.builder.gate(Gate::Invert).ok_or(Refusal::TooDeep)?;
                 }
                 self.value = Value::Power;
-                Ok(true)
+                Ok(1)
             }
         }
+    }
+
+    /// `CALC`, `CALCN`: the current result enables the call. Nothing is known of it behind that.
+    pub(super) fn conditional_call(
+        &mut self,
+        item: &Item,
+        callee: OperandId,
+        parameters: Run,
+        condition: Condition,
+    ) -> Result<usize, Refusal> {
+        if !self.frames.is_empty() {
+            return Err(Refusal::NotBoolean);
+        }
+        let block = self.block_of(callee).ok_or(Refusal::Element)?;
+        let mut arguments = Vec::new();
+        for (place, parameter) in parameters.of(&self.source.tree.parameters).iter().enumerate() {
+            let positional = || block.inputs.get(place).map(|pin| pin.name);
+            let (name, is_output, id) = argument(parameter, self.source.text, positional)?;
+            arguments.push((name, is_output, self.term(id)?));
+        }
+        self.settle()?;
+        self.is_inverted ^= condition == Condition::IfFalse;
+        self.invert()?;
+        let own = self.source.term(self.pou, callee);
+        let (call, terms) = Call::new(block, EN.name, own, arguments).ok_or(Refusal::Element)?;
+        self.driven.extend(call.changes(&terms).iter().map(|term| (term.key(), self.at)));
+        self.builder.drive(Action { deed: Deed::Call(call), terms, span: item.span });
+        self.value = Value::Nothing;
+        Ok(0)
+    }
+
+    /// The item of the rung that stands so many behind the one that is read.
+    fn next(&self, count: usize) -> Option<&'a Item> {
+        let index = self.at + count;
+        (index < self.end).then(|| self.source.item(index))
+    }
+
+    /// Drives the coil of an edge that the call of a detector is whose output is stored and nothing else; tells
+    /// whether it is that.
+    fn pulse(&mut self, instance: &str, block: &FunctionBlock, item: &Item) -> Result<bool, Refusal> {
+        let coil = match block.name {
+            "R_TRIG" => CoilKind::Rising,
+            "F_TRIG" => CoilKind::Falling,
+            _ => return Ok(false),
+        };
+        let is_loaded = self.next(1).and_then(|next| self.loads(next, &output_of(block, instance)));
+        let Some(store) = self.next(2) else { return Ok(false) };
+        let ItemKind::Operation { operation, operand: Some(id) } = store.kind else { return Ok(false) };
+        let word = operation.word.of(self.source.text);
+        let stores =
+            operation.operator.role == OperatorRole::Store && !operation.negated && !word.ends_with('?');
+        let variable = self.source.tree.operand(id).span.of(self.source.text);
+        // What goes on with the output sees more of it than the coil.
+        let goes_on = self.next(3).is_some_and(|next| match next.kind {
+            ItemKind::Operation { operation, .. } => operation.operator.role != OperatorRole::Load,
+            _ => true,
+        });
+        if is_loaded != Some(false)
+            || !stores
+            || goes_on
+            || !is_pulse_name(instance, coil, variable)
+            || !self.source.is_pulse(self.pou, instance)
+        {
+            return Ok(false);
+        }
+        let term = self.bit(id)?;
+        self.driven.insert(term.key(), self.at + 2);
+        let span = item.span.to(store.span);
+        self.builder.drive(Action { deed: Deed::Coil(coil), terms: vec![term], span });
+        self.value = Value::Nothing;
+        Ok(true)
     }
 
     /// Whether `item` loads `word`, and if so whether negated.

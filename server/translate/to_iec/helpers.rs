@@ -1,0 +1,118 @@
+//! The variables that a translation to instruction list of IEC 61131-3 needs.
+
+use crate::ladder::CoilKind;
+use crate::logic::{HELPER, pulse_name};
+use crate::text::folded;
+use rustc_hash::{FxHashMap, FxHashSet};
+use smol_str::{SmolStr, format_smolstr};
+
+/// The names of a program, and the variables that its translation needs beyond them.
+#[derive(Clone, Debug, Default)]
+pub struct Helpers {
+    /// All names, folded.
+    taken: FxHashSet<SmolStr>,
+    /// The helpers in order.
+    pub declared: Vec<Helper>,
+    /// The program unit for which helpers are made.
+    pub pou: Option<usize>,
+    /// The last number of each type of helper.
+    numbers: FxHashMap<&'static str, usize>,
+    /// The helpers that keep power in each program unit, by depth.
+    held: FxHashMap<Option<usize>, Vec<SmolStr>>,
+    /// Variables that the source declares and nothing in it names, by program unit and type, in the order of their
+    /// declaration: a drawing has no word for the detector of an edge contact, so that is what it is called.
+    spare: FxHashMap<(Option<usize>, &'static str), Vec<SmolStr>>,
+}
+
+/// A variable that a translation needs.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Helper {
+    /// Its name.
+    pub name: SmolStr,
+    /// `BOOL`, `R_TRIG`, `F_TRIG`.
+    pub type_name: &'static str,
+    /// The program unit that declares it.
+    pub pou: Option<usize>,
+}
+
+impl Helpers {
+    /// Helpers with names beside these.
+    pub fn beside(names: impl IntoIterator<Item = SmolStr>) -> Helpers {
+        let taken = names.into_iter().map(|name| folded(&name)).collect();
+        Helpers { taken, ..Helpers::default() }
+    }
+
+    /// Variables of program unit `pou` that may be taken in place of new ones.
+    pub fn spare(&mut self, pou: Option<usize>, type_name: &'static str, name: SmolStr) {
+        self.spare.entry((pou, type_name)).or_default().push(name);
+    }
+
+    /// The first spare variable of this type whose name will do.
+    fn take(&mut self, type_name: &'static str, will_do: impl Fn(&str) -> bool) -> Option<SmolStr> {
+        let spare = self.spare.get_mut(&(self.pou, type_name))?;
+        let place = spare.iter().position(|name| will_do(name))?;
+        Some(spare.remove(place))
+    }
+
+    /// The detector of an edge contact. Those that are named after coils are left to these.
+    pub(super) fn detector(&mut self, stem: &str, type_name: &'static str) -> SmolStr {
+        let is_of_coil = |name: &str| {
+            let prefix = name.get(..4);
+            prefix.is_some_and(|own| ["PLS_", "PLF_"].iter().any(|prefix| own.eq_ignore_ascii_case(prefix)))
+        };
+        let spare = self.take(type_name, |name| !is_of_coil(name));
+        spare.unwrap_or_else(|| self.declare(stem, type_name))
+    }
+
+    /// The detector of a coil of an edge.
+    pub(super) fn pulse(&mut self, coil: CoilKind, type_name: &'static str, variable: &str) -> SmolStr {
+        let stem = pulse_name(coil, variable);
+        let mut number = 1;
+        loop {
+            let name = if number == 1 { stem.clone() } else { format_smolstr!("{stem}_{number}") };
+            if let Some(spare) = self.take(type_name, |spare| spare.eq_ignore_ascii_case(&name)) {
+                return spare;
+            }
+            if self.taken.insert(folded(&name)) {
+                self.declared.push(Helper { name: name.clone(), type_name, pou: self.pou });
+                return name;
+            }
+            number += 1;
+        }
+    }
+
+    /// A new label.
+    pub(super) fn label(&mut self) -> SmolStr {
+        let number = self.numbers.entry("").or_default();
+        loop {
+            *number += 1;
+            let name = format_smolstr!("Skip{number}");
+            if self.taken.insert(folded(&name)) {
+                return name;
+            }
+        }
+    }
+
+    /// A new variable.
+    fn declare(&mut self, stem: &str, type_name: &'static str) -> SmolStr {
+        let number = self.numbers.entry(type_name).or_default();
+        loop {
+            *number += 1;
+            let name = format_smolstr!("{stem}{number}");
+            if self.taken.insert(folded(&name)) {
+                self.declared.push(Helper { name: name.clone(), type_name, pou: self.pou });
+                return name;
+            }
+        }
+    }
+
+    /// The variable that keeps the power of the path at this depth, from 0.
+    pub(super) fn held(&mut self, depth: usize) -> SmolStr {
+        if let Some(known) = self.held.get(&self.pou).and_then(|held| held.get(depth)) {
+            return known.clone();
+        }
+        let name = self.take("BOOL", |_| true).unwrap_or_else(|| self.declare(HELPER, "BOOL"));
+        self.held.entry(self.pou).or_default().push(name.clone());
+        name
+    }
+}
