@@ -4,7 +4,7 @@
 use super::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::target::iec::LiteralValue;
-use crate::target::{Constant, Device, DeviceKind, Flow, Form, Operand};
+use crate::target::{Constant, Device, DeviceKind, Flow, Operand};
 use smol_str::{SmolStr, format_smolstr};
 use std::collections::BTreeMap;
 
@@ -202,7 +202,7 @@ impl<'s> Scan<'s> {
             (Deed::Call(call), _) if !call.is_enabled() => {
                 self.output_after(call, &action.terms, power, key).unwrap_or(left)
             }
-            (Deed::Instruction(form), _) if power && Form::named("ZRST") == Some(form) => false,
+            (Deed::Instruction(form), _) if power && !form.pulse && form.instruction.clears() => false,
             _ if !power && is_idle_without_power(action) => before,
             _ => left,
         }
@@ -235,7 +235,7 @@ impl<'s> Scan<'s> {
         let is_register = matches!(register.operand, Operand::Device(Device { kind: DeviceKind::D, .. }));
         let copies = match action.deed {
             Deed::Compute(computation) => computation.copies(),
-            Deed::Instruction(form) if Form::named("MOV") == Some(form) && is_register => true,
+            Deed::Instruction(form) if form.instruction.copies() && is_register => !form.wide && !form.pulse,
             _ => return None,
         };
         let source = match power {

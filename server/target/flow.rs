@@ -59,6 +59,16 @@ impl Instruction {
         }
     }
 
+    /// Whether it writes its first operand to its last one, as it is: MOV, told by its code.
+    pub fn copies(&self) -> bool {
+        self.opcode == Opcode::Function(12)
+    }
+
+    /// Whether it switches off what it names: ZRST, told by its code.
+    pub fn clears(&self) -> bool {
+        self.opcode == Opcode::Function(40)
+    }
+
     /// Whether it is a contact that conducts while its device is off: LDI, ANI, ORI, told by their code.
     pub fn is_inverse_contact(&self) -> bool {
         matches!(self.opcode, Opcode::Contact { class: 3 | 5 | 7, .. })
