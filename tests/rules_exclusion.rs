@@ -367,6 +367,17 @@ fn all_pairs_of_small_rungs_are_judged_rightly() {
     assert!(open * 20 < count, "{open} of {count} were left open");
 }
 
+#[test]
+fn a_latch_that_never_changes_hides_no_sequence() {
+    for latch in ["LD M0\nSET M0\n", "LD M0\nANI M0\nSET M0\n", "LDI M0\nRST M0\n"] {
+        let text = format!(
+            "// rungwise: never Y0 & Y1\nLD Y1\nANI Y0\nOUT Y0\nLDI X1\nANI M0\nOUT Y1\n{latch}END\n"
+        );
+        let severities: Vec<Severity> = found(&text).iter().map(|one| one.severity).collect();
+        assert_eq!(severities, [Severity::Error], "{text}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(600))]
     #[test]

@@ -248,7 +248,8 @@ impl<'s, 'r, 'p> Unrolled<'s, 'r, 'p> {
                 Some(term) => {
                     let last = self.scans.run.bit(term, formulas);
                     let unchanged = formulas.atom(atom);
-                    match last == unchanged {
+                    let is_own = matches!(source, Source::Driven | Source::Kept);
+                    match last == unchanged && !is_own {
                         // Nothing here drives it, and somebody may in between.
                         true => formulas.atom(Atom::Bit(Moment { name: name.clone(), since: LATER + scan })),
                         false => self.at(scan - 1, last, formulas),
