@@ -255,8 +255,9 @@ fn no_list_for_the_drawn_order_is_shorter() {
 #[test]
 fn no_list_for_several_outputs_is_shorter() {
     // Behind X0, each letter is what one drive needs: o output, n negated coil, b output behind a contact, c output
-    // behind two contacts in parallel, v output behind a contact that feeds another one behind a second.
-    for drives in words("onbcv", 3) {
+    // behind two contacts in parallel, v output behind a contact that feeds another one behind a second, i output
+    // behind a contact behind an inverter.
+    for drives in words("onbcvi", 3) {
         let mut rows = Vec::new();
         let mut next = 1;
         let mut outputs = Vec::new();
@@ -283,6 +284,11 @@ fn no_list_for_several_outputs_is_shorter() {
                     let own = contact();
                     outputs.push(input(0) & input(own));
                     rows.push(format!("AND X{own}\nOUT {}", coil()));
+                }
+                'i' => {
+                    let own = contact();
+                    outputs.push(!input(0) & input(own));
+                    rows.push(format!("INV\nAND X{own}\nOUT {}", coil()));
                 }
                 'c' => {
                     let [one, two] = [contact(), contact()];

@@ -245,10 +245,11 @@ fn judge_page(
             let mut found = chunk.problems().to_vec();
             let context = ChunkContext::new(chunk, document, pou_number.checked_sub(1));
             CHUNK_JUDGES.iter().for_each(|judge| judge(&context, &mut found));
-            if !context.is_worth_a_proof.get() && chunk.boxes().is_empty() {
+            let boxes = chunk.boxes();
+            if !context.is_worth_a_proof.get() && boxes.is_empty() {
                 chunk.keep_proofs(key, Proofs::default());
             }
-            for (start, list) in chunk.boxes() {
+            for (start, list) in boxes {
                 let own = judge_box(&list, document, pou_number.checked_sub(1));
                 found.extend(own.iter().map(|diagnostic| diagnostic.shifted(start)));
             }

@@ -3,7 +3,7 @@
 use super::decide::{Verdict, equal};
 use super::{Action, Atom, Deed, Effect, Formula, Formulas, Path, Run, Term};
 use crate::ladder::CoilKind;
-use crate::target::{Access, Device, DeviceKind, Flow};
+use crate::target::{Device, DeviceKind, Flow};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 use std::collections::BTreeMap;
@@ -56,7 +56,7 @@ pub fn compare_but(
     helpers: &FxHashSet<SmolStr>,
     formulas: &mut Formulas,
 ) -> Comparison {
-    let [left, mut right] = [run(left, formulas), run(right, formulas)];
+    let [left, mut right] = [left, right].map(|paths| run(Run::new(), paths, formulas));
     if !helpers.is_empty() {
         right.effects.retain(|effect| {
             let [term] = &effect.action.terms[..] else { return true };
@@ -87,13 +87,10 @@ pub fn compare_outcome(
     may_be_off: bool,
     formulas: &mut Formulas,
 ) -> Comparison {
-    let skipped = run(&left[..known[0].min(left.len())], &mut Formulas::default()).events() as usize;
+    let skipped = run(Run::new(), &left[..known[0].min(left.len())], &mut Formulas::default());
+    let skipped = skipped.events() as usize;
     let rail = if may_be_off { formulas.atom(Atom::Rail) } else { Formulas::TRUE };
-    let [left, right] = [left, right].map(|paths| {
-        let mut run = Run::by_outcome(rail);
-        paths.iter().for_each(|path| run.path(path, formulas));
-        run
-    });
+    let [left, right] = [left, right].map(|paths| run(Run::by_outcome(rail), paths, formulas));
     let events = |run: &Run<'_>| run.events() as usize;
     let pairs = || {
         let [left, right] = [&left, &right].map(|run| run.effects.iter().filter(|e| e.event.is_some()));
@@ -135,8 +132,8 @@ pub fn compare_outcome(
     Comparison::Same { is_boolean: left.is_boolean() }
 }
 
-fn run<'p>(paths: &[&'p Path], formulas: &mut Formulas) -> Run<'p> {
-    let mut run = Run::new();
+/// `run`, after it went through `paths`.
+fn run<'p>(mut run: Run<'p>, paths: &[&'p Path], formulas: &mut Formulas) -> Run<'p> {
     paths.iter().for_each(|path| run.path(path, formulas));
     run
 }
@@ -183,14 +180,14 @@ fn what(effect: &Effect<'_>) -> String {
 pub fn touches_bits(action: &Action) -> bool {
     // States, timers and counters change in events only, and these come in the same order.
     let is_bit = |term: &Term| term.operand.device().is_some_and(|device| is_driven(device.kind));
+    let covers = || action.changes().iter().any(|term| covers_others(term));
     match action.deed {
         Deed::Instruction(form) => {
             form.instruction.flow() != Flow::Straight || action.terms.iter().any(is_bit)
         }
         // Instructions look at special relays that none of their operands names: carry, direction, modes.
-        Deed::Coil(_) => action.terms.first().is_some_and(|term| covers_others(term) || is_special(term)),
-        Deed::Compute(_) => action.terms.last().is_some_and(covers_others),
-        Deed::Call(call) => call.changes(&action.terms).iter().any(covers_others),
+        Deed::Coil(_) => covers() || action.terms.first().is_some_and(is_special),
+        Deed::Compute(_) | Deed::Call(_) => covers(),
         Deed::Jump | Deed::Return => true,
     }
 }
@@ -204,17 +201,8 @@ pub fn may_drive(action: &Action, key: &str) -> bool {
     let is_alike =
         |term: &Term| term.operand.device().is_none_or(|device| key.starts_with(device.kind.letter()));
     let may_be = |term: &Term| term.key() == key || covers_others(term) && is_alike(term);
-    match action.deed {
-        Deed::Coil(_) => action.terms.first().is_some_and(may_be),
-        Deed::Instruction(form) => {
-            let operands = action.terms.iter().zip(form.instruction.operands);
-            let mut written = operands.filter(|(_, spec)| spec.access != Access::Read);
-            form.instruction.flow() == Flow::Straight && written.any(|(term, _)| may_be(term))
-        }
-        Deed::Call(call) => call.changes(&action.terms).iter().any(may_be),
-        Deed::Compute(_) => action.terms.last().is_some_and(may_be),
-        Deed::Jump | Deed::Return => false,
-    }
+    let steers = matches!(action.deed, Deed::Instruction(form) if form.instruction.flow() != Flow::Straight);
+    !steers && action.changes().iter().any(|term| may_be(term))
 }
 
 /// Whether who writes to it may write to bits that have names of their own.

@@ -3,8 +3,9 @@
 use super::{Call, Computation, Expression, Term};
 use crate::document::{Scopes, coil_form};
 use crate::ladder::CoilKind;
-use crate::target::{Flow, Form, Role};
+use crate::target::{Access, Flow, Form, Role};
 use crate::text::Span;
+use std::borrow::Cow;
 
 /// A path of power from the left rail, or from where it leaves another path: it passes all gates, then it drives one
 /// thing after another. A path that leaves it starts with the power behind its gates.
@@ -99,6 +100,21 @@ const COILS: [CoilKind; 5] =
     [CoilKind::Plain, CoilKind::Set, CoilKind::Reset, CoilKind::Rising, CoilKind::Falling];
 
 impl Action {
+    /// The operands that it may write, and what a call may change besides.
+    pub fn changes(&self) -> Vec<Cow<'_, Term>> {
+        match self.deed {
+            Deed::Coil(_) => self.terms.first().map(Cow::Borrowed).into_iter().collect(),
+            Deed::Compute(_) => self.terms.last().map(Cow::Borrowed).into_iter().collect(),
+            Deed::Call(call) => call.changes(&self.terms).into_iter().map(Cow::Owned).collect(),
+            Deed::Instruction(form) => {
+                let operands = self.terms.iter().zip(form.instruction.operands);
+                let written = operands.filter(|(_, spec)| spec.access != Access::Read);
+                written.map(|(term, _)| Cow::Borrowed(term)).collect()
+            }
+            Deed::Jump | Deed::Return => Vec::new(),
+        }
+    }
+
     /// The variable from which power goes on behind the call of a function block.
     pub fn power_out(&self) -> Option<Term> {
         match self.deed {

@@ -159,8 +159,7 @@ impl<'p> Run<'p> {
             return value;
         }
         if matches!(term.operand, Operand::Device(Device::OFF_AT_FIRST)) {
-            let first = Term::new(Operand::Device(Device::FIRST_SCAN), "M8002", term.span);
-            let first = self.bit(&first, formulas);
+            let first = self.bit(&Term::of_device(Device::FIRST_SCAN, term.span), formulas);
             return formulas.not(first);
         }
         let of = self.moment(term, name, formulas);
@@ -388,34 +387,19 @@ impl<'p> Run<'p> {
     /// Notes what the event that just happened may have changed.
     fn change(&mut self, action: &Action, formulas: &mut Formulas) {
         match action.deed {
-            Deed::Coil(_) => {
-                if let Some(term) = action.terms.first() {
-                    self.change_term(term, formulas);
-                }
-            }
             Deed::Instruction(form) if writes_operands(form) => {
-                for (term, spec) in action.terms.iter().zip(form.instruction.operands) {
-                    if spec.access != Access::Read {
-                        self.change_kind(slot(term), formulas);
-                    }
-                }
+                action.changes().iter().for_each(|term| self.change_kind(slot(term), formulas));
                 self.flags = self.events;
                 self.touch(ANYWHERE, formulas);
             }
-            Deed::Call(call) => {
-                self.touch(VARIABLES, formulas);
-                for changed in call.changes(&action.terms) {
-                    self.change_term(&changed, formulas);
-                }
-            }
-            Deed::Compute(_) => {
-                if let Some(result) = action.terms.last() {
-                    self.change_term(result, formulas);
-                }
-            }
             // What is done meanwhile elsewhere, nobody knows here.
             Deed::Instruction(_) => self.change_all(formulas),
-            Deed::Jump | Deed::Return => {}
+            deed => {
+                if matches!(deed, Deed::Call(_)) {
+                    self.touch(VARIABLES, formulas);
+                }
+                action.changes().iter().for_each(|term| self.change_term(term, formulas));
+            }
         }
     }
 

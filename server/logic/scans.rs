@@ -7,8 +7,9 @@
 use super::decide::{Verdict, equal};
 use super::formula::{Atom, Moment};
 use super::{Formula, Formulas, Run, Term};
+use crate::target::Device;
 use rustc_hash::FxHashMap;
-use smol_str::SmolStr;
+use smol_str::{SmolStr, ToSmolStr};
 use std::collections::BTreeMap;
 
 /// What is known of a bit that a scan reads.
@@ -263,9 +264,6 @@ impl<'s, 'r, 'p> Unrolled<'s, 'r, 'p> {
 
 /// Whether it is the special relay that is on in the first scan, or the one that is off in it.
 fn is_first_scan(name: &SmolStr) -> Option<bool> {
-    match name.as_str() {
-        "M8002" => Some(true),
-        "M8003" => Some(false),
-        _ => None,
-    }
+    let is = |device: Device| device.to_smolstr() == *name;
+    is(Device::FIRST_SCAN).then_some(true).or_else(|| is(Device::OFF_AT_FIRST).then_some(false))
 }

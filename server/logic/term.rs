@@ -3,7 +3,7 @@
 use crate::document::Scopes;
 use crate::il::iec::SectionKind;
 use crate::target::iec::LiteralValue;
-use crate::target::{Constant, DeviceKind, DirectAddress, Operand, Width};
+use crate::target::{Constant, Device, DeviceKind, DirectAddress, Operand, Width};
 use crate::text::{Span, folded};
 use smol_str::{SmolStr, ToSmolStr, format_smolstr};
 use std::fmt;
@@ -55,6 +55,11 @@ impl Term {
     /// `text`, which reads as `operand`.
     pub fn new(operand: Operand, text: &str, span: Span) -> Term {
         Term { operand, text: text.into(), span, storage: Storage::Own }
+    }
+
+    /// The device itself; `span` is empty if it was not read.
+    pub fn of_device(device: Device, span: Span) -> Term {
+        Term::new(Operand::Device(device), &device.to_smolstr(), span)
     }
 
     /// The same where it lies as declared in program unit number `pou`.

@@ -1,7 +1,7 @@
 //! What two programs declare under the same name, in other words.
 
-use crate::document::{Document, Tree};
-use crate::il::iec::{IecTree, ItemKind};
+use crate::document::Document;
+use crate::il::iec::{Declaration, IecTree, ItemKind};
 use crate::text::{Span, folded};
 use smol_str::SmolStr;
 use std::collections::BTreeMap;
@@ -25,8 +25,7 @@ fn declarations(document: &Document) -> BTreeMap<Key, (String, Span)> {
     let mut unit = SmolStr::default();
     for (at, _) in document.iec_chunks() {
         let text = at.chunk.text();
-        let tree = at.chunk.tree();
-        let Tree::Iec(tree) = tree else { continue };
+        let Some(tree) = at.chunk.iec() else { continue };
         for item in &tree.items {
             match &item.kind {
                 ItemKind::Pou { name, .. } => {
@@ -50,7 +49,7 @@ fn declarations(document: &Document) -> BTreeMap<Key, (String, Span)> {
 /// Each name with what is said behind the names, blanks aside, and where it stands.
 fn variables<'t>(
     tree: &'t IecTree,
-    declarations: &'t [crate::il::iec::Declaration],
+    declarations: &'t [Declaration],
     text: &'t str,
 ) -> impl Iterator<Item = (&'t str, String, Span)> {
     declarations.iter().flat_map(move |declaration| {

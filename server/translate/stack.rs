@@ -5,13 +5,11 @@ use std::sync::LazyLock;
 
 /// What a drive wants the current result to be.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Wants {
-    /// The power behind the gates, which it leaves there: an output.
-    Power,
-    /// The inverse of the power, which it leaves there: a negated coil, or outputs behind an inverter.
-    Inverse,
-    /// The power, which it loses: a conditional path.
-    Everything,
+pub(super) struct Wants {
+    /// The inverse of the power behind the gates: a negated coil, or what stands behind an inverter.
+    pub inverse: bool,
+    /// It loses the current result: a conditional path. Outputs leave it there.
+    pub for_good: bool,
 }
 
 /// What the current result, or the top of the branch stack, is.
@@ -91,11 +89,8 @@ pub(super) struct Moves {
 /// `may_turn`, the path may begin with the inverse of its power as well.
 pub(super) fn moves(wanted: &[Wants], may_turn: bool) -> Moves {
     // Mostly outputs alone, and perhaps a conditional path behind them.
-    let is_plain = |(number, wants): (usize, &Wants)| match wants {
-        Wants::Power => true,
-        Wants::Inverse => false,
-        Wants::Everything => number + 1 == wanted.len(),
-    };
+    let is_plain =
+        |(number, wants): (usize, &Wants)| !wants.inverse && (!wants.for_good || number + 1 == wanted.len());
     if wanted.iter().enumerate().all(is_plain) {
         return Moves { is_turned: false, before: vec![Vec::new(); wanted.len()] };
     }
@@ -140,9 +135,7 @@ pub(super) fn moves(wanted: &[Wants], may_turn: bool) -> Moves {
 
 /// The state behind a drive that starts in `state`; nothing if that is not what it wants.
 fn behind(wants: Wants, state: State) -> Option<usize> {
-    match (wants, state.current) {
-        (Wants::Power, Held::Power) | (Wants::Inverse, Held::Inverse) => Some(state.number()),
-        (Wants::Everything, Held::Power) => Some(State { current: Held::Other, ..state }.number()),
-        _ => None,
-    }
+    let wanted = if wants.inverse { Held::Inverse } else { Held::Power };
+    let left = if wants.for_good { State { current: Held::Other, ..state } } else { state };
+    (state.current == wanted).then(|| left.number())
 }

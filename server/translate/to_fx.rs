@@ -11,7 +11,7 @@ use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{
     Action, Comparison, Contact, Deed, Drive, Expression, Formulas, Gate, Path, Term, Test, compare,
 };
-use crate::target::{Device, Form, Limits, Operand, Role, Target};
+use crate::target::{Device, Form, Limits, Role, Target};
 use crate::text::{Message, Span};
 use std::borrow::Cow;
 use std::fmt;
@@ -60,7 +60,7 @@ const TOO_MANY_BRANCHES: &str = "translate.branches";
 
 fn written(paths: &[Path], target: &Target) -> Result<Vec<Line>, Message> {
     let mut writer = Writer { lines: Vec::new(), branches: 0, limits: target.limits };
-    paths.iter().try_for_each(|path| writer.path(path, true))?;
+    paths.iter().try_for_each(|path| writer.path(&path.gates, &path.drives, true))?;
     Ok(writer.lines)
 }
 
@@ -110,11 +110,20 @@ struct Writer {
 
 impl Writer {
     /// `is_first` if nothing is loaded yet.
-    fn path(&mut self, path: &Path, is_first: bool) -> Result<(), Message> {
+    fn path(&mut self, gates: &[Gate], drives: &[Drive], is_first: bool) -> Result<(), Message> {
         let mut is_first = is_first;
-        let wanted: Vec<Wants> = path.drives.iter().map(wants).collect();
-        let (front, gates) = if is_first { front(&path.gates, &wanted) } else { (None, &path.gates[..]) };
-        let moves = stack::moves(&wanted, front.is_some() && gates.is_empty());
+        let (gates, is_inverted) = inverters(gates, <[Gate]>::split_last);
+        let mut stops = Vec::with_capacity(drives.len());
+        add_stops(drives, is_inverted, &mut stops);
+        let mut wanted: Vec<Wants> = stops.iter().map(|stop| stop.wants).collect();
+        let (mut front, gates) = if is_first { front(gates, &wanted) } else { (None, gates) };
+        let may_turn = front.is_some() && gates.is_empty();
+        // What the first output wants is the power, so that a list does not depend on how its contacts were turned.
+        if may_turn && wanted.first().is_some_and(|wants| wants.inverse) {
+            wanted.iter_mut().for_each(|wants| wants.inverse = !wants.inverse);
+            front = front.map(|front| front.negated());
+        }
+        let moves = stack::moves(&wanted, may_turn);
         if let Some(front) = front {
             self.pass(&if moves.is_turned { front.negated() } else { front }, true)?;
             is_first = false;
@@ -131,18 +140,18 @@ impl Writer {
             is_at_step = matches!(gate, Gate::Through(action) if is_step(action));
             is_first = false;
         }
-        if is_at_step && wanted.iter().any(|wants| *wants != Wants::Power) {
+        if is_at_step && wanted.iter().any(|wants| wants.inverse || wants.for_good) {
             return Err(Message::new("translate.step-branch"));
         }
         if is_first {
-            return path.drives.iter().try_for_each(|drive| match drive {
+            return drives.iter().try_for_each(|drive| match drive {
                 Drive::Action(action) if action.deed.stands_alone() => self.action(action),
                 Drive::Action(_) => Err(Message::new("translate.no-condition")),
                 // What begins at the left rail is a rung of its own.
-                Drive::Path(path) => self.path(path, true),
+                Drive::Path(path) => self.path(&path.gates, &path.drives, true),
             });
         }
-        self.drives(&path.drives, &wanted, moves)
+        self.drives(&stops, moves)
     }
 
     fn pass(&mut self, expression: &Expression, is_first: bool) -> Result<(), Message> {
@@ -151,8 +160,8 @@ impl Writer {
         self.expression(&expression, if is_first { Role::Load } else { Role::Series })
     }
 
-    fn drives(&mut self, drives: &[Drive], wanted: &[Wants], moves: Moves) -> Result<(), Message> {
-        for ((drive, wanted), moves) in drives.iter().zip(wanted).zip(moves.before) {
+    fn drives(&mut self, stops: &[Stop<'_>], moves: Moves) -> Result<(), Message> {
+        for (stop, moves) in stops.iter().zip(moves.before) {
             for mnemonic in moves {
                 self.bare(mnemonic)?;
                 match mnemonic {
@@ -164,21 +173,12 @@ impl Writer {
                     return Err(Message::new(TOO_MANY_BRANCHES).with("limit", self.limits.branches));
                 }
             }
-            match drive {
+            match stop.drive {
                 Drive::Action(action) => self.action(action)?,
-                Drive::Path(path) if *wanted == Wants::Inverse => self.inverted(path)?,
-                Drive::Path(path) => self.path(path, false)?,
+                Drive::Path(path) => self.path(stop.gates, &path.drives, false)?,
             }
         }
         Ok(())
-    }
-
-    /// The outputs of a path that is but an inverter, behind its inverter.
-    fn inverted(&mut self, path: &Path) -> Result<(), Message> {
-        path.drives.iter().try_for_each(|drive| match drive {
-            Drive::Action(action) => self.action(action),
-            Drive::Path(path) => self.path(path, false),
-        })
     }
 
     /// Writes `expression` as `role` says: as a block of its own, or joined with the current result.
@@ -241,12 +241,12 @@ impl Writer {
 /// inverters; and the gates that are left.
 fn front<'g>(gates: &'g [Gate], wanted: &[Wants]) -> (Option<Expression>, &'g [Gate]) {
     let [Gate::Pass(expression), behind @ ..] = gates else { return (None, gates) };
-    let inverters = behind.iter().take_while(|gate| **gate == Gate::Invert).count();
-    if inverters == 0 && !wanted.contains(&Wants::Inverse) || !is_turnable(expression) {
+    let (left, inverts) = inverters(behind, <[Gate]>::split_first);
+    let wants_inverse = wanted.iter().any(|wants| wants.inverse);
+    if left.len() == behind.len() && !wants_inverse || !is_turnable(expression) {
         return (None, gates);
     }
-    let front = if inverters % 2 == 1 { expression.negated() } else { expression.clone() };
-    (Some(front), &behind[inverters..])
+    (Some(if inverts { expression.negated() } else { expression.clone() }), left)
 }
 
 fn is_step(action: &Action) -> bool {
@@ -263,31 +263,53 @@ fn is_turnable(expression: &Expression) -> bool {
     }
 }
 
-fn wants(drive: &Drive) -> Wants {
-    match drive {
-        Drive::Action(action) if action.deed == Deed::Coil(CoilKind::Negated) => Wants::Inverse,
-        Drive::Action(_) => Wants::Power,
-        Drive::Path(path) => {
-            let is_inverted = path.gates == [Gate::Invert];
-            let is_plain = |drive: &Drive| match drive {
-                Drive::Action(action) => action.deed != Deed::Coil(CoilKind::Negated),
-                Drive::Path(_) => false,
-            };
-            match is_inverted && path.drives.iter().all(is_plain) {
-                true => Wants::Inverse,
-                false => Wants::Everything,
+/// Something that the power behind the gates of a path comes to.
+struct Stop<'p> {
+    wants: Wants,
+    drive: &'p Drive,
+    /// What power passes before the outputs of a conditional path, but for the inverters that `wants` tells of.
+    gates: &'p [Gate],
+}
+
+/// What power comes to behind the gates of a path. Paths that are but inverters are passed over: what they drive wants
+/// the inverse.
+fn add_stops<'p>(drives: &'p [Drive], is_inverted: bool, stops: &mut Vec<Stop<'p>>) {
+    for drive in drives {
+        match drive {
+            Drive::Action(action) => {
+                let inverse = is_inverted != (action.deed == Deed::Coil(CoilKind::Negated));
+                stops.push(Stop { wants: Wants { inverse, for_good: false }, drive, gates: &[] });
+            }
+            Drive::Path(path) => {
+                let (gates, turns) = inverters(&path.gates, <[Gate]>::split_first);
+                let inverse = is_inverted != turns;
+                match gates.is_empty() {
+                    true => add_stops(&path.drives, inverse, stops),
+                    false => stops.push(Stop { wants: Wants { inverse, for_good: true }, drive, gates }),
+                }
             }
         }
     }
 }
 
+/// `gates` without the inverters at the end where `split` takes one off, and whether these invert.
+fn inverters<'g>(
+    mut gates: &'g [Gate],
+    split: impl Fn(&'g [Gate]) -> Option<(&'g Gate, &'g [Gate])>,
+) -> (&'g [Gate], bool) {
+    let mut inverts = false;
+    while let Some((Gate::Invert, rest)) = split(gates) {
+        (gates, inverts) = (rest, !inverts);
+    }
+    (gates, inverts)
+}
+
 /// The contact that is on in each scan of a running FX PLC, M8000, or closed instead of open, so that it never is.
 pub(super) fn always(value: bool) -> Contact {
-    let device = Device::ALWAYS_ON;
     let kind = if value { ContactKind::NormallyOpen } else { ContactKind::NormallyClosed };
     Contact {
         test: Test::Bit(kind),
-        terms: vec![Term::new(Operand::Device(device), &device.to_string(), Span::default())],
+        terms: vec![Term::of_device(Device::ALWAYS_ON, Span::default())],
         span: Span::default(),
     }
 }

@@ -369,7 +369,7 @@ impl<'c, 'a> Collector<'c, 'a> {
         let Some((key, source)) = self.source(number, &one) else { return };
         // It may stand there as a part of an operand, `K1Y0`. A variable is known by the rung that writes it, or not.
         if let Some(Key::Device(device)) = self.uses.name(number).map(|name| name.key) {
-            let term = || Term::new(Operand::Device(device), &device.to_string(), Span::default());
+            let term = || Term::of_device(device, Span::default());
             slice.terms.entry(key.clone()).or_insert_with(term);
         }
         slice.keys.entry(number).or_insert_with(|| key.clone());

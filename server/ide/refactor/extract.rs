@@ -6,7 +6,7 @@ use crate::document::ProjectView;
 use crate::ide::bookkeeping::Book;
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
-use crate::target::{Device, DeviceKind, Operand};
+use crate::target::{Device, DeviceKind};
 use crate::text::{Message, Span};
 
 pub(super) fn propose(
@@ -21,7 +21,7 @@ pub(super) fn propose(
     let selected = Span { start: selected.start.checked_sub(start)?, end: selected.end.checked_sub(start)? };
     let chosen = chosen(around.path(), selected)?;
     let relay = free_relay(view)?;
-    let term = || Term::new(Operand::Device(relay), &relay.to_string(), Span::default());
+    let term = || Term::of_device(relay, Span::default());
     let contact =
         Contact { test: Test::Bit(ContactKind::NormallyOpen), terms: vec![term()], span: Span::default() };
     let mut reading = around.path().clone();

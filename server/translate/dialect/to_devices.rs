@@ -12,7 +12,7 @@ use crate::target::iec::{ElementaryType, LiteralValue};
 use crate::target::{Device, DeviceKind, Form, Operand, Target, Width};
 use crate::text::{Span, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
-use smol_str::{SmolStr, ToSmolStr, format_smolstr};
+use smol_str::{SmolStr, format_smolstr};
 
 /// The instance and the member that a variable such as `T0.Q` names.
 fn member(term: &Term) -> Option<(&str, &str)> {
@@ -307,7 +307,7 @@ impl Converter<'_> {
     }
 
     fn term(&self, device: Device, span: Span) -> Term {
-        Term::new(Operand::Device(device), &device.to_smolstr(), span)
+        Term::of_device(device, span)
     }
 
     fn constant(&self, value: i64, span: Span) -> Result<Term, Lack> {

@@ -59,10 +59,7 @@ async function equation(workbench) {
   await workbench.clear();
   await workbench.openFile('equation.lad');
   await workbench.goTo(2, 45);
-  await workbench.page.keyboard.press('Control+k');
-  await workbench.page.keyboard.press('Control+i');
-  const hover = workbench.page.locator('.monaco-hover:visible', { hasText: 'Y0 = X0*([X1] + X2)' }).first();
-  await hover.waitFor({ timeout: 45_000 });
+  await workbench.hoverAtCursor('Y0 = X0*([X1] + X2)');
   await workbench.screenshot('32-equation');
   await workbench.clear();
 }

@@ -65,10 +65,7 @@ async function explain(workbench) {
   await workbench.until('the squiggles', async () => (await workbench.errorSquiggles()) >= 3);
   await workbench.goTo(7, 3);
   // The hover at the cursor has the code as a link; a person points and clicks.
-  await workbench.page.keyboard.press('Control+k');
-  await workbench.page.keyboard.press('Control+i');
-  const link = workbench.page.locator('.monaco-hover:visible a', { hasText: 'short-circuit' }).first();
-  await link.waitFor({ timeout: 45_000 });
+  const link = await workbench.hoverAtCursor('short-circuit', 'a');
   await workbench.screenshot('15-link-of-an-error');
   await link.click();
   await workbench.page.locator('.tab[data-resource-name="short-circuit.md"]').first().waitFor({ timeout: 45_000 });

@@ -35,6 +35,15 @@ export class Workbench {
     await this.status(`Ln ${line}, Col ${column}`);
   }
 
+  /** Opens the hover at the cursor and waits until what it shows has this text, in an element of the hover if one is named. */
+  async hoverAtCursor(text, element = '') {
+    await this.page.keyboard.press('Control+k');
+    await this.page.keyboard.press('Control+i');
+    const shown = this.page.locator(`.monaco-hover:visible ${element}`, { hasText: text }).first();
+    await shown.waitFor({ timeout: SHORT_MS });
+    return shown;
+  }
+
   /** Runs a command by its title in the palette. */
   async command(title) {
     await this.page.keyboard.press('F1');
