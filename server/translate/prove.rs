@@ -38,8 +38,13 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
     let is_mixed = left.target().is_fx() != right.target().is_fx();
     let sources = [left, right].map(|document| {
         let mut program = source::program(document, None);
-        if is_mixed && document.target().is_fx() {
-            dialect::convert(document, (To::Iec, Target::of(Model::Iec)), &mut program);
+        match document.target().is_fx() {
+            _ if !is_mixed => {}
+            true => {
+                dialect::convert(document, (To::Iec, Target::of(Model::Iec)), &mut program, true);
+                dialect::part_calculations(&mut program);
+            }
+            false => dialect::refuse_other_types(document, &mut program),
         }
         program.rungs
     });

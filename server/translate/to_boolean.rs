@@ -1,7 +1,7 @@
 //! Writes a path of power as equations, one for each output.
 
 use crate::ladder::{CoilKind, ContactKind};
-use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Test};
+use crate::logic::{Action, Contact, Conversion, Deed, Drive, Expression, Gate, Path, Test};
 use crate::text::Message;
 
 /// How equations are written.
@@ -40,6 +40,12 @@ impl Writer {
         for drive in &path.drives {
             match drive {
                 Drive::Path(path) => self.path(path, power.as_ref(), equations)?,
+                // A word of an equation stands for itself.
+                Drive::Action(Action { deed: Deed::Compute(computation), .. })
+                    if computation.conversion != Conversion::None =>
+                {
+                    return Err(Message::new("translate.not-boolean"));
+                }
                 Drive::Action(action) => equations.push(match &power {
                     Some(power) => format!("{} = {}", self.left(action), self.sum(power)),
                     None if action.deed.stands_alone() => self.left(action),

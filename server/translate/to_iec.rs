@@ -312,7 +312,7 @@ impl Writer<'_> {
         Ok(())
     }
 
-    /// `LD a`, `ADD b`, `ST c`
+    /// `LD a`, `ADD b`, `ST c`; `LD a`, `INT_TO_WORD`, `AND( b`, `INT_TO_WORD`, `)`, `WORD_TO_INT`, `ST c`
     fn computation(&mut self, action: &Action) -> Result<(), Message> {
         let operands = match action.deed {
             Deed::Compute(computation) => {
@@ -323,10 +323,22 @@ impl Writer<'_> {
         let Some((computation, (inputs, result))) = operands else {
             return Err(Message::new("translate.no-instruction"));
         };
+        let function = computation.function.name;
         for (number, term) in inputs.iter().enumerate() {
-            let word = if number == 0 { "LD" } else { computation.function.name };
-            self.lines.push(format!("{word} {term}"));
+            match (number, computation.conversion.of_input(term)) {
+                (0, conversion) => {
+                    self.lines.push(format!("LD {term}"));
+                    self.lines.extend(conversion.map(str::to_string));
+                }
+                (_, None) => self.lines.push(format!("{function} {term}")),
+                (_, Some(conversion)) => {
+                    self.lines.extend([format!("{function}( {term}"), conversion.into(), ")".into()]);
+                }
+            }
         }
+        // What has one input but copies it is an operator without an operand.
+        self.lines.extend((inputs.len() == 1 && !computation.copies()).then(|| function.into()));
+        self.lines.extend(computation.conversion.of_result().map(str::to_string));
         self.lines.push(format!("ST {result}"));
         self.driven.insert(result.key());
         Ok(())
