@@ -30,8 +30,8 @@
 //! `END` is dropped and put back. What has no counterpart keeps its words in a comment: retentive timers, counters of
 //! 32 bits, special relays, steps, groups of bits, and applied instructions for which IEC 61131-3 has no operator that
 //! does exactly the same. Nor have 32 bits one half of which is used in another way, too, for IEC 61131-3 leaves open
-//! how words lie in a double word. The way back takes variables by their addresses, and by their names where they have none
-//! and these are names of devices that nothing else is.
+//! how words lie in a double word. The way back takes variables by their addresses, and by their names where they
+//! have none and these are names of devices that nothing else is.
 
 mod lack;
 mod registers;
