@@ -311,7 +311,7 @@ impl<'s> Prover<'s> {
                 });
                 let Some((state, values)) = confirmed else { return undecided("prove.unconfirmed") };
                 let at = sides.map(|side| rung_of(side, &what));
-                let (inputs, before) = counterexample::inputs(&state);
+                let (inputs, before) = counterexample::inputs(&state, [&left, &right]);
                 let found = Counterexample { inputs, before, what, sides: values, at };
                 Err(Proof::Different(Box::new(found)))
             }
