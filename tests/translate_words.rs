@@ -275,6 +275,23 @@ fn patterns_of_bits() {
     assert_eq!(certain(&list(text), To::Fx), expected);
     assert!(is_equal(&list(text), &fx(expected)));
     assert!(!is_equal(&list(text), &fx(&expected.replace("HFF", "HFE"))));
+    // What is inverted has as many bits as what it is stored in.
+    for (body, lack) in [
+        ("LD WORD#16#FFFF\nNOT\nST c", "WORD#16#FFFF"),
+        ("LD 16#FF\nNOT\nST a", "16#FF"),
+        ("LD WORD#16#FF\nNOT\nWORD_TO_INT\nST c", "NOT"),
+        ("LD c\nAND WORD#16#FF\nST c", "WORD#16#FF"),
+    ] {
+        let text = format!(
+            "PROGRAM p\nVAR\na AT %MW1000 : WORD; c AT %MD505 : DWORD;\nEND_VAR\n{body}\nEND_PROGRAM\n"
+        );
+        let translation = to(&list(&text), To::Fx);
+        assert_eq!(
+            note(&translation),
+            format!("`{lack}` has no counterpart in the other language"),
+            "{body}"
+        );
+    }
     // A list that has conversions stays a list in a drawing, and comes back.
     let drawn = to(&list(&written), To::Ladder).text;
     assert!(drawn.contains("{il\n"), "{drawn}");
@@ -553,8 +570,42 @@ fn run_alike(lists: &[&str], iec: &str, words: &[i16], inputs: &[u8]) -> Result<
     Ok(())
 }
 
+/// The same program with one line changed or left out.
+fn mutant(text: &str, line: usize, with: &str) -> String {
+    let mut lines: Vec<&str> = text.lines().collect();
+    let drives: Vec<usize> = (0..lines.len() - 1).filter(|at| !is_contact(lines[*at])).collect();
+    let at = drives[line % drives.len()];
+    lines[at] = with;
+    lines.join("\n") + "\n"
+}
+
+fn is_contact(line: &str) -> bool {
+    ["LD", "AN", "OR"].iter().any(|word| line.starts_with(word)) && !line.starts_with("DOR")
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig::with_cases(250))]
+
+    #[test]
+    fn what_differs_is_not_equal(
+        text in programs(),
+        line in 0..20_usize,
+        with in outputs(),
+        words in prop::collection::vec(any::<i16>(), 24),
+        inputs in prop::collection::vec(0..8_u8, 6),
+    ) {
+        let other = mutant(&text, line, &with);
+        let translation = to(&fx(&text), To::Iec);
+        prop_assert!(translation.is_certain());
+        let is_same = [list(&translation.text), fx(&text)].map(|one| is_equal(&fx(&other), &one));
+        if is_same.contains(&true) {
+            run_alike(&[&other, &text], &translation.text, &words, &inputs)?;
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
     fn both_machines_do_the_same(

@@ -1,9 +1,9 @@
 //! Calculations in the instructions of the FX family.
 
 use super::super::Work;
-use super::{Converter, Lack, without};
+use super::{Converter, Lack, width_of, without};
 use crate::ladder::CoilKind;
-use crate::logic::{Action, Computation, Deed, Drive, Term};
+use crate::logic::{Action, Computation, Conversion, Deed, Drive, Term};
 use crate::target::iec::LiteralValue;
 use crate::target::{Device, DeviceKind, Form, Operand, Width};
 use smol_str::format_smolstr;
@@ -19,6 +19,9 @@ impl Converter<'_> {
         let wide = width == Width::Double;
         let register = self.number(result, width)?;
         without(matches!(register.operand, Operand::Device(_)).then_some(()))?;
+        if computation.is_bitwise() {
+            self.patterns_fit(computation, inputs, width)?;
+        }
         let function = computation.function.name;
         let instruction = |work: Work, terms: Vec<Term>| {
             let form = without(work.form(wide))?;
@@ -65,6 +68,27 @@ impl Converter<'_> {
         let terms = numbers.chain([Ok(product)]).collect::<Result<Vec<_>, _>>()?;
         let form = without(Work::Multiply.form(false))?;
         Ok(Action { deed: Deed::Instruction(form), terms, span: action.span })
+    }
+
+    /// Whether patterns have as many bits as the result: NOT of fewer leaves those before them off.
+    fn patterns_fit(&self, computation: Computation, inputs: &[Term], width: Width) -> Result<(), Lack> {
+        if let Conversion::Patterns { wide } = computation.conversion
+            && wide != (width == Width::Double)
+        {
+            return Err(Lack::Unnamed);
+        }
+        let is_not = inputs.len() == 1;
+        let fits = |term: &&Term| match term.operand {
+            Operand::Literal(literal) => match literal.named_type {
+                Some(kind) => width_of(kind) == Some(width),
+                None => !is_not,
+            },
+            _ => true,
+        };
+        match inputs.iter().find(|term| !fits(term)) {
+            Some(term) => Err(Lack::Word(term.text.clone())),
+            None => Ok(()),
+        }
     }
 
     /// A constant as a pattern of bits, or a number.
