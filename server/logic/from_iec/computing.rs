@@ -29,6 +29,9 @@ pub(super) struct Found {
     pub items: usize,
 }
 
+/// The second operand of a calculation, with the conversion that it goes through.
+type Second = (OperandId, Option<Conversion>);
+
 /// Jumps over calculations alone.
 #[derive(Default)]
 pub(super) struct Skips {
@@ -135,7 +138,7 @@ impl Source<'_> {
 
     /// What is done at item `at` with the current result: the function, and its second operand with the conversion
     /// that it goes through. Nothing stands there before a store, which copies.
-    fn combination(&self, at: &mut usize) -> Option<(Computation, Option<(OperandId, Option<Conversion>)>)> {
+    fn combination(&self, at: &mut usize) -> Option<(Computation, Option<Second>)> {
         let item = self.tree.items.get(*at)?;
         let named = |operation: Operation| {
             let combines = operation.operator.role == (OperatorRole::Combine { comparison: false });
