@@ -47,6 +47,7 @@ use crate::il::iec::PouKind;
 use crate::logic::{Action, Deed, Drive, Path, Refusal};
 use crate::target::{Device, DeviceKind, DirectAddress, Form, Location, Model, Target, Width};
 use std::cell::Cell;
+use std::sync::Arc;
 
 /// What stands for an applied instruction.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -187,7 +188,8 @@ fn join_divisions(
 ) {
     for second in 1..program.rungs.len() {
         let [one, other] = [&program.rungs[second - 1], &program.rungs[second]];
-        if one.pou != other.pou || !other.rung.labels.is_empty() {
+        let is_apart = one.pou != other.pou || !Arc::ptr_eq(&one.chunk, &other.chunk);
+        if is_apart || !is_of_program(document, one.pou) || !other.rung.labels.is_empty() {
             continue;
         }
         let (Some([first]), Some([next])) = (computed(one), computed(other)) else { continue };
@@ -195,9 +197,12 @@ fn join_divisions(
         if !to_devices::is_division([first, next], target, known, place) {
             continue;
         }
-        let next = next.clone();
+        let (next, span) = (next.clone(), one.rung.span.to(other.rung.span));
         program.rungs[second].rung.path = Ok(None);
-        if let Ok(Some(path)) = &mut program.rungs[second - 1].rung.path {
+        let joined = &mut program.rungs[second - 1].rung;
+        // If it is kept after all, it is kept with both.
+        joined.span = span;
+        if let Ok(Some(path)) = &mut joined.path {
             path.drives.push(next);
         }
     }
