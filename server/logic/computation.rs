@@ -1,17 +1,18 @@
-//! Calculations with words, which IEC 61131-3 writes as functions.
+//! Calculations with words, which IEC 61131-3 writes as functions, and calls of functions that the program declares.
 
-use super::Term;
+use super::{Callee, Formal, Term};
+use crate::document::Scopes;
 use crate::target::Operand;
 use crate::target::iec::Function;
-use std::fmt;
 
-/// A function of one or two words whose result is stored. The terms of its action are its inputs, then the result.
+/// A function whose result is stored: one of the standard with one or two words, or one of the program. The terms of
+/// its action are its inputs, then the result.
 ///
 /// Two are equal if they make the same of the same inputs: bits are joined alike in patterns and in numbers.
-#[derive(Clone, Copy)]
+#[derive(Clone, Debug)]
 pub struct Computation {
     /// The function.
-    pub function: &'static Function,
+    pub function: Callee,
     /// What is done with its inputs before, and with its result.
     pub conversion: Conversion,
 }
@@ -33,13 +34,7 @@ pub enum Conversion {
 
 impl PartialEq for Computation {
     fn eq(&self, other: &Computation) -> bool {
-        self.function.name == other.function.name && self.widens() == other.widens()
-    }
-}
-
-impl fmt::Debug for Computation {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} {:?}", self.function.name, self.conversion)
+        self.function == other.function && self.widens() == other.widens()
     }
 }
 
@@ -47,10 +42,18 @@ impl Computation {
     /// The output for the result, which the standard gives no name.
     pub const RESULT: &'static str = "OUT";
 
-    /// That of the function called `name`, letter case aside; nothing for functions of other shapes.
+    /// That of the standard function called `name`, letter case aside; nothing for functions of other shapes.
     pub fn named(name: &str) -> Option<Computation> {
         let function = Function::named(name)?;
-        OPERATORS.contains(&function.name).then_some(Computation { function, conversion: Conversion::None })
+        let is_operator = OPERATORS.contains(&function.name);
+        is_operator
+            .then_some(Computation { function: Callee::Function(function), conversion: Conversion::None })
+    }
+
+    /// That of the function called `name` which the program declares.
+    pub fn declared(name: &str, scopes: &Scopes) -> Option<Computation> {
+        let function = Callee::declared_function(name, scopes)?;
+        Some(Computation { function, conversion: Conversion::None })
     }
 
     /// The same with its operands converted; nothing if that makes no sense of the function.
@@ -58,30 +61,54 @@ impl Computation {
         let makes_sense = match conversion {
             Conversion::None => true,
             Conversion::Patterns { .. } => self.is_bitwise(),
-            Conversion::Widened => self.function.name == "MUL",
+            Conversion::Widened => !self.is_declared() && self.name() == "MUL",
         };
         makes_sense.then_some(Computation { conversion, ..self })
     }
 
-    /// That which only copies a word.
-    pub fn copies(self) -> bool {
-        self.function.name == "MOVE"
+    /// The name of the function.
+    pub fn name(&self) -> &str {
+        self.function.name()
+    }
+
+    /// Its inputs.
+    pub fn inputs(&self) -> Vec<Formal<'_>> {
+        self.function.inputs()
+    }
+
+    /// Whether the program declares the function.
+    pub fn is_declared(&self) -> bool {
+        self.function.is_declared()
+    }
+
+    /// Whether it only copies a word.
+    pub fn copies(&self) -> bool {
+        !self.is_declared() && self.name() == "MOVE"
     }
 
     /// Whether it joins or inverts the bits of words, and single bits as well.
-    pub fn is_bitwise(self) -> bool {
-        matches!(self.function.name, "AND" | "OR" | "XOR" | "NOT")
+    pub fn is_bitwise(&self) -> bool {
+        !self.is_declared() && matches!(self.name(), "AND" | "OR" | "XOR" | "NOT")
     }
 
     /// Whether its result has twice the bits of its inputs.
-    pub fn widens(self) -> bool {
+    pub fn widens(&self) -> bool {
         self.conversion == Conversion::Widened
     }
 
     /// What is read, and what is written; nothing if these are not as many terms as it has.
-    pub fn operands(self, terms: &[Term]) -> Option<(&[Term], &Term)> {
+    pub fn operands<'t>(&self, terms: &'t [Term]) -> Option<(&'t [Term], &'t Term)> {
         let (result, inputs) = terms.split_last()?;
-        (inputs.len() == self.function.inputs.len()).then_some((inputs, result))
+        (inputs.len() == self.inputs().len()).then_some((inputs, result))
+    }
+
+    /// What it may change: its result, and what is handed over to be changed. What a function of the program does
+    /// beyond that is not among it.
+    pub fn changes<'t>(&self, terms: &'t [Term]) -> Vec<&'t Term> {
+        let Some((result, operands)) = terms.split_last() else { return Vec::new() };
+        let inputs = self.inputs();
+        let handed_over = operands.iter().zip(&inputs).filter(|(_, formal)| formal.is_in_out);
+        handed_over.map(|(term, _)| term).chain([result]).collect()
     }
 }
 

@@ -3,7 +3,7 @@
 use super::header;
 use super::source::{Program, Source};
 use super::to_fx::Line;
-use super::to_iec::{self, Helpers};
+use super::to_iec::{self, Helper, Helpers};
 use super::{Options, To, Translated, Translation, to_boolean, to_fx, to_ladder};
 use crate::document::{Document, Notation};
 use crate::ladder::{Drawing, Style};
@@ -27,7 +27,8 @@ enum Body {
     Kept(String, Message),
 }
 
-/// The text of `program` in another form, without certificates; nothing if it was cancelled on the way. A whole one
+/// The text of `program` in another form, without certificates, and the variables that it needs beyond those of the
+/// source; nothing if it was cancelled on the way. A whole one
 /// gets the declarations that it lacks.
 pub(super) fn write(
     document: &Document,
@@ -36,7 +37,7 @@ pub(super) fn write(
     options: &Options,
     is_whole: bool,
     is_cancelled: &dyn Fn() -> bool,
-) -> Option<Translation> {
+) -> Option<(Translation, Vec<Helper>)> {
     let sources = &program.rungs;
     let mut helpers = match to {
         To::Iec => {
@@ -86,8 +87,8 @@ pub(super) fn write(
     if to == To::Iec {
         page.lay_out(&mut rungs);
     }
-    let helpers = helpers.declared.into_iter().map(|helper| helper.name).collect();
-    Some(Translation { text: page.text, rungs, helpers })
+    let names = helpers.declared.iter().map(|helper| helper.name.clone()).collect();
+    Some((Translation { text: page.text, rungs, helpers: names }, helpers.declared))
 }
 
 fn body(

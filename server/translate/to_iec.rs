@@ -11,7 +11,7 @@ mod helpers;
 pub use helpers::{Helper, Helpers};
 
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
-use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
+use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test};
 use crate::text::Message;
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
@@ -112,7 +112,7 @@ impl Writer<'_> {
         if !is_loaded {
             self.start();
         }
-        match action.deed {
+        match &action.deed {
             Deed::Jump | Deed::Return => return self.leave(action, ""),
             Deed::Compute(_) => return self.computation(action),
             Deed::Call(call) if call.is_enabled() => return self.conditional_call(action, "CAL"),
@@ -270,13 +270,13 @@ impl Writer<'_> {
     }
 
     fn action(&mut self, action: &Action, inverse: bool) -> Result<(), Message> {
-        let word = match (action.deed, inverse) {
+        let word = match (&action.deed, inverse) {
             (Deed::Call(call), _) if call.is_enabled() => {
                 return self.conditional_call(action, if inverse { "CALCN" } else { "CALC" });
             }
             (Deed::Call(_), _) => return self.call(action, None),
             (Deed::Coil(coil @ (CoilKind::Rising | CoilKind::Falling)), false) => {
-                return self.pulse(action, coil);
+                return self.pulse(action, *coil);
             }
             (Deed::Jump | Deed::Return, _) => return self.leave(action, if inverse { "CN" } else { "C" }),
             (Deed::Coil(CoilKind::Plain), false) | (Deed::Coil(CoilKind::Negated), true) => "ST",
@@ -314,7 +314,7 @@ impl Writer<'_> {
 
     /// `LD a`, `ADD b`, `ST c`; `LD a`, `INT_TO_WORD`, `AND( b`, `INT_TO_WORD`, `)`, `WORD_TO_INT`, `ST c`
     fn computation(&mut self, action: &Action) -> Result<(), Message> {
-        let operands = match action.deed {
+        let operands = match &action.deed {
             Deed::Compute(computation) => {
                 computation.operands(&action.terms).map(|found| (computation, found))
             }
@@ -323,24 +323,25 @@ impl Writer<'_> {
         let Some((computation, (inputs, result))) = operands else {
             return Err(Message::new("translate.no-instruction"));
         };
-        let function = computation.function.name;
-        for (number, term) in inputs.iter().enumerate() {
-            match (number, computation.conversion.of_input(term)) {
-                (0, conversion) => {
-                    self.lines.push(format!("LD {term}"));
-                    self.lines.extend(conversion.map(str::to_string));
-                }
-                (_, None) => self.lines.push(format!("{function} {term}")),
-                (_, Some(conversion)) => {
-                    self.lines.extend([format!("{function}( {term}"), conversion.into(), ")".into()]);
-                }
+        let (function, conversion) = (computation.name(), computation.conversion);
+        match inputs {
+            [first, second] if let Some(converted) = conversion.of_input(second) => {
+                self.lines.push(format!("LD {first}"));
+                self.lines.extend(conversion.of_input(first).map(str::to_string));
+                self.lines.extend([format!("{function}( {second}"), converted.into(), ")".into()]);
             }
+            [first, others @ ..] => {
+                self.lines.push(format!("LD {first}"));
+                self.lines.extend(conversion.of_input(first).map(str::to_string));
+                let others: Vec<&str> = others.iter().map(|term| term.text.as_str()).collect();
+                let operands = format!("{function} {}", others.join(", "));
+                self.lines.extend((!computation.copies()).then(|| operands.trim_end().to_string()));
+            }
+            [] => self.lines.push(format!("{function}()")),
         }
-        // What has one input but copies it is an operator without an operand.
-        self.lines.extend((inputs.len() == 1 && !computation.copies()).then(|| function.into()));
         self.lines.extend(computation.conversion.of_result().map(str::to_string));
         self.lines.push(format!("ST {result}"));
-        self.driven.insert(result.key());
+        self.driven.extend(computation.changes(&action.terms).into_iter().map(Term::key));
         Ok(())
     }
 
@@ -353,7 +354,7 @@ impl Writer<'_> {
 
     /// A call with this operand at its first input, or with the current result.
     fn call(&mut self, action: &Action, power: Option<String>) -> Result<(), Message> {
-        let (Deed::Call(call), Some(instance)) = (action.deed, action.terms.first()) else {
+        let (Deed::Call(call), Some(instance)) = (&action.deed, action.terms.first()) else {
             return Err(Message::new("translate.no-instruction"));
         };
         match power {
@@ -370,7 +371,7 @@ impl Writer<'_> {
 
     /// A call that the current result enables, or that is always done, as `word` says.
     fn conditional_call(&mut self, action: &Action, word: &str) -> Result<(), Message> {
-        let Deed::Call(call) = action.deed else { return Err(Message::new("translate.no-instruction")) };
+        let Deed::Call(call) = &action.deed else { return Err(Message::new("translate.no-instruction")) };
         self.lines.push(call_text(word, call, None, &action.terms));
         self.driven.extend(call.changes(&action.terms).iter().map(Term::key));
         Ok(())
@@ -384,7 +385,7 @@ impl Writer<'_> {
     }
 }
 
-fn call_text(word: &str, call: Call, power: Option<String>, terms: &[Term]) -> String {
+fn call_text(word: &str, call: &Call, power: Option<String>, terms: &[Term]) -> String {
     let instance = terms.first().map_or("", |term| term.text.as_str());
     let arguments = call.arguments(terms).into_iter().map(|argument| {
         let sign = if argument.is_output { "=>" } else { ":=" };
@@ -432,8 +433,8 @@ fn called_next(path: &Path, number: usize) -> Option<&Action> {
         (Some(Gate::Through(action)), _) | (None, [Drive::Action(action)]) => action,
         _ => return None,
     };
-    let takes = |call: Call| !call.is_input_operator() && !call.is_enabled();
-    matches!(next.deed, Deed::Call(call) if takes(call)).then_some(next)
+    let takes = |call: &Call| !call.is_input_operator() && !call.is_enabled();
+    matches!(&next.deed, Deed::Call(call) if takes(call)).then_some(next)
 }
 
 /// The calculation that a drive is.
@@ -448,7 +449,7 @@ fn computation_of(drive: &Drive) -> Option<&Action> {
 fn is_invertible(drive: &Drive) -> bool {
     use CoilKind::{Negated, Plain};
     let Drive::Action(action) = drive else { return false };
-    match action.deed {
+    match &action.deed {
         Deed::Call(call) => call.is_enabled(),
         deed => matches!(deed, Deed::Coil(Plain | Negated) | Deed::Jump | Deed::Return),
     }
@@ -483,7 +484,8 @@ fn reloaded(path: &Path, gates: &[Gate], is_whole: bool) -> Option<String> {
     };
     let mut is_changed = term.text.contains(['[', '^']);
     let mut changes = |action: &Action| {
-        is_changed |= match action.deed {
+        is_changed |= action.runs_unit() && term.storage != Storage::Local;
+        is_changed |= match &action.deed {
             Deed::Call(call) => call.changes(&action.terms).iter().any(|changed| changed.may_cover(&term)),
             _ => action.terms.iter().any(|changed| changed.may_cover(&term)),
         }

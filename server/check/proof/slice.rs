@@ -13,7 +13,7 @@ use smol_str::{SmolStr, ToSmolStr};
 use std::collections::BTreeMap;
 
 /// Why a part of a program cannot be followed from scan to scan.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) enum Obstacle {
     /// It is written here, where a jump, a master control, a step or a routine may leave it out.
     Part(Span),
@@ -120,7 +120,7 @@ fn timer_fact(run: &Run<'_>, number: usize, formulas: &mut Formulas) -> Option<F
     let effect = run.effects.get(number)?;
     let guard = effect.guard;
     let contact = match effect.deed() {
-        logic::Deed::Call(call) if call.block.name == "TON" && call.power_in() == "IN" => {
+        logic::Deed::Call(call) if call.block.is_standard("TON") && call.power_in() == "IN" => {
             call.output(&effect.action.terms)?
         }
         _ => return None,
@@ -475,7 +475,7 @@ fn note_terms(path: &Path, terms: &mut FxHashMap<SmolStr, Term>) {
     path.visit(
         &mut |action| {
             found.extend(action.terms.iter().cloned());
-            if let logic::Deed::Call(call) = action.deed {
+            if let logic::Deed::Call(call) = &action.deed {
                 found.extend(call.changes(&action.terms));
             }
         },

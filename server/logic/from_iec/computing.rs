@@ -1,5 +1,6 @@
 //! Calculations with words: `LD a / ADD b / ST c`, with operands converted `LD a / INT_TO_WORD / AND 16#FF /
-//! WORD_TO_INT / ST c`, and those that a jump over them makes conditional:
+//! WORD_TO_INT / ST c`, and calls of functions that the program declares, `LD a / Scale b / ST c`; and those that a
+//! jump over them makes conditional:
 //!
 //! ```text
 //!     LD      Start
@@ -12,7 +13,7 @@
 
 use super::{Source, ValueKind, declares};
 use crate::document::DeclaredType;
-use crate::il::iec::{Condition, ItemKind, ListForm, OperandId, Operation};
+use crate::il::iec::{Condition, Direction, ItemKind, ListForm, OperandId, Operation, ParameterValue};
 use crate::logic::{Computation, Conversion};
 use crate::target::Operand;
 use crate::target::iec::OperatorRole;
@@ -96,6 +97,9 @@ impl Source<'_> {
 
     /// The calculation that begins at item `index`, if one does whose result nothing else uses.
     pub(super) fn calculation(&self, pou: Option<usize>, index: usize) -> Option<Found> {
+        if let Some(found) = self.called_function(pou, index) {
+            return Some(found);
+        }
         let (load, first) = self.operation(index)?;
         if load.operator.role != OperatorRole::Load {
             return None;
@@ -123,16 +127,10 @@ impl Source<'_> {
         if let Some(name) = computation.conversion.of_result() {
             at += self.function(at).filter(|function| function.eq_ignore_ascii_case(name)).map(|_| 1)?;
         }
-        let (store, result) = self.operation(at)?;
-        let is_store = store.operator.role == OperatorRole::Store && !store.word.of(self.text).ends_with('?');
+        let result = self.stored(pou, at)?;
         let operands: Vec<OperandId> =
             [Some(first), second.map(|(second, _)| second), Some(result)].into_iter().flatten().collect();
-        let is_last = self.tree.items.get(at + 1).is_none_or(|next| match next.kind {
-            ItemKind::Label { .. } => !self.needs_result(at + 1),
-            kind => declares(&kind) || self.starts_afresh(&kind),
-        });
-        let fits =
-            is_alike && is_store && is_last && !self.feeds(at) && self.are_words(pou, computation, &operands);
+        let fits = is_alike && self.are_words(pou, &computation, &operands);
         fits.then_some(Found { computation, operands, items: at + 1 - index })
     }
 
@@ -193,6 +191,53 @@ impl Source<'_> {
         matches!(self.tree.operand(id).value, Operand::Literal(_))
     }
 
+    /// The call of a function of the program that begins at item `index`, if its result is stored and each input has an
+    /// operand: `LD a / Scale b, c / ST d`, where the first input is loaded, or `Scale(IN := a, …) / ST d`.
+    fn called_function(&self, pou: Option<usize>, index: usize) -> Option<Found> {
+        let loaded = self.operation(index).filter(|(load, _)| load.operator.role == OperatorRole::Load);
+        let call_at = index + usize::from(loaded.is_some());
+        let call = self.tree.items.get(call_at).filter(|item| item.depth == 0)?;
+        let ItemKind::Function { name, form, parameters } = call.kind else { return None };
+        if loaded.is_some() != (form == ListForm::None) {
+            return None;
+        }
+        let computation = Computation::declared(name.of(self.text), self.scopes)?;
+        let inputs = computation.inputs();
+        let mut operands: Vec<Option<OperandId>> = vec![None; inputs.len()];
+        let mut next = 0;
+        if let Some((_, first)) = loaded {
+            *operands.first_mut()? = Some(first);
+            next = 1;
+        }
+        for parameter in parameters.of(&self.tree.parameters) {
+            let (Direction::In, ParameterValue::Operand(id)) = (parameter.direction, parameter.value) else {
+                return None;
+            };
+            let place = match parameter.name {
+                Some(name) => inputs.iter().position(|formal| formal.is_called(name.of(self.text)))?,
+                None => next,
+            };
+            next = place + 1;
+            if operands.get_mut(place)?.replace(id).is_some() {
+                return None;
+            }
+        }
+        let mut operands: Vec<OperandId> = operands.into_iter().collect::<Option<_>>()?;
+        operands.push(self.stored(pou, call_at + 1)?);
+        Some(Found { computation, operands, items: call_at + 2 - index })
+    }
+
+    /// The variable to which item `index` stores the current result, if nothing uses it behind that.
+    fn stored(&self, pou: Option<usize>, index: usize) -> Option<OperandId> {
+        let (store, result) = self.operation(index)?;
+        let is_store = store.operator.role == OperatorRole::Store && !store.word.of(self.text).ends_with('?');
+        let is_last = self.tree.items.get(index + 1).is_none_or(|next| match next.kind {
+            ItemKind::Label { .. } => !self.needs_result(index + 1),
+            kind => declares(&kind) || self.starts_afresh(&kind),
+        });
+        (is_store && is_last && !self.feeds(pou, index)).then_some(result)
+    }
+
     /// An operation outside of parentheses, without a negation.
     fn operation(&self, index: usize) -> Option<(Operation, OperandId)> {
         let item = self.tree.items.get(index)?;
@@ -205,7 +250,7 @@ impl Source<'_> {
     }
 
     /// Whether operands are words, as far as they are declared. What can be done with bits as well must be told by one.
-    fn are_words(&self, pou: Option<usize>, computation: Computation, operands: &[OperandId]) -> bool {
+    fn are_words(&self, pou: Option<usize>, computation: &Computation, operands: &[OperandId]) -> bool {
         let kinds = operands.iter().map(|id| {
             let operand = self.tree.operand(*id);
             let word = operand.span.of(self.text);

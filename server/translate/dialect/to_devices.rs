@@ -220,10 +220,10 @@ impl Converter<'_> {
 
     /// The pulse forms that the detector at the end of the gates of `path` and the calculations behind it are.
     fn pulsed(&self, detector: &Action, path: &Path) -> Option<Vec<Action>> {
-        let Deed::Call(call) = detector.deed else { return None };
+        let Deed::Call(call) = &detector.deed else { return None };
         let instance = detector.terms.first()?;
         let is_last = matches!(path.gates.last(), Some(Gate::Through(last)) if last == detector);
-        if call.block.name != "R_TRIG" || !is_last || !is_pulse(&instance.text) {
+        if !call.block.is_standard("R_TRIG") || !is_last || !is_pulse(&instance.text) {
             return None;
         }
         let mut pulsed = Vec::new();
@@ -232,7 +232,7 @@ impl Converter<'_> {
             let Drive::Action(driven) = drive else { return None };
             let division = self.division(drive, behind);
             rest = if division.is_some() { &behind[1..] } else { behind };
-            let action = match (division, driven.deed) {
+            let action = match (division, &driven.deed) {
                 (Some(division), _) => division,
                 (None, Deed::Compute(computation)) => self.calculation(computation, driven).ok()?,
                 _ => return None,
@@ -327,10 +327,12 @@ impl Converter<'_> {
     fn pair(&self, term: &Term) -> Option<Device> {
         let next = |first: &Device| Device::new(first.kind, first.number + 1);
         let first = match term.storage {
-            Storage::Own if term.operand == Operand::Variable => self.named(&term.text).filter(|first| {
-                first.kind == DeviceKind::D
-                    && [*first, next(first)].iter().all(|half| self.names.is_free(*half))
-            }),
+            Storage::Own | Storage::Local if term.operand == Operand::Variable => {
+                self.named(&term.text).filter(|first| {
+                    first.kind == DeviceKind::D
+                        && [*first, next(first)].iter().all(|half| self.names.is_free(*half))
+                })
+            }
             Storage::Anywhere => None,
             _ => pair_at(term.address()?),
         };
@@ -350,7 +352,7 @@ impl Converter<'_> {
     /// The device that a variable stands for: by its address, or if it has none by its name.
     fn device(&self, term: &Term) -> Option<Device> {
         let device = match term.storage {
-            Storage::Own if term.operand == Operand::Variable => {
+            Storage::Own | Storage::Local if term.operand == Operand::Variable => {
                 self.named(&term.text).filter(|device| self.names.is_free(*device))
             }
             Storage::Anywhere => None,
@@ -369,8 +371,8 @@ impl Converter<'_> {
     }
 
     fn action(&self, action: &Action) -> Result<Action, Lack> {
-        let (deed, terms) = match (action.deed, &action.terms[..]) {
-            (Deed::Coil(_), [term]) => (action.deed, vec![self.bit(term)?]),
+        let (deed, terms) = match (&action.deed, &action.terms[..]) {
+            (Deed::Coil(_), [term]) => (action.deed.clone(), vec![self.bit(term)?]),
             (Deed::Jump, [label]) => {
                 let pointer = self.names.of_label(&label.text);
                 let operand = Operand::read(&pointer, self.target.model);
@@ -385,11 +387,12 @@ impl Converter<'_> {
     }
 
     /// The output that the call of a timer or counter is.
-    fn called(&self, call: Call, instance: &Term, terms: &[Term]) -> Result<(Deed, Vec<Term>), Lack> {
+    fn called(&self, call: &Call, instance: &Term, terms: &[Term]) -> Result<(Deed, Vec<Term>), Lack> {
         let device = without(self.named(&instance.text))?;
         let own = self.term(device, instance.span);
         let arguments = call.arguments(terms);
-        match (call.block.name, device.kind, call.power_in(), &arguments[..]) {
+        let block = without((!call.block.is_declared()).then(|| call.block.name()))?;
+        match (block, device.kind, call.power_in(), &arguments[..]) {
             ("CTU", DeviceKind::C, "R", []) if device.number < 200 => {
                 Ok((Deed::Coil(CoilKind::Reset), vec![own]))
             }
@@ -446,10 +449,10 @@ impl Types<'_> {
 
     /// Whether a calculation makes of numbers what an instruction makes of them, however they are declared.
     fn calculates(&self, action: &Action) -> bool {
-        let Deed::Compute(computation) = action.deed else { return true };
+        let Deed::Compute(computation) = &action.deed else { return true };
         let Some((inputs, result)) = computation.operands(&action.terms) else { return false };
         let is_signed = || inputs.iter().all(|term| self.signed(term));
-        match computation.function.name {
+        match computation.name() {
             "MUL" if computation.widens() => is_signed() && self.fit(std::slice::from_ref(result)),
             "DIV" | "MOD" => is_signed() && self.fit(&action.terms),
             _ => self.fit(&action.terms),

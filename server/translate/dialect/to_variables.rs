@@ -6,13 +6,14 @@ use super::registers::is_wide_counter;
 use super::{Lack, PULSE, Registers, address, pair_address, without};
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{
-    Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test,
+    Action, Call, Callee, Computation, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test,
 };
 use crate::target::iec::FunctionBlock;
 use crate::target::{Constant, Device, DeviceKind, DirectAddress, Form, Model, Operand, Target, Width};
 use crate::text::Span;
 use smol_str::{SmolStr, ToSmolStr, format_smolstr};
 use std::cell::Cell;
+use std::sync::Arc;
 
 /// Whether a rung is but END, which IEC 61131-3 does not write.
 pub(super) fn is_end(path: &Path) -> bool {
@@ -179,7 +180,7 @@ impl Converter<'_> {
 
     fn action(&self, action: &Action) -> Result<Action, Lack> {
         let span = action.span;
-        match (action.deed, &action.terms[..]) {
+        match (&action.deed, &action.terms[..]) {
             (Deed::Coil(CoilKind::Plain), [timed, preset]) => self.preset(timed, preset, span),
             (Deed::Coil(kind), [term]) => {
                 let Operand::Device(device) = term.operand else { return Err(Lack::Unnamed) };
@@ -250,10 +251,10 @@ fn call(
     argument: Option<(&str, Term)>,
     span: Span,
 ) -> Result<Action, Lack> {
-    let block = without(FunctionBlock::named(block))?;
+    let block = Callee::Block(without(FunctionBlock::named(block))?);
     let arguments = argument.into_iter().map(|(name, term)| (name, false, term));
     let (call, terms) = without(Call::new(block, power, variable(instance, span), arguments))?;
-    Ok(Action { deed: Deed::Call(call), terms, span })
+    Ok(Action { deed: Deed::Call(Arc::new(call)), terms, span })
 }
 
 fn variable(name: &str, span: Span) -> Term {

@@ -10,7 +10,7 @@ use smol_str::format_smolstr;
 
 impl Converter<'_> {
     /// The instruction that a calculation is.
-    pub(super) fn calculation(&self, computation: Computation, action: &Action) -> Result<Action, Lack> {
+    pub(super) fn calculation(&self, computation: &Computation, action: &Action) -> Result<Action, Lack> {
         let (inputs, result) = without(computation.operands(&action.terms))?;
         if computation.widens() {
             return self.product(inputs, result, action);
@@ -22,7 +22,7 @@ impl Converter<'_> {
         if computation.is_bitwise() {
             self.patterns_fit(computation, inputs, width)?;
         }
-        let function = computation.function.name;
+        let function = without((!computation.is_declared()).then(|| computation.name()))?;
         let instruction = |work: Work, terms: Vec<Term>| {
             let form = without(work.form(wide))?;
             Ok(Action { deed: Deed::Instruction(form), terms, span: action.span })
@@ -51,8 +51,7 @@ impl Converter<'_> {
         });
         let mut terms = terms.collect::<Result<Vec<_>, _>>()?;
         terms.push(register);
-        let work = if computation.is_bitwise() { Work::Bits(function) } else { Work::Function(function) };
-        instruction(work, terms)
+        instruction(without(Work::of_function(function))?, terms)
     }
 
     /// MUL of two words, which makes 32 bits.
@@ -71,7 +70,7 @@ impl Converter<'_> {
     }
 
     /// Whether patterns have as many bits as the result: NOT of fewer leaves those before them off.
-    fn patterns_fit(&self, computation: Computation, inputs: &[Term], width: Width) -> Result<(), Lack> {
+    fn patterns_fit(&self, computation: &Computation, inputs: &[Term], width: Width) -> Result<(), Lack> {
         if let Conversion::Patterns { wide } = computation.conversion
             && wide != (width == Width::Double)
         {
@@ -146,9 +145,9 @@ impl Converter<'_> {
 }
 
 /// The function of a plain calculation.
-fn name(action: &Action) -> Option<&'static str> {
-    match action.deed {
-        Deed::Compute(computation) => Some(computation.function.name),
+fn name(action: &Action) -> Option<&str> {
+    match &action.deed {
+        Deed::Compute(computation) => (!computation.is_declared()).then(|| computation.name()),
         _ => None,
     }
 }
