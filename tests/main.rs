@@ -74,4 +74,5 @@ mod tidy;
 mod token_scopes;
 mod translate;
 mod translate_iec;
+mod unit_calls;
 mod usage;

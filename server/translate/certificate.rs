@@ -38,8 +38,8 @@ impl Certificate {
     }
 }
 
-/// Certifies each rung of `translation`, which was made of `sources` for `target` with the helpers `declared`; nothing if it was cancelled on the
-/// way.
+/// Certifies each rung of `translation`, which was made of `sources` for `target` with the helpers `declared`; nothing
+/// if it was cancelled on the way.
 pub(super) fn add(
     (document, target): (&Document, &'static Target),
     (sources, declared): (&[Source], &[Helper]),
@@ -109,8 +109,8 @@ fn located(path: Path, document: &Document, pou: Option<usize>) -> Path {
     path
 }
 
-/// The rungs of the result, and whether it has declarations of its own. A part of a program has none, so it is read with
-/// those `around` it in a program unit.
+/// The rungs of the result, and whether it has declarations of its own. A part of a program has none, so it is read
+/// with those `around` it in a program unit.
 fn read_again(
     (document, target): (&Document, &'static Target),
     to: To,

@@ -271,7 +271,7 @@ impl Writer<'_> {
 
     fn action(&mut self, action: &Action, inverse: bool) -> Result<(), Message> {
         let word = match (&action.deed, inverse) {
-            (Deed::Call(call), _) if call.is_enabled() => {
+            (Deed::Call(call), _) if call.is_enabled() && !call.tells_enable() => {
                 return self.conditional_call(action, if inverse { "CALCN" } else { "CALC" });
             }
             (Deed::Call(_), _) => return self.call(action, None),
@@ -351,6 +351,11 @@ impl Writer<'_> {
         };
         match power {
             None if call.is_input_operator() => self.lines.push(format!("{} {instance}", call.power_in())),
+            None if call.tells_enable() => {
+                let name = self.helpers.enable();
+                self.lines.push(format!("ST {name}"));
+                self.lines.push(call_text("CAL", call, Some(name.into()), &action.terms));
+            }
             None => {
                 self.lines.push(format!("ST {instance}.{}", call.power_in()));
                 self.lines.push(call_text("CAL", call, None, &action.terms));
@@ -425,7 +430,7 @@ fn called_next(path: &Path, number: usize) -> Option<&Action> {
         (Some(Gate::Through(action)), _) | (None, [Drive::Action(action)]) => action,
         _ => return None,
     };
-    let takes = |call: &Call| !call.is_input_operator() && !call.is_enabled();
+    let takes = |call: &Call| !call.is_input_operator() && (!call.is_enabled() || call.tells_enable());
     matches!(&next.deed, Deed::Call(call) if takes(call)).then_some(next)
 }
 
@@ -442,7 +447,7 @@ fn is_invertible(drive: &Drive) -> bool {
     use CoilKind::{Negated, Plain};
     let Drive::Action(action) = drive else { return false };
     match &action.deed {
-        Deed::Call(call) => call.is_enabled(),
+        Deed::Call(call) => call.is_enabled() && !call.tells_enable(),
         deed => matches!(deed, Deed::Coil(Plain | Negated) | Deed::Jump | Deed::Return),
     }
 }

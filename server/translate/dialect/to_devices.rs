@@ -333,10 +333,10 @@ impl Converter<'_> {
 
     /// The instruction that a calculation is.
     fn calculation(&self, computation: &Computation, action: &Action) -> Result<Action, Lack> {
+        let function = without((!computation.is_declared()).then(|| computation.name()))?;
         let (inputs, result) = without(computation.operands(&action.terms))?;
         let register = self.word(result)?;
         without(matches!(register.operand, Operand::Device(_)).then_some(()))?;
-        let function = without((!computation.is_declared()).then(|| computation.name()))?;
         let row = |rows: &[(&'static str, &str)]| {
             rows.iter().find(|(_, own)| *own == function).and_then(|(mnemonic, _)| Form::named(mnemonic))
         };
