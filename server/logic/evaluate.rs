@@ -251,7 +251,7 @@ impl<'s> Scan<'s> {
 /// Whether an action changes nothing while it has no power.
 fn is_idle_without_power(action: &Action) -> bool {
     match &action.deed {
-        Deed::Instruction(form) => form.instruction.flow() == Flow::Straight,
+        Deed::Instruction(form) => matches!(form.instruction.flow(), Flow::Straight | Flow::Refresh),
         Deed::Call(call) => call.is_enabled() && !call.tells_enable(),
         Deed::Compute(_) => true,
         _ => false,

@@ -359,21 +359,9 @@ impl<'a> Source<'a> {
         let mut shown = Vec::new();
         for (pou, rung) in rungs {
             let Ok(Some(path)) = &rung.path else { continue };
-            let found = std::cell::RefCell::new(&mut shown);
-            let mut look = |term: &Term| {
-                if is_helper_name(&term.text) && self.is_helper(*pou, &folded(&term.text)) {
-                    found.borrow_mut().push((*pou, folded(&term.text)));
-                }
-            };
-            let look = std::cell::RefCell::new(&mut look);
-            path.visit(
-                &mut |action| action.terms.iter().for_each(|term| (look.borrow_mut())(term)),
-                &mut |part| {
-                    part.visit(&mut |contact| {
-                        contact.terms.iter().for_each(|term| (look.borrow_mut())(term))
-                    });
-                },
-            );
+            let names = path.terms().into_iter().filter(|term| is_helper_name(&term.text));
+            let names = names.map(|term| folded(&term.text)).filter(|name| self.is_helper(*pou, name));
+            shown.extend(names.map(|name| (*pou, name)));
         }
         shown
     }

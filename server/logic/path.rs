@@ -6,6 +6,7 @@ use crate::ladder::CoilKind;
 use crate::target::{Access, Flow, Form, Role};
 use crate::text::Span;
 use std::borrow::Cow;
+use std::cell::RefCell;
 use std::sync::Arc;
 
 /// A path of power from the left rail, or from where it leaves another path: it passes all gates, then it drives one
@@ -163,6 +164,15 @@ impl Path {
         let mut actions = Vec::new();
         self.visit(&mut |action| actions.push(action), &mut |_| {});
         actions
+    }
+
+    /// All operands, in the order of execution.
+    pub fn terms(&self) -> Vec<&Term> {
+        let terms = RefCell::new(Vec::new());
+        self.visit(&mut |action| terms.borrow_mut().extend(&action.terms), &mut |condition| {
+            condition.contacts().into_iter().for_each(|contact| terms.borrow_mut().extend(&contact.terms));
+        });
+        terms.into_inner()
     }
 
     /// The same with its variables where they lie as declared in program unit number `pou`.

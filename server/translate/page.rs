@@ -77,6 +77,10 @@ pub(super) fn write(
     if needs_header {
         page.declare("END_PROGRAM\n");
     }
+    // Declarations are parted from what follows; nothing follows.
+    while page.text.ends_with("\n\n") {
+        page.text.pop();
+    }
     if to == To::Fx && options.is_whole && !sources.iter().any(ends_program) {
         page.text.push_str("END\n");
     }
@@ -219,17 +223,15 @@ impl Page {
             To::Fx if is_list => text.lines().for_each(|line| self.line(line.trim())),
             To::Ladder if is_list => {
                 self.line("{il");
-                text.lines().for_each(|line| self.line(line.trim_end()));
+                flush(text).for_each(|line| self.line(line));
                 self.line("}");
             }
             To::Iec if is_list => {
                 let laid_out = header::laid_out(&format!("{}\n", text.trim_end()));
                 self.text += &laid_out;
             }
-            To::Iec => text.lines().for_each(|line| self.line(&header::comment(&format!("; {line}")))),
-            _ => {
-                text.lines().for_each(|line| self.line(format!("; {line}").trim_end()));
-            }
+            To::Iec => flush(text).for_each(|line| self.line(&header::comment(&format!("; {line}")))),
+            _ => flush(text).for_each(|line| self.line(format!("; {line}").trim_end())),
         }
         Some(reason)
     }
@@ -280,6 +282,17 @@ impl Page {
         self.text.push_str(line);
         self.text.push('\n');
     }
+}
+
+/// The lines of a rung, whose first one was taken without its margin, without the margin of the others.
+fn flush(text: &str) -> impl Iterator<Item = &str> {
+    let margin = |line: &str| line.len() - line.trim_start_matches([' ', '\t']).len();
+    let others = text.lines().skip(1).filter(|line| !line.trim().is_empty());
+    let common = others.map(margin).min().unwrap_or(0);
+    text.lines().enumerate().map(move |(number, line)| {
+        let line = if number == 0 { line } else { line.get(common..).unwrap_or_default() };
+        line.trim_end()
+    })
 }
 
 /// `; NETWORK 3 'title'`: the name of a network where only comments can have it.

@@ -367,7 +367,7 @@ fn different(
     let state = state?;
     let values = counterexample::confirmed(&state, paths, &place)?;
     let at = sides.map(|side| rung_of(side, &what));
-    let (inputs, before) = counterexample::inputs(&state);
+    let (inputs, before) = counterexample::inputs(&state, paths);
     Some(Proof::Different(Box::new(Counterexample { inputs, before, what, sides: values, at })))
 }
 
