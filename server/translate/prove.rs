@@ -38,7 +38,7 @@ pub enum Proof {
 ///
 /// A program that stands in no project is compared with one of a project as if it stood in its place.
 pub fn prove(left: &Document, right: &Document) -> Proof {
-    let placed = [left.outer().is_none().then(|| right), right.outer().is_none().then(|| left)];
+    let placed = [left.outer().is_none().then_some(right), right.outer().is_none().then_some(left)];
     let placed = [left, right].into_iter().zip(placed).map(|(own, other)| {
         let (outer, number) = other?.outer().filter(|_| !own.target().is_fx())?;
         Some(own.linked(outer.clone(), number))
