@@ -74,4 +74,6 @@ mod tidy;
 mod token_scopes;
 mod translate;
 mod translate_iec;
+mod translate_words;
 mod usage;
+mod word_machines;
