@@ -114,6 +114,15 @@ fn a_list_for_another_model_says_what_that_lacks() {
     assert_eq!(run(&folder, &["translate", "other.il", "--to", "fx"]).0, 0);
     let (code, _, err) = run(&folder, &["translate", "other.il", "--to", "fx", "--target", "fx1s"]);
     assert!(code == 1 && err.contains("FX1S has no M4000"), "{err}");
+    // Which model lists are for can be said apart from that of the project, and on the command line.
+    let manifest = "target = \"fx1n\"\ndialect = \"iec\"\n[translate]\ntarget = \"fx3u\"\n";
+    std::fs::write(folder.path().join("rungwise.toml"), manifest).unwrap();
+    assert_eq!(run(&folder, &["translate", "other.il", "--to", "fx"]).0, 0);
+    let (code, _, err) = run(&folder, &["translate", "other.il", "--to", "fx", "--target", "fx1n"]);
+    assert!(code == 1 && err.contains("FX1N has no M4000"), "{err}");
+    let manifest = manifest.replace("fx1n", "iec");
+    std::fs::write(folder.path().join("rungwise.toml"), manifest).unwrap();
+    assert_eq!(run(&folder, &["translate", "other.il", "--to", "fx"]).0, 0);
     for arguments in [["ladder", "fx3u"], ["fx", "iec"]] {
         let (code, _, err) =
             run(&folder, &["translate", "other.il", "--to", arguments[0], "--target", arguments[1]]);

@@ -285,3 +285,28 @@ fn the_header_of_a_network_is_all_of_it_and_a_comment_the_rung_below() {
     let words = below["text"].as_str().unwrap();
     assert!(words.contains("Y1 = X1\n") && !words.contains("Y0"), "{words}");
 }
+
+#[test]
+fn an_fx_list_is_for_the_model_that_the_project_or_the_client_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().canonicalize().unwrap();
+    let text = "PROGRAM P\nVAR\nStart AT %IX0.0 : BOOL; Far AT %MX500.0 : BOOL;\nEND_VAR\nLD Start\nST Far\nEND_PROGRAM\n";
+    std::fs::write(place.join("rungwise.toml"), "[translate]\ntarget = \"fx3u\"\n").unwrap();
+    std::fs::write(place.join("main.il"), text).unwrap();
+    let uri = format!("file://{}", place.join("main.il").display());
+    let mut client = Client::start();
+    client.open(&uri, "plc-il", text);
+    let asked = json!({"uri": uri, "position": position(4, 0), "to": "fx"});
+    assert_eq!(form(&mut client, asked.clone())["text"], "LD X0\nOUT M4000\n");
+    let with = |target: &str| {
+        let mut asked = asked.clone();
+        asked["target"] = json!(target);
+        asked
+    };
+    let kept = form(&mut client, with("fx2n"));
+    assert_eq!(kept["notes"], json!(["line 5: FX2N has no M4000"]), "{kept}");
+    assert_eq!(form(&mut client, with("fx3u"))["notes"], json!([]));
+    let answer = translate(&mut client, with("iec"));
+    let said = answer["error"]["message"].as_str().unwrap();
+    assert_eq!(said, "`iec` is no model of the FX family; fx1s, fx1n, fx2n and fx3u are");
+}

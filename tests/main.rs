@@ -74,5 +74,7 @@ mod tidy;
 mod token_scopes;
 mod translate;
 mod translate_iec;
+mod translate_words;
 mod unit_calls;
 mod usage;
+mod word_machines;

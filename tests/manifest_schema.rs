@@ -39,6 +39,10 @@ fn every_table_has_the_keys_that_are_read() {
     let schema = schema();
     assert_eq!(keys(&schema), keys_read("zzz = 1"));
     assert_eq!(keys(&schema["properties"]["format"]), keys_read("[format]\nzzz = 1"));
+    for table in ["check", "translate"] {
+        assert_eq!(keys(&schema["properties"][table]), keys_read(&format!("[{table}]\nzzz = 1")));
+        assert_eq!(schema["properties"][table]["additionalProperties"], Value::Bool(false));
+    }
     let task = &schema["properties"]["task"]["items"];
     assert_eq!(keys(task), keys_read("[[task]]\nname = ''\nprograms = []\nzzz = 1"));
     for required in words(&task["required"]) {
@@ -70,6 +74,11 @@ fn what_is_wrong_is_said_in_the_language_of_the_user() {
         ("files = \"a.il\"", "a list in brackets belongs here", "此处应为方括号中的列表"),
         ("rules = 1", "a table belongs here", "此处应为表"),
         ("format = 1", "a table belongs here", "此处应为表"),
+        (
+            "[translate]\ntarget = \"iec\"",
+            "`iec` is no model of the FX family; fx1s, fx1n, fx2n and fx3u are",
+            "`iec` 不是 FX 系列的型号；可用 fx1s、fx1n、fx2n 和 fx3u",
+        ),
     ] {
         let message = Manifest::read(manifest).unwrap_err().message;
         assert_eq!(message.render(Language::English), english);
@@ -96,6 +105,9 @@ fn every_word_of_the_schema_is_read_and_others_are_not() {
     for model in ["fx1s", "fx1n", "fx2n", "fx3u", "iec", "fx5u", "fx0", "fx3g"] {
         let read = Manifest::read(&format!("target = \"{model}\"")).is_ok();
         assert_eq!(targets.contains(&model), read, "{model}");
+        let lists = words(&schema["properties"]["translate"]["properties"]["target"]["enum"]);
+        let read = Manifest::read(&format!("[translate]\ntarget = \"{model}\"")).is_ok();
+        assert_eq!(lists.contains(&model), read, "{model}");
     }
     let width = |width: u64| Manifest::read(&format!("[format]\nwidth = {width}")).is_ok();
     let most = schema["properties"]["format"]["properties"]["width"]["maximum"].as_u64().unwrap();

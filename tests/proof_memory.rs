@@ -66,6 +66,14 @@ fn words_are_made_of_the_bits_in_their_area() {
         "LD a; ST m; LD n; GT 3; ST y; LD b; ST z",
         "LD b; ST z; LD n; GT 3; ST y; LD a; ST m",
     );
+    // Words and double words of one area may lie over each other.
+    let variables = "n AT %MW1010 : INT; d AT %MD505 : DINT;";
+    tells_apart(variables, "LD 5; ST d; LD n; GT 3; ST y", "LD n; GT 3; ST y; LD 5; ST d");
+    tells_apart(variables, "LD 5; ST n; LD d; GT 3; ST y", "LD d; GT 3; ST y; LD 5; ST n");
+    // So values of both that do not fit are no counterexample.
+    let [left, right] =
+        ["LD n; EQ 1; AND( d; EQ 0; ); ST y", "LD FALSE; ST y"].map(|body| program(variables, &lines(body)));
+    assert!(matches!(prove(&left, &right), Proof::Undecided { .. }), "{:?}", prove(&left, &right));
     let variables = "f AT %QX0.0 : ARRAY[0..7] OF BOOL; q AT %QX0.1 : BOOL;";
     tells_apart(variables, "LD a; ST f[1]; LD q; ST y", "LD q; ST y; LD a; ST f[1]");
     // And on the FX family.

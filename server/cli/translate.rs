@@ -63,7 +63,7 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         complain("target-refused", &reason.render(language), &help, language);
         return Outcome::Unusable;
     }
-    let of_project = program.manifest.target().filter(|_| !program.document.target().is_fx());
+    let of_project = program.manifest.fx_target().filter(|_| !program.document.target().is_fx());
     let options = Options {
         model: arguments.target.or(of_project).map(|target| target.model),
         style: style_of(program, None).ladder(),

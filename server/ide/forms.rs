@@ -3,6 +3,7 @@
 use super::Style;
 use crate::document::{Document, Notation, Tree};
 use crate::logic;
+use crate::target::Model;
 use crate::text::{Message, Span};
 use crate::translate::{Certificate, Options, Original, To};
 
@@ -95,15 +96,16 @@ fn end_of_network(document: &Document, first: usize) -> usize {
 }
 
 /// `document` in the forms `to`, with `part` only its rungs; nothing if `is_cancelled` says on the way that nobody
-/// waits for it any more. A part without a rung has no form.
+/// waits for it any more. A part without a rung has no form. An FX list is for the `model`, see [`Options::model`].
 pub fn forms(
     document: &Document,
     part: Option<Span>,
     to: &[To],
-    style: Style,
+    (style, model): (Style, Option<Model>),
     is_cancelled: &dyn Fn() -> bool,
 ) -> Option<Vec<TranslatedForm>> {
-    let options = Options { style: style.ladder(), is_whole: part.is_none(), ..Options::default() };
+    let is_whole = part.is_none();
+    let options = Options { style: style.ladder(), is_whole, model, ..Options::default() };
     let source = Original::of(document, part);
     let mut forms = Vec::with_capacity(to.len());
     for to in to {

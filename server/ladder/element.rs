@@ -292,6 +292,19 @@ impl CompareOperator {
         }
     }
 
+    /// The same for numbers of 32 bits, or of 16.
+    pub fn in_width(self, wide: bool) -> CompareOperator {
+        use CompareOperator::*;
+        match self {
+            Equal { .. } => Equal { wide },
+            NotEqual { .. } => NotEqual { wide },
+            Greater { .. } => Greater { wide },
+            Less { .. } => Less { wide },
+            GreaterOrEqual { .. } => GreaterOrEqual { wide },
+            LessOrEqual { .. } => LessOrEqual { wide },
+        }
+    }
+
     /// Whether it compares 32 bits.
     pub fn is_wide(self) -> bool {
         use CompareOperator::*;

@@ -79,12 +79,14 @@ pub fn compare_but(
 
 /// Compares what has come of the same state when paths were run: the same events in the same order under equal
 /// conditions, and the same values of all bits at the end, whatever the way there. Of the paths the first `known` on
-/// either side are known to do the same. With `may_be_off` there may be no power at the left rail.
+/// either side are known to do the same. With `may_be_off` there may be no power at the left rail. Bits that
+/// `is_private` finds are those of one side alone: what they are at the end does not count, but what others are must
+/// not depend on what they are at first.
 pub fn compare_outcome(
     left: &[&Path],
     right: &[&Path],
     known: [usize; 2],
-    may_be_off: bool,
+    (may_be_off, is_private): (bool, &dyn Fn(&Term) -> bool),
     formulas: &mut Formulas,
 ) -> Comparison {
     let known = [(left, known[0]), (right, known[1])]
@@ -125,7 +127,8 @@ pub fn compare_outcome(
             false => {}
         }
     }
-    let mut bits: Vec<_> = left.bits().chain(right.bits()).map(|term| (term.key(), term)).collect();
+    let bits = left.bits().chain(right.bits()).filter(|term| !is_private(term));
+    let mut bits: Vec<_> = bits.map(|term| (term.key(), term)).collect();
     bits.sort_by(|(left, _), (right, _)| left.cmp(right));
     bits.dedup_by(|(left, _), (right, _)| left == right);
     for (_, bit) in bits {

@@ -22,7 +22,7 @@ mod call;
 pub use call::{Argument, Call};
 
 mod computation;
-pub use computation::Computation;
+pub use computation::{Computation, Conversion};
 
 mod block;
 

@@ -9,9 +9,13 @@
 //!   uri: string,
 //!   position?: Position,     // the rung there; on a comment the rung below, on the header of a network all of it
 //!   range?: Range,           // the rungs that it touches; without either all of the document
-//!   to: "ladder" | "fx" | "iec" | "boolean" | "all"
+//!   to: "ladder" | "fx" | "iec" | "boolean" | "all",
+//!   target?: "fx1s" | "fx1n" | "fx2n" | "fx3u"   // the model that an FX list is for
 //! }
 //! ```
+//!
+//! Without a `target` a program of the FX family stays for its own model, and one of IEC 61131-3 is for that of
+//! `rungwise.toml`: `target` under `[translate]`, else the target of the project, else an FX2N.
 //!
 //! It answers `{ forms: [{ to, text, certificate, notes: string[] }] }`, with `"all"` every form, the shortest first.
 //! The `certificate` is that of the rung of which least is known: `"proved"` (the same bits are driven under equal
@@ -38,6 +42,7 @@ use super::projects::{Around, file_path};
 use super::settings::Settings;
 use super::to_proto::Place;
 use crate::ide::{self, ProgramPart, TranslatedForm};
+use crate::target::{Model, Target};
 use crate::text::{Language, Message, Span};
 use crate::translate::{Certificate, To};
 use serde::{Deserialize, Serialize};
@@ -64,12 +69,15 @@ pub(super) struct Asked {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     range: Option<Range>,
     to: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    target: Option<String>,
 }
 
 /// What is wanted of a translation.
 pub(super) struct Wanted {
     pub asked: Asked,
     forms: Vec<To>,
+    target: Option<&'static Target>,
 }
 
 impl Wanted {
@@ -91,7 +99,14 @@ impl Wanted {
                 return Err(message.with("forms", To::ALL.map(To::name).join(", ")));
             }
         };
-        Ok(Wanted { asked, forms })
+        let target = match asked.target.as_deref() {
+            None => None,
+            Some(name) => {
+                let found = Target::named(name).filter(|target| target.is_fx());
+                Some(found.ok_or_else(|| Message::new("manifest.fx-target").with("word", name))?)
+            }
+        };
+        Ok(Wanted { asked, forms, target })
     }
 
     /// The forms; nothing if it was cancelled on the way.
@@ -112,7 +127,8 @@ impl Wanted {
             Some(Some(part)) => Some(part.span()),
         };
         let style = settings.style(&around.here().manifest);
-        ide::forms(place.document, part, &self.forms, style, &|| around.is_cancelled())
+        let model = self.target.map(|target| target.model).or_else(|| model_of_project(around, place));
+        ide::forms(place.document, part, &self.forms, (style, model), &|| around.is_cancelled())
     }
 
     /// The answer of `rungwise.translate`.
@@ -139,6 +155,12 @@ impl Wanted {
             Ok((new_file(&uri, form.text), uri))
         }))
     }
+}
+
+/// The model that an FX list is for which a program of IEC 61131-3 becomes, as the project has it.
+fn model_of_project(around: &Around, place: Place<'_>) -> Option<Model> {
+    let manifest = &around.here().manifest;
+    manifest.fx_target().filter(|_| !place.document.target().is_fx()).map(|target| target.model)
 }
 
 fn to_json(form: &TranslatedForm, place: Place<'_>) -> Value {
@@ -207,8 +229,13 @@ pub(super) fn actions(
     if only.is_some() {
         for to in forms() {
             let kind = format!("source.translate.{}", to.name());
-            let asked =
-                Asked { uri: around.here().uri.clone(), position: None, range: None, to: to.name().into() };
+            let asked = Asked {
+                uri: around.here().uri.clone(),
+                position: None,
+                range: None,
+                to: to.name().into(),
+                target: None,
+            };
             let title = title("translating.translate", "translating.file", to, Vec::new(), place.language);
             let title_copy =
                 self::title("translating.copy", "translating.file", to, Vec::new(), place.language);
@@ -245,7 +272,8 @@ fn told(
         return None;
     }
     let style = settings.style(&around.here().manifest);
-    let told = ide::forms(place.document, Some(span), forms, style, &|| around.is_cancelled());
+    let model = model_of_project(around, place);
+    let told = ide::forms(place.document, Some(span), forms, (style, model), &|| around.is_cancelled());
     Some(told.unwrap_or_default())
 }
 
@@ -273,7 +301,13 @@ fn of_part(
         details.clone_from(&copied);
         details.extend(form.certificate.map(certificate));
     }
-    let asked = Asked { uri: around.here().uri.clone(), position: None, range: None, to: to.name().into() };
+    let asked = Asked {
+        uri: around.here().uri.clone(),
+        position: None,
+        range: None,
+        to: to.name().into(),
+        target: None,
+    };
     let asked = match range.start == range.end {
         true => Asked { position: Some(range.start), ..asked },
         false => Asked { range: Some(range), ..asked },

@@ -29,6 +29,8 @@ pub struct Manifest {
     pub check: CheckSettings,
     /// What the formatter writes.
     pub format: FormatSettings,
+    /// What translations are for.
+    pub translate: TranslateSettings,
     /// Tasks of the program.
     #[serde(rename = "task")]
     pub tasks: Vec<TaskSettings>,
@@ -42,6 +44,15 @@ pub struct Manifest {
 pub struct CheckSettings {
     /// Outputs, relays or variables of which no two may be on together, as `Y0 & Y1`.
     pub never: Vec<String>,
+}
+
+/// What translations are for.
+#[derive(Clone, PartialEq, Eq, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct TranslateSettings {
+    /// The model of the FX family that FX lists are for which programs of IEC 61131-3 become: `fx1s`, `fx1n`, `fx2n`,
+    /// `fx3u`. That of the project where it is left out.
+    pub target: Option<String>,
 }
 
 /// Nobody reads wider ladder; a width beyond it is a slip of the finger that would fill the memory.
@@ -144,6 +155,12 @@ impl Manifest {
         self.target.as_deref().and_then(Target::named)
     }
 
+    /// The model of the FX family for which a program of IEC 61131-3 is translated, if the manifest names one.
+    pub fn fx_target(&self) -> Option<&'static Target> {
+        let own = self.translate.target.as_deref().and_then(Target::named);
+        own.or_else(|| self.target()).filter(|target| target.is_fx())
+    }
+
     /// The language of `.il` files, if the manifest names one.
     pub fn notation(&self) -> Option<Notation> {
         self.dialect.as_deref().and_then(dialect_named)
@@ -166,6 +183,10 @@ impl Manifest {
         };
         if let Some(word) = self.target.as_deref().filter(|word| Target::named(word).is_none()) {
             return fail("manifest.target", word, Part::Value, &["target"]);
+        }
+        let is_fx = |word: &&str| Target::named(word).is_some_and(Target::is_fx);
+        if let Some(word) = self.translate.target.as_deref().filter(|word| !is_fx(word)) {
+            return fail("manifest.fx-target", word, Part::Value, &["translate", "target"]);
         }
         if self.format.width > MOST_WIDTH {
             let width = self.format.width.to_string();

@@ -2,12 +2,12 @@
 
 use super::source::{self, Source};
 use super::to_iec::Helper;
-use super::{To, Translation, dialect, from_boolean, page};
+use super::{To, Translation, from_boolean, page};
 use crate::document::{Document, Scopes};
 use crate::logic::{Comparison, Effort, Path, Storage, compare_but};
 use crate::target::{Operand, Target};
 use crate::text::{Message, folded};
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 use std::borrow::Cow;
 
@@ -67,7 +67,7 @@ pub(super) fn add(
                 Some(None) => None,
                 path => Some(path.flatten()),
             })
-            .map(|path| if is_declared { path } else { path.map(|path| located(path, document, source.pou)) })
+            .map(|path| if is_declared { path } else { path.map(|path| located(path, document, source)) })
             .collect();
         if translated.note.is_some() {
             // A list is carried along word by word; a drawing in a list is but a comment.
@@ -96,18 +96,21 @@ struct Written {
 }
 
 /// The path of a result without declarations, where its variables lie as the source says: by its declarations, or as
-/// its devices do.
-fn located(path: Path, document: &Document, pou: Option<usize>) -> Path {
+/// the variables do that stand for its devices.
+fn located(path: Path, document: &Document, source: &Source) -> Path {
     if !document.target().is_fx() {
-        return path.located(document.scopes(), pou);
+        return path.located(document.scopes(), source.pou);
+    }
+    let mut places: FxHashMap<SmolStr, Storage> = FxHashMap::default();
+    for term in source.rung.path.iter().flatten().flat_map(Path::terms) {
+        places.insert(folded(&term.text), term.storage);
     }
     let mut path = path;
     path.each_term(&mut |term| {
         if term.operand == Operand::Variable
-            && let Operand::Device(device) = Operand::read(&term.text, document.target().model)
-            && let Some(address) = dialect::address(device)
+            && let Some(storage) = places.get(&folded(&term.text))
         {
-            term.storage = Storage::At(address);
+            term.storage = *storage;
         }
     });
     path

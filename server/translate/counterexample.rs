@@ -3,7 +3,7 @@
 
 use crate::logic::{Atom, Formulas, Moment, Path, Place, State, Step, evaluate};
 use crate::target::iec::LiteralValue;
-use crate::target::{Device, Model, Operand};
+use crate::target::{Device, DirectAddress, Model, Operand};
 use crate::text::Span;
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
@@ -146,8 +146,20 @@ pub(super) fn state(formulas: &Formulas, values: &BTreeMap<u32, bool>) -> Option
     (!has_halves(&state)).then_some(state)
 }
 
-/// Whether a 32-bit value is there beside its own halves, of which nobody made sure that they fit.
+/// Whether a 32-bit value is there beside its own halves, or words of several sizes in one area of memory, of which
+/// nobody made sure that they fit.
 fn has_halves(state: &State) -> bool {
+    let addresses = state.words.keys().filter_map(|name| match Operand::read(name, Model::Iec) {
+        Operand::Direct(address) => Some(address),
+        _ => None,
+    });
+    let addresses: Vec<DirectAddress> = addresses.collect();
+    let in_one = |one: &DirectAddress| {
+        addresses.iter().any(|other| one.location == other.location && one.width != other.width)
+    };
+    if addresses.iter().any(in_one) {
+        return true;
+    }
     let is_half = |number: u32, kind| {
         let half = Device::new(kind, number).to_string();
         state.words.contains_key(half.as_str())

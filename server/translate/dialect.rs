@@ -7,45 +7,116 @@
 //! | `M20` | `M20 AT %MX2.4 : BOOL` |
 //! | `S20` | `S20 AT %MX1102.4 : BOOL`, from byte 1,100 on, behind the auxiliary relays |
 //! | `D20` | `D20 AT %MW1020 : INT`, from word 1,000 on, behind the states |
+//! | `D20` and `D21` as 32 bits | `D20 AT %MD510 : DINT`, the double word over both |
+//! | `D21` and `D22` as 32 bits | `D21 AT %MD10021 : DINT`: no double word lies over both, so they have their own |
 //! | `OUT T0 K50` | the instance `T0 : TON`, called with `PT := T#5s` by the unit of the timer; contact `T0.Q` |
 //! | `OUT C0 K10` | the instance `C0 : CTU`, called with `PV := 10`; contact `C0.Q`, value `C0.CV` |
 //! | `RST C0` | `R C0`, a call of the block with this input alone |
 //! | `PLS M0`, `PLF M0` | coils of edges: `PLS_M0 : R_TRIG`, `PLF_M0 : F_TRIG`, the output stored in `M0` |
 //! | `CJ P0` | `JMPC P0` |
-//! | `MOV`, `ADD`, `SUB` | `LD`, `ADD`, `SUB` and `ST`, jumped over where power does not reach them |
-//! | `INC D0`, `DEC D0` | the same with the operand `1`; `INT#1` stands for the `K1` of an ADD or SUB |
-//! | `RST D0` | a store of `0`; `INT#0` stands for the `K0` of a MOV |
+//! | `LD>=`, `LDD>=` and their kin | `GE` and its kin on variables of type INT, DINT |
+//! | `MOV`, `ADD`, `SUB`, `DMOV` … | `LD`, `ADD`, `SUB`, `ST`, jumped over where power does not reach them |
+//! | `INC D0`, `DEC D0`, `DINC D0` … | the same with the operand `1`; `INT#1` is the `K1` of an ADD or SUB |
+//! | `RST D0` | a store of `0` in an INT; `INT#0` stands for the `K0` of a MOV |
+//! | `NEG D0` | the difference of `0` and the variable; `INT#0` stands for the `K0` of a SUB |
+//! | `WAND`, `WOR`, `WXOR`, `CML` | `AND`, `OR`, `XOR`, `NOT` between `INT_TO_WORD` and `WORD_TO_INT` |
+//! | `MUL` | `MUL` behind `INT_TO_DINT`, stored in the pair |
+//! | `DIV D0 K7 D2` | `DIV` stored in `D2`, `MOD` stored in `D3` |
+//! | `CMP`, `ZCP` | three comparisons that each set and reset a relay; these come back as they are |
+//! | `ZRST`, `FMOV`, `BMOV` | one reset or store for each device, up to 16; these come back as they are |
 //! | `MOVP` and the like | the same behind an instance `Pulse1 : R_TRIG` |
 //! | `M8000`, `M8001` | `TRUE`, `FALSE` |
 //!
 //! `END` is dropped and put back. What has no counterpart keeps its words in a comment: retentive timers, counters of
-//! 32 bits, special relays, steps, and applied instructions for which IEC 61131-3 has no operator on an INT. The way
-//! back takes variables by their addresses, and by their names where they have none and these are names of devices that
-//! nothing else is.
+//! 32 bits, special relays, steps, groups of bits, and applied instructions for which IEC 61131-3 has no operator that
+//! does exactly the same. Nor have 32 bits one half of which is used in another way, too, for IEC 61131-3 leaves open
+//! how words lie in a double word. The way back takes variables by their addresses, and by their names where they
+//! have none and these are names of devices that nothing else is.
 
 mod lack;
+mod registers;
 mod to_devices;
 mod to_variables;
 
 use self::lack::{Lack, without};
+use self::registers::Registers;
 use super::To;
-use super::source::Program;
+use super::source::{Program, Source};
 use crate::document::Document;
 use crate::il::iec::PouKind;
-use crate::logic::{Path, Refusal};
-use crate::target::{Device, DeviceKind, DirectAddress, Location, Model, Target, Width};
+use crate::logic::{Action, Deed, Drive, Path, Refusal};
+use crate::target::{Device, DeviceKind, DirectAddress, Form, Location, Model, Target, Width};
 use std::cell::Cell;
 
-/// Instructions with the functions that do the same with 16 bits.
-const COMPUTED: [(&str, &str); 3] = [("MOV", "MOVE"), ("ADD", "ADD"), ("SUB", "SUB")];
-/// Those that do so with 1 and one register.
-const STEPPED: [(&str, &str); 2] = [("INC", "ADD"), ("DEC", "SUB")];
+/// What stands for an applied instruction.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Work {
+    /// A function of the same operands.
+    Function(&'static str),
+    /// One of a register and 1, stored there.
+    Step(&'static str),
+    /// 0 without a register, stored there.
+    Negate,
+    /// A function of patterns.
+    Bits(&'static str),
+    /// A product of 32 bits.
+    Multiply,
+    /// A quotient and a remainder.
+    Divide,
+    /// Three relays that tell how two numbers compare.
+    Compare,
+    /// Three relays that tell where a number lies.
+    Zone,
+    /// Resets from one device to another.
+    Clear,
+    /// Copies of one word.
+    Fill,
+    /// Copies of a row of words.
+    Block,
+}
+
+/// The plain mnemonics of the instructions that are something else there.
+const WORKS: [(&str, Work); 17] = [
+    ("MOV", Work::Function("MOVE")),
+    ("ADD", Work::Function("ADD")),
+    ("SUB", Work::Function("SUB")),
+    ("INC", Work::Step("ADD")),
+    ("DEC", Work::Step("SUB")),
+    ("NEG", Work::Negate),
+    ("WAND", Work::Bits("AND")),
+    ("WOR", Work::Bits("OR")),
+    ("WXOR", Work::Bits("XOR")),
+    ("CML", Work::Bits("NOT")),
+    ("MUL", Work::Multiply),
+    ("DIV", Work::Divide),
+    ("CMP", Work::Compare),
+    ("ZCP", Work::Zone),
+    ("ZRST", Work::Clear),
+    ("FMOV", Work::Fill),
+    ("BMOV", Work::Block),
+];
+
+impl Work {
+    /// That of an instruction, in any of its forms.
+    fn of(form: Form) -> Option<Work> {
+        WORKS.iter().find(|(mnemonic, _)| *mnemonic == form.instruction.mnemonic).map(|(_, work)| *work)
+    }
+
+    /// The instruction that does it with 16 or 32 bits.
+    fn form(self, wide: bool) -> Option<Form> {
+        let (mnemonic, _) = WORKS.iter().find(|(_, work)| *work == self)?;
+        Form::named(mnemonic).map(|form| Form { wide, ..form })
+    }
+}
+
 /// What the instances begin with that detect the power of a pulse form.
 const PULSE: &str = "Pulse";
 
 /// The first byte of the states, in bits, and the first word of the data registers.
 const STATES: u32 = 1100 * 8;
 const REGISTERS: u32 = 1000;
+/// The first double word of the pairs of registers that begin with an odd number.
+const ODD_PAIRS: u32 = 10_000;
 
 /// What the result of a translation is written for: the document's target where it is of the same family. An FX list
 /// can be `wanted` for another model.
@@ -59,8 +130,14 @@ pub(super) fn target(document: &Document, to: To, wanted: Option<Model>) -> &'st
     }
 }
 
-/// Puts the rungs of `program` into the words of `target`. Those that have none there are refused.
-pub(super) fn convert(document: &Document, (to, target): (To, &'static Target), program: &mut Program) {
+/// Puts the rungs of `program`, which is `document` or a part of it, into the words of `target`. Those that have none
+/// there are refused.
+pub(super) fn convert(
+    document: &Document,
+    (to, target): (To, &'static Target),
+    program: &mut Program,
+    is_whole: bool,
+) {
     for source in &mut program.rungs {
         let is_end = |path: &Path| to == To::Iec && to_variables::is_end(path);
         if matches!(&source.rung.path, Ok(Some(path)) if is_end(path)) {
@@ -71,7 +148,14 @@ pub(super) fn convert(document: &Document, (to, target): (To, &'static Target), 
         return;
     }
     let pulses = Cell::new(0);
+    let registers = match target.is_fx() {
+        true => Registers::of_variables(document.scopes(), program, target),
+        false => Registers::of_devices(document, program, is_whole),
+    };
     let names = to_devices::Names::of(program, document.scopes(), target);
+    if target.is_fx() {
+        join_divisions(document, target, (&names, &registers), program);
+    }
     for source in &mut program.rungs {
         if target.is_fx() {
             source.rung.labels.iter_mut().for_each(|label| *label = names.of_label(label));
@@ -80,16 +164,80 @@ pub(super) fn convert(document: &Document, (to, target): (To, &'static Target), 
         source.rung.is_list = false;
         let Ok(Some(path)) = &source.rung.path else { continue };
         let converted = match target.is_fx() {
-            false => to_variables::path(path, document.target(), &pulses),
+            false => to_variables::path(path, document.target(), &registers, &pulses),
             // What a function or a block does it does for whoever calls it.
             true if !is_of_program(document, source.pou) => {
                 let unit = source.pou.and_then(|pou| document.scopes().pous.get(pou));
                 Err(unit.map_or(Lack::Unnamed, |unit| Lack::Word(unit.name.clone())))
             }
-            true => to_devices::path(path, target, &names, (document.scopes(), source.pou)),
+            true => to_devices::path(path, target, (&names, &registers), (document.scopes(), source.pou)),
         };
         source.note = converted.as_ref().err().map(Lack::message);
         source.rung.path = converted.map(Some).map_err(|_| Refusal::NoCounterpart);
+    }
+}
+
+/// Makes one rung of a quotient and a remainder that are two, each without a condition, where one instruction writes
+/// both.
+fn join_divisions(
+    document: &Document,
+    target: &Target,
+    known: (&to_devices::Names, &Registers),
+    program: &mut Program,
+) {
+    for second in 1..program.rungs.len() {
+        let [one, other] = [&program.rungs[second - 1], &program.rungs[second]];
+        if one.pou != other.pou || !other.rung.labels.is_empty() {
+            continue;
+        }
+        let (Some([first]), Some([next])) = (computed(one), computed(other)) else { continue };
+        let place = (&**document.scopes(), one.pou);
+        if !to_devices::is_division([first, next], target, known, place) {
+            continue;
+        }
+        let next = next.clone();
+        program.rungs[second].rung.path = Ok(None);
+        if let Ok(Some(path)) = &mut program.rungs[second - 1].rung.path {
+            path.drives.push(next);
+        }
+    }
+}
+
+/// What a rung calculates, if that is all that it does and it has no condition.
+fn computed(source: &Source) -> Option<&[Drive]> {
+    let path = source.path().filter(|path| path.gates.is_empty())?;
+    let computes = |drive: &Drive| matches!(drive, Drive::Action(Action { deed: Deed::Compute(_), .. }));
+    path.drives.iter().all(computes).then_some(&path.drives[..])
+}
+
+/// Makes a rung of each calculation that has no condition, as a list of IEC 61131-3 has them.
+pub(super) fn part_calculations(program: &mut Program) {
+    let parted = program.rungs.drain(..).flat_map(|source| {
+        let drives = computed(&source).map(<[Drive]>::to_vec).unwrap_or_default();
+        if drives.len() < 2 {
+            return vec![source];
+        }
+        let rung = |(number, drive): (usize, Drive)| {
+            let mut part = source.clone();
+            part.rung.path = Ok(Some(Path { gates: Vec::new(), drives: vec![drive] }));
+            if number > 0 {
+                part.rung.labels.clear();
+            }
+            part
+        };
+        drives.into_iter().enumerate().map(rung).collect()
+    });
+    program.rungs = parted.collect();
+}
+
+/// Takes out of `program`, which is one of IEC 61131-3, the rungs that mean another thing than the same words would on
+/// the FX family: types decide how numbers compare and divide.
+pub(super) fn refuse_other_types(document: &Document, program: &mut Program) {
+    for source in &mut program.rungs {
+        let is_other = |path: &Path| !to_devices::is_of_family(path, document.scopes(), source.pou);
+        if matches!(&source.rung.path, Ok(Some(path)) if is_other(path)) {
+            source.rung.path = Err(Refusal::NoCounterpart);
+        }
     }
 }
 
@@ -121,6 +269,34 @@ pub(super) fn address(device: Device) -> Option<DirectAddress> {
         },
         _ => return None,
     })
+}
+
+/// The address of the variable that stands for a data register and the next one as 32 bits.
+fn pair_address(first: Device) -> Option<DirectAddress> {
+    if first.kind != DeviceKind::D || Device::new(first.kind, first.number + 1).is_special() {
+        return None;
+    }
+    let word = REGISTERS + first.number;
+    let place = if word.is_multiple_of(2) { word / 2 } else { ODD_PAIRS + first.number };
+    let path = [Some(place), None, None, None];
+    Some(DirectAddress { location: Location::Memory, width: Width::Double, path })
+}
+
+/// The first register of the pair at an address: the way back from [`pair_address`].
+fn pair_at(address: DirectAddress) -> Option<Device> {
+    let [Some(place), None, None, None] = address.path else { return None };
+    let number = match place.checked_sub(ODD_PAIRS) {
+        Some(number) => number,
+        None => place.checked_mul(2)?.checked_sub(REGISTERS)?,
+    };
+    let first = Device::new(DeviceKind::D, number);
+    (pair_address(first) == Some(address)).then_some(first)
+}
+
+/// The devices at an address.
+fn devices_at(address: DirectAddress) -> impl Iterator<Item = Device> {
+    let pair = pair_at(address).map(|first| [first, Device::new(first.kind, first.number + 1)]);
+    device_at(address).into_iter().chain(pair.into_iter().flatten())
 }
 
 /// The device at an address: the way back from [`address`].

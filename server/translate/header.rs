@@ -1,14 +1,13 @@
 //! What a translation to instruction list of IEC 61131-3 declares: a program around the rungs where the source has
 //! none, and the helpers that it needs.
 
-use super::dialect;
 use super::source::Source;
 use super::to_iec::{Helper, Helpers};
 use crate::document::{DeclaredType, Document, Scopes, Tree};
 use crate::il::iec::{self, SectionKind};
 use crate::logic::{Action, Deed, Expression, Path, Term, Test, is_helper_name};
 use crate::target::iec::{ENO, ElementaryType, LiteralValue};
-use crate::target::{DeviceKind, Model, Operand, Target};
+use crate::target::{DeviceKind, DirectAddress, Model, Operand, Target, Width};
 use crate::text::folded;
 use rustc_hash::FxHashSet;
 use smol_str::{SmolStr, format_smolstr};
@@ -76,6 +75,8 @@ enum Use {
     Beside(Term),
     /// An instance of this block, or a value of this type.
     Type(SmolStr),
+    /// A number of this type.
+    Of(&'static str),
     Label,
 }
 
@@ -103,6 +104,12 @@ fn visit<'p>(path: &'p Path, found: &mut impl FnMut(&'p Term, Use)) {
             let kinds = inputs.chain([computation.function.result_type()]);
             for (term, kind) in action.terms.iter().zip(kinds) {
                 found.borrow_mut()(term, Use::Type(kind.unwrap_or("INT".into())));
+            }
+        }
+        Deed::Compute(computation) if let Some([input, result]) = computation.conversion.types() => {
+            for (place, term) in action.terms.iter().enumerate() {
+                let is_result = place + 1 == action.terms.len();
+                found.borrow_mut()(term, Use::Of(if is_result { result } else { input }));
             }
         }
         Deed::Compute(_) => {
@@ -144,13 +151,19 @@ pub(super) fn header(document: &Document, sources: &[Source], helpers: &[Helper]
             visit(path, &mut |term, usage| {
                 let name = root(term);
                 let is_whole = name.len() == term.text.len();
-                let declared = declared_type(scopes, name).or_else(|| block_of(document, name));
+                let own = declared_type(scopes, name).or_else(|| block_of(document, name));
+                let address = term.address().filter(|_| document.target().is_fx());
+                let declared = own.or_else(|| address.and_then(type_at));
                 let by_use = type_by_use(&usage).filter(|_| is_whole);
                 let calls = matches!(usage, Use::Type(_));
                 let type_name = if calls { by_use.or(declared) } else { declared.or(by_use) };
                 let Some(type_name) = type_name else { return };
                 if term.operand == Operand::Variable && calls == is_instance && known.insert(folded(name)) {
-                    variables.push((name.into(), type_name));
+                    let name = match address {
+                        Some(address) => format_smolstr!("{name} AT {address}"),
+                        None => name.into(),
+                    };
+                    variables.push((name, type_name));
                 }
             });
         }
@@ -158,14 +171,6 @@ pub(super) fn header(document: &Document, sources: &[Source], helpers: &[Helper]
     let is_elsewhere = |name: &str| document.outer().is_some() && scopes.is_global_elsewhere(name);
     let (external, mut variables): (Vec<_>, Vec<_>) =
         variables.into_iter().partition(|(name, _)| is_elsewhere(name));
-    if document.target().is_fx() {
-        for (name, _) in &mut variables {
-            let Operand::Device(device) = Operand::read(name, document.target().model) else { continue };
-            if let Some(address) = dialect::address(device) {
-                *name = format_smolstr!("{name} AT {address}");
-            }
-        }
-    }
     variables.extend(helpers.iter().map(|helper| (helper.name.clone(), helper.type_name.into())));
     format!("PROGRAM {PROGRAM}\n{}{}\n", section("VAR_EXTERNAL", &external), section("VAR", &variables))
 }
@@ -204,10 +209,21 @@ fn block_of(document: &Document, name: &str) -> Option<SmolStr> {
     }
 }
 
+/// The type of the variable that stands for a device at this address.
+fn type_at(address: DirectAddress) -> Option<SmolStr> {
+    match address.width {
+        Width::Bit => Some("BOOL".into()),
+        Width::Word => Some("INT".into()),
+        Width::Double => Some("DINT".into()),
+        _ => None,
+    }
+}
+
 fn type_by_use(usage: &Use) -> Option<SmolStr> {
     match usage {
         Use::Bit => Some("BOOL".into()),
         Use::Type(name) => Some(name.clone()),
+        Use::Of(name) => Some((*name).into()),
         Use::Beside(other) => Some(match other.operand {
             Operand::Literal(literal) => match literal.value {
                 LiteralValue::Time(_) => "TIME".into(),

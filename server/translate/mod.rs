@@ -185,7 +185,7 @@ fn written(
     is_cancelled: &dyn Fn() -> bool,
 ) -> Option<Translation> {
     let target = dialect::target(document, to, options.model);
-    dialect::convert(document, (to, target), &mut program);
+    dialect::convert(document, (to, target), &mut program, is_whole);
     let (mut translation, helpers) =
         page::write(document, &program, (to, target), options, is_whole, is_cancelled)?;
     if options.proves {

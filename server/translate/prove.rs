@@ -7,12 +7,15 @@ use super::counterexample::{self, Counterexample};
 use super::source::{self, Source};
 use super::{To, declared, dialect, units};
 use crate::document::{Document, Scopes};
+use crate::il::iec::SectionKind;
 use crate::logic::{
-    Action, Comparison, Deed, Effort, Path, Place, State, Storage, compare, compare_outcome, may_drive,
-    touches_bits,
+    Action, Comparison, Deed, Effort, Path, Place, State, Storage, Term, compare, compare_outcome,
+    is_helper_name, may_drive, touches_bits,
 };
 use crate::target::{Flow, Model, Target};
-use crate::text::{Message, Span};
+use crate::text::{Message, Span, folded};
+use rustc_hash::FxHashSet;
+use smol_str::SmolStr;
 
 /// What is known of two programs.
 #[derive(Clone, PartialEq, Debug)]
@@ -49,8 +52,13 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
     let is_mixed = left.target().is_fx() != right.target().is_fx();
     let sources = [left, right].map(|document| {
         let mut program = source::program(document, None);
-        if is_mixed && document.target().is_fx() {
-            dialect::convert(document, (To::Iec, Target::of(Model::Iec)), &mut program);
+        match document.target().is_fx() {
+            _ if !is_mixed => {}
+            true => {
+                dialect::convert(document, (To::Iec, Target::of(Model::Iec)), &mut program, true);
+                dialect::part_calculations(&mut program);
+            }
+            false => dialect::refuse_other_types(document, &mut program),
         }
         program.rungs
     });
@@ -71,6 +79,7 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
         before: [Vec::new(), Vec::new()],
         next: [0, 0],
         may_be_off,
+        helpers: if is_mixed { helpers([left, right]) } else { FxHashSet::default() },
         is_reordered: false,
         scopes: [left.scopes(), right.scopes()],
         effort: Effort::of_program(),
@@ -86,6 +95,23 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
         }
         Ok(()) => Proof::Equal { is_reordered: prover.is_reordered },
     }
+}
+
+/// The variables, by their keys, that keep the power of a rung and that nobody outside of their program unit knows. A
+/// program of the FX family has nothing that stands for them.
+fn helpers(documents: [&Document; 2]) -> FxHashSet<SmolStr> {
+    let mut helpers = FxHashSet::default();
+    let mut known = FxHashSet::default();
+    for scopes in documents.map(Document::scopes) {
+        known.extend(scopes.globals.keys().cloned());
+        for variable in scopes.pous.iter().flat_map(|pou| &pou.variables) {
+            let is_own = variable.section == SectionKind::Local && variable.address.is_none();
+            let kind = if is_own && is_helper_name(&variable.name) { &mut helpers } else { &mut known };
+            kind.insert(folded(&variable.name));
+        }
+    }
+    helpers.retain(|name| !known.contains(name));
+    helpers
 }
 
 /// Whether a rung begins a part of the program in which there may be no power at the left rail.
@@ -196,6 +222,8 @@ struct Prover<'s> {
     next: [usize; 2],
     /// Whether a part of the program may be left out, so that there is no power at the left rail.
     may_be_off: bool,
+    /// Variables that only one of the programs has.
+    helpers: FxHashSet<SmolStr>,
     is_reordered: bool,
     /// What either program declares.
     scopes: [&'s Scopes; 2],
@@ -268,8 +296,10 @@ impl<'s> Prover<'s> {
         sides: [&[(&'s Source, &'s Path)]; 2],
     ) -> Result<(), Proof> {
         let may_be_off = self.may_be_off;
-        let alone =
-            self.effort.ask(|formulas| compare_outcome(&paths[0], &paths[1], [0, 0], may_be_off, formulas));
+        let is_private = |term: &Term| self.helpers.contains(&term.key());
+        let alone = self.effort.ask(|formulas| {
+            compare_outcome(&paths[0], &paths[1], [0, 0], (may_be_off, &is_private), formulas)
+        });
         if matches!(alone, Comparison::Same { .. }) {
             return Ok(());
         }
@@ -306,8 +336,9 @@ impl<'s> Prover<'s> {
         known: [usize; 2],
         may_be_off: bool,
     ) -> (Comparison, Option<State>) {
+        let is_private = |term: &Term| self.helpers.contains(&term.key());
         self.effort.ask(|formulas| {
-            let comparison = compare_outcome(left, right, known, may_be_off, formulas);
+            let comparison = compare_outcome(left, right, known, (may_be_off, &is_private), formulas);
             let values = match &comparison {
                 Comparison::Different { values, .. } => counterexample::state(formulas, values),
                 _ => None,

@@ -1,7 +1,7 @@
 //! Writes a path of power as equations, one for each output.
 
 use crate::ladder::{CoilKind, ContactKind};
-use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Test};
+use crate::logic::{Action, Contact, Conversion, Deed, Drive, Expression, Gate, Path, Test};
 use crate::text::Message;
 use smol_str::format_smolstr;
 
@@ -43,6 +43,10 @@ impl Writer {
             match drive {
                 Drive::Path(path) => self.path(path, power.as_ref(), equations)?,
                 Drive::Action(action) if action.runs_unit() => return Err(lack_of(action)),
+                // A word of an equation stands for itself.
+                Drive::Action(action) if is_converted(action) => {
+                    return Err(Message::new("translate.not-boolean"));
+                }
                 Drive::Action(action) => equations.push(match &power {
                     Some(power) => format!("{} = {}", self.left(action), self.sum(power)),
                     None if action.deed.stands_alone() => self.left(action),
@@ -130,6 +134,11 @@ impl Writer {
             }
         }
     }
+}
+
+/// Whether it calculates with other types than its operands have.
+fn is_converted(action: &Action) -> bool {
+    matches!(&action.deed, Deed::Compute(computation) if computation.conversion != Conversion::None)
 }
 
 /// Equations know no function block and no function of the program.

@@ -11,7 +11,9 @@ mod helpers;
 pub use helpers::{Helper, Helpers};
 
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
-use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test};
+use crate::logic::{
+    Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test,
+};
 use crate::text::Message;
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
@@ -312,7 +314,7 @@ impl Writer<'_> {
         Ok(())
     }
 
-    /// `LD a`, `ADD b`, `ST c`
+    /// `LD a`, `ADD b`, `ST c`; `LD a`, `INT_TO_WORD`, `AND( b`, `INT_TO_WORD`, `)`, `WORD_TO_INT`, `ST c`
     fn computation(&mut self, action: &Action) -> Result<(), Message> {
         let operands = match &action.deed {
             Deed::Compute(computation) => {
@@ -323,18 +325,38 @@ impl Writer<'_> {
         let Some((computation, (inputs, result))) = operands else {
             return Err(Message::new("translate.no-instruction"));
         };
-        match inputs.split_first() {
-            Some((first, others)) => {
-                self.lines.push(format!("LD {first}"));
+        match inputs {
+            [] => self.lines.push(format!("{}()", computation.name())),
+            [first, others @ ..] if computation.is_declared() => {
                 let others: Vec<&str> = others.iter().map(|term| term.text.as_str()).collect();
                 let operands = format!("{} {}", computation.name(), others.join(", "));
-                self.lines.extend((!computation.copies()).then(|| operands.trim_end().to_string()));
+                self.lines.extend([format!("LD {first}"), operands.trim_end().to_string()]);
             }
-            None => self.lines.push(format!("{}()", computation.name())),
+            _ => self.operators(computation, inputs),
         }
         self.lines.push(format!("ST {result}"));
         self.driven.extend(computation.changes(&action.terms).into_iter().map(Term::key));
         Ok(())
+    }
+
+    /// A function of the standard on its inputs, which has an operator.
+    fn operators(&mut self, computation: &Computation, inputs: &[Term]) {
+        let (function, conversion) = (computation.name(), computation.conversion);
+        for (number, term) in inputs.iter().enumerate() {
+            match (number, conversion.of_input(term)) {
+                (0, conversion) => {
+                    self.lines.push(format!("LD {term}"));
+                    self.lines.extend(conversion.map(str::to_string));
+                }
+                (_, None) => self.lines.push(format!("{function} {term}")),
+                (_, Some(conversion)) => {
+                    self.lines.extend([format!("{function}( {term}"), conversion.into(), ")".into()]);
+                }
+            }
+        }
+        // What has one input but copies it is an operator without an operand.
+        self.lines.extend((inputs.len() == 1 && !computation.copies()).then(|| function.into()));
+        self.lines.extend(conversion.of_result().map(str::to_string));
     }
 
     fn leave(&mut self, action: &Action, condition: &str) -> Result<(), Message> {

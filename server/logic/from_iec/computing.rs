@@ -1,5 +1,6 @@
-//! Calculations with words, `LD a / ADD b / ST c`, and calls of functions that the program declares, `LD a / Scale b /
-//! ST c`; and those that a jump over them makes conditional:
+//! Calculations with words: `LD a / ADD b / ST c`, with operands converted `LD a / INT_TO_WORD / AND 16#FF /
+//! WORD_TO_INT / ST c`, calls of functions that the program declares, `LD a / Scale b / ST c`, and those that a jump
+//! over them makes conditional:
 //!
 //! ```text
 //!     LD      Start
@@ -13,7 +14,7 @@
 use super::{Source, ValueKind, declares};
 use crate::document::DeclaredType;
 use crate::il::iec::{Condition, Direction, ItemKind, ListForm, OperandId, Operation, ParameterValue};
-use crate::logic::Computation;
+use crate::logic::{Computation, Conversion};
 use crate::target::Operand;
 use crate::target::iec::OperatorRole;
 use crate::text::folded;
@@ -100,21 +101,34 @@ impl Source<'_> {
         if load.operator.role != OperatorRole::Load {
             return None;
         }
-        let (mut store_at, mut operands, mut computation) =
-            (index + 1, vec![first], Computation::named("MOVE")?);
-        let (operation, second) = self.operation(store_at)?;
-        if operation.operator.role == (OperatorRole::Combine { comparison: false }) {
-            let name = if operation.operator.name == "&" { "AND" } else { operation.operator.name };
-            computation = Computation::named(name)?;
-            operands.push(second);
-            store_at += 1;
+        let mut at = index + 1;
+        let before = self.conversion(&mut at);
+        let (computation, second) = self.combination(&mut at)?;
+        let converted = match (before, &second) {
+            (Some(before), _) => Some(before),
+            (None, Some((_, conversion))) => *conversion,
+            (None, None) => None,
+        };
+        let is_constant = self.is_literal(first) && second.is_none_or(|(second, _)| self.is_literal(second));
+        let converted = match is_constant {
+            true => self.function(at).and_then(Conversion::of_result_named),
+            false => converted,
+        };
+        let computation = computation.converted(converted.unwrap_or_default())?;
+        // Whatever is no literal is converted, and alike.
+        let fits = |id: OperandId, own: Option<Conversion>| match self.is_literal(id) {
+            true => own.is_none(),
+            false => own == converted,
+        };
+        let is_alike = fits(first, before) && second.is_none_or(|(second, own)| fits(second, own));
+        if let Some(name) = computation.conversion.of_result() {
+            at += self.function(at).filter(|function| function.eq_ignore_ascii_case(name)).map(|_| 1)?;
         }
-        operands.push(self.stored(pou, store_at)?);
-        self.are_words(pou, &computation, &operands).then_some(Found {
-            computation,
-            operands,
-            items: store_at + 1 - index,
-        })
+        let result = self.stored(pou, at)?;
+        let operands: Vec<OperandId> =
+            [Some(first), second.map(|(second, _)| second), Some(result)].into_iter().flatten().collect();
+        let fits = is_alike && self.are_words(pou, &computation, &operands);
+        fits.then_some(Found { computation, operands, items: at + 1 - index })
     }
 
     /// The call of a function of the program that begins at item `index`, if its result is stored and each input has an
@@ -162,6 +176,63 @@ impl Source<'_> {
             kind => declares(&kind) || self.starts_afresh(&kind),
         });
         (is_store && is_last && !self.feeds(pou, index)).then_some(result)
+    }
+
+    /// What is done at item `at` with the current result: the function, and its second operand with the conversion
+    /// that it goes through. Nothing stands there before a store, which copies.
+    fn combination(&self, at: &mut usize) -> Option<(Computation, Option<(OperandId, Option<Conversion>)>)> {
+        let item = self.tree.items.get(*at)?;
+        let named = |operation: Operation| {
+            let combines = operation.operator.role == (OperatorRole::Combine { comparison: false });
+            let name = if operation.operator.name == "&" { "AND" } else { operation.operator.name };
+            Computation::named(name).filter(|_| combines && !operation.negated)
+        };
+        match item.kind {
+            ItemKind::Operation { operation, operand: None }
+                if operation.operator.role == OperatorRole::Complement && item.depth == 0 =>
+            {
+                *at += 1;
+                Some((Computation::named("NOT")?, None))
+            }
+            ItemKind::Operation { operation, operand: Some(id) }
+                if operation.operator.role != OperatorRole::Store && item.depth == 0 =>
+            {
+                *at += 1;
+                Some((named(operation)?, Some((id, None))))
+            }
+            ItemKind::Open { operation, operand: Some(id) } if item.depth == 0 => {
+                *at += 1;
+                let conversion = self.conversion(at)?;
+                let close = self.tree.items.get(*at)?;
+                *at += 1;
+                let computation = named(operation).filter(|_| close.kind == ItemKind::Close)?;
+                Some((computation, Some((id, Some(conversion)))))
+            }
+            _ => Some((Computation::named("MOVE")?, None)),
+        }
+    }
+
+    /// The conversion whose function stands at item `at`, which is then passed.
+    fn conversion(&self, at: &mut usize) -> Option<Conversion> {
+        let found = self.function(*at).and_then(Conversion::named);
+        *at += usize::from(found.is_some());
+        found
+    }
+
+    /// The function of the current result alone at item `at`.
+    fn function(&self, at: usize) -> Option<&str> {
+        match self.tree.items.get(at)?.kind {
+            ItemKind::Function { name, form: ListForm::None, parameters }
+                if parameters.start == parameters.end =>
+            {
+                Some(name.of(self.text))
+            }
+            _ => None,
+        }
+    }
+
+    fn is_literal(&self, id: OperandId) -> bool {
+        matches!(self.tree.operand(id).value, Operand::Literal(_))
     }
 
     /// An operation outside of parentheses, without a negation.

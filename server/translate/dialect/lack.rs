@@ -11,8 +11,10 @@ pub(super) enum Lack {
     Unnamed,
     /// A device, a variable, an instruction.
     Word(SmolStr),
-    /// A variable of a type that the other language does not calculate with.
-    Type(SmolStr, &'static str),
+    /// Something of which the message with this key says why.
+    Reason(&'static str, SmolStr),
+    /// A variable of a type that the other language does not calculate with in so many bits.
+    Type(SmolStr, &'static str, u32),
     /// A variable of a type that the other language compares otherwise.
     Order(SmolStr, &'static str),
 }
@@ -23,7 +25,11 @@ impl Lack {
         match self {
             Lack::Unnamed => Refusal::NoCounterpart.message(),
             Lack::Word(word) => Message::new("translate.no-counterpart").with("word", word),
-            Lack::Type(word, kind) => Message::new("translate.type").with("word", word).with("type", *kind),
+            Lack::Reason(key, word) => Message::new(key).with("word", word),
+            Lack::Type(word, kind, bits) => {
+                let message = Message::new("translate.type").with("word", word).with("type", *kind);
+                message.with("bits", *bits)
+            }
             Lack::Order(word, kind) => Message::new("translate.order").with("word", word).with("type", *kind),
         }
     }

@@ -1,15 +1,15 @@
 //! Paths of IEC 61131-3 in the words of the FX family.
 
 use super::super::source::Program;
-use super::{COMPUTED, Lack, PULSE, STEPPED, device_at, without};
+mod calculation;
+
+use super::{Lack, PULSE, Registers, device_at, devices_at, pair_at, without};
 use crate::document::{DeclaredType, Scopes};
 use crate::il::iec::SectionKind;
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
-use crate::logic::{
-    Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test,
-};
+use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test};
 use crate::target::iec::{ElementaryType, LiteralValue};
-use crate::target::{Device, DeviceKind, Form, Operand, Target, Width};
+use crate::target::{Device, DeviceKind, DirectAddress, Form, Operand, Target, Width};
 use crate::text::{Span, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
@@ -65,7 +65,7 @@ fn taken_devices(program: &Program, scopes: &Scopes, target: &Target) -> FxHashS
     for (unit, pou) in scopes.own_pous().iter().enumerate() {
         for variable in &pou.variables {
             match (variable.address, Operand::read(&variable.name, target.model)) {
-                (Some(address), _) => taken.extend(device_at(address)),
+                (Some(address), _) => taken.extend(devices_at(address)),
                 (None, Operand::Device(device)) if variable.section == SectionKind::Local => {
                     taken.extend((!named.insert(device) && unit > 0).then_some(device));
                 }
@@ -73,11 +73,13 @@ fn taken_devices(program: &Program, scopes: &Scopes, target: &Target) -> FxHashS
             }
         }
     }
-    taken.extend(scopes.globals.values().filter_map(|variable| device_at(variable.address?)));
+    let located: Vec<DirectAddress> =
+        scopes.globals.values().filter_map(|variable| variable.address).collect();
+    taken.extend(located.into_iter().flat_map(devices_at));
     for path in program.rungs.iter().flat_map(|source| source.rung.path.iter().flatten()) {
         path.clone().each_term(&mut |term| {
             if let Operand::Direct(address) = term.operand {
-                taken.extend(device_at(address));
+                taken.extend(devices_at(address));
             }
         });
     }
@@ -103,15 +105,49 @@ fn pointer(name: &str) -> Option<u32> {
 pub(super) fn path(
     path: &Path,
     target: &Target,
-    names: &Names,
+    (names, registers): (&Names, &Registers),
     (scopes, pou): (&Scopes, Option<usize>),
 ) -> Result<Path, Lack> {
-    Converter { target, names, scopes, pou }.whole(path)
+    Converter { target, names, registers, types: Types { scopes, pou } }.whole(path)
+}
+
+/// Whether two actions without a condition, one directly behind the other, are one DIV.
+pub(super) fn is_division(
+    [first, next]: [&Drive; 2],
+    target: &Target,
+    (names, registers): (&Names, &Registers),
+    (scopes, pou): (&Scopes, Option<usize>),
+) -> bool {
+    let converter = Converter { target, names, registers, types: Types { scopes, pou } };
+    converter.division(first, std::slice::from_ref(next)).is_some()
+}
+
+/// Whether the numbers of a path compare and divide as those of the FX family do.
+pub(super) fn is_of_family(path: &Path, scopes: &Scopes, pou: Option<usize>) -> bool {
+    let types = Types { scopes, pou };
+    let (mut acts, mut asks) = (true, true);
+    path.visit(&mut |action| acts &= types.calculates(action), &mut |expression| {
+        expression.visit(&mut |contact| {
+            asks &= match (contact.test, &contact.terms[..]) {
+                (Test::Compare(operator), [left, right]) => {
+                    types.fit(&contact.terms) && types.compared(operator, [left, right]).is_ok()
+                }
+                _ => true,
+            };
+        });
+    });
+    acts && asks
 }
 
 struct Converter<'a> {
     target: &'a Target,
     names: &'a Names,
+    registers: &'a Registers,
+    types: Types<'a>,
+}
+
+/// What is declared of the variables of a program unit.
+struct Types<'a> {
     scopes: &'a Scopes,
     pou: Option<usize>,
 }
@@ -144,8 +180,8 @@ impl Converter<'_> {
                 Gate::Pass(expression) => converted.gates.push(Gate::Pass(self.expression(expression)?)),
                 Gate::Invert => converted.gates.push(Gate::Invert),
                 Gate::Through(action) => {
-                    let coil = without(self.pulsed(action, path)).map_err(|lack| lack.of_action(action))?;
-                    converted.drives.push(Drive::Action(coil));
+                    let pulsed = without(self.pulsed(action, path)).map_err(|lack| lack.of_action(action))?;
+                    converted.drives.extend(pulsed.into_iter().map(Drive::Action));
                     return Ok(converted);
                 }
             }
@@ -155,38 +191,57 @@ impl Converter<'_> {
         if path.gates.is_empty() && path.drives.iter().any(is_bare) {
             converted.gates.push(Gate::Pass(Expression::Constant(true)));
         }
-        for drive in &path.drives {
-            converted.drives.push(match drive {
+        let mut rest = &path.drives[..];
+        while let Some((drive, behind)) = rest.split_first() {
+            rest = behind;
+            match drive {
                 Drive::Path(path) => match &path.gates[..] {
                     [Gate::Through(action)] => {
-                        let coil = without(self.pulsed(action, path)).map_err(|lack| lack.of_action(action));
-                        Drive::Action(coil?)
+                        let pulsed =
+                            without(self.pulsed(action, path)).map_err(|lack| lack.of_action(action))?;
+                        converted.drives.extend(pulsed.into_iter().map(Drive::Action));
                     }
-                    _ => Drive::Path(self.path(path)?),
+                    _ => converted.drives.push(Drive::Path(self.path(path)?)),
                 },
                 Drive::Action(action) => {
-                    Drive::Action(self.action(action).map_err(|lack| lack.of_action(action))?)
+                    let action = match self.division(drive, behind) {
+                        Some(division) => {
+                            rest = &behind[1..];
+                            Ok(division)
+                        }
+                        None => self.action(action).map_err(|lack| lack.of_action(action)),
+                    };
+                    converted.drives.push(Drive::Action(action?));
                 }
-            });
+            }
         }
         Ok(converted)
     }
 
-    /// The pulse form that the detector at the end of the gates of `path` and the calculation behind it are.
-    fn pulsed(&self, detector: &Action, path: &Path) -> Option<Action> {
-        let (Deed::Call(call), [Drive::Action(driven)]) = (&detector.deed, &path.drives[..]) else {
-            return None;
-        };
-        let Deed::Compute(computation) = &driven.deed else { return None };
+    /// The pulse forms that the detector at the end of the gates of `path` and the calculations behind it are.
+    fn pulsed(&self, detector: &Action, path: &Path) -> Option<Vec<Action>> {
+        let Deed::Call(call) = &detector.deed else { return None };
         let instance = detector.terms.first()?;
         let is_last = matches!(path.gates.last(), Some(Gate::Through(last)) if last == detector);
         if !call.block.is_standard("R_TRIG") || !is_last || !is_pulse(&instance.text) {
             return None;
         }
-        let action = self.calculation(computation, driven).ok()?;
-        // RST has no pulse form.
-        let Deed::Instruction(form) = action.deed else { return None };
-        Some(Action { deed: Deed::Instruction(Form { pulse: true, ..form }), ..action })
+        let mut pulsed = Vec::new();
+        let mut rest = &path.drives[..];
+        while let Some((drive, behind)) = rest.split_first() {
+            let Drive::Action(driven) = drive else { return None };
+            let division = self.division(drive, behind);
+            rest = if division.is_some() { &behind[1..] } else { behind };
+            let action = match (division, &driven.deed) {
+                (Some(division), _) => division,
+                (None, Deed::Compute(computation)) => self.calculation(computation, driven).ok()?,
+                _ => return None,
+            };
+            // RST has no pulse form.
+            let Deed::Instruction(form) = action.deed else { return None };
+            pulsed.push(Action { deed: Deed::Instruction(Form { pulse: true, ..form }), ..action });
+        }
+        Some(pulsed)
     }
 
     fn expression(&self, expression: &Expression) -> Result<Expression, Lack> {
@@ -194,7 +249,7 @@ impl Converter<'_> {
     }
 
     fn contact(&self, contact: &Contact) -> Result<Expression, Lack> {
-        let terms = match (contact.test, &contact.terms[..]) {
+        let (test, terms) = match (contact.test, &contact.terms[..]) {
             (Test::Bit(kind), [term]) => {
                 if let Operand::Literal(literal) = term.operand
                     && let LiteralValue::Bool(value) = literal.value
@@ -205,16 +260,17 @@ impl Converter<'_> {
                         _ => Err(Lack::Unnamed),
                     };
                 }
-                vec![self.bit(term)?]
+                (contact.test, vec![self.bit(term)?])
             }
             (Test::Compare(operator), [left, right]) => {
-                let words = vec![self.word(left)?, self.word(right)?];
-                self.compared(operator, [left, right])?;
-                words
+                let width = self.types.width(&contact.terms);
+                let numbers = vec![self.number(left, width)?, self.number(right, width)?];
+                self.types.compared(operator, [left, right])?;
+                (Test::Compare(operator.in_width(width == Width::Double)), numbers)
             }
             _ => return Err(Lack::Unnamed),
         };
-        Ok(Expression::Contact(Contact { terms, ..contact.clone() }))
+        Ok(Expression::Contact(Contact { test, terms, span: contact.span }))
     }
 
     fn bit(&self, term: &Term) -> Result<Term, Lack> {
@@ -231,52 +287,32 @@ impl Converter<'_> {
         without(matches!(device.kind, X | Y | M | S).then(|| self.term(device, term.span)))
     }
 
-    /// A word of 16 bits, of which ADD and its kin make the same whether it has a sign or not.
-    fn word(&self, term: &Term) -> Result<Term, Lack> {
-        use ElementaryType::{Int, Uint, Word};
-        if let Some(kind) = self.type_of(term)
-            && !matches!(kind, Int | Uint | Word)
-        {
-            return Err(Lack::Type(term.text.clone(), kind.name()));
-        }
-        self.own_word(term).map_err(|lack| lack.named(&term.text))
-    }
-
-    /// The elementary type of a variable that is declared, or of an address.
-    fn type_of(&self, term: &Term) -> Option<ElementaryType> {
-        match term.operand {
-            Operand::Direct(address) if address.width == Width::Word => Some(ElementaryType::Word),
-            Operand::Variable => match self.scopes.type_of(self.pou, &term.text)? {
-                DeclaredType::Elementary(kind) => Some(kind),
-                _ => None,
-            },
-            _ => None,
+    /// A number of 16 or 32 bits, of which ADD and its kin make the same whether it has a sign or not.
+    fn number(&self, term: &Term, width: Width) -> Result<Term, Lack> {
+        match self.types.of(term) {
+            Some(kind) if width_of(kind) != Some(width) => {
+                let bits = if width == Width::Double { 32 } else { 16 };
+                Err(Lack::Type(term.text.clone(), kind.name(), bits))
+            }
+            _ => self.own_number(term, width).map_err(|lack| lack.named(&term.text)),
         }
     }
 
-    /// Whether two words compare as the FX family does it: with a sign, which counts but for equality of patterns.
-    fn compared(&self, operator: CompareOperator, sides: [&Term; 2]) -> Result<(), Lack> {
-        use CompareOperator::{Equal, NotEqual};
-        let types = sides.map(|term| self.type_of(term));
-        let unsigned = types.iter().zip(sides).find_map(|(kind, term)| {
-            let kind = kind.filter(|kind| *kind != ElementaryType::Int)?;
-            Some((kind, term))
-        });
-        let Some((kind, term)) = unsigned else { return Ok(()) };
-        let is_negative = |term: &Term| match term.operand {
-            Operand::Literal(literal) => matches!(literal.value, LiteralValue::Integer(..0)),
-            _ => false,
-        };
-        let is_pattern = matches!(operator, Equal { .. } | NotEqual { .. })
-            && types.iter().flatten().all(|other| *other == kind)
-            && !sides.into_iter().any(is_negative);
-        if is_pattern { Ok(()) } else { Err(Lack::Order(term.text.clone(), kind.name())) }
-    }
-
-    fn own_word(&self, term: &Term) -> Result<Term, Lack> {
+    fn own_number(&self, term: &Term, width: Width) -> Result<Term, Lack> {
         if let Operand::Literal(literal) = term.operand {
             let LiteralValue::Integer(value) = literal.value else { return Err(Lack::Unnamed) };
-            return self.constant(without(i16::try_from(value).ok())?.into(), term.span);
+            let value = match width {
+                Width::Double => i64::from(without(i32::try_from(value).ok())?),
+                _ => i64::from(without(i16::try_from(value).ok())?),
+            };
+            return self.constant(value, term.span);
+        }
+        if width == Width::Double {
+            let first = without(self.pair(term))?;
+            return match self.registers.is_pair(first.number) {
+                true => Ok(self.term(first, term.span)),
+                false => Err(Lack::Reason("translate.torn", term.text.clone())),
+            };
         }
         if let Some((instance, member)) = member(term) {
             let device = without(self.named(instance).filter(|device| device.kind == DeviceKind::C))?;
@@ -284,6 +320,25 @@ impl Converter<'_> {
         }
         let device = without(self.device(term))?;
         without((device.kind == DeviceKind::D).then(|| self.term(device, term.span)))
+    }
+
+    /// The first register of the two that a variable of 32 bits stands for: by its address, or if it has none by its
+    /// name.
+    fn pair(&self, term: &Term) -> Option<Device> {
+        let next = |first: &Device| Device::new(first.kind, first.number + 1);
+        let first = match term.storage {
+            Storage::Own | Storage::Local if term.operand == Operand::Variable => {
+                self.named(&term.text).filter(|first| {
+                    first.kind == DeviceKind::D
+                        && [*first, next(first)].iter().all(|half| self.names.is_free(*half))
+                })
+            }
+            Storage::Anywhere => None,
+            _ => pair_at(term.address()?),
+        };
+        first.filter(|first| {
+            [*first, next(first)].into_iter().all(|half| is_known(half) && !half.is_special())
+        })
     }
 
     /// The device of this name that the target has.
@@ -331,33 +386,6 @@ impl Converter<'_> {
         Ok(Action { deed, terms, span: action.span })
     }
 
-    /// The instruction that a calculation is.
-    fn calculation(&self, computation: &Computation, action: &Action) -> Result<Action, Lack> {
-        let function = without((!computation.is_declared()).then(|| computation.name()))?;
-        let (inputs, result) = without(computation.operands(&action.terms))?;
-        let register = self.word(result)?;
-        without(matches!(register.operand, Operand::Device(_)).then_some(()))?;
-        let row = |rows: &[(&'static str, &str)]| {
-            rows.iter().find(|(_, own)| *own == function).and_then(|(mnemonic, _)| Form::named(mnemonic))
-        };
-        let span = action.span;
-        match inputs {
-            [zero] if zero.text == "0" => {
-                let deed = Deed::Coil(CoilKind::Reset);
-                return Ok(Action { deed, terms: vec![register], span });
-            }
-            [left, one] if left == result && one.text == "1" && row(&STEPPED).is_some() => {
-                let deed = Deed::Instruction(without(row(&STEPPED))?);
-                return Ok(Action { deed, terms: vec![register], span });
-            }
-            _ => {}
-        }
-        let form = without(row(&COMPUTED))?;
-        let mut terms = inputs.iter().map(|term| self.word(term)).collect::<Result<Vec<_>, _>>()?;
-        terms.push(register);
-        Ok(Action { deed: Deed::Instruction(form), terms, span })
-    }
-
     /// The output that the call of a timer or counter is.
     fn called(&self, call: &Call, instance: &Term, terms: &[Term]) -> Result<(Deed, Vec<Term>), Lack> {
         let device = without(self.named(&instance.text))?;
@@ -369,7 +397,8 @@ impl Converter<'_> {
                 Ok((Deed::Coil(CoilKind::Reset), vec![own]))
             }
             ("CTU", DeviceKind::C, "CU", [preset]) if preset.name == "PV" && device.number < 200 => {
-                Ok((Deed::Coil(CoilKind::Plain), vec![own, self.word(&preset.term)?]))
+                let preset = self.number(&preset.term, Width::Word)?;
+                Ok((Deed::Coil(CoilKind::Plain), vec![own, preset]))
             }
             ("TON", DeviceKind::T, "IN", [preset]) if preset.name == "PT" => {
                 let range = without(device.range_on(self.target).filter(|range| !range.latched))?;
@@ -384,5 +413,84 @@ impl Converter<'_> {
             }
             _ => Err(Lack::Unnamed),
         }
+    }
+}
+
+impl Types<'_> {
+    /// The elementary type of a variable that is declared, or of an address.
+    fn of(&self, term: &Term) -> Option<ElementaryType> {
+        match term.operand {
+            Operand::Direct(address) => match address.width {
+                Width::Word => Some(ElementaryType::Word),
+                Width::Double => Some(ElementaryType::Dword),
+                _ => None,
+            },
+            Operand::Variable => match self.scopes.type_of(self.pou, &term.text)? {
+                DeclaredType::Elementary(kind) => Some(kind),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// In how many bits these are calculated with or compared.
+    fn width(&self, terms: &[Term]) -> Width {
+        let is_wide = |term: &Term| self.of(term).and_then(width_of) == Some(Width::Double);
+        if terms.iter().any(is_wide) { Width::Double } else { Width::Word }
+    }
+
+    /// Whether numbers are of the types that lie at their addresses on the FX family.
+    fn fit(&self, terms: &[Term]) -> bool {
+        terms.iter().all(|term| match (term.address(), self.of(term)) {
+            (Some(address), Some(kind)) => width_of(kind) == Some(address.width),
+            _ => true,
+        })
+    }
+
+    /// Whether a calculation makes of numbers what an instruction makes of them, however they are declared.
+    fn calculates(&self, action: &Action) -> bool {
+        let Deed::Compute(computation) = &action.deed else { return true };
+        let Some((inputs, result)) = computation.operands(&action.terms) else { return false };
+        let is_signed = || inputs.iter().all(|term| self.signed(term));
+        match computation.standard() {
+            Some("MUL") if computation.widens() => is_signed() && self.fit(std::slice::from_ref(result)),
+            Some("DIV" | "MOD") => is_signed() && self.fit(&action.terms),
+            _ => self.fit(&action.terms),
+        }
+    }
+
+    /// Whether a number has a sign, as far as it is declared.
+    fn signed(&self, term: &Term) -> bool {
+        use ElementaryType::{Dint, Int};
+        self.of(term).is_none_or(|kind| matches!(kind, Int | Dint))
+    }
+
+    /// Whether two words compare as the FX family does it: with a sign, which counts but for equality of patterns.
+    fn compared(&self, operator: CompareOperator, sides: [&Term; 2]) -> Result<(), Lack> {
+        use CompareOperator::{Equal, NotEqual};
+        let types = sides.map(|term| self.of(term));
+        let unsigned = types.iter().zip(sides).find_map(|(kind, term)| {
+            let kind = kind.filter(|_| !self.signed(term))?;
+            Some((kind, term))
+        });
+        let Some((kind, term)) = unsigned else { return Ok(()) };
+        let is_negative = |term: &Term| match term.operand {
+            Operand::Literal(literal) => matches!(literal.value, LiteralValue::Integer(..0)),
+            _ => false,
+        };
+        let is_pattern = matches!(operator, Equal { .. } | NotEqual { .. })
+            && types.iter().flatten().all(|other| *other == kind)
+            && !sides.into_iter().any(is_negative);
+        if is_pattern { Ok(()) } else { Err(Lack::Order(term.text.clone(), kind.name())) }
+    }
+}
+
+/// The size of the whole numbers and patterns that the FX family calculates with.
+fn width_of(kind: ElementaryType) -> Option<Width> {
+    use ElementaryType::{Dint, Dword, Int, Udint, Uint, Word};
+    match kind {
+        Int | Uint | Word => Some(Width::Word),
+        Dint | Udint | Dword => Some(Width::Double),
+        _ => None,
     }
 }

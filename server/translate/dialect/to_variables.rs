@@ -1,12 +1,15 @@
 //! Paths of the FX family in the words of IEC 61131-3.
 
-use super::{COMPUTED, Lack, PULSE, STEPPED, address, without};
+mod applied;
+
+use super::registers::is_wide_counter;
+use super::{Lack, PULSE, Registers, address, pair_address, without};
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{
     Action, Call, Callee, Computation, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test,
 };
 use crate::target::iec::FunctionBlock;
-use crate::target::{Constant, Device, DeviceKind, Form, Model, Operand, Target};
+use crate::target::{Constant, Device, DeviceKind, DirectAddress, Form, Model, Operand, Target, Width};
 use crate::text::Span;
 use smol_str::{SmolStr, ToSmolStr, format_smolstr};
 use std::cell::Cell;
@@ -18,12 +21,21 @@ pub(super) fn is_end(path: &Path) -> bool {
     path.gates.is_empty() && action.deed.ends_program()
 }
 
-/// `path`, written for `target`, with variables for devices. `pulses` counts the detectors of pulse forms.
-pub(super) fn path(path: &Path, target: &Target, pulses: &Cell<u32>) -> Result<Path, Lack> {
-    let mut path = Converter { target, pulses }.path(path)?;
-    let computes = |drive: &Drive| matches!(drive, Drive::Action(Action { deed: Deed::Compute(_), .. }));
-    // Calculations need no load that is always on.
-    if path.gates == [Gate::Pass(Expression::Constant(true))] && path.drives.iter().all(computes) {
+/// `path`, written for `target`, with variables for devices. `registers` are those of the program, and `pulses` counts
+/// the detectors of pulse forms.
+pub(super) fn path(
+    path: &Path,
+    target: &Target,
+    registers: &Registers,
+    pulses: &Cell<u32>,
+) -> Result<Path, Lack> {
+    let mut path = Converter { target, registers, pulses }.path(path)?;
+    // Calculations and paths with conditions of their own need no load that is always on.
+    let loads = |drive: &Drive| match drive {
+        Drive::Action(action) => matches!(action.deed, Deed::Compute(_)),
+        Drive::Path(path) => matches!(path.gates.first(), Some(Gate::Pass(_))),
+    };
+    if path.gates == [Gate::Pass(Expression::Constant(true))] && path.drives.iter().all(loads) {
         path.gates.clear();
     }
     Ok(path)
@@ -31,6 +43,7 @@ pub(super) fn path(path: &Path, target: &Target, pulses: &Cell<u32>) -> Result<P
 
 struct Converter<'t> {
     target: &'t Target,
+    registers: &'t Registers,
     pulses: &'t Cell<u32>,
 }
 
@@ -45,10 +58,13 @@ impl Converter<'_> {
             });
         }
         for drive in &path.drives {
-            converted.drives.push(match drive {
-                Drive::Path(path) => Drive::Path(self.path(path)?),
-                Drive::Action(action) => self.action(action).map_err(|lack| lack.of_action(action))?,
-            });
+            match drive {
+                Drive::Path(path) => converted.drives.push(Drive::Path(self.path(path)?)),
+                Drive::Action(action) => {
+                    let drives = self.drives(action).map_err(|lack| lack.of_action(action))?;
+                    converted.drives.extend(drives);
+                }
+            }
         }
         Ok(converted)
     }
@@ -58,18 +74,21 @@ impl Converter<'_> {
     }
 
     fn contact(&self, contact: &Contact) -> Result<Expression, Lack> {
-        let terms = match (contact.test, &contact.terms[..]) {
+        let (test, terms) = match (contact.test, &contact.terms[..]) {
             (Test::Bit(kind), [term]) => match (term.always(), kind) {
                 (Some(value), ContactKind::NormallyOpen) => return Ok(Expression::Constant(value)),
                 (Some(value), ContactKind::NormallyClosed) => return Ok(Expression::Constant(!value)),
-                _ => vec![self.bit(term)?],
+                _ => (contact.test, vec![self.bit(term)?]),
             },
-            (Test::Compare(operator), [left, right]) if !operator.is_wide() => {
-                vec![self.word(left)?, self.word(right)?]
+            // What is compared tells how wide it is.
+            (Test::Compare(operator), [left, right]) => {
+                let width = if operator.is_wide() { Width::Double } else { Width::Word };
+                let terms = vec![self.number(left, width)?, self.number(right, width)?];
+                (Test::Compare(operator.in_width(false)), terms)
             }
             _ => return Err(Lack::Unnamed),
         };
-        Ok(Expression::Contact(Contact { terms, ..contact.clone() }))
+        Ok(Expression::Contact(Contact { test, terms, span: contact.span }))
     }
 
     fn bit(&self, term: &Term) -> Result<Term, Lack> {
@@ -92,25 +111,45 @@ impl Converter<'_> {
         }
     }
 
-    fn word(&self, term: &Term) -> Result<Term, Lack> {
-        self.own_word(term).map_err(|lack| lack.named(&term.text))
+    /// A number of 16 or 32 bits.
+    fn number(&self, term: &Term, width: Width) -> Result<Term, Lack> {
+        self.own_number(term, width).map_err(|lack| lack.named(&term.text))
     }
 
-    fn own_word(&self, term: &Term) -> Result<Term, Lack> {
-        match term.operand {
-            Operand::Device(device) if device.kind == DeviceKind::D => self.located(device, term.span),
-            Operand::Device(device) if device.kind == DeviceKind::C => {
+    fn own_number(&self, term: &Term, width: Width) -> Result<Term, Lack> {
+        let reason = |key| Lack::Reason(key, term.text.clone());
+        match (term.operand, width) {
+            (Operand::Device(device), Width::Double) if device.kind == DeviceKind::D => {
+                self.pair(device, term.span)
+            }
+            (Operand::Device(device), _) if device.kind == DeviceKind::D => self.located(device, term.span),
+            (Operand::Device(device), _) if is_wide_counter(device) => Err(reason("translate.wide-counter")),
+            (Operand::Device(device), Width::Word) if device.kind == DeviceKind::C => {
                 self.counter(device)?;
                 Ok(variable(&format_smolstr!("{device}.CV"), term.span))
             }
-            Operand::Constant { value, index: None } => number(value, term.span),
+            (Operand::Device(device), _) if device.kind == DeviceKind::T => {
+                Err(reason("translate.timer-value"))
+            }
+            (Operand::Nibbles { .. }, _) => Err(reason("translate.nibbles")),
+            (Operand::Constant { value, index: None }, _) => {
+                Ok(literal(&constant(value, width)?.to_smolstr(), term.span))
+            }
             _ => Err(Lack::Unnamed),
         }
     }
 
+    /// The variable for 32 bits from a register on.
+    fn pair(&self, first: Device, span: Span) -> Result<Term, Lack> {
+        let address = without(pair_address(first))?;
+        match self.registers.is_pair(first.number) {
+            true => Ok(at(address, first, span)),
+            false => Err(Lack::Reason("translate.torn", first.to_smolstr())),
+        }
+    }
+
     fn located(&self, device: Device, span: Span) -> Result<Term, Lack> {
-        let address = without(address(device))?;
-        Ok(Term { storage: Storage::At(address), ..variable(&device.to_smolstr(), span) })
+        Ok(at(without(address(device))?, device, span))
     }
 
     /// Milliseconds for each step of a timer that forgets its time when power goes off.
@@ -120,84 +159,68 @@ impl Converter<'_> {
     }
 
     fn counter(&self, device: Device) -> Result<(), Lack> {
-        without((device.number < 200).then_some(()))
+        match is_wide_counter(device) {
+            true => Err(Lack::Reason("translate.wide-counter", device.to_smolstr())),
+            false => Ok(()),
+        }
     }
 
-    fn action(&self, action: &Action) -> Result<Drive, Lack> {
+    fn drives(&self, action: &Action) -> Result<Vec<Drive>, Lack> {
+        let Deed::Instruction(form) = action.deed else {
+            return self.action(action).map(|action| vec![Drive::Action(action)]);
+        };
+        if let (Some(true), [label]) = (Form::named("CJ").map(|jump| jump == form), &action.terms[..]) {
+            let label = variable(&label.key(), label.span);
+            let jump = Action { deed: Deed::Jump, terms: vec![label], span: action.span };
+            return Ok(vec![Drive::Action(jump)]);
+        }
+        let drives = self.applied(form, &action.terms, action.span)?;
+        if form.pulse { self.on_arrival(drives, action.span).map(|drive| vec![drive]) } else { Ok(drives) }
+    }
+
+    fn action(&self, action: &Action) -> Result<Action, Lack> {
         let span = action.span;
         match (&action.deed, &action.terms[..]) {
-            (Deed::Coil(CoilKind::Plain), [timed, preset]) => {
-                self.preset(timed, preset, span).map(Drive::Action)
-            }
+            (Deed::Coil(CoilKind::Plain), [timed, preset]) => self.preset(timed, preset, span),
             (Deed::Coil(kind), [term]) => {
                 let Operand::Device(device) = term.operand else { return Err(Lack::Unnamed) };
                 match (kind, device.kind) {
                     (CoilKind::Reset, DeviceKind::C) => {
                         self.counter(device)?;
-                        call("CTU", "R", &device.to_smolstr(), None, span).map(Drive::Action)
+                        call("CTU", "R", &device.to_smolstr(), None, span)
                     }
                     (CoilKind::Reset, DeviceKind::D) => {
                         let zero = literal("0", term.span);
-                        self.computed("MOVE", vec![zero, self.word(term)?], span).map(Drive::Action)
+                        self.computed("MOVE", vec![zero, self.number(term, Width::Word)?], span)
+                    }
+                    (CoilKind::Reset, DeviceKind::T) => {
+                        Err(Lack::Reason("translate.timer-reset", term.text.clone()))
                     }
                     (_, DeviceKind::T | DeviceKind::C | DeviceKind::D) => Err(Lack::Unnamed),
-                    _ => Ok(Drive::Action(Action { terms: vec![self.bit(term)?], ..action.clone() })),
+                    _ => Ok(Action { terms: vec![self.bit(term)?], ..action.clone() }),
                 }
-            }
-            (Deed::Instruction(form), _) if self.calculation(*form, action).is_some() => {
-                let action = without(self.calculation(*form, action))??;
-                if form.pulse { self.on_arrival(action) } else { Ok(Drive::Action(action)) }
-            }
-            (Deed::Instruction(form), [label]) if Form::named("CJ") == Some(*form) => {
-                let label = variable(&label.key(), label.span);
-                Ok(Drive::Action(Action { deed: Deed::Jump, terms: vec![label], span }))
             }
             _ => Err(Lack::Unnamed),
         }
     }
 
-    /// What MOV, ADD, INC and their kin calculate; nothing for other instructions.
-    fn calculation(&self, form: Form, action: &Action) -> Option<Result<Action, Lack>> {
-        let row = |rows: &[(&str, &'static str)]| {
-            let mut rows = rows.iter().filter(|_| !form.wide);
-            rows.find(|(own, _)| *own == form.instruction.mnemonic).map(|(_, function)| *function)
-        };
-        let words = || action.terms.iter().map(|term| self.word(term)).collect::<Result<Vec<_>, _>>();
-        if let Some(function) = row(&STEPPED) {
-            let one = literal("1", action.span);
-            let terms = words().and_then(|mut terms| {
-                let register = without(terms.pop())?;
-                Ok(vec![register.clone(), one, register])
-            });
-            return Some(terms.and_then(|terms| self.computed(function, terms, action.span)));
-        }
-        let function = row(&COMPUTED)?;
-        Some(words().and_then(|mut terms| {
-            let is_step = matches!(&terms[..], [left, _, result] if left == result);
-            // Plain ones stand for RST, INC and DEC.
-            for term in &mut terms {
-                if term.text == "0" && function == "MOVE" || term.text == "1" && is_step {
-                    *term = literal(&format_smolstr!("INT#{}", term.text), term.span);
-                }
-            }
-            self.computed(function, terms, action.span)
-        }))
+    fn computed(&self, function: &str, terms: Vec<Term>, span: Span) -> Result<Action, Lack> {
+        self.compute(without(Computation::named(function))?, terms, span)
     }
 
-    fn computed(&self, function: &str, terms: Vec<Term>, span: Span) -> Result<Action, Lack> {
-        let computation = without(Computation::named(function))?;
+    fn compute(&self, computation: Computation, terms: Vec<Term>, span: Span) -> Result<Action, Lack> {
         let (_, result) = without(computation.operands(&terms))?;
         // The value of a counter belongs to its block.
         without((result.address().is_some()).then_some(()))?;
         Ok(Action { deed: Deed::Compute(computation), terms, span })
     }
 
-    /// A calculation that is done when power arrives.
-    fn on_arrival(&self, action: Action) -> Result<Drive, Lack> {
+    /// What is done when power arrives.
+    fn on_arrival(&self, drives: Vec<Drive>, span: Span) -> Result<Drive, Lack> {
         self.pulses.set(self.pulses.get() + 1);
         let instance = format_smolstr!("{PULSE}{}", self.pulses.get());
-        let detector = call("R_TRIG", "CLK", &instance, None, action.span)?;
-        Ok(Drive::Path(Path { gates: vec![Gate::Through(detector)], drives: vec![Drive::Action(action)] }))
+        let detector = call("R_TRIG", "CLK", &instance, None, span)?;
+        Ok(Drive::Path(Path { gates: vec![Gate::Through(detector)], drives }))
     }
 
     /// `OUT T0 K50`, `OUT C0 K10`
@@ -213,7 +236,8 @@ impl Converter<'_> {
             }
             (DeviceKind::C, _) => {
                 self.counter(device)?;
-                call("CTU", "CU", &device.to_smolstr(), Some(("PV", self.word(preset)?)), span)
+                let preset = self.number(preset, Width::Word)?;
+                call("CTU", "CU", &device.to_smolstr(), Some(("PV", preset)), span)
             }
             _ => Err(Lack::Unnamed),
         }
@@ -237,13 +261,19 @@ fn variable(name: &str, span: Span) -> Term {
     Term::new(Operand::Variable, name, span)
 }
 
-fn number(value: Constant, span: Span) -> Result<Term, Lack> {
-    let value = match value {
-        Constant::Decimal(value) => value,
-        Constant::Hexadecimal(bits) => i64::from(without(u16::try_from(bits).ok())? as i16),
-        Constant::Real(_) => return Err(Lack::Unnamed),
-    };
-    Ok(literal(&value.to_smolstr(), span))
+/// The variable named like a device that lies at this address.
+fn at(address: DirectAddress, device: Device, span: Span) -> Term {
+    Term { storage: Storage::At(address), ..variable(&device.to_smolstr(), span) }
+}
+
+/// The number that a constant is in 16 or 32 bits.
+fn constant(value: Constant, width: Width) -> Result<i64, Lack> {
+    Ok(match (value, width) {
+        (Constant::Decimal(value), _) => value,
+        (Constant::Hexadecimal(bits), Width::Double) => i64::from(without(u32::try_from(bits).ok())? as i32),
+        (Constant::Hexadecimal(bits), _) => i64::from(without(u16::try_from(bits).ok())? as i16),
+        (Constant::Real(_), _) => return Err(Lack::Unnamed),
+    })
 }
 
 fn literal(text: &str, span: Span) -> Term {

@@ -3,7 +3,7 @@
 use super::Planner;
 use crate::ladder::reduce::Shape;
 use crate::ladder::{Block, Element, ElementKind, Pin, PinWire};
-use crate::logic::{Action, Call, Computation, Term};
+use crate::logic::{Action, Call, Computation, Conversion, Term};
 use crate::target::iec::{EN, ENO};
 use crate::text::{Message, Span, Spanned};
 
@@ -43,8 +43,10 @@ impl Planner {
         action: &Action,
         computation: &Computation,
     ) -> Result<Shape, Message> {
-        let (inputs, result) =
-            computation.operands(&action.terms).ok_or_else(|| Message::new("translate.no-drawing"))?;
+        // Conversions would be boxes of their own, and wires that carry words.
+        let operands =
+            computation.operands(&action.terms).filter(|_| computation.conversion == Conversion::None);
+        let (inputs, result) = operands.ok_or_else(|| Message::new("translate.no-drawing"))?;
         let type_name = self.word(computation.name());
         let mut element = Element::new(ElementKind::Invert, Span::default(), 0, (0, 0));
         let mut left = vec![self.pin(EN.name, PinWire::Power)];
