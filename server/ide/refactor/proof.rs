@@ -1,31 +1,51 @@
 //! The law of refactorings: what was written is read again, and does the same; everything around it stands as before.
 
-use super::Proposal;
+use super::declaration::adds_only;
 use super::neighbourhood::Neighbourhood;
-use crate::document::{Document, Edit};
+use super::unit::Unit;
+use super::writing::Written;
+use super::{Proposal, silent, stretch};
+use crate::document::{Document, Edit, Notation};
 use crate::logic::{Comparison, Formulas, Path, compare, compare_but};
 use crate::text::{Span, TextEdit};
 use crate::translate::Source;
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
-/// Whether the document with `edits` is the one without, but for the changed rungs, and these do the same.
-pub(super) fn holds(around: &Neighbourhood<'_>, proposal: &Proposal, edits: &[TextEdit]) -> bool {
-    proved(around, proposal, edits).is_some()
+/// Whether the document with the edits is the one without, but for the changed rungs, and these do the same.
+pub(super) fn holds(around: &Neighbourhood<'_>, proposal: &Proposal, written: &Written) -> bool {
+    proved(around, proposal, written).is_some()
 }
 
-fn proved(around: &Neighbourhood<'_>, proposal: &Proposal, edits: &[TextEdit]) -> Option<()> {
+fn proved(around: &Neighbourhood<'_>, proposal: &Proposal, written: &Written) -> Option<()> {
     let mut after = around.document.clone();
-    let reversed = edits.iter().rev();
+    let reversed = written.edits.iter().rev();
     let applied = reversed.map(|edit| Edit { range: Some(edit.span.range()), text: edit.text.clone() });
     after.apply(&applied.collect::<Vec<_>>());
     let (first, last) = (proposal.changes.first()?, proposal.changes.last()?);
     let window = window(around, first.first, last.first + last.count)?;
-    let grown = after.len() as i64 - around.document.len() as i64;
-    let new_window = Span { start: window.start, end: u32::try_from(i64::from(window.end) + grown).ok()? };
-    let old = Source::within(around.document, window);
+    // Declarations may stand before it.
+    let before = written.edits.iter().filter(|edit| edit.span.end < window.start);
+    let moved: i64 = before.map(growth).sum();
+    let grown: i64 = written.edits.iter().map(growth).sum();
+    let at = |offset: u32, by: i64| u32::try_from(i64::from(offset) + by).ok();
+    let new_window = Span { start: at(window.start, moved)?, end: at(window.end, grown)? };
+    let is_iec_list = around.document.notation() == Notation::IecIl;
+    let old = match is_iec_list {
+        true => around.rungs.clone(),
+        false => Source::within(around.document, window),
+    };
+    let ends = match is_iec_list {
+        true => ends_rungs(&after, new_window, around.unit.number),
+        false => ends_chunk(&after, new_window),
+    };
+    let declarations = &written.declarations;
+    let adds_only = || adds_only(around.document.scopes(), after.scopes(), around.unit.number, declarations);
+    if !ends || !adds_only() {
+        return None;
+    }
     let new = Source::within(&after, new_window);
-    if !ends_chunk(&after, new_window) || !same_comments(&old, &new) {
+    if !same_comments(&old, &new) {
         return None;
     }
     // The numbers of changed rungs, counted from the window's first.
@@ -47,12 +67,16 @@ fn proved(around: &Neighbourhood<'_>, proposal: &Proposal, edits: &[TextEdit]) -
         return None;
     }
     let behind = old.len() - (last.first + last.count - skipped);
-    let changed = |placed: &[Source]| -> Option<Vec<Path>> {
-        let rungs = placed.get(first.first - skipped..placed.len().checked_sub(behind)?)?;
-        let paths = rungs.iter().map(|placed| placed.rung.path.clone().ok());
+    let paths = |placed: &[Source]| -> Option<Vec<Path>> {
+        let paths = placed.iter().map(|placed| placed.rung.path.clone().ok());
         Some(paths.collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
     };
-    let (left, right) = (changed(&old)?, changed(&new)?);
+    let changed = |placed| rungs_between(placed, first.first - skipped, behind);
+    let (old, new) = (changed(&old)?, changed(&new)?);
+    if is_iec_list && !keeps_to_itself(&after, Unit::at(&after, new_window.start as usize), old, new) {
+        return None;
+    }
+    let (left, right) = (paths(old)?, paths(new)?);
     let (left, right): (Vec<&Path>, Vec<&Path>) = (left.iter().collect(), right.iter().collect());
     match &proposal.relay {
         None => matches!(compare(&left, &right, &mut Formulas::default()), Comparison::Same { .. }),
@@ -61,8 +85,21 @@ fn proved(around: &Neighbourhood<'_>, proposal: &Proposal, edits: &[TextEdit]) -
     .then_some(())
 }
 
-/// The bytes of the chunks of these rungs, with a chunk before and one behind.
+fn growth(edit: &TextEdit) -> i64 {
+    edit.text.len() as i64 - i64::from(edit.span.end - edit.span.start)
+}
+
+/// The rungs without so many at the beginning and the end.
+fn rungs_between(placed: &[Source], before: usize, behind: usize) -> Option<&[Source]> {
+    placed.get(before..placed.len().checked_sub(behind)?)
+}
+
+/// The bytes of the chunks of these rungs, with a chunk before and one behind. In lists of IEC 61131-3 it takes more
+/// chunks to tell what a rung is.
 fn window(around: &Neighbourhood<'_>, first: usize, end: usize) -> Option<Span> {
+    if around.document.notation() == Notation::IecIl {
+        return Some(around.span);
+    }
     let (first, last) = (around.rungs.get(first)?, around.rungs.get(end.checked_sub(1)?)?);
     let before = around.document.chunk_before(first.start).filter(|before| before.start < first.start);
     let end = last.start + last.chunk.len();
@@ -80,14 +117,29 @@ fn ends_chunk(document: &Document, window: Span) -> bool {
     starts(window.start) && starts(window.end)
 }
 
+/// Whether rungs of a list begin where the window does and where it ends.
+fn ends_rungs(document: &Document, window: Span, pou: Option<usize>) -> bool {
+    let begins = |offset: u32| stretch::begins_rung(document, offset as usize, pou);
+    begins(window.start) && begins(window.end)
+}
+
+/// Whether the names that the paths of old or new rungs do not show mean nothing to other rungs.
+fn keeps_to_itself(after: &Document, unit: Unit, old: &[Source], new: &[Source]) -> bool {
+    let names = old.iter().chain(new).flat_map(silent::names);
+    names.into_iter().all(|name| silent::is_private(after, unit, &name, new))
+}
+
 fn same_rung(left: &Source, right: &Source) -> Option<()> {
     same_head(left, right)?;
     (left.text() == right.text()).then_some(())
 }
 
-/// The labels and the network of a rung.
+/// The labels, the network and the program unit of a rung.
 fn same_head(left: &Source, right: &Source) -> Option<()> {
-    (left.rung.labels == right.rung.labels && left.rung.network == right.rung.network).then_some(())
+    (left.pou == right.pou
+        && left.rung.labels == right.rung.labels
+        && left.rung.network == right.rung.network)
+        .then_some(())
 }
 
 fn same_comments(left: &[Source], right: &[Source]) -> bool {

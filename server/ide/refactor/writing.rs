@@ -1,8 +1,11 @@
 //! Writes refactored rungs in the words of the document: its notation, margins and line ends, comments kept.
 
-use super::Change;
+mod iec;
+
+use super::declaration::{self, Declaration};
 use super::neighbourhood::Neighbourhood;
-use crate::document::{Document, Tree};
+use super::{Change, Proposal};
+use crate::document::{Document, Notation, Tree};
 use crate::ide::{Style, changes, drawing};
 use crate::il::fx::{FxLine, FxTree, LineKind};
 use crate::logic::Path;
@@ -11,18 +14,39 @@ use crate::text::{Span, TextEdit};
 use crate::translate::Source;
 use crate::translate::{to_fx, to_ladder};
 
-/// The edits that write `changes`; nothing where something would be lost.
-pub(super) fn edits(around: &Neighbourhood<'_>, changes: &[Change], style: Style) -> Option<Vec<TextEdit>> {
-    let mut edits = Vec::new();
-    for change in changes {
-        let rungs = around.rungs.get(change.first..change.first + change.count)?;
-        let (old, new) = match around.is_list() {
-            true => list(around.document, rungs, &change.paths)?,
-            false => drawn(around.document, rungs, &change.paths, style)?,
-        };
-        edits.extend(changes::between(&around.document.slice(old), &new, old.start as usize));
+/// A proposal as edits of the document.
+pub(super) struct Written {
+    /// In order.
+    pub edits: Vec<TextEdit>,
+    /// The variables that they declare.
+    pub declarations: Vec<Declaration>,
+}
+
+/// The edits that write a proposal; nothing where something would be lost.
+pub(super) fn edits(around: &Neighbourhood<'_>, proposal: &Proposal, style: Style) -> Option<Written> {
+    let document = around.document;
+    let rungs_of = |change: &Change| around.rungs.get(change.first..change.first + change.count);
+    let mut declarations = proposal.declarations.clone();
+    let mut written: Vec<(Span, String)> = Vec::new();
+    if document.notation() == Notation::IecIl {
+        written = iec::lists(around, &proposal.changes, &mut declarations)?;
+    } else {
+        for change in &proposal.changes {
+            let rungs = rungs_of(change)?;
+            written.push(match around.is_list() {
+                true => list(document, rungs, &change.paths)?,
+                false => drawn(document, rungs, &change.paths, style)?,
+            });
+        }
     }
-    Some(edits)
+    let mut edits = Vec::new();
+    for (old, new) in written {
+        edits.extend(changes::between(&document.slice(old), &new, old.start as usize));
+    }
+    if !declarations.is_empty() {
+        edits.insert(0, declaration::edit(document, around.unit, &declarations)?);
+    }
+    Some(Written { edits, declarations })
 }
 
 /// The lines of instructions of `rungs`, in bytes of the document, and `paths` in their place.
