@@ -16,13 +16,17 @@ pub(super) const CHUNKS_BEHIND: usize = 24;
 /// And so many bytes.
 pub(super) const BYTES_MAX: usize = 64 * 1024;
 /// The place where a rung begins is looked for in so many chunks.
-const CHUNKS_MAX: usize = 128;
+const CHUNKS_MAX: usize = 64;
+/// So many calculations behind a jump are seen through; one behind more of them may be skipped.
+const SKIPPED_MAX: usize = 32;
 
 /// The bytes of the rung at a byte of `document`, with one rung before it and some behind it in its program unit;
 /// nothing where no instructions are, or where rungs do not end.
 pub(super) fn around(document: &Document, offset: usize, unit: Unit) -> Option<Span> {
     let at = document.chunk_at(offset)?;
-    at.chunk.iec()?.items.iter().find(|item| is_instruction(item))?;
+    if at.chunk.len() > BYTES_MAX || !at.chunk.iec()?.items.iter().any(is_instruction) {
+        return None;
+    }
     let mut start = at.start;
     let mut begins = begins_rung(document, start, unit.number).then_some(start);
     for _ in 0..CHUNKS_MAX {
@@ -44,7 +48,7 @@ pub(super) fn around(document: &Document, offset: usize, unit: Unit) -> Option<S
         if is_over || is_enough && begins_rung(document, end, unit.number) {
             break;
         }
-        if number > CHUNKS_BEHIND + CHUNKS_MAX {
+        if number > CHUNKS_BEHIND + CHUNKS_MAX || end - start > 2 * BYTES_MAX {
             return None;
         }
         end += next.map_or(0, |next| next.chunk.len());
@@ -97,7 +101,7 @@ fn loads_helper(item: &Item, tree: &IecTree, text: &str) -> bool {
 /// Whether a jump before the end of this chunk may skip what follows it: calculations alone stand between.
 fn may_be_skipped(document: &Document, before: ChunkRef<'_>, pou: Option<usize>) -> bool {
     let mut at = before;
-    for _ in 0..CHUNKS_MAX {
+    for _ in 0..SKIPPED_MAX {
         let Some(tree) = at.chunk.iec() else { return false };
         match tree.items.last().map(|item| item.kind) {
             Some(ItemKind::Jump { condition: Condition::IfFalse, .. }) => return true,
