@@ -507,3 +507,32 @@ fn a_rung_deep_in_a_long_unit_needs_what_stands_before_it_only_where_it_begins()
         assert_eq!(after(&list(&text(own)), "b\nOR c", "rung.wideFirst").1, text(moved), "{head}");
     }
 }
+
+/// What is no bit stays in its lines: calls with their parameters, comparisons, calculations with the label behind them.
+#[test]
+fn what_a_rung_drives_besides_bits_is_carried_along() {
+    let wide = "LD a\nAND( b\nOR c\n)\n";
+    let moved = "LD b\nOR c\nAND a\n";
+    let variables = format!("{BITS}\n    T1   : TON;\n    n, k : INT;");
+    for (own, expected) in [
+        (
+            "{}ST T1.IN\nCAL T1(PT := T#1s)\nLD T1.Q\nST x\n",
+            "{}ST T1.IN\nCAL T1(PT := T#1s)\nLD T1.Q\nST x\n",
+        ),
+        (
+            "{}ST T1.IN\nCAL T1(\n    PT := T#1s,\n    ET => t\n)\nLD T1.Q\nST x\n",
+            "{}ST T1.IN\nCAL T1(\n    PT := T#1s,\n    ET => t\n)\nLD T1.Q\nST x\n",
+        ),
+        ("{}AND( n\nGT 5\n)\nST x\n", "{}AND( n\nGT 5\n)\nST x\n"),
+        (
+            "{}JMPCN Done\nLD n\nADD 1\nST n\nDone:\nLD d\nST y\n",
+            "{}JMPCN Done\nLD n\nADD 1\nST n\nDone:\nLD d\nST y\n",
+        ),
+        ("{}RETC\n", "{}RETC\n"),
+        ("{}CALC T1(PT := T#1s)\n", "{}CALC T1(PT := T#1s)\n"),
+    ] {
+        let text = |own: &str, condition: &str| program(&variables, &own.replace("{}", condition));
+        let (_, after) = after(&list(&text(own, wide)), "LD a", "rung.wideFirst");
+        assert_eq!(after, text(expected, moved));
+    }
+}

@@ -1,5 +1,6 @@
 //! The rungs around the cursor, as the logic sees them.
 
+use super::Change;
 use super::measure;
 use super::stretch::{self, BYTES_MAX, CHUNKS_BEHIND};
 use super::unit::Unit;
@@ -44,6 +45,11 @@ impl<'d> Neighbourhood<'d> {
     /// The rung at the cursor.
     pub fn rung(&self) -> &Source {
         &self.rungs[self.here]
+    }
+
+    /// The rungs that a change replaces.
+    pub fn replaced(&self, change: &Change) -> Option<&[Source]> {
+        self.rungs.get(change.first..change.first + change.count)
     }
 
     /// What it does.

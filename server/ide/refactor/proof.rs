@@ -4,7 +4,7 @@ use super::declaration::adds_only;
 use super::neighbourhood::Neighbourhood;
 use super::unit::Unit;
 use super::writing::Written;
-use super::{Proposal, silent, stretch};
+use super::{Change, Proposal, silent, stretch};
 use crate::document::{Document, Edit, Notation};
 use crate::logic::{Comparison, Formulas, Path, compare, compare_but};
 use crate::text::{Span, TextEdit};
@@ -24,34 +24,49 @@ fn proved(around: &Neighbourhood<'_>, proposal: &Proposal, written: &Written) ->
     after.apply(&applied.collect::<Vec<_>>());
     let (first, last) = (proposal.changes.first()?, proposal.changes.last()?);
     let window = window(around, first.first, last.first + last.count)?;
-    // Declarations may stand before it.
-    let before = written.edits.iter().filter(|edit| edit.span.end < window.start);
-    let moved: i64 = before.map(growth).sum();
-    let grown: i64 = written.edits.iter().map(growth).sum();
-    let at = |offset: u32, by: i64| u32::try_from(i64::from(offset) + by).ok();
-    let new_window = Span { start: at(window.start, moved)?, end: at(window.end, grown)? };
+    let new_window = moved(window, &written.edits)?;
     let is_iec_list = around.document.notation() == Notation::IecIl;
-    let old = match is_iec_list {
-        true => around.rungs.clone(),
-        false => Source::within(around.document, window),
+    let (old, ends) = match is_iec_list {
+        true => (around.rungs.clone(), ends_rungs(&after, new_window, around.unit.number)),
+        false => (Source::within(around.document, window), ends_chunk(&after, new_window)),
     };
-    let ends = match is_iec_list {
-        true => ends_rungs(&after, new_window, around.unit.number),
-        false => ends_chunk(&after, new_window),
-    };
-    let declarations = &written.declarations;
-    let adds_only = || adds_only(around.document.scopes(), after.scopes(), around.unit.number, declarations);
-    if !ends || !adds_only() {
+    let declared = [around.document.scopes(), after.scopes()];
+    if !ends || !adds_only(declared[0], declared[1], around.unit.number, &written.declarations) {
         return None;
     }
     let new = Source::within(&after, new_window);
     if !same_comments(&old, &new) {
         return None;
     }
-    // The numbers of changed rungs, counted from the window's first.
+    // How many rungs stand before the window.
     let skipped = around.rungs.iter().take_while(|placed| placed.start < window.start as usize).count();
-    let changes =
-        proposal.changes.iter().map(|change| (change.first - skipped, change.count, change.paths.len()));
+    same_around(&proposal.changes, skipped, &old, &new)?;
+    let behind = old.len() - (last.first + last.count - skipped);
+    let changed = |placed| rungs_between(placed, first.first - skipped, behind);
+    let (old, new) = (changed(&old)?, changed(&new)?);
+    if is_iec_list && !keeps_to_itself(&after, Unit::at(&after, new_window.start as usize), old, new) {
+        return None;
+    }
+    let (left, right) = (paths(old)?, paths(new)?);
+    match &proposal.relay {
+        None => matches!(compare(&left, &right, &mut Formulas::default()), Comparison::Same { .. }),
+        Some(relay) => same_but_for(relay, &left, &right),
+    }
+    .then_some(())
+}
+
+/// Where the window lies behind the edits; declarations may stand before it.
+fn moved(window: Span, edits: &[TextEdit]) -> Option<Span> {
+    let growth = |edit: &TextEdit| edit.text.len() as i64 - i64::from(edit.span.end - edit.span.start);
+    let before: i64 = edits.iter().filter(|edit| edit.span.end < window.start).map(growth).sum();
+    let all: i64 = edits.iter().map(growth).sum();
+    let at = |offset: u32, by: i64| u32::try_from(i64::from(offset) + by).ok();
+    Some(Span { start: at(window.start, before)?, end: at(window.end, all)? })
+}
+
+/// Whether the rungs of a window are the same but for `changes`, whose numbers count `skipped` rungs before it.
+fn same_around(changes: &[Change], skipped: usize, old: &[Source], new: &[Source]) -> Option<()> {
+    let changes = changes.iter().map(|change| (change.first - skipped, change.count, change.paths.len()));
     let (mut old_at, mut new_at) = (0, 0);
     for (first, count, instead) in changes.chain([(old.len(), 0, 0)]) {
         while old_at < first {
@@ -63,30 +78,13 @@ fn proved(around: &Neighbourhood<'_>, proposal: &Proposal, written: &Written) ->
         }
         (old_at, new_at) = (old_at + count, new_at + instead);
     }
-    if new_at != new.len() {
-        return None;
-    }
-    let behind = old.len() - (last.first + last.count - skipped);
-    let paths = |placed: &[Source]| -> Option<Vec<Path>> {
-        let paths = placed.iter().map(|placed| placed.rung.path.clone().ok());
-        Some(paths.collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
-    };
-    let changed = |placed| rungs_between(placed, first.first - skipped, behind);
-    let (old, new) = (changed(&old)?, changed(&new)?);
-    if is_iec_list && !keeps_to_itself(&after, Unit::at(&after, new_window.start as usize), old, new) {
-        return None;
-    }
-    let (left, right) = (paths(old)?, paths(new)?);
-    let (left, right): (Vec<&Path>, Vec<&Path>) = (left.iter().collect(), right.iter().collect());
-    match &proposal.relay {
-        None => matches!(compare(&left, &right, &mut Formulas::default()), Comparison::Same { .. }),
-        Some(relay) => same_but_for(relay, &left, &right),
-    }
-    .then_some(())
+    (new_at == new.len()).then_some(())
 }
 
-fn growth(edit: &TextEdit) -> i64 {
-    edit.text.len() as i64 - i64::from(edit.span.end - edit.span.start)
+/// What rungs do; nothing if one of them cannot be read.
+fn paths(placed: &[Source]) -> Option<Vec<&Path>> {
+    let paths = placed.iter().map(|placed| placed.rung.path.as_ref().ok());
+    Some(paths.collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
 }
 
 /// The rungs without so many at the beginning and the end.

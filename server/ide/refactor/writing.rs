@@ -6,7 +6,8 @@ use super::declaration::{self, Declaration};
 use super::neighbourhood::Neighbourhood;
 use super::{Change, Proposal};
 use crate::document::{Document, Notation, Tree};
-use crate::ide::{Style, changes, drawing};
+use crate::ide::changes::between;
+use crate::ide::{Style, drawing};
 use crate::il::fx::{FxLine, FxTree, LineKind};
 use crate::logic::Path;
 use crate::target::Flow;
@@ -25,23 +26,20 @@ pub(super) struct Written {
 /// The edits that write a proposal; nothing where something would be lost.
 pub(super) fn edits(around: &Neighbourhood<'_>, proposal: &Proposal, style: Style) -> Option<Written> {
     let document = around.document;
-    let rungs_of = |change: &Change| around.rungs.get(change.first..change.first + change.count);
     let mut declarations = proposal.declarations.clone();
-    let mut written: Vec<(Span, String)> = Vec::new();
-    if document.notation() == Notation::IecIl {
-        written = iec::lists(around, &proposal.changes, &mut declarations)?;
-    } else {
-        for change in &proposal.changes {
-            let rungs = rungs_of(change)?;
-            written.push(match around.is_list() {
-                true => list(document, rungs, &change.paths)?,
-                false => drawn(document, rungs, &change.paths, style)?,
-            });
-        }
-    }
+    let changes = &proposal.changes;
+    let each = |write: &dyn Fn(&[Source], &[Path]) -> Option<(Span, String)>| {
+        let write = |change: &Change| write(around.replaced(change)?, &change.paths);
+        changes.iter().map(write).collect::<Option<Vec<_>>>()
+    };
+    let written = match document.notation() {
+        Notation::IecIl => iec::lists(around, changes, &mut declarations)?,
+        Notation::FxIl => each(&|rungs, paths| list(document, rungs, paths))?,
+        Notation::Ladder => each(&|rungs, paths| drawn(document, rungs, paths, style))?,
+    };
     let mut edits = Vec::new();
     for (old, new) in written {
-        edits.extend(changes::between(&document.slice(old), &new, old.start as usize));
+        edits.extend(between(&document.slice(old), &new, old.start as usize));
     }
     if !declarations.is_empty() {
         edits.insert(0, declaration::edit(document, around.unit, &declarations)?);

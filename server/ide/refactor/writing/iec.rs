@@ -43,15 +43,11 @@ pub(super) fn lists(
     declarations.extend(declared.map(|own| Declaration { name: own.name.clone(), type_name: own.type_name }));
     let mut lists = Vec::with_capacity(changes.len());
     for (change, mut written) in changes.iter().zip(written) {
-        let rungs = rungs_of(around, change)?;
+        let rungs = around.replaced(change)?;
         keep_labels(rungs, &mut written);
         lists.push(list(around, rungs, &change.paths, &written)?);
     }
     Some(lists)
-}
-
-fn rungs_of<'a>(around: &'a Neighbourhood<'_>, change: &Change) -> Option<&'a [Source]> {
-    around.rungs.get(change.first..change.first + change.count)
 }
 
 fn instructions(changes: &[Change], helpers: &mut Helpers) -> Option<Vec<Vec<Instructions>>> {
@@ -62,7 +58,7 @@ fn instructions(changes: &[Change], helpers: &mut Helpers) -> Option<Vec<Vec<Ins
 /// The detectors and keepers of power that the old rungs had are those of the new ones.
 fn spares(around: &Neighbourhood<'_>, changes: &[Change], helpers: &mut Helpers) -> Option<()> {
     for change in changes {
-        for symbol in rungs_of(around, change)?.iter().flat_map(silent::names) {
+        for symbol in around.replaced(change)?.iter().flat_map(silent::names) {
             if let Symbol::Variable(name) = symbol {
                 spare(around, &name, helpers);
             }
@@ -76,7 +72,7 @@ fn further_spares(around: &Neighbourhood<'_>, changes: &[Change], helpers: &mut 
     let Some(number) = around.unit.number else { return };
     let known: Vec<Symbol> = changes
         .iter()
-        .filter_map(|change| rungs_of(around, change))
+        .filter_map(|change| around.replaced(change))
         .flatten()
         .flat_map(silent::names)
         .collect();

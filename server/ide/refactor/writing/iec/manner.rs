@@ -131,8 +131,8 @@ fn step(old: &Old<'_>, margin: &str) -> String {
         if indent.trim().is_empty()
             && let Some(more) = indent.strip_prefix(margin)
         {
-            let deep = item.depth.max(1) as usize;
-            return more[..more.len() / deep].to_string();
+            let columns = more.chars().count() / item.depth.max(1) as usize;
+            return more.chars().take(columns).collect();
         }
     }
     match margin.chars().next() {
