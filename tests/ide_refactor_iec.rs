@@ -514,25 +514,30 @@ fn what_a_rung_drives_besides_bits_is_carried_along() {
     let wide = "LD a\nAND( b\nOR c\n)\n";
     let moved = "LD b\nOR c\nAND a\n";
     let variables = format!("{BITS}\n    T1   : TON;\n    n, k : INT;");
-    for (own, expected) in [
-        (
-            "{}ST T1.IN\nCAL T1(PT := T#1s)\nLD T1.Q\nST x\n",
-            "{}ST T1.IN\nCAL T1(PT := T#1s)\nLD T1.Q\nST x\n",
-        ),
-        (
-            "{}ST T1.IN\nCAL T1(\n    PT := T#1s,\n    ET => t\n)\nLD T1.Q\nST x\n",
-            "{}ST T1.IN\nCAL T1(\n    PT := T#1s,\n    ET => t\n)\nLD T1.Q\nST x\n",
-        ),
-        ("{}AND( n\nGT 5\n)\nST x\n", "{}AND( n\nGT 5\n)\nST x\n"),
-        (
-            "{}JMPCN Done\nLD n\nADD 1\nST n\nDone:\nLD d\nST y\n",
-            "{}JMPCN Done\nLD n\nADD 1\nST n\nDone:\nLD d\nST y\n",
-        ),
-        ("{}RETC\n", "{}RETC\n"),
-        ("{}CALC T1(PT := T#1s)\n", "{}CALC T1(PT := T#1s)\n"),
+    for own in [
+        "{}ST T1.IN\nCAL T1(PT := T#1s)\nLD T1.Q\nST x\n",
+        "{}ST T1.IN\nCAL T1(\n    PT := T#1s,\n    ET => t\n)\nLD T1.Q\nST x\n",
+        "{}AND( n\nGT 5\n)\nST x\n",
+        "{}JMPCN Done\nLD n\nADD 1\nST n\nDone:\nLD d\nST y\n",
+        "{}RETC\n",
+        "{}CALC T1(PT := T#1s)\n",
     ] {
-        let text = |own: &str, condition: &str| program(&variables, &own.replace("{}", condition));
-        let (_, after) = after(&list(&text(own, wide)), "LD a", "rung.wideFirst");
-        assert_eq!(after, text(expected, moved));
+        let text = |condition: &str| program(&variables, &own.replace("{}", condition));
+        assert_eq!(after(&list(&text(wide)), "LD a", "rung.wideFirst").1, text(moved));
     }
+}
+
+/// Where so much would be read again at each step of the cursor, a selection says that it is meant.
+#[test]
+fn a_long_section_of_variables_is_added_to_for_who_selects() {
+    let variables: String = (0..3000).map(|number| format!("\n    v{number} : BOOL;")).collect();
+    let document = list(&program(&format!("{BITS}{variables}"), "LD a\nOR b\nAND c\nST x\n"));
+    assert!(found(&document, "OR b", "extract.relay").is_none());
+    let text = document.text();
+    let selected = Span::new(text.find("LD a").expect("a rung"), text.find("AND c").expect("a rung"));
+    let offered = offered(&document, selected);
+    let extracted = offered.iter().find(|one| one.kind == "refactor.extract.relay").expect("an extraction");
+    // One edit for the declaration, and one for the rung: what is open between two reaches to the end of the unit.
+    assert_eq!(extracted.edits.len(), 2);
+    assert!(applied(&document, extracted).contains("    v2999 : BOOL;\n    Relay1 : BOOL;\nEND_VAR"));
 }

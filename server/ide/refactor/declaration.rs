@@ -1,5 +1,6 @@
 //! Declarations of the variables that a refactoring adds to a program unit.
 
+use super::neighbourhood::Neighbourhood;
 use super::unit::Unit;
 use crate::document::{DeclaredType, Document, Pou, Scopes};
 use crate::il::iec::{ItemKind, SectionKind};
@@ -25,6 +26,9 @@ impl Declaration {
     }
 }
 
+/// A longer section is only read again for who selected something: a menu that opens late helps nobody.
+const SECTION_MAX: usize = 32 * 1024;
+
 /// A place for more declarations, by its offset in the document.
 enum Gap {
     /// Behind the header and the sections of a unit without a plain section of local variables.
@@ -36,9 +40,14 @@ enum Gap {
 }
 
 /// The edit that adds `declarations` to the unit; nothing if there is no place for them.
-pub(super) fn edit(document: &Document, unit: Unit, declarations: &[Declaration]) -> Option<TextEdit> {
-    let gap = gap(document, unit)?;
+pub(super) fn edit(around: &Neighbourhood<'_>, declarations: &[Declaration]) -> Option<TextEdit> {
+    let document = around.document;
+    let gap = gap(document, around.unit)?;
     let (Gap::Header(at) | Gap::Line(at, ..) | Gap::InLine(at)) = gap;
+    let section = document.chunk_at(at)?.chunk;
+    if section.len() > SECTION_MAX && !around.is_selected {
+        return None;
+    }
     let end = if document.line_at(at).2.ends_with("\r\n") { "\r\n" } else { "\n" };
     let lines = |indent: &str, colons: Option<usize>| -> String {
         let line = |declaration: &Declaration| {

@@ -10,6 +10,7 @@ use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Term, T
 use crate::target::iec::{FunctionBlock, Operator};
 use crate::target::{Device, DeviceKind, Model, Operand};
 use crate::text::{Message, Span, folded};
+use rustc_hash::FxHashSet;
 use smol_str::{SmolStr, format_smolstr};
 
 /// What the names of new relays begin with where relays are variables.
@@ -79,6 +80,12 @@ fn free_device(view: &ProjectView<'_>) -> Option<Device> {
 /// A variable with a name that means nothing in the program unit.
 fn free_variable(around: &Neighbourhood<'_>) -> Option<Term> {
     let scopes = around.document.scopes();
+    let own = around.unit.number.and_then(|number| scopes.own_pous().get(number));
+    let numbers = own.iter().flat_map(|pou| &pou.variables).filter_map(|variable| {
+        let (stem, number) = variable.name.split_at_checked(RELAY.len())?;
+        number.parse::<u32>().ok().filter(|_| stem.eq_ignore_ascii_case(RELAY))
+    });
+    let numbers: FxHashSet<u32> = numbers.collect();
     let is_free = |name: &SmolStr| {
         let is_named = |symbol| around.unit.tally(around.document, &symbol).mentions > 0;
         let operand = Operand::read(name, Model::Iec);
@@ -91,7 +98,10 @@ fn free_variable(around: &Neighbourhood<'_>) -> Option<Term> {
             && !is_named(Symbol::variable(name))
             && !is_named(Symbol::Label(folded(name)))
     };
-    let name = (1..u32::MAX).map(|number| format_smolstr!("{RELAY}{number}")).find(is_free)?;
+    let name = (1..u32::MAX)
+        .filter(|number| !numbers.contains(number))
+        .map(|number| format_smolstr!("{RELAY}{number}"))
+        .find(is_free)?;
     Some(Term::new(Operand::Variable, &name, Span::default()))
 }
 

@@ -108,7 +108,7 @@ const PARTS_MAX: usize = 400;
 /// The refactorings of the rung at the cursor, or of what is selected of it, that are proved.
 pub(super) fn at(view: &ProjectView<'_>, span: Span, style: Style) -> Vec<Refactoring> {
     let document = view.here();
-    let Some(around) = Neighbourhood::at(document, span.start as usize) else { return Vec::new() };
+    let Some(around) = Neighbourhood::at(document, span) else { return Vec::new() };
     if !is_bearable(around.path()) {
         return Vec::new();
     }

@@ -1,13 +1,16 @@
 //! The rungs around the cursor, as the logic sees them.
 
 use super::Change;
-use super::measure;
 use super::stretch::{self, BYTES_MAX, CHUNKS_BEHIND};
 use super::unit::Unit;
+use super::{measure, silent};
 use crate::document::{Document, Notation};
 use crate::logic::Path;
 use crate::text::Span;
 use crate::translate::Source;
+use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
+use std::cell::RefCell;
 
 /// The rung at the cursor, those before it in its chunk and in the chunk before, and some behind it.
 pub(super) struct Neighbourhood<'d> {
@@ -18,13 +21,18 @@ pub(super) struct Neighbourhood<'d> {
     pub here: usize,
     /// The program unit in which it stands.
     pub unit: Unit,
+    /// Whether there is a selection, and not just a cursor that passes by.
+    pub is_selected: bool,
     /// The bytes of whole chunks in which the rungs stand.
     pub span: Span,
+    /// Whether helpers are stored to wherever they are read outside of these bytes, as far as it was asked.
+    kept: RefCell<FxHashMap<SmolStr, bool>>,
 }
 
 impl<'d> Neighbourhood<'d> {
-    /// That of the rung at a byte of `document`; nothing where there is none that can be read.
-    pub fn at(document: &'d Document, offset: usize) -> Option<Neighbourhood<'d>> {
+    /// That of the rung at a cursor or selection in `document`; nothing where there is none that can be read.
+    pub fn at(document: &'d Document, selected: Span) -> Option<Neighbourhood<'d>> {
+        let offset = selected.start as usize;
         let at = document.chunk_at(offset)?;
         let unit = Unit::at(document, at.start);
         let is_iec = document.notation() == Notation::IecIl;
@@ -39,12 +47,32 @@ impl<'d> Neighbourhood<'d> {
             }
         };
         rungs.get(here)?.path()?;
-        Some(Neighbourhood { document, rungs, here, unit, span })
+        Some(Neighbourhood {
+            document,
+            rungs,
+            here,
+            unit,
+            is_selected: !selected.is_empty(),
+            span,
+            kept: RefCell::default(),
+        })
     }
 
     /// The rung at the cursor.
     pub fn rung(&self) -> &Source {
         &self.rungs[self.here]
+    }
+
+    /// Whether the helper `name` is stored to wherever it is read outside of these rungs. The proposals of a menu ask for
+    /// the same ones.
+    pub fn is_stored_outside(&self, name: &SmolStr) -> bool {
+        let known = self.kept.borrow().get(name).copied();
+        known.unwrap_or_else(|| {
+            let outside = |start: usize| !self.span.range().contains(&start);
+            let found = silent::is_stored_wherever_read(self.document, self.unit, name, &outside);
+            self.kept.borrow_mut().insert(name.clone(), found);
+            found
+        })
     }
 
     /// The rungs that a change replaces.

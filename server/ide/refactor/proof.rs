@@ -5,7 +5,7 @@ use super::neighbourhood::Neighbourhood;
 use super::unit::Unit;
 use super::writing::Written;
 use super::{Change, Proposal, silent, stretch};
-use crate::document::{Document, Edit, Notation};
+use crate::document::{Document, Edit, Notation, Symbol};
 use crate::logic::{Comparison, Formulas, Path, compare, compare_but};
 use crate::text::{Span, TextEdit};
 use crate::translate::Source;
@@ -44,7 +44,7 @@ fn proved(around: &Neighbourhood<'_>, proposal: &Proposal, written: &Written) ->
     let behind = old.len() - (last.first + last.count - skipped);
     let changed = |placed| rungs_between(placed, first.first - skipped, behind);
     let (old, new) = (changed(&old)?, changed(&new)?);
-    if is_iec_list && !keeps_to_itself(&after, Unit::at(&after, new_window.start as usize), old, new) {
+    if is_iec_list && !keeps_to_itself(around, (&after, new_window), old, new) {
         return None;
     }
     let (left, right) = (paths(old)?, paths(new)?);
@@ -121,10 +121,23 @@ fn ends_rungs(document: &Document, window: Span, pou: Option<usize>) -> bool {
     begins(window.start) && begins(window.end)
 }
 
-/// Whether the names that the paths of old or new rungs do not show mean nothing to other rungs.
-fn keeps_to_itself(after: &Document, unit: Unit, old: &[Source], new: &[Source]) -> bool {
-    let names = old.iter().chain(new).flat_map(silent::names);
-    names.into_iter().all(|name| silent::is_private(after, unit, &name, new))
+/// Whether the names that the paths of old or new rungs do not show mean nothing to other rungs: they are named nowhere
+/// else, or they are helpers that each rung stores to before it reads them.
+fn keeps_to_itself(
+    around: &Neighbourhood<'_>,
+    (after, window): (&Document, Span),
+    old: &[Source],
+    new: &[Source],
+) -> bool {
+    let unit = Unit::at(after, window.start as usize);
+    let inside = |start: usize| window.range().contains(&start);
+    let is_private = |symbol: &Symbol| match silent::helper(symbol) {
+        Some(name) => {
+            around.is_stored_outside(name) && silent::is_stored_wherever_read(after, unit, name, &inside)
+        }
+        None => silent::is_named_only_in(after, unit, symbol, new),
+    };
+    old.iter().chain(new).flat_map(silent::names).all(|symbol| is_private(&symbol))
 }
 
 fn same_rung(left: &Source, right: &Source) -> Option<()> {

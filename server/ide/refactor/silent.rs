@@ -48,9 +48,8 @@ fn shown(path: &Path) -> FxHashSet<SmolStr> {
     names
 }
 
-/// Whether nothing in `unit` but `rungs` depends on `symbol`: it is named nowhere else, or it is a helper that is
-/// stored to wherever it is read.
-pub(super) fn is_private(document: &Document, unit: Unit, symbol: &Symbol, rungs: &[Source]) -> bool {
+/// Whether nothing in `unit` of a document but `rungs` names `symbol`.
+pub(super) fn is_named_only_in(document: &Document, unit: Unit, symbol: &Symbol, rungs: &[Source]) -> bool {
     let inside = |placed: &Source| {
         let own = placed.rung.span;
         let mentions = placed.chunk.mentions().iter();
@@ -62,15 +61,14 @@ pub(super) fn is_private(document: &Document, unit: Unit, symbol: &Symbol, rungs
         });
         own.count()
     };
-    let all = unit.tally(document, symbol).mentions;
-    if all == rungs.iter().map(inside).sum::<usize>() {
-        return true;
-    }
+    unit.tally(document, symbol).mentions == rungs.iter().map(inside).sum::<usize>()
+}
+
+/// The name of a helper that keeps power, which several rungs may use.
+pub(super) fn helper(symbol: &Symbol) -> Option<&SmolStr> {
     match symbol {
-        Symbol::Variable(name) if is_helper_name(name) => {
-            all <= MENTIONS_MAX && is_stored_wherever_read(document, unit, symbol, name)
-        }
-        _ => false,
+        Symbol::Variable(name) if is_helper_name(name) => Some(name),
+        _ => None,
     }
 }
 
@@ -81,14 +79,26 @@ enum Touch {
     Reads,
 }
 
-/// Whether each read of a variable has a store before it, without a place between at which a jump could arrive.
-fn is_stored_wherever_read(document: &Document, unit: Unit, symbol: &Symbol, name: &str) -> bool {
+/// Whether each read of the helper `name` in those chunks of the unit of which `wanted` says so by their start has a
+/// store before it in chunks of which it says so, too, without a place between at which a jump could arrive.
+pub(super) fn is_stored_wherever_read(
+    document: &Document,
+    unit: Unit,
+    name: &SmolStr,
+    wanted: &dyn Fn(usize) -> bool,
+) -> bool {
+    let symbol = Symbol::Variable(name.clone());
+    let mut left = MENTIONS_MAX;
     let mut is_stored = true;
-    unit.each_part(document, &|names| names.contains(symbol), &mut |start, chunk| {
-        let places: Vec<Span> = places(chunk, symbol);
-        if is_stored && !places.is_empty() {
-            let before = || stored_before(document, start, symbol, name);
-            is_stored = reads_what_is_stored(chunk, &places, name, before);
+    unit.each_part(document, &|names| names.contains(&symbol), &mut |start, chunk| {
+        if !is_stored || !wanted(start) {
+            return;
+        }
+        let places: Vec<Span> = places(chunk, &symbol);
+        if !places.is_empty() {
+            let before = || stored_before(document, start, &symbol, wanted);
+            is_stored = places.len() <= left && reads_what_is_stored(chunk, &places, name, before);
+            left = left.saturating_sub(places.len());
         }
     });
     is_stored
@@ -116,12 +126,12 @@ fn reads_what_is_stored(chunk: &Chunk, places: &[Span], name: &str, before: impl
 }
 
 /// Whether the last that happens to the variable before the chunk at `start` is a store.
-fn stored_before(document: &Document, start: usize, symbol: &Symbol, name: &str) -> bool {
+fn stored_before(document: &Document, start: usize, symbol: &Symbol, wanted: &dyn Fn(usize) -> bool) -> bool {
+    let Some(name) = helper(symbol) else { return false };
     let mut start = start;
     for _ in 0..CHUNKS_MAX {
-        let Some(at) = document.chunk_before(start).filter(|before| before.start < start) else {
-            return false;
-        };
+        let before = document.chunk_before(start).filter(|before| before.start < start);
+        let Some(at) = before.filter(|before| wanted(before.start)) else { return false };
         let Some(tree) = at.chunk.iec() else { return false };
         let places = places(at.chunk, symbol);
         for item in tree.items.iter().rev() {

@@ -6,7 +6,7 @@ use super::declaration::{self, Declaration};
 use super::neighbourhood::Neighbourhood;
 use super::{Change, Proposal};
 use crate::document::{Document, Notation, Tree};
-use crate::ide::changes::between;
+use crate::ide::changes::{between, smallest};
 use crate::ide::{Style, drawing};
 use crate::il::fx::{FxLine, FxTree, LineKind};
 use crate::logic::Path;
@@ -39,10 +39,15 @@ pub(super) fn edits(around: &Neighbourhood<'_>, proposal: &Proposal, style: Styl
     };
     let mut edits = Vec::new();
     for (old, new) in written {
-        edits.extend(between(&document.slice(old), &new, old.start as usize));
+        let (text, start) = (document.slice(old), old.start as usize);
+        match document.notation() {
+            // Between two edits a parenthesis could be open, and what is open reaches to the end of the program unit.
+            Notation::IecIl => edits.extend(smallest(&text, &new, start)),
+            _ => edits.extend(between(&text, &new, start)),
+        }
     }
     if !declarations.is_empty() {
-        edits.insert(0, declaration::edit(document, around.unit, &declarations)?);
+        edits.insert(0, declaration::edit(around, &declarations)?);
     }
     Some(Written { edits, declarations })
 }
