@@ -384,4 +384,8 @@ fn the_target_of_a_lone_ladder() {
         assert_eq!(target(&format!("--[X0]--{slip}--(Y0)--")), fx, "{slip}");
     }
     assert_eq!(target("--[X0]--(Y0)--  // a remark"), fx);
+    // One odd name is no other language, while it is typed or for good.
+    assert_eq!(target("--[X0]--[X7X0]--[M1]--(Y0)--"), fx);
+    assert_eq!(target("--[X0]--[Door]--[M1]--(Y0)--"), fx);
+    assert_eq!(target("--[X0]--[Door]--(Y0)--"), iec);
 }

@@ -1450,6 +1450,25 @@ fn formatting_declarations() {
             |
         "#]],
     );
+    // A comment before the end of something is the last thing in it.
+    check_format(
+        "program p\nvar a : bool;\n// no more\nend_var\nld a\nst a\n\n(* and so on *)\n\nend_program\n(* behind *)\n",
+        expect![[r#"
+            |PROGRAM p
+            |VAR
+            |    a : BOOL;
+            |    // no more
+            |END_VAR
+            |    LD      a
+            |    ST      a
+            |
+            |    (* and so on *)
+            |
+            |END_PROGRAM
+            |(* behind *)
+            |
+        "#]],
+    );
     check_format(
         "type colour:(Red,Green):=Red; p:struct x,y:int; inner : struct z:bool:=true; end_struct; end_struct;r: int( 0..9 );end_type\n",
         expect![[r#"

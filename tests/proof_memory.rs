@@ -199,3 +199,30 @@ fn words_of_a_counterexample_are_numbers() {
         }
     }
 }
+
+#[test]
+fn a_counterexample_has_the_names_of_the_program() {
+    let named = |left: &Document, right: &Document| {
+        let Proof::Different(found) = prove(left, right) else { panic!("{}", left.text()) };
+        found.inputs.into_iter().map(|(name, _)| name).collect::<Vec<_>>()
+    };
+    let variables = "Start AT %IX0.0 : BOOL; Stop AT %IX0.1 : BOOL; Lamp AT %QX0.0 : BOOL;";
+    let bodies = ["LD Start; AND Stop; ST Lamp", "LD Start; OR Stop; ST Lamp"];
+    let [one, two] = bodies.map(|body| program(variables, &lines(body)));
+    assert_eq!(named(&one, &two), ["Start", "Stop"]);
+    let direct = program("", "LD %IX0.0\nAND %IX0.1\nST %QX0.0");
+    assert_eq!(named(&direct, &two), ["%IX0.0", "%IX0.1"]);
+    let devices = fx("LD X0\nAND X1\nOUT Y0\n");
+    assert_eq!(named(&devices, &two), ["X0", "X1"]);
+    // One name in two units for two places: the places tell them apart.
+    let units = |join: &str| {
+        let unit = |name: &str, at: &str, join: &str| {
+            format!(
+                "PROGRAM {name}\nVAR\nv AT %IX{at} : BOOL; w AT %IX2.0 : BOOL; y AT %QX{at} : BOOL;\nEND_VAR\n\
+                 LD v\n{join} w\nST y\nEND_PROGRAM\n"
+            )
+        };
+        list(&(unit("One", "0.0", "AND") + &unit("Two", "1.0", join)))
+    };
+    assert_eq!(named(&units("AND"), &units("OR")), ["v", "w"]);
+}

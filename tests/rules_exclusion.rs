@@ -110,6 +110,9 @@ fn what_is_not_decided_is_no_error() {
             "LD X0; MOV D0 K1Y0; LD Y1; OUT Y4",
             "both are at the end of a scan with `Y0`, `Y1` switched on in it",
         ),
+        // Behind a refresh an input may be another than before it.
+        ("LD X0; OUT Y0; LD M8000; REF X0 K8; LDI X0; OUT Y1", "with `Y0` switched on in it"),
+        ("LD X0; OUT Y0; LD M8000; REFF K2; LDI X0; OUT Y1", "with `Y0` switched on in it"),
         ("LD X7; CJ P1; LD X0; OUT Y0; P1; LD X1; ANI Y0; OUT Y1", "leave out line 5"),
         ("LD X7; MC N0 M100; LD X0; OUT Y0; MCR N0; LD X1; ANI Y0; OUT Y1", "leave out line 5"),
         ("FOR K3; LD X0; OUT Y0; NEXT; LD X1; ANI Y0; OUT Y1", "line 4 may be executed several times"),

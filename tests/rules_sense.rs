@@ -295,6 +295,29 @@ fn files_of_a_program_know_each_others_coils() {
     let moved = document(Notation::FxIl, "; a line\nLD X0\nOUT Y0\nLD M0\nOUT Y1\n");
     assert_ne!(check::surface(&main), check::surface(&other));
     assert_eq!(check::surface(&main), check::surface(&moved));
+    // Proofs go through the rungs of other files: how contacts are joined is a part of it, comments are none.
+    for (notation, one, two, is_same) in [
+        (Notation::FxIl, "LD X0\nAND X1\nOUT Y0\n", "LD X0\nOR X1\nOUT Y0\n", false),
+        (Notation::FxIl, "LD> D0 K5\nOUT Y0\n", "LD> D0 K6\nOUT Y0\n", false),
+        (Notation::FxIl, "LD X0\nOUT Y0\n", "\n; on\n\nLD X0 ; in\n  OUT Y0\n", true),
+        (
+            Notation::Ladder,
+            "|  X0    X1    Y0  |\n+--| |---| |---( )-+\n",
+            "|  X0          Y0  |\n+--| |-+-----( )-+\n|  X1  |           |\n+--| |-+           |\n",
+            false,
+        ),
+        (
+            Notation::Ladder,
+            "|  X0    X1    Y0  |\n+--| |---| |---( )-+\n",
+            "// both\n|  X0    X1    Y0  |\n+--| |---| |---( )-+\n",
+            true,
+        ),
+        (Notation::IecIl, "LD %IX0.0\nAND %IX0.1\nST %QX0.0\n", "LD %IX0.0\nOR %IX0.1\nST %QX0.0\n", false),
+        (Notation::IecIl, "LD %IX0.0\nST %QX0.0\n", "(* on *)\nLD %IX0.0\nST %QX0.0\n", true),
+    ] {
+        let [first, second] = [one, two].map(|text| check::surface(&document(notation, text)));
+        assert_eq!(first == second, is_same, "{one}\n{two}");
+    }
 }
 
 // Comments that allow

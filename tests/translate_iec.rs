@@ -221,6 +221,15 @@ fn a_jump_between_outputs_is_kept_as_it_is() {
 }
 
 #[test]
+fn what_is_kept_as_it_is_has_the_margin_of_the_page() {
+    let text = "PROGRAM Main\nVAR w : INT; END_VAR\n    LD w\n    ADD(\n        LD 5\n    )\n    GT 3\n    JMPC out\nout:\nEND_PROGRAM\n";
+    let drawn = to(&list(text), To::Ladder).text;
+    let boxed = "{il\nLD w\nADD(\n    LD 5\n)\nGT 3\nJMPC out\n}\n";
+    assert!(drawn.contains(boxed) && drawn.ends_with("END_PROGRAM\n"), "{drawn}");
+    assert!(!drawn.ends_with("\n\n"), "{drawn:?}");
+}
+
+#[test]
 fn detectors_of_edges_are_contacts() {
     let variables = format!("{BITS} up : R_TRIG; down : F_TRIG;");
     let calls = "CAL up(\nCLK := a\n)\nCAL down(\nCLK := b\n)\n";

@@ -4,7 +4,7 @@ use super::ProgramContext;
 use super::statements::{StatementKind, is_fx_program};
 use crate::document::{Access, Document, Exports, Symbol, Tree};
 use crate::target::Flow;
-use rustc_hash::FxHasher;
+use rustc_hash::{FxHashSet, FxHasher};
 use std::hash::{Hash, Hasher};
 
 /// Differs whenever the rules about whole programs may find something else in the other files. Places do not count:
@@ -45,6 +45,9 @@ fn of_fx(document: &Document, hasher: &mut FxHasher) {
         }
     }
     accesses.for_each(|(_, name, access)| (&name.1, access.act, access.part, access.count).hash(hasher));
+    // Proofs go through the rungs of relays in other files.
+    let circuits = document.pages().iter().flat_map(|page| page.circuits());
+    circuits.for_each(|(_, circuit)| circuit.hash(hasher));
     is_empty.hash(hasher);
 }
 
@@ -82,6 +85,8 @@ fn of_iec(document: &Document, hasher: &mut FxHasher) {
     let mut pous = 0;
     for page in document.pages() {
         let accesses = page.accesses();
+        // The chunks that read or drive what other files know.
+        let mut circuits = FxHashSet::default();
         for access in &accesses.all {
             let Some((pou, symbol)) = accesses.names.get(access.name as usize) else { continue };
             let variable = match symbol {
@@ -92,8 +97,11 @@ fn of_iec(document: &Document, hasher: &mut FxHasher) {
             let is_global = variable.is_some_and(|variable| variable.section.is_global());
             if is_global || address.is_some() || matches!(symbol, Symbol::Direct(_)) {
                 (symbol, address, access.act, access.part).hash(hasher);
+                circuits.insert(access.chunk);
             }
         }
+        let shared = page.circuits().filter(|(number, _)| circuits.contains(number));
+        shared.for_each(|(_, circuit)| circuit.hash(hasher));
         pous += page.pou_starts();
     }
     for at in document.chunks().filter(|at| at.chunk.is_iec()) {

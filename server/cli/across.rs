@@ -2,7 +2,7 @@
 
 use super::input::{Beside, Program, folder_of, read_programs};
 use crate::check;
-use crate::document::{Exports, Member, Outer, ProjectView};
+use crate::document::{Document, Exports, Member, Outer, ProjectView};
 use crate::project::{MOST_PROJECT_BYTES, Project};
 use crate::target::Target;
 use crate::text::Diagnostic;
@@ -83,8 +83,7 @@ fn check_project(
         files.iter().map(of).collect::<Vec<_>>()
     };
     let unlinked = documents(programs);
-    let outer =
-        Arc::new(Outer::new(unlinked.iter().map(|document| Arc::new(Exports::of(document))).collect()));
+    let outer = Arc::new(outer_of(root, &unlinked));
     let linked: Vec<_> =
         unlinked.iter().enumerate().map(|(own, document)| document.linked(outer.clone(), own)).collect();
     let members = files.iter().zip(&linked).map(|(file, document)| Member { name: &file.name, document });
@@ -102,6 +101,34 @@ fn check_project(
         programs[number].document = document;
         programs[number].beside = beside.clone();
     }
+}
+
+/// What the files of the project in the folder `root` know of each other.
+fn outer_of(root: &Path, documents: &[Document]) -> Outer {
+    Outer::new(root.into(), documents.iter().map(|document| Arc::new(Exports::of(document))).collect())
+}
+
+/// A program that knows what the other files of its project declare. Those that cannot be read are left out.
+pub(super) fn linked(program: Program) -> Program {
+    let Some(root) = folder_of(&program.path).filter(|_| !program.document.target().is_fx()) else {
+        return program;
+    };
+    let own_path = program.path.canonicalize().ok();
+    let (mut documents, mut own, mut bytes) = (Vec::new(), None, 0);
+    for path in Project::read(&root).files_in_reach() {
+        bytes += std::fs::metadata(&path).map_or(0, |data| data.len());
+        if own_path.is_some() && path.canonicalize().ok() == own_path {
+            own = Some(documents.len());
+            documents.push(program.document.clone());
+        } else if bytes <= MOST_PROJECT_BYTES
+            && let Ok(read) = read_programs(&path, &program.manifest, None)
+        {
+            documents.extend(read.into_iter().next().map(|other| other.document));
+        }
+    }
+    let Some(own) = own.filter(|_| documents.len() > 1) else { return program };
+    let document = program.document.linked(Arc::new(outer_of(&root, &documents)), own);
+    Program { document, ..program }
 }
 
 fn shown_path(file: &File, programs: &[Program]) -> String {

@@ -1,5 +1,6 @@
 //! `rungwise prove`
 
+use super::across::linked;
 use super::input::{Program, complain, programs, put, say};
 use super::{Outcome, translate};
 use crate::text::{Language, Message};
@@ -54,11 +55,11 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     }
 }
 
-/// The one program at `path`; nothing after a complaint.
+/// The one program at `path`, which knows what the other files of its project declare; nothing after a complaint.
 pub(super) fn read(path: &Path, language: Language) -> Option<Program> {
     let mut programs = programs(&[path.to_path_buf()], None, language)?;
     if programs.len() == 1 {
-        return programs.pop();
+        return programs.pop().map(linked);
     }
     let reason = Message::new("cli.one-program").with("path", path.display());
     let help = Message::new("cli.name-one-file").render(language);

@@ -4,7 +4,7 @@ use super::access::{self, OwnAccesses};
 use super::allowance::{self, OwnAllowance};
 use super::exclusion::{self, Exclusion};
 use super::milestone::{self, Milestone};
-use super::{Mention, Notation, Size, Token, boxes, exported, mention, tokens};
+use super::{Mention, Notation, Size, Token, boxes, circuit, exported, mention, tokens};
 use crate::il::{fx, iec};
 use crate::ladder::{self, LadderTree, NameHabit};
 use crate::target::Target;
@@ -74,6 +74,7 @@ struct Outline {
     size: Size,
     milestones: Box<[Milestone]>,
     accesses: OwnAccesses,
+    circuit: u64,
     allowances: Vec<OwnAllowance>,
     exclusions: Box<[Exclusion]>,
     is_only_comments: bool,
@@ -291,6 +292,11 @@ impl Chunk {
         &self.outline().accesses
     }
 
+    /// How its rungs are put together; differs where they may do something else.
+    pub(super) fn circuit(&self) -> u64 {
+        self.outline().circuit
+    }
+
     /// The comments in it that allow something.
     pub(super) fn allowances(&self) -> &[OwnAllowance] {
         &self.outline().allowances
@@ -313,6 +319,7 @@ impl Chunk {
                 size: Size::of(&reading),
                 milestones: milestone::of_chunk(&reading).into_boxed_slice(),
                 accesses: access::of_chunk(&reading),
+                circuit: circuit::of_chunk(&reading),
                 allowances: allowance::of_chunk(&reading),
                 exclusions: exclusion::of_chunk(&reading),
                 is_only_comments: allowance::is_only_comments(reading.tree()),

@@ -2,9 +2,11 @@
 
 use super::scope::{DeclaredType, Pou, Variable};
 use super::{Document, Scopes};
+use crate::text::folded;
 use rustc_hash::FxHasher;
 use smol_str::SmolStr;
 use std::hash::{Hash, Hasher};
+use std::path::Path;
 use std::sync::Arc;
 
 /// What other files see of a document.
@@ -19,8 +21,9 @@ pub struct Exports {
 }
 
 /// The exports of all files of a project, in the order of its [`ProjectView`](super::ProjectView).
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Outer {
+    folder: Arc<Path>,
     files: Vec<Arc<Exports>>,
 }
 
@@ -51,10 +54,21 @@ fn own<T: Clone>(all: &rustc_hash::FxHashMap<SmolStr, T>, own: &[SmolStr]) -> Ve
     own.iter().filter_map(|name| Some((name.clone(), all.get(name)?.clone()))).collect()
 }
 
+impl Default for Outer {
+    fn default() -> Outer {
+        Outer::new(Path::new("").into(), Vec::new())
+    }
+}
+
 impl Outer {
-    /// From the exports of each file.
-    pub fn new(files: Vec<Arc<Exports>>) -> Outer {
-        Outer { files }
+    /// From the exports of each file of the project in a folder.
+    pub fn new(folder: Arc<Path>, files: Vec<Arc<Exports>>) -> Outer {
+        Outer { folder, files }
+    }
+
+    /// Whether it is of the same project, whose units are the same for all its files.
+    pub fn is_of_project(&self, other: &Outer) -> bool {
+        self.folder == other.folder
     }
 
     /// Whether file number `own` learns the same from both.
@@ -74,6 +88,17 @@ impl Pou {
     fn seen_from_outside(&self) -> Pou {
         let variables = self.variables.iter().filter(|variable| variable.section.is_parameter());
         Pou::new(self.name.clone(), self.kind, self.result.clone(), variables.cloned())
+    }
+
+    /// Whether who calls it sees no difference to `other`: the name, the parameters in their order, the result.
+    pub fn is_seen_as(&self, other: &Pou) -> bool {
+        let parameters = |pou: &'_ Pou| -> Vec<_> {
+            let variables = pou.variables.iter().filter(|variable| variable.section.is_parameter());
+            variables.map(|one| (folded(&one.name), one.section, one.declared.clone())).collect()
+        };
+        folded(&self.name) == folded(&other.name)
+            && self.result == other.result
+            && parameters(self) == parameters(other)
     }
 }
 

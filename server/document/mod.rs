@@ -38,6 +38,8 @@ pub use milestone::{Milestone, MilestoneKind};
 mod access;
 pub use access::{Access, Accesses, Act, Joint, JointKind, Part};
 
+mod circuit;
+
 mod allowance;
 pub use allowance::{Allowance, DIRECTIVE};
 

@@ -67,8 +67,9 @@ pub fn detect_notation(text: &str) -> Notation {
     if balance < 0 { Notation::IecIl } else { Notation::FxIl }
 }
 
-/// The target of a ladder that stands alone: FX devices only mean an FX2N, other names IEC. A mistyped device (`X8`,
-/// `MO`) or mnemonic is still meant for the FX, so that it is reported and not taken for a variable.
+/// The target of a ladder that stands alone: FX devices mean an FX2N, other names IEC, unless there are more than twice
+/// as many devices. A mistyped device (`X8`, `MO`) or mnemonic is still meant for the FX, and so is one odd name among
+/// devices, so that it is reported and not taken for a variable.
 pub fn detect_ladder_target(text: &str) -> &'static Target {
     // Most lines of a drawing begin with a rail.
     let mut worded =
@@ -77,12 +78,15 @@ pub fn detect_ladder_target(text: &str) -> &'static Target {
     let exported =
         text.trim_start_matches('\u{feff}').lines().take(3).any(|line| line.starts_with("LDmicro export "));
     let foreign = || {
-        drawing_words(text).any(|word| {
-            word.chars().any(char::is_alphabetic)
-                && Form::named(word).is_none()
-                && matches!(Operand::read(word, Model::Fx3u), Operand::Invalid(_))
-                && !resembles_device(word)
-        })
+        let (mut names, mut devices) = (0, 0);
+        for word in drawing_words(text).filter(|word| word.chars().any(char::is_alphabetic)) {
+            match Operand::read(word, Model::Fx3u) {
+                Operand::Invalid(_) if resembles_device(word) || Form::named(word).is_some() => {}
+                Operand::Invalid(_) => names += 1,
+                _ => devices += 1,
+            }
+        }
+        names > 0 && 2 * names >= devices
     };
     if header || exported || foreign() { Target::of(Model::Iec) } else { Target::of(Model::Fx2n) }
 }

@@ -98,6 +98,13 @@ impl Page {
         self.accesses.get_or_init(|| Arc::new(access::of_page(&self.chunks)))
     }
 
+    /// How the rungs of each of its chunks are put together, with the chunk's number: differs where they may do
+    /// something else. Chunks of comments alone have nothing.
+    pub fn circuits(&self) -> impl Iterator<Item = (u32, u64)> {
+        let chunks = (0..).zip(self.chunks.iter()).filter(|(_, chunk)| !chunk.is_only_comments());
+        chunks.map(|(number, chunk)| (number, chunk.circuit()))
+    }
+
     /// The comments that allow something, each with the number of its chunk.
     pub(super) fn allowances(&self) -> &[(usize, OwnAllowance)] {
         self.allowances.get_or_init(|| allowance::of_page(&self.chunks).into())

@@ -38,7 +38,8 @@ pub struct Scopes {
     pub(super) own_globals: Vec<SmolStr>,
     pub(super) own_types: Vec<SmolStr>,
     pub(super) own_configuration: bool,
-    /// Whether there are variables that may lie in one place with others: at addresses, or where a caller says.
+    /// Whether there are variables that may lie in one place with others, at addresses or where a caller says, or that
+    /// may be changed elsewhere, by functions and function blocks.
     pub shares_storage: bool,
 }
 
@@ -189,9 +190,11 @@ impl Scopes {
 
     fn has_shared_storage(&self) -> bool {
         let locals = self.pous.iter().flat_map(|pou| &pou.variables);
-        locals
-            .chain(self.globals.values())
-            .any(|variable| variable.address.is_some() || variable.section == SectionKind::InOut)
+        let calls = |pou: &Arc<Pou>| pou.kind != PouKind::Program;
+        self.pous.iter().any(calls)
+            || locals
+                .chain(self.globals.values())
+                .any(|variable| variable.address.is_some() || variable.section == SectionKind::InOut)
     }
 
     /// Whether `name` is a declared data type.
@@ -270,7 +273,8 @@ impl Scopes {
                 let digits = name.trim_start_matches(['%', 'x', 'X']);
                 digits.parse::<u32>().is_ok().then_some(DeclaredType::Elementary(ElementaryType::Bool))
             }
-            DeclaredType::Named(block) => match FunctionBlock::named(&block) {
+            // A block that is declared hides one of the standard.
+            DeclaredType::Named(block) => match self.standard_block(&block) {
                 Some(row) => {
                     let pins = row.inputs.iter().chain(row.outputs);
                     let pin = pins.into_iter().find(|pin| pin.name.eq_ignore_ascii_case(name))?;
@@ -291,6 +295,24 @@ impl Scopes {
             DeclaredType::Unknown => Some(DeclaredType::Unknown),
             _ => None,
         }
+    }
+
+    /// The same where program unit number `pou` declares these variables, too; outside of any unit they are known
+    /// everywhere.
+    pub fn declaring(&self, pou: Option<usize>, variables: impl IntoIterator<Item = Variable>) -> Scopes {
+        let mut scopes = self.clone();
+        for variable in variables {
+            match pou.and_then(|pou| scopes.pous.get_mut(pou)) {
+                Some(pou) => Arc::make_mut(pou).declare(variable),
+                None => _ = scopes.globals.entry(folded(&variable.name)).or_insert(variable),
+            }
+        }
+        scopes
+    }
+
+    fn standard_block(&self, name: &str) -> Option<&'static FunctionBlock> {
+        let is_declared = self.pou_named(name).is_some_and(|pou| pou.kind == PouKind::FunctionBlock);
+        FunctionBlock::named(name).filter(|_| !is_declared)
     }
 
     fn add(&mut self, text: &str, tree: &IecTree) {

@@ -163,7 +163,7 @@ fn place_of(effect: &Effect<'_>) -> (String, Place) {
 
 fn what(effect: &Effect<'_>) -> String {
     let action = effect.action;
-    match (action.deed, action.terms.first()) {
+    match (&action.deed, action.terms.first()) {
         (Deed::Coil(_), Some(term)) => term.text.to_string(),
         (Deed::Instruction(form), _) => {
             let words = action.terms.iter().map(|term| term.text.as_str());
@@ -175,8 +175,8 @@ fn what(effect: &Effect<'_>) -> String {
 }
 
 /// Whether an action looks at bits other than through its condition and the operands of a call, or may change bits
-/// whose values are known, or decides what comes next. What it does when its condition fails depends on what was
-/// before.
+/// whose values are known, or decides what comes next, as units of the program do that are called. What it does when its
+/// condition fails depends on what was before.
 pub fn touches_bits(action: &Action) -> bool {
     // States, timers and counters change in events only, and these come in the same order.
     let is_bit = |term: &Term| term.operand.device().is_some_and(|device| is_driven(device.kind));
@@ -187,7 +187,7 @@ pub fn touches_bits(action: &Action) -> bool {
         }
         // Instructions look at special relays that none of their operands names: carry, direction, modes.
         Deed::Coil(_) => covers() || action.terms.first().is_some_and(is_special),
-        Deed::Compute(_) | Deed::Call(_) => covers(),
+        Deed::Compute(_) | Deed::Call(_) => action.runs_unit() || covers(),
         Deed::Jump | Deed::Return => true,
     }
 }

@@ -153,7 +153,7 @@ impl<'s> Scan<'s> {
 
     fn act(&mut self, action: &Action, power: bool) {
         let power = power != (action.deed == Deed::Coil(CoilKind::Negated));
-        if let (Deed::Coil(kind), [term]) = (action.deed, &action.terms[..])
+        if let (Deed::Coil(kind), [term]) = (&action.deed, &action.terms[..])
             && term.is_lone()
         {
             let value = match kind {
@@ -188,7 +188,7 @@ impl<'s> Scan<'s> {
         let before = self.bit(key);
         let own = action.terms.first().filter(|term| term.key() == key);
         let device = own.and_then(|term| term.operand.device());
-        match (action.deed, device) {
+        match (&action.deed, device) {
             (Deed::Coil(CoilKind::Plain), Some(timer)) if timer.is_forgetful_timer() => {
                 power && (before || left)
             }
@@ -209,7 +209,7 @@ impl<'s> Scan<'s> {
     }
 
     /// What standard blocks make of their output `key` where their input alone decides it.
-    fn output_after(&self, call: Call, terms: &[Term], power: bool, key: &str) -> Option<bool> {
+    fn output_after(&self, call: &Call, terms: &[Term], power: bool, key: &str) -> Option<bool> {
         let instance = terms.first()?.key();
         let output = key.strip_prefix(&*instance)?.strip_prefix('.')?;
         let input = || {
@@ -217,10 +217,11 @@ impl<'s> Scan<'s> {
             let given = arguments.iter().find(|argument| argument.name == call.power_in());
             given.map_or(power, |argument| self.value(&argument.term))
         };
-        match (call.block.name, output) {
-            ("TON" | "R_TRIG", "q") if !input() => Some(false),
-            ("TOF", "q") if input() => Some(true),
-            ("F_TRIG", "q") if input() => Some(false),
+        let is = |name: &str| call.block.is_standard(name);
+        match output {
+            "q" if (is("TON") || is("R_TRIG")) && !input() => Some(false),
+            "q" if is("TOF") && input() => Some(true),
+            "q" if is("F_TRIG") && input() => Some(false),
             _ => None,
         }
     }
@@ -233,7 +234,7 @@ impl<'s> Scan<'s> {
     fn moved(&self, action: &Action, power: bool) -> Option<(SmolStr, i64)> {
         let register = action.terms.last()?;
         let is_register = matches!(register.operand, Operand::Device(Device { kind: DeviceKind::D, .. }));
-        let copies = match action.deed {
+        let copies = match &action.deed {
             Deed::Compute(computation) => computation.copies(),
             Deed::Instruction(form) if form.instruction.copies() && is_register => !form.wide && !form.pulse,
             _ => return None,
@@ -249,9 +250,10 @@ impl<'s> Scan<'s> {
 
 /// Whether an action changes nothing while it has no power.
 fn is_idle_without_power(action: &Action) -> bool {
-    match action.deed {
-        Deed::Instruction(form) => form.instruction.flow() == Flow::Straight,
+    match &action.deed {
+        Deed::Instruction(form) => matches!(form.instruction.flow(), Flow::Straight | Flow::Refresh),
         Deed::Call(call) => call.is_enabled(),
+        Deed::Compute(_) => true,
         _ => false,
     }
 }

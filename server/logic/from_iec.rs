@@ -15,14 +15,14 @@ mod computing;
 mod reader;
 
 use self::computing::Skips;
-use self::reader::Reader;
-use super::{Declared, Path, Refusal, Rung, Term};
+use self::reader::{Reader, edge_kind};
+use super::{Callee, Declared, Path, Refusal, Rung, Term};
 use crate::document::{DeclaredType, Scopes};
 use crate::il::iec::{Condition, IecTree, Item, ItemKind, ListForm, OperandId, SectionKind};
 use crate::ladder::CoilKind;
 use crate::target::Operand;
 use crate::target::Width;
-use crate::target::iec::{ElementaryType, FunctionBlock, LiteralValue, OperatorRole};
+use crate::target::iec::{ElementaryType, LiteralValue, OperatorRole};
 use crate::text::{Severity, Span, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
@@ -280,8 +280,9 @@ impl<'a> Source<'a> {
 
     /// Whether item `index`, outside of parentheses, begins a segment behind `last`.
     fn begins(&self, last: &Segment, index: usize) -> bool {
-        let is_fed =
-            index.checked_sub(1).is_some_and(|before| last.items.contains(&before) && self.feeds(before));
+        let is_fed = index
+            .checked_sub(1)
+            .is_some_and(|before| last.items.contains(&before) && self.feeds(last.pou, before));
         self.starts_afresh(&self.tree.items[index].kind) && !is_fed
     }
 
@@ -313,7 +314,7 @@ impl<'a> Source<'a> {
         };
         let instance = self.tree.operand(callee).span.of(self.text);
         let Some(block) = self.block(pou, instance) else { return false };
-        let detects = matches!(block.name, "R_TRIG" | "F_TRIG");
+        let detects = edge_kind(&block).is_some();
         let asks = match item.kind {
             ItemKind::Operation { operation, operand: Some(id) } => {
                 operation.operator.role == OperatorRole::Load
@@ -322,7 +323,7 @@ impl<'a> Source<'a> {
                         .operand(id)
                         .span
                         .of(self.text)
-                        .eq_ignore_ascii_case(&output_of(block, instance))
+                        .eq_ignore_ascii_case(&output_of(&block, instance))
             }
             _ => false,
         };
@@ -358,27 +359,16 @@ impl<'a> Source<'a> {
         let mut shown = Vec::new();
         for (pou, rung) in rungs {
             let Ok(Some(path)) = &rung.path else { continue };
-            let found = std::cell::RefCell::new(&mut shown);
-            let mut look = |term: &Term| {
-                if is_helper_name(&term.text) && self.is_helper(*pou, &folded(&term.text)) {
-                    found.borrow_mut().push((*pou, folded(&term.text)));
-                }
-            };
-            let look = std::cell::RefCell::new(&mut look);
-            path.visit(
-                &mut |action| action.terms.iter().for_each(|term| (look.borrow_mut())(term)),
-                &mut |part| {
-                    part.visit(&mut |contact| {
-                        contact.terms.iter().for_each(|term| (look.borrow_mut())(term))
-                    });
-                },
-            );
+            let names = path.terms().into_iter().filter(|term| is_helper_name(&term.text));
+            let names = names.map(|term| folded(&term.text)).filter(|name| self.is_helper(*pou, name));
+            shown.extend(names.map(|name| (*pou, name)));
         }
         shown
     }
 
-    /// Whether item `index` stores the power of the call that follows it: `ST T1.IN` before `CAL T1`.
-    fn feeds(&self, index: usize) -> bool {
+    /// Whether item `index` stores the power of the call that follows it: `ST T1.IN` before `CAL T1`. What is stored to
+    /// other inputs is stored like anything else.
+    fn feeds(&self, pou: Option<usize>, index: usize) -> bool {
         let item = &self.tree.items[index];
         let (ItemKind::Operation { operation, operand: Some(id) }, Some(next)) =
             (item.kind, self.tree.items.get(index + 1))
@@ -389,9 +379,15 @@ impl<'a> Source<'a> {
             return false;
         };
         let [stored, called] = [id, callee].map(|id| self.tree.operand(id).span.of(self.text));
+        let is_power = |input: &str| match self.block(pou, called) {
+            Some(block) => block.power_in().is_some_and(|power| folded(power) == folded(input)),
+            None => true,
+        };
         operation.operator.role == OperatorRole::Store
             && item.depth == 0
-            && stored.rsplit_once('.').is_some_and(|(instance, _)| instance.eq_ignore_ascii_case(called))
+            && stored
+                .rsplit_once('.')
+                .is_some_and(|(instance, input)| folded(instance) == folded(called) && is_power(input))
     }
 
     /// Counts the uses of instances that may be detectors of edges.
@@ -405,7 +401,7 @@ impl<'a> Source<'a> {
             let path = operand.span.of(self.text);
             let (instance, member) =
                 path.split_once('.').map_or((path, None), |(root, rest)| (root, Some(rest)));
-            if !self.block(pou, instance).is_some_and(|block| matches!(block.name, "R_TRIG" | "F_TRIG")) {
+            if !self.block(pou, instance).is_some_and(|block| edge_kind(&block).is_some()) {
                 continue;
             }
             let detector = self.detectors.entry((pou, folded(instance))).or_default();
@@ -422,10 +418,10 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// The standard function block that a variable is an instance of.
-    fn block(&self, pou: Option<usize>, instance: &str) -> Option<&'static FunctionBlock> {
+    /// The function block that a variable is an instance of.
+    fn block(&self, pou: Option<usize>, instance: &str) -> Option<Callee> {
         match self.scopes.type_of(pou, instance)? {
-            DeclaredType::Named(name) => FunctionBlock::named(&name),
+            DeclaredType::Named(name) => Callee::block(&name, self.scopes),
             _ => None,
         }
     }
@@ -575,6 +571,6 @@ enum ValueKind {
 }
 
 /// The output of an instance from which power goes on.
-fn output_of(block: &FunctionBlock, instance: &str) -> String {
-    format!("{instance}.{}", block.outputs.first().map_or("", |pin| pin.name))
+fn output_of(block: &Callee, instance: &str) -> String {
+    format!("{instance}.{}", block.power_out().unwrap_or_default())
 }

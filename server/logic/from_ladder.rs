@@ -6,7 +6,7 @@ use super::builder::Builder;
 use super::from_fx;
 use super::from_iec;
 use super::{Action, Contact, Declared, Deed, Expression, Gate, Network, Path, Refusal, Rung, Term, Test};
-use crate::document::boxed;
+use crate::document::{Scopes, boxed};
 use crate::il::{fx, iec};
 use crate::ladder::reduce::{NotSeriesParallel, Shape, reduce};
 use crate::ladder::{self, Element, ElementKind, Graph, LadderTree};
@@ -42,7 +42,7 @@ pub(super) fn rungs(text: &str, tree: &LadderTree, target: &Target, declared: De
                     comments: std::mem::take(&mut comments),
                     span: rung.span,
                     is_list: false,
-                    path: path(text, tree, rung)
+                    path: path(text, tree, rung, declared.scopes)
                         .map(|path| Some(path.located(declared.scopes, declared.pous.checked_sub(1)))),
                 });
             }
@@ -103,21 +103,22 @@ fn iec_rung(list: &str, target: &Target, declared: Declared<'_>) -> Rung {
     }
 }
 
-fn path(text: &str, tree: &LadderTree, rung: &ladder::Rung) -> Result<Path, Refusal> {
+fn path(text: &str, tree: &LadderTree, rung: &ladder::Rung, scopes: &Scopes) -> Result<Path, Refusal> {
     if tree.problems.iter().any(|problem| is_grave(problem, rung.span)) {
         return Err(Refusal::Unreadable);
     }
-    of_graph(text, &rung.graph)
+    of_graph(text, &rung.graph, scopes)
 }
 
-/// The path of a drawn rung whose words stand in `text`.
-pub fn of_graph(text: &str, graph: &Graph) -> Result<Path, Refusal> {
+/// The path of a drawn rung whose words stand in `text`. Of `scopes` it knows the function blocks and functions; where
+/// its variables lie, [`Path::located`] tells.
+pub fn of_graph(text: &str, graph: &Graph, scopes: &Scopes) -> Result<Path, Refusal> {
     let shape = reduce(graph).map_err(|reason| match reason {
         NotSeriesParallel::OpenCircuit(_) | NotSeriesParallel::Empty => Refusal::OpenCircuit,
         NotSeriesParallel::Bridge(_) | NotSeriesParallel::SharedPin(_) => Refusal::Bridge,
         NotSeriesParallel::TooDeep => Refusal::TooDeep,
     })?;
-    let mut reader = Reader { text, graph, builder: Builder::new() };
+    let mut reader = Reader { text, graph, scopes, builder: Builder::new() };
     reader.shape(&shape, true)?;
     reader.builder.finish().ok_or(Refusal::WithoutOutput)
 }
@@ -133,6 +134,7 @@ fn is_grave(problem: &Diagnostic, rung: Span) -> bool {
 struct Reader<'a> {
     text: &'a str,
     graph: &'a Graph,
+    scopes: &'a Scopes,
     builder: Builder,
 }
 
@@ -211,7 +213,7 @@ impl Reader<'_> {
 
     fn element(&mut self, element: &Element, is_last: bool) -> Result<(), Refusal> {
         if let ElementKind::Block(block) = &element.kind {
-            let (action, goes_on) = block::call(self.text, element, block)?;
+            let (action, goes_on) = block::call(self.text, element, block, self.scopes)?;
             match goes_on && !is_last {
                 true => return self.builder.gate(Gate::Through(action)).ok_or(Refusal::TooDeep),
                 false => self.builder.drive(action),

@@ -15,6 +15,9 @@ pub use path::{Action, Deed, Drive, Gate, Path};
 mod rung;
 pub use rung::{Network, Refusal, Rung};
 
+mod callee;
+pub use callee::{Callee, Formal};
+
 mod call;
 pub use call::{Argument, Call};
 

@@ -6,6 +6,8 @@ use crate::ladder::CoilKind;
 use crate::target::{Access, Flow, Form, Role};
 use crate::text::Span;
 use std::borrow::Cow;
+use std::cell::RefCell;
+use std::sync::Arc;
 
 /// A path of power from the left rail, or from where it leaves another path: it passes all gates, then it drives one
 /// thing after another. A path that leaves it starts with the power behind its gates.
@@ -51,15 +53,15 @@ pub struct Action {
 }
 
 /// What an action is.
-#[derive(Clone, Copy, PartialEq, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub enum Deed {
     /// A coil; with two operands that of a timer or counter with its preset.
     Coil(CoilKind),
     /// Any other instruction of the FX family.
     Instruction(Form),
     /// Calls a function block; the operands are the instance and those of its pins.
-    Call(Call),
-    /// Stores the result of a calculation with words; the operands are its inputs and the result.
+    Call(Arc<Call>),
+    /// Stores the result of a calculation with words, or of a function of the program; the operands are its inputs and the result.
     Compute(Computation),
     /// Goes on at a network of the same program; the label is the operand.
     Jump,
@@ -85,12 +87,12 @@ impl Deed {
     }
 
     /// Whether it stands without a condition: END, MCR, NEXT and their kin.
-    pub fn stands_alone(self) -> bool {
+    pub fn stands_alone(&self) -> bool {
         matches!(self, Deed::Instruction(form) if form.instruction.role == Role::Standalone)
     }
 
     /// Whether the program ends with it.
-    pub fn ends_program(self) -> bool {
+    pub fn ends_program(&self) -> bool {
         matches!(self, Deed::Instruction(form) if form.instruction.flow() == Flow::ProgramEnd)
     }
 }
@@ -100,11 +102,14 @@ const COILS: [CoilKind; 5] =
     [CoilKind::Plain, CoilKind::Set, CoilKind::Reset, CoilKind::Rising, CoilKind::Falling];
 
 impl Action {
-    /// The operands that it may write, and what a call may change besides.
+    /// The operands that it may write, and what a call may change besides: not what a unit of the program does that
+    /// it runs, see [`Action::runs_unit`].
     pub fn changes(&self) -> Vec<Cow<'_, Term>> {
-        match self.deed {
+        match &self.deed {
             Deed::Coil(_) => self.terms.first().map(Cow::Borrowed).into_iter().collect(),
-            Deed::Compute(_) => self.terms.last().map(Cow::Borrowed).into_iter().collect(),
+            Deed::Compute(computation) => {
+                computation.changes(&self.terms).into_iter().map(Cow::Borrowed).collect()
+            }
             Deed::Call(call) => call.changes(&self.terms).into_iter().map(Cow::Owned).collect(),
             Deed::Instruction(form) => {
                 let operands = self.terms.iter().zip(form.instruction.operands);
@@ -115,9 +120,19 @@ impl Action {
         }
     }
 
+    /// Whether it runs a function block or a function that the program declares. That may look at, and change, whatever
+    /// is known outside of the unit that calls it.
+    pub fn runs_unit(&self) -> bool {
+        match &self.deed {
+            Deed::Call(call) => call.block.is_declared(),
+            Deed::Compute(computation) => computation.is_declared(),
+            _ => false,
+        }
+    }
+
     /// The variable from which power goes on behind the call of a function block.
     pub fn power_out(&self) -> Option<Term> {
-        match self.deed {
+        match &self.deed {
             Deed::Call(call) => call.output(&self.terms),
             _ => None,
         }
@@ -148,6 +163,15 @@ impl Path {
         let mut actions = Vec::new();
         self.visit(&mut |action| actions.push(action), &mut |_| {});
         actions
+    }
+
+    /// All operands, in the order of execution.
+    pub fn terms(&self) -> Vec<&Term> {
+        let terms = RefCell::new(Vec::new());
+        self.visit(&mut |action| terms.borrow_mut().extend(&action.terms), &mut |condition| {
+            condition.contacts().into_iter().for_each(|contact| terms.borrow_mut().extend(&contact.terms));
+        });
+        terms.into_inner()
     }
 
     /// The same with its variables where they lie as declared in program unit number `pou`.

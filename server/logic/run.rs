@@ -17,16 +17,17 @@ pub struct Effect<'p> {
     pub guard: Formula,
     /// Its number among the events, from 1; nothing if it drives a bit whose value is known.
     pub event: Option<u32>,
-    /// What a call or a calculation is handed over: the value of each of its operands but the instance.
+    /// What a call or a calculation is handed over: the value of each of its operands but the instance, and of the inputs
+    /// that the instance keeps.
     pub reads: Vec<Formula>,
 }
 
 impl Effect<'_> {
     /// What is done, with negation moved into the guard.
     pub fn deed(&self) -> Deed {
-        match self.action.deed {
+        match &self.action.deed {
             Deed::Coil(CoilKind::Negated) => Deed::Coil(CoilKind::Plain),
-            deed => deed,
+            deed => deed.clone(),
         }
     }
 
@@ -60,6 +61,8 @@ pub struct Run<'p> {
     rail: Formula,
     /// The last event that may have set special relays: flags of arithmetic and of completion.
     flags: u32,
+    /// The last event that may have changed whatever is no plain variable of the own program unit.
+    known: u32,
     /// Whether states are relays like others, as in a program without steps.
     has_plain_states: bool,
 }
@@ -92,6 +95,7 @@ impl<'p> Run<'p> {
             by_outcome: false,
             rail: Formulas::TRUE,
             flags: 0,
+            known: 0,
             has_plain_states: false,
         }
     }
@@ -264,7 +268,8 @@ impl<'p> Run<'p> {
     /// The last event that may have changed `term` together with others.
     fn bulk(&self, term: &Term) -> u32 {
         let is_flag = matches!(term.operand, Operand::Device(device) if device.is_special());
-        self.kinds[slot(term)].max(if is_flag { self.flags } else { 0 })
+        let known = if term.storage == Storage::Local { 0 } else { self.known };
+        self.kinds[slot(term)].max(known).max(if is_flag { self.flags } else { 0 })
     }
 
     /// All comparisons in terms of "at least".
@@ -375,8 +380,11 @@ impl<'p> Run<'p> {
     /// Does something of which nothing is known afterwards.
     fn event(&mut self, action: &'p Action, guard: Formula, formulas: &mut Formulas) {
         self.events += 1;
-        let reads = match action.deed {
-            Deed::Call(_) => action.terms.iter().skip(1).map(|term| self.bit(term, formulas)).collect(),
+        let reads = match &action.deed {
+            Deed::Call(call) => {
+                let kept = call.kept_inputs(&action.terms);
+                action.terms.iter().skip(1).chain(&kept).map(|term| self.bit(term, formulas)).collect()
+            }
             Deed::Compute(_) => action.terms.iter().map(|term| self.bit(term, formulas)).collect(),
             _ => Vec::new(),
         };
@@ -386,15 +394,19 @@ impl<'p> Run<'p> {
 
     /// Notes what the event that just happened may have changed.
     fn change(&mut self, action: &Action, formulas: &mut Formulas) {
-        match action.deed {
-            Deed::Instruction(form) if writes_operands(form) => {
+        match &action.deed {
+            Deed::Instruction(form) if writes_operands(*form) => {
                 action.changes().iter().for_each(|term| self.change_kind(slot(term), formulas));
                 self.flags = self.events;
                 self.touch(ANYWHERE, formulas);
             }
             // What is done meanwhile elsewhere, nobody knows here.
             Deed::Instruction(_) => self.change_all(formulas),
+            Deed::Call(call) if call.keeps_in_out() => self.change_all(formulas),
             deed => {
+                if action.runs_unit() {
+                    self.change_known(formulas);
+                }
                 if matches!(deed, Deed::Call(_)) {
                     self.touch(VARIABLES, formulas);
                 }
@@ -407,6 +419,14 @@ impl<'p> Run<'p> {
         self.kinds = [self.events; KINDS];
         self.touched = [self.after(self.events, formulas); KINDS];
         self.flags = self.events;
+    }
+
+    /// Anything may have changed but the plain variables that only their program unit knows.
+    fn change_known(&mut self, formulas: &mut Formulas) {
+        let variables = self.kinds[VARIABLES];
+        self.change_all(formulas);
+        self.kinds[VARIABLES] = variables;
+        self.known = self.events;
     }
 
     fn change_term(&mut self, term: &Term, formulas: &mut Formulas) {
@@ -457,7 +477,7 @@ impl<'p> Run<'p> {
         if !self.is_lone(term) {
             return None;
         }
-        let value = match action.deed {
+        let value = match &action.deed {
             Deed::Coil(CoilKind::Plain | CoilKind::Negated) => guard,
             Deed::Coil(CoilKind::Set) => {
                 let before = self.bit(term, formulas);

@@ -31,7 +31,7 @@ pub struct Network {
 }
 
 /// Why a rung has no [`Path`].
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub enum Refusal {
     /// A word, a cell or an operand of it cannot be read.
     Unreadable,
@@ -57,6 +57,8 @@ pub enum Refusal {
     BehindOutput,
     /// A function block or a connector, which this reader does not take.
     Element,
+    /// It calls something of this name, which nothing declares.
+    Callee(SmolStr),
     /// Arithmetic on the current result, a jump into a block, and what else has no drawing.
     NotBoolean,
     /// It has a device or an instruction for which the other language has nothing.
@@ -65,8 +67,9 @@ pub enum Refusal {
 
 impl Refusal {
     /// The sentence that says it.
-    pub fn message(self) -> Message {
+    pub fn message(&self) -> Message {
         Message::new(match self {
+            Refusal::Callee(word) => return Message::new("logic.callee").with("word", word),
             Refusal::Unreadable => "logic.unreadable",
             Refusal::NoCurrentResult => "logic.no-current-result",
             Refusal::Blocks => "logic.blocks",

@@ -1,6 +1,6 @@
 //! Words of a program as the logic compares them.
 
-use crate::document::Scopes;
+use crate::document::{DeclaredType, Scopes, Variable};
 use crate::il::iec::SectionKind;
 use crate::target::iec::LiteralValue;
 use crate::target::{Constant, Device, DeviceKind, DirectAddress, Operand, Width};
@@ -27,6 +27,8 @@ pub enum Storage {
     /// In a place of its own.
     #[default]
     Own,
+    /// The same, of a plain variable that only its program unit knows: nothing that is called changes it.
+    Local,
     /// At an address, which other variables may have, too.
     At(DirectAddress),
     /// Where somebody else says, so that any other variable may lie there: VAR_IN_OUT, `AT %Q*`.
@@ -46,6 +48,7 @@ impl Storage {
         match variable.address {
             Some(address) if address.path[0].is_none() => Storage::Anywhere,
             Some(address) => Storage::At(address),
+            None if root.len() == name.len() && is_plain(scopes, variable) => Storage::Local,
             None => Storage::Own,
         }
     }
@@ -90,7 +93,7 @@ impl Term {
             Operand::Direct(address) => address.width == Width::Bit,
             // `T1.Q` is a bit by itself, `Word.3` is not, nor are parts of what lies at an address.
             Operand::Variable => match self.storage {
-                Storage::Own => {
+                Storage::Own | Storage::Local => {
                     let is_part =
                         |(_, last): (&str, &str)| last.starts_with(|c: char| c.is_ascii_digit() || c == '%');
                     !self.text.contains(['[', '^']) && !self.text.rsplit_once('.').is_some_and(is_part)
@@ -156,6 +159,12 @@ impl Term {
             _ => folded(&self.text),
         }
     }
+}
+
+/// Whether a variable is one value that no other program unit has a name for.
+fn is_plain(scopes: &Scopes, variable: &Variable) -> bool {
+    let is_own = matches!(variable.section, SectionKind::Local | SectionKind::Temporary);
+    is_own && matches!(scopes.resolved(variable.declared.clone()), Some(DeclaredType::Elementary(_)))
 }
 
 impl PartialEq for Term {

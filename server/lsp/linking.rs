@@ -34,7 +34,7 @@ impl Workspace {
                 Some(open) => Arc::new(Exports::of(&open.document)),
                 None => file.exports.clone(),
             });
-            let outer = Arc::new(Outer::new(exports.collect()));
+            let outer = Arc::new(Outer::new(key.clone(), exports.collect()));
             let files = (0..).zip(&loaded.files).map(|(number, file)| file.linked(&outer, number));
             Loaded { files: files.collect(), outer, ..Loaded::clone(loaded) }
         });

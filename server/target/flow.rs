@@ -31,6 +31,8 @@ pub enum Flow {
     MainEnd,
     /// END.
     ProgramEnd,
+    /// REF, REFF: reads inputs, or sends outputs, in the middle of the scan.
+    Refresh,
     /// NOP: does nothing and may stand anywhere.
     Nothing,
     /// Everything else: executed in its turn.
@@ -49,6 +51,7 @@ impl Instruction {
             Opcode::Function(6) => Flow::MainEnd,
             Opcode::Function(8) => Flow::LoopBegin,
             Opcode::Function(9) => Flow::LoopEnd,
+            Opcode::Function(50 | 51) => Flow::Refresh,
             Opcode::Device(0x000A) => Flow::SectionBegin,
             Opcode::Device(0x000B) => Flow::SectionEnd,
             Opcode::Contact { class: 15, .. } => Flow::Step,

@@ -1,8 +1,9 @@
 //! The proof that comes with a translation: the result is read again, as a file would be, and compared rung by rung.
 
 use super::source::{self, Source};
+use super::to_iec::Helper;
 use super::{To, Translation, dialect, from_boolean, page};
-use crate::document::Document;
+use crate::document::{Document, Scopes};
 use crate::logic::{Comparison, Effort, Path, Storage, compare_but};
 use crate::target::{Operand, Target};
 use crate::text::{Message, folded};
@@ -37,16 +38,18 @@ impl Certificate {
     }
 }
 
-/// Certifies each rung of `translation`, which was made of `sources` for `target`; nothing if it was cancelled on the
+/// Certifies each rung of `translation`, which was made of `sources` for `target` with the helpers `declared`; nothing if it was cancelled on the
 /// way.
 pub(super) fn add(
     (document, target): (&Document, &'static Target),
-    sources: &[Source],
+    (sources, declared): (&[Source], &[Helper]),
     to: To,
     translation: &mut Translation,
     is_cancelled: &dyn Fn() -> bool,
 ) -> Option<()> {
-    let (written, is_declared) = read_again((document, target), to, &translation.text);
+    let unit = sources.first().and_then(|source| source.pou);
+    let around = || document.scopes().declaring(unit, declared.iter().map(Helper::variable));
+    let (written, is_declared) = read_again((document, target), to, &translation.text, (&around, unit));
     let mut written = written.into_iter().peekable();
     let mut effort = Effort::of_program();
     let helpers: FxHashSet<SmolStr> = translation.helpers.iter().map(|name| folded(name)).collect();
@@ -106,8 +109,14 @@ fn located(path: Path, document: &Document, pou: Option<usize>) -> Path {
     path
 }
 
-/// The rungs of the result, and whether it has declarations of its own.
-fn read_again((document, target): (&Document, &'static Target), to: To, text: &str) -> (Vec<Written>, bool) {
+/// The rungs of the result, and whether it has declarations of its own. A part of a program has none, so it is read with
+/// those `around` it in a program unit.
+fn read_again(
+    (document, target): (&Document, &'static Target),
+    to: To,
+    text: &str,
+    (around, unit): (&dyn Fn() -> Scopes, Option<usize>),
+) -> (Vec<Written>, bool) {
     let Some(notation) = page::notation(to) else {
         let (equations, problems) = from_boolean::read(text, document.reader());
         let equations = equations.into_iter();
@@ -118,11 +127,17 @@ fn read_again((document, target): (&Document, &'static Target), to: To, text: &s
         let written = written.into_iter().map(|(span, path)| Written { start: span.start as usize, path });
         return (written.collect(), false);
     };
-    // The symbols of the project stand for devices there, too.
+    // The symbols of the project stand for devices there, too, and its other files declare what they did.
     let again = Document::with_comments(text, notation, target, document.comments().clone());
-    let rungs = source::rungs(&again, None).into_iter();
+    let again = again.linked_as(document);
+    let is_declared = !again.scopes().own_pous().is_empty();
+    let rungs = match is_declared || target.is_fx() {
+        true => source::rungs(&again, None),
+        false => source::rungs_within(&again, &around(), unit),
+    };
+    let rungs = rungs.into_iter();
     let written = rungs.map(|rung| Written { start: rung.span().start as usize, path: rung.rung.path.ok() });
-    (written.collect(), !again.scopes().pous.is_empty())
+    (written.collect(), is_declared)
 }
 
 fn judge(

@@ -6,6 +6,7 @@ use crate::target::iec::LiteralValue;
 use crate::target::{Device, Model, Operand};
 use crate::text::Span;
 use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
 use std::collections::BTreeMap;
 
 /// A scan in which two programs differ.
@@ -32,14 +33,34 @@ pub enum Value {
     Word(i64),
 }
 
-/// Inputs and states by name, and bits as they were before, as a counterexample has them.
-pub(super) fn inputs(state: &State) -> (BTreeMap<String, Value>, BTreeMap<String, bool>) {
-    let bits = state.bits.iter().map(|(name, value)| (name.to_string(), Value::Bit(*value)));
-    let is_variable = |name: &str| integer(name).is_none() && !name.contains('#');
-    let words = state.words.iter().filter(|(name, _)| is_variable(name));
-    let words = words.map(|(name, value)| (name.trim_start_matches(WIDE).to_string(), Value::Word(*value)));
-    let before = state.before.iter().map(|(name, value)| (name.to_string(), *value));
+/// Inputs and states by the names that `paths` have for them, and bits as they were before, as a counterexample has
+/// them.
+pub(super) fn inputs(
+    state: &State,
+    paths: [&[&Path]; 2],
+) -> (BTreeMap<String, Value>, BTreeMap<String, bool>) {
+    let names = names_of_addresses(paths);
+    let named = |key: &str| names.get(key).map_or_else(|| key.to_string(), SmolStr::to_string);
+    let bits = state.bits.iter().map(|(key, value)| (named(key), Value::Bit(*value)));
+    let is_variable = |key: &str| integer(key).is_none() && !key.contains('#');
+    let words = state.words.iter().filter(|(key, _)| is_variable(key));
+    let words = words.map(|(key, value)| (named(key.trim_start_matches(WIDE)), Value::Word(*value)));
+    let before = state.before.iter().map(|(key, value)| (named(key), *value));
     (bits.chain(words).collect(), before.collect())
+}
+
+/// The variables that programs have at addresses, by the keys of these: the first name of each, unless another place
+/// has the same.
+fn names_of_addresses(paths: [&[&Path]; 2]) -> FxHashMap<SmolStr, SmolStr> {
+    let (mut keys, mut names) = (FxHashMap::default(), FxHashMap::default());
+    for term in paths.into_iter().flatten().flat_map(|path| path.terms()) {
+        let key = term.key();
+        let is_own = *keys.entry(term.text.clone()).or_insert_with(|| key.clone()) == key;
+        if term.address().is_some() && is_own {
+            names.entry(key).or_insert_with(|| term.text.clone());
+        }
+    }
+    names
 }
 
 /// What `place` is in each of two programs when they are run from `state`, if it differs.

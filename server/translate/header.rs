@@ -7,7 +7,7 @@ use super::to_iec::{Helper, Helpers};
 use crate::document::{DeclaredType, Document, Scopes, Tree};
 use crate::il::iec::{self, SectionKind};
 use crate::logic::{Action, Deed, Expression, Path, Term, Test, is_helper_name};
-use crate::target::iec::{ElementaryType, LiteralValue, ParameterType};
+use crate::target::iec::{ENO, ElementaryType, LiteralValue};
 use crate::target::{DeviceKind, Model, Operand, Target};
 use crate::text::folded;
 use rustc_hash::FxHashSet;
@@ -82,22 +82,27 @@ enum Use {
 /// Calls `found` with each operand of a path and what it is used for.
 fn visit<'p>(path: &'p Path, found: &mut impl FnMut(&'p Term, Use)) {
     let found = std::cell::RefCell::new(found);
-    let action = |action: &'p Action| match action.deed {
+    let action = |action: &'p Action| match &action.deed {
         Deed::Call(call) => {
             let arguments = call.arguments(&action.terms);
+            let formals = [call.block.inputs(), call.block.outputs()].concat();
             for (number, term) in action.terms.iter().enumerate() {
                 let kind = match number.checked_sub(1).and_then(|number| arguments.get(number)) {
-                    None => call.block.name.into(),
+                    None => call.block.name().into(),
+                    Some(argument) if argument.name == ENO.name => ElementaryType::Bool.name().into(),
                     Some(argument) => {
-                        let pins = call.block.inputs.iter().chain(call.block.outputs);
-                        let mut pins = pins.filter(|pin| pin.name == argument.name);
-                        match pins.next().map(|pin| pin.kind) {
-                            Some(ParameterType::Elementary(kind)) => kind.name().into(),
-                            _ => "INT".into(),
-                        }
+                        let formal = formals.iter().find(|formal| formal.name == argument.name);
+                        formal.and_then(|formal| formal.type_name.clone()).unwrap_or("INT".into())
                     }
                 };
                 found.borrow_mut()(term, Use::Type(kind));
+            }
+        }
+        Deed::Compute(computation) if computation.is_declared() => {
+            let inputs = computation.inputs().into_iter().map(|formal| formal.type_name);
+            let kinds = inputs.chain([computation.function.result_type()]);
+            for (term, kind) in action.terms.iter().zip(kinds) {
+                found.borrow_mut()(term, Use::Type(kind.unwrap_or("INT".into())));
             }
         }
         Deed::Compute(_) => {

@@ -18,6 +18,8 @@ pub use counterexample::{Counterexample, Value};
 
 mod declared;
 
+mod units;
+
 mod prove;
 pub use prove::{Proof, prove};
 
@@ -184,9 +186,11 @@ fn written(
 ) -> Option<Translation> {
     let target = dialect::target(document, to, options.model);
     dialect::convert(document, (to, target), &mut program);
-    let mut translation = page::write(document, &program, (to, target), options, is_whole, is_cancelled)?;
+    let (mut translation, helpers) =
+        page::write(document, &program, (to, target), options, is_whole, is_cancelled)?;
     if options.proves {
-        certificate::add((document, target), &program.rungs, to, &mut translation, is_cancelled)?;
+        let sources = (&program.rungs[..], &helpers[..]);
+        certificate::add((document, target), sources, to, &mut translation, is_cancelled)?;
     }
     Some(translation)
 }

@@ -3,7 +3,7 @@
 use super::header;
 use super::source::{Program, Source};
 use super::to_fx::Line;
-use super::to_iec::{self, Helpers};
+use super::to_iec::{self, Helper, Helpers};
 use super::{Options, To, Translated, Translation, to_boolean, to_fx, to_ladder};
 use crate::document::{Document, Notation};
 use crate::ladder::{Drawing, Style};
@@ -27,7 +27,8 @@ enum Body {
     Kept(String, Message),
 }
 
-/// The text of `program` in another form, without certificates; nothing if it was cancelled on the way. A whole one
+/// The text of `program` in another form, without certificates, and the variables that it needs beyond those of the
+/// source; nothing if it was cancelled on the way. A whole one
 /// gets the declarations that it lacks.
 pub(super) fn write(
     document: &Document,
@@ -36,7 +37,7 @@ pub(super) fn write(
     options: &Options,
     is_whole: bool,
     is_cancelled: &dyn Fn() -> bool,
-) -> Option<Translation> {
+) -> Option<(Translation, Vec<Helper>)> {
     let sources = &program.rungs;
     let mut helpers = match to {
         To::Iec => {
@@ -76,14 +77,18 @@ pub(super) fn write(
     if needs_header {
         page.declare("END_PROGRAM\n");
     }
+    // Declarations are parted from what follows; nothing follows.
+    while page.text.ends_with("\n\n") {
+        page.text.pop();
+    }
     if to == To::Fx && options.is_whole && !sources.iter().any(ends_program) {
         page.text.push_str("END\n");
     }
     if to == To::Iec {
         page.lay_out(&mut rungs);
     }
-    let helpers = helpers.declared.into_iter().map(|helper| helper.name).collect();
-    Some(Translation { text: page.text, rungs, helpers })
+    let names = helpers.declared.iter().map(|helper| helper.name.clone()).collect();
+    Some((Translation { text: page.text, rungs, helpers: names }, helpers.declared))
 }
 
 fn body(
@@ -218,17 +223,15 @@ impl Page {
             To::Fx if is_list => text.lines().for_each(|line| self.line(line.trim())),
             To::Ladder if is_list => {
                 self.line("{il");
-                text.lines().for_each(|line| self.line(line.trim_end()));
+                flush(text).for_each(|line| self.line(line));
                 self.line("}");
             }
             To::Iec if is_list => {
                 let laid_out = header::laid_out(&format!("{}\n", text.trim_end()));
                 self.text += &laid_out;
             }
-            To::Iec => text.lines().for_each(|line| self.line(&header::comment(&format!("; {line}")))),
-            _ => {
-                text.lines().for_each(|line| self.line(format!("; {line}").trim_end()));
-            }
+            To::Iec => flush(text).for_each(|line| self.line(&header::comment(&format!("; {line}")))),
+            _ => flush(text).for_each(|line| self.line(format!("; {line}").trim_end())),
         }
         Some(reason)
     }
@@ -279,6 +282,17 @@ impl Page {
         self.text.push_str(line);
         self.text.push('\n');
     }
+}
+
+/// The lines of a rung, whose first one was taken without its margin, without the margin of the others.
+fn flush(text: &str) -> impl Iterator<Item = &str> {
+    let margin = |line: &str| line.len() - line.trim_start_matches([' ', '\t']).len();
+    let others = text.lines().skip(1).filter(|line| !line.trim().is_empty());
+    let common = others.map(margin).min().unwrap_or(0);
+    text.lines().enumerate().map(move |(number, line)| {
+        let line = if number == 0 { line } else { line.get(common..).unwrap_or_default() };
+        line.trim_end()
+    })
 }
 
 /// `; NETWORK 3 'title'`: the name of a network where only comments can have it.

@@ -5,10 +5,11 @@
 
 use super::counterexample::{self, Counterexample};
 use super::source::{self, Source};
-use super::{To, declared, dialect};
+use super::{To, declared, dialect, units};
 use crate::document::Document;
 use crate::logic::{
-    Comparison, Deed, Effort, Path, Place, compare, compare_outcome, may_drive, touches_bits,
+    Action, Comparison, Deed, Effort, Path, Place, Storage, Term, compare, compare_outcome, may_drive,
+    touches_bits,
 };
 use crate::target::{Flow, Model, Target};
 use crate::text::{Message, Span};
@@ -34,7 +35,17 @@ pub enum Proof {
 
 /// Compares two programs. If one is for the FX family and the other of IEC 61131-3, the devices of the one are the
 /// variables that a translation gives them.
+///
+/// A program that stands in no project is compared with one of a project as if it stood in its place.
 pub fn prove(left: &Document, right: &Document) -> Proof {
+    let placed = [left.outer().is_none().then(|| right), right.outer().is_none().then(|| left)];
+    let placed = [left, right].into_iter().zip(placed).map(|(own, other)| {
+        let (outer, number) = other?.outer().filter(|_| !own.target().is_fx())?;
+        Some(own.linked(outer.clone(), number))
+    });
+    let placed: Vec<Option<Document>> = placed.collect();
+    let [left, right] =
+        [(left, 0), (right, 1)].map(|(own, side)| placed.get(side).and_then(Option::as_ref).unwrap_or(own));
     let is_mixed = left.target().is_fx() != right.target().is_fx();
     let sources = [left, right].map(|document| {
         let mut program = source::program(document, None);
@@ -50,6 +61,9 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
     if let Some((name, at)) = declared::difference(left, right) {
         let reason = Message::new("prove.declared").with("name", name);
         return Proof::Undecided { reason, at: at.map(Some) };
+    }
+    if let Some((name, at)) = units::unlike([left, right], [&sources[0], &sources[1]]) {
+        return Proof::Undecided { reason: Message::new("prove.unit").with("name", name), at };
     }
     let may_be_off = sources.iter().flatten().any(leaves_out);
     let mut prover = Prover {
@@ -75,7 +89,7 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
 /// Whether a rung begins a part of the program in which there may be no power at the left rail.
 fn leaves_out(source: &Source) -> bool {
     let actions = source.rung.path.iter().flatten().flat_map(Path::actions);
-    actions.into_iter().any(|action| match action.deed {
+    actions.into_iter().any(|action| match &action.deed {
         Deed::Instruction(form) => matches!(form.instruction.flow(), Flow::SectionBegin | Flow::Step),
         _ => false,
     })
@@ -147,7 +161,7 @@ fn stretches<'s>(sources: &'s [Source], unit: impl Fn(usize) -> &'s str) -> Vec<
             Ok(Some(path)) if path.actions().iter().any(|action| touches_bits(action)) => {
                 open.end = Some(End::Rung(source, path));
                 stretches.push(std::mem::take(&mut open));
-                is_left = path.gates.is_empty() && path.actions().iter().any(|action| leaves(action.deed));
+                is_left = path.gates.is_empty() && path.actions().iter().any(|action| leaves(&action.deed));
             }
             Ok(Some(path)) => open.rungs.push((source, path)),
             Err(_) => {
@@ -167,7 +181,7 @@ fn stretches<'s>(sources: &'s [Source], unit: impl Fn(usize) -> &'s str) -> Vec<
 }
 
 /// Whether the rungs behind it are not executed if it is without condition.
-fn leaves(deed: Deed) -> bool {
+fn leaves(deed: &Deed) -> bool {
     matches!(deed, Deed::Jump | Deed::Return) || deed.ends_program()
 }
 
@@ -280,7 +294,7 @@ impl<'s> Prover<'s> {
                 });
                 let Some((state, values)) = confirmed else { return undecided("prove.unconfirmed") };
                 let at = sides.map(|side| rung_of(side, &what));
-                let (inputs, before) = counterexample::inputs(&state);
+                let (inputs, before) = counterexample::inputs(&state, [&left, &right]);
                 let found = Counterexample { inputs, before, what, sides: values, at };
                 Err(Proof::Different(Box::new(found)))
             }
@@ -292,12 +306,18 @@ impl Prover<'_> {
     /// Whether the bit with this key may be driven once more behind the rungs on either side, so that what it is at
     /// their end is not what the scan leaves.
     fn is_driven_behind(&self, sides: [&[(&Source, &Path)]; 2], key: &str) -> bool {
+        // What only its own unit knows, no unit that is called drives.
+        let is_it = |term: &Term| term.key() == key && term.storage == Storage::Local;
+        let changes = |action: &Action| action.changes().iter().any(|term| is_it(term));
+        let is_local =
+            sides.iter().copied().flatten().any(|(_, path)| path.actions().into_iter().any(changes));
         self.all.iter().zip(sides).any(|(all, side)| {
             let last = side.last().map(|(source, _)| source.span());
             let behind = all.iter().filter(|source| last.is_none_or(|last| source.span() > last));
             let mut behind = behind.filter(|source| !side.iter().any(|(own, _)| std::ptr::eq(*own, *source)));
+            let drives = |action: &Action| may_drive(action, key) || !is_local && action.runs_unit();
             behind.any(|source| match &source.rung.path {
-                Ok(path) => path.iter().flat_map(Path::actions).any(|action| may_drive(action, key)),
+                Ok(path) => path.iter().flat_map(Path::actions).any(drives),
                 Err(_) => source.rung.span.of(source.chunk.text()).contains(key),
             })
         })

@@ -1,6 +1,6 @@
 //! The rungs of a document that are to be translated.
 
-use crate::document::{Chunk, ChunkRef, Document, Notation, Tree, both};
+use crate::document::{Chunk, ChunkRef, Document, Notation, Scopes, Tree, both};
 use crate::il::iec::{IecTree, ItemKind};
 use crate::ladder;
 use crate::logic::{self, Declared, Path, Rung};
@@ -117,14 +117,26 @@ pub(super) fn rungs(document: &Document, part: Option<Span>) -> Vec<Source> {
     program(document, part).rungs
 }
 
+/// The rungs of a document without declarations, where `scopes` holds in program unit number `pou`.
+pub(super) fn rungs_within(document: &Document, scopes: &Scopes, pou: Option<usize>) -> Vec<Source> {
+    let pous = pou.map_or(0, |pou| pou + 1);
+    read((document, scopes), None, pous).rungs
+}
+
 /// `document` in rungs and declarations; with `part` only the rungs that touch these bytes.
 pub(super) fn program(document: &Document, part: Option<Span>) -> Program {
-    let mut reader = Reader { document, part, pous: 0, program: Program::default() };
+    read((document, document.scopes()), part, 0)
+}
+
+/// The same where `scopes` holds, and so many program units have started before.
+fn read((document, scopes): (&Document, &Scopes), part: Option<Span>, pous: usize) -> Program {
+    let new = || Reader { document, scopes, part, pous, program: Program::default() };
+    let mut reader = new();
     if document.notation() == Notation::IecIl {
         // A rung of instruction list may reach over several chunks: the calls before it belong to it.
-        let (bytes, pous) =
+        let (bytes, started) =
             part.map_or((Span::new(0, document.len()), 0), |part| units_around(document, part));
-        reader.pous = pous;
+        reader.pous += started;
         let whole = Arc::new(document.chunk_of(&document.slice(bytes)));
         reader.chunk(bytes.start as usize, &whole);
         return reader.program;
@@ -137,7 +149,7 @@ pub(super) fn program(document: &Document, part: Option<Span>) -> Program {
     let is_shared = chunks.len() >= WORTH_A_THREAD && !chunks.iter().any(|at| at.chunk.is_iec());
     let (first, second) = chunks.split_at(if is_shared { chunks.len() / 2 } else { chunks.len() });
     let read = |chunks: &[ChunkRef<'_>]| {
-        let mut reader = Reader { document, part, pous: 0, program: Program::default() };
+        let mut reader = new();
         chunks.iter().for_each(|at| reader.chunk(at.start, at.chunk));
         reader.program
     };
@@ -189,6 +201,7 @@ const WORTH_A_THREAD: usize = 500;
 
 struct Reader<'a> {
     document: &'a Document,
+    scopes: &'a Scopes,
     part: Option<Span>,
     /// How many program units have started.
     pous: usize,
@@ -207,7 +220,7 @@ impl Reader<'_> {
             _ => Vec::new(),
         };
         let mut declared = declared.into_iter().peekable();
-        let context = Declared { scopes: self.document.scopes(), pous: self.pous };
+        let context = Declared { scopes: self.scopes, pous: self.pous };
         for rung in logic::rungs_with(&reading, self.document.reader(), context) {
             while let Some(span) = declared.next_if(|span| span.start <= rung.span.start) {
                 self.declare(&reading, span);

@@ -3,6 +3,7 @@
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Test};
 use crate::text::Message;
+use smol_str::format_smolstr;
 
 /// How equations are written.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -34,12 +35,14 @@ impl Writer {
         equations: &mut Vec<String>,
     ) -> Result<(), Message> {
         let power = Gate::condition(&path.gates, power.cloned()).map_err(|gate| match gate {
+            Gate::Through(action) if action.runs_unit() => lack_of(action),
             Gate::Through(_) => Message::new("translate.not-boolean"),
             _ => Message::new("translate.no-condition"),
         })?;
         for drive in &path.drives {
             match drive {
                 Drive::Path(path) => self.path(path, power.as_ref(), equations)?,
+                Drive::Action(action) if action.runs_unit() => return Err(lack_of(action)),
                 Drive::Action(action) => equations.push(match &power {
                     Some(power) => format!("{} = {}", self.left(action), self.sum(power)),
                     None if action.deed.stands_alone() => self.left(action),
@@ -52,7 +55,7 @@ impl Writer {
 
     /// What is driven.
     fn left(&self, action: &Action) -> String {
-        let mnemonic = match action.deed {
+        let mnemonic = match &action.deed {
             Deed::Coil(CoilKind::Plain) => String::new(),
             Deed::Coil(CoilKind::Negated) => {
                 let device = words(&action.terms);
@@ -62,11 +65,11 @@ impl Writer {
                 };
             }
             Deed::Coil(kind) => {
-                crate::document::coil_form(kind).map(|form| form.mnemonic()).unwrap_or_default()
+                crate::document::coil_form(*kind).map(|form| form.mnemonic()).unwrap_or_default()
             }
             Deed::Instruction(form) => form.mnemonic(),
-            Deed::Call(call) => call.block.name.to_string(),
-            Deed::Compute(computation) => computation.function.name.to_string(),
+            Deed::Call(call) => call.block.name().to_string(),
+            Deed::Compute(computation) => computation.name().to_string(),
             Deed::Jump => "JMP".to_string(),
             Deed::Return => "RET".to_string(),
         };
@@ -127,6 +130,16 @@ impl Writer {
             }
         }
     }
+}
+
+/// Equations know no function block and no function of the program.
+fn lack_of(action: &Action) -> Message {
+    let word = match (&action.deed, action.terms.first()) {
+        (Deed::Call(call), Some(instance)) => format_smolstr!("{instance} : {}", call.block.name()),
+        (Deed::Compute(computation), _) => computation.name().into(),
+        _ => return Message::new("translate.not-boolean"),
+    };
+    Message::new("translate.no-counterpart").with("word", word)
 }
 
 fn words(terms: &[crate::logic::Term]) -> String {

@@ -11,7 +11,7 @@ mod helpers;
 pub use helpers::{Helper, Helpers};
 
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
-use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
+use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test};
 use crate::text::Message;
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
@@ -112,7 +112,7 @@ impl Writer<'_> {
         if !is_loaded {
             self.start();
         }
-        match action.deed {
+        match &action.deed {
             Deed::Jump | Deed::Return => return self.leave(action, ""),
             Deed::Compute(_) => return self.computation(action),
             Deed::Call(call) if call.is_enabled() => return self.conditional_call(action, "CAL"),
@@ -270,13 +270,13 @@ impl Writer<'_> {
     }
 
     fn action(&mut self, action: &Action, inverse: bool) -> Result<(), Message> {
-        let word = match (action.deed, inverse) {
+        let word = match (&action.deed, inverse) {
             (Deed::Call(call), _) if call.is_enabled() => {
                 return self.conditional_call(action, if inverse { "CALCN" } else { "CALC" });
             }
             (Deed::Call(_), _) => return self.call(action, None),
             (Deed::Coil(coil @ (CoilKind::Rising | CoilKind::Falling)), false) => {
-                return self.pulse(action, coil);
+                return self.pulse(action, *coil);
             }
             (Deed::Jump | Deed::Return, _) => return self.leave(action, if inverse { "CN" } else { "C" }),
             (Deed::Coil(CoilKind::Plain), false) | (Deed::Coil(CoilKind::Negated), true) => "ST",
@@ -314,7 +314,7 @@ impl Writer<'_> {
 
     /// `LD a`, `ADD b`, `ST c`
     fn computation(&mut self, action: &Action) -> Result<(), Message> {
-        let operands = match action.deed {
+        let operands = match &action.deed {
             Deed::Compute(computation) => {
                 computation.operands(&action.terms).map(|found| (computation, found))
             }
@@ -323,12 +323,17 @@ impl Writer<'_> {
         let Some((computation, (inputs, result))) = operands else {
             return Err(Message::new("translate.no-instruction"));
         };
-        for (number, term) in inputs.iter().enumerate() {
-            let word = if number == 0 { "LD" } else { computation.function.name };
-            self.lines.push(format!("{word} {term}"));
+        match inputs.split_first() {
+            Some((first, others)) => {
+                self.lines.push(format!("LD {first}"));
+                let others: Vec<&str> = others.iter().map(|term| term.text.as_str()).collect();
+                let operands = format!("{} {}", computation.name(), others.join(", "));
+                self.lines.extend((!computation.copies()).then(|| operands.trim_end().to_string()));
+            }
+            None => self.lines.push(format!("{}()", computation.name())),
         }
         self.lines.push(format!("ST {result}"));
-        self.driven.insert(result.key());
+        self.driven.extend(computation.changes(&action.terms).into_iter().map(Term::key));
         Ok(())
     }
 
@@ -341,7 +346,7 @@ impl Writer<'_> {
 
     /// A call with this operand at its first input, or with the current result.
     fn call(&mut self, action: &Action, power: Option<String>) -> Result<(), Message> {
-        let (Deed::Call(call), Some(instance)) = (action.deed, action.terms.first()) else {
+        let (Deed::Call(call), Some(instance)) = (&action.deed, action.terms.first()) else {
             return Err(Message::new("translate.no-instruction"));
         };
         match power {
@@ -358,7 +363,7 @@ impl Writer<'_> {
 
     /// A call that the current result enables, or that is always done, as `word` says.
     fn conditional_call(&mut self, action: &Action, word: &str) -> Result<(), Message> {
-        let Deed::Call(call) = action.deed else { return Err(Message::new("translate.no-instruction")) };
+        let Deed::Call(call) = &action.deed else { return Err(Message::new("translate.no-instruction")) };
         self.lines.push(call_text(word, call, None, &action.terms));
         self.driven.extend(call.changes(&action.terms).iter().map(Term::key));
         Ok(())
@@ -372,7 +377,7 @@ impl Writer<'_> {
     }
 }
 
-fn call_text(word: &str, call: Call, power: Option<String>, terms: &[Term]) -> String {
+fn call_text(word: &str, call: &Call, power: Option<String>, terms: &[Term]) -> String {
     let instance = terms.first().map_or("", |term| term.text.as_str());
     let arguments = call.arguments(terms).into_iter().map(|argument| {
         let sign = if argument.is_output { "=>" } else { ":=" };
@@ -420,8 +425,8 @@ fn called_next(path: &Path, number: usize) -> Option<&Action> {
         (Some(Gate::Through(action)), _) | (None, [Drive::Action(action)]) => action,
         _ => return None,
     };
-    let takes = |call: Call| !call.is_input_operator() && !call.is_enabled();
-    matches!(next.deed, Deed::Call(call) if takes(call)).then_some(next)
+    let takes = |call: &Call| !call.is_input_operator() && !call.is_enabled();
+    matches!(&next.deed, Deed::Call(call) if takes(call)).then_some(next)
 }
 
 /// The calculation that a drive is.
@@ -436,7 +441,7 @@ fn computation_of(drive: &Drive) -> Option<&Action> {
 fn is_invertible(drive: &Drive) -> bool {
     use CoilKind::{Negated, Plain};
     let Drive::Action(action) = drive else { return false };
-    match action.deed {
+    match &action.deed {
         Deed::Call(call) => call.is_enabled(),
         deed => matches!(deed, Deed::Coil(Plain | Negated) | Deed::Jump | Deed::Return),
     }
@@ -471,7 +476,8 @@ fn reloaded(path: &Path, gates: &[Gate], is_whole: bool) -> Option<String> {
     };
     let mut is_changed = term.text.contains(['[', '^']);
     let mut changes = |action: &Action| {
-        is_changed |= match action.deed {
+        is_changed |= action.runs_unit() && term.storage != Storage::Local;
+        is_changed |= match &action.deed {
             Deed::Call(call) => call.changes(&action.terms).iter().any(|changed| changed.may_cover(&term)),
             _ => action.terms.iter().any(|changed| changed.may_cover(&term)),
         }

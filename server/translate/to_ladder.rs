@@ -119,11 +119,11 @@ impl Planner {
 
     /// `goes_on` if there is more behind it on its line.
     fn action(&mut self, action: &Action, goes_on: bool) -> Result<Shape, Message> {
-        let kind = match action.deed {
-            Deed::Coil(kind) => ElementKind::Coil(kind),
+        let kind = match &action.deed {
+            Deed::Coil(kind) => ElementKind::Coil(*kind),
             Deed::Instruction(form) => {
                 let mnemonic = self.word(&form.mnemonic());
-                ElementKind::Instruction { form: Some(form), mnemonic }
+                ElementKind::Instruction { form: Some(*form), mnemonic }
             }
             Deed::Call(call) => return self.block(action, call, goes_on),
             Deed::Compute(computation) => return self.computation(action, computation),

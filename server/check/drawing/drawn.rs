@@ -2,7 +2,7 @@
 
 use super::FINDERS;
 use crate::check::ChunkContext;
-use crate::document::Tree;
+use crate::document::{Scopes, Tree};
 use crate::ladder::{Element, ElementKind, Graph, LadderTree, Rung, TWO_READINGS, VertexKind, parse_with};
 use crate::target::Target;
 use crate::text::{Diagnostic, Message, Span, TextEdit};
@@ -13,6 +13,7 @@ pub(in crate::check) struct Drawn<'a> {
     pub(in crate::check) text: &'a str,
     pub(in crate::check) tree: &'a LadderTree,
     pub(in crate::check) target: &'static Target,
+    pub(in crate::check) scopes: &'a Scopes,
     /// How many fixes may still be tried, for trying one costs as much as reading the chunk.
     trials: Cell<u32>,
     /// How many mistakes there are, once it has been counted.
@@ -33,8 +34,8 @@ impl<'a> Drawn<'a> {
         let Tree::Ladder(tree) = context.chunk.tree() else { return None };
         let text = context.chunk.text();
         let trials = if text.len() <= TRIAL_BYTES_MAX { TRIALS_MAX } else { 0 };
-        let target = context.target;
-        Some(Drawn { text, tree, target, trials: Cell::new(trials), mistakes: Cell::new(None) })
+        let (target, scopes) = (context.target, context.scopes);
+        Some(Drawn { text, tree, target, scopes, trials: Cell::new(trials), mistakes: Cell::new(None) })
     }
 
     /// The rungs whose graph says what was drawn: no loose end, no junction without a way in or out, and no cell
@@ -147,8 +148,9 @@ impl<'a> Drawn<'a> {
         self.trials.get() > 0
     }
 
-    fn untried<'b>(&self, text: &'b str, tree: &'b LadderTree) -> Drawn<'b> {
-        Drawn { text, tree, target: self.target, trials: Cell::new(0), mistakes: Cell::new(None) }
+    fn untried<'b>(&'b self, text: &'b str, tree: &'b LadderTree) -> Drawn<'b> {
+        let (target, scopes) = (self.target, self.scopes);
+        Drawn { text, tree, target, scopes, trials: Cell::new(0), mistakes: Cell::new(None) }
     }
 
     /// The number of mistakes in the drawing.

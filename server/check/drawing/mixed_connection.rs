@@ -80,7 +80,7 @@ pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
             && let Ok(plan) = to_ladder::plan(&path, drawn.target.model)
         {
             let drawing = |kind| Drawing::new(&plan.shape, &plan.graph, &plan.source, kind);
-            let is_meant = |graph: &Graph, text: &str| super::does(&path, text, graph);
+            let is_meant = |graph: &Graph, text: &str| super::does(&path, (text, graph), drawn.scopes);
             let edit = redraw_as(drawn.text, drawn.tree, number, drawing, is_meant, drawn.target);
             let title = Message::new("mixed-connection.redraw").with("elements", twice(drawn, graph, &path));
             drawn.try_fix(&mut diagnostic, title, edit.map(|edit| vec![edit]));

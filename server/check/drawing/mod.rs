@@ -35,6 +35,7 @@ mod unreadable_cell;
 mod upper_parallel;
 
 use super::{ChunkContext, Rule};
+use crate::document::Scopes;
 use crate::ladder::{Graph, VertexId, VertexKind};
 use crate::logic::{Comparison, Formulas, Path, compare, of_graph};
 use crate::text::{Diagnostic, Span};
@@ -87,8 +88,8 @@ fn run(find: Find, context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
 const REDRAWN: usize = 50_000;
 
 /// Whether the rung of `graph`, whose words stand in `text`, does what `path` does.
-pub(super) fn does(path: &Path, text: &str, graph: &Graph) -> bool {
-    of_graph(text, graph).is_ok_and(|drawn| {
+pub(super) fn does(path: &Path, (text, graph): (&str, &Graph), scopes: &Scopes) -> bool {
+    of_graph(text, graph, scopes).is_ok_and(|drawn| {
         matches!(compare(&[path], &[&drawn], &mut Formulas::limited(REDRAWN)), Comparison::Same { .. })
     })
 }

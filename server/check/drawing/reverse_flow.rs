@@ -74,7 +74,8 @@ pub(super) fn find(drawn: &Drawn<'_>, found: &mut Vec<Diagnostic>) {
             {
                 let drawing = |kind| Drawing::new(&shape, &plan, drawn.text, kind);
                 let is_meant = |graph: &Graph, text: &str| {
-                    of_graph(drawn.text, &plan).is_ok_and(|path| super::does(&path, text, graph))
+                    of_graph(drawn.text, &plan, drawn.scopes)
+                        .is_ok_and(|path| super::does(&path, (text, graph), drawn.scopes))
                 };
                 let edit = redraw_as(drawn.text, drawn.tree, number, drawing, is_meant, drawn.target);
                 drawn.try_fix(&mut diagnostic, title, edit.map(|edit| vec![edit]));

@@ -6,6 +6,7 @@ use super::{always_energised, never_energised};
 use crate::logic::{
     self, Action, Contact, Deed, Drive, Effort, Expression, Formula, Formulas, Gate, Path, equal,
 };
+use crate::target::Flow;
 use crate::text::{Diagnostic, Message, Span};
 use rustc_hash::FxHashMap;
 
@@ -89,7 +90,8 @@ pub(super) fn is_output(action: &Action) -> bool {
     match action.deed {
         Deed::Coil(_) => true,
         Deed::Instruction(form) => {
-            form.instruction.flow() == crate::target::Flow::Straight && !action.terms.is_empty()
+            let steers = !matches!(form.instruction.flow(), Flow::Straight | Flow::Refresh);
+            !steers && !action.terms.is_empty()
         }
         Deed::Call(_) | Deed::Compute(_) | Deed::Jump | Deed::Return => false,
     }

@@ -15,8 +15,8 @@
 //! relay or a timer that happens to be on; or the program writes one of the two where a jump, a master control, a step
 //! or a routine may leave it out.
 //!
-//! Taken as inputs, which may be anything, are X devices and what no rung writes; each keeps its value for a scan. That
-//! somebody else, a panel or another PLC, writes what the program writes is not considered.
+//! Taken as inputs, which may be anything, are X devices and what no rung writes; each keeps its value for a scan, or
+//! up to a REF in it. That somebody else, a panel or another PLC, writes what the program writes is not considered.
 //!
 //! ```fx
 //! // rungwise: never Y0 & Y1

@@ -19,7 +19,7 @@ pub(super) fn edits(context: &ChunkContext<'_>, rung: &ProofRung, path: &Path) -
             let drawn = Drawn::of(context)?;
             let plan = to_ladder::plan(path, context.target.model).ok()?;
             let drawing = |kind| Drawing::new(&plan.shape, &plan.graph, &plan.source, kind);
-            let is_meant = |graph: &Graph, text: &str| does(path, text, graph);
+            let is_meant = |graph: &Graph, text: &str| does(path, (text, graph), drawn.scopes);
             let edit = redraw_as(drawn.text, drawn.tree, number, drawing, is_meant, context.target)?;
             Some(vec![edit])
         }

@@ -39,7 +39,7 @@ pub(super) fn rungs(context: &ChunkContext<'_>) -> Vec<ProofRung> {
             let Some(drawn) = Drawn::of(context) else { return rungs };
             for (number, rung) in drawn.sound_numbered() {
                 if names_twice(&rung.graph, drawn.text)
-                    && let Ok(path) = logic::of_graph(drawn.text, &rung.graph)
+                    && let Ok(path) = logic::of_graph(drawn.text, &rung.graph, drawn.scopes)
                 {
                     add(path, Some(number));
                 }

@@ -6,14 +6,14 @@ use crate::check::sense::{Key, Use, Uses};
 use crate::document::{Access, Act, Document, Notation, Part, Tree};
 use crate::il::iec::{ItemKind, SectionKind};
 use crate::logic::{self, Declared, Formula, Formulas, Path, Refusal, Run, Source, Term};
-use crate::target::{Device, DeviceKind, Location, Operand, Width};
+use crate::target::{Device, DeviceKind, Flow, Location, Operand, Width};
 use crate::text::{Span, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, ToSmolStr};
 use std::collections::BTreeMap;
 
 /// Why a part of a program cannot be followed from scan to scan.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) enum Obstacle {
     /// It is written here, where a jump, a master control, a step or a routine may leave it out.
     Part(Span),
@@ -120,7 +120,7 @@ fn timer_fact(run: &Run<'_>, number: usize, formulas: &mut Formulas) -> Option<F
     let effect = run.effects.get(number)?;
     let guard = effect.guard;
     let contact = match effect.deed() {
-        logic::Deed::Call(call) if call.block.name == "TON" && call.power_in() == "IN" => {
+        logic::Deed::Call(call) if call.block.is_standard("TON") && call.power_in() == "IN" => {
             call.output(&effect.action.terms)?
         }
         _ => return None,
@@ -151,6 +151,8 @@ struct Collector<'c, 'a> {
     home: Option<(usize, usize)>,
     /// Where rows of several devices are written, with the devices.
     rows: Option<Vec<(Device, Use)>>,
+    /// Whether the places that read inputs anew are among the stretches.
+    knows_refreshes: bool,
 }
 
 /// The rungs of a file, from its start.
@@ -167,6 +169,7 @@ impl<'c, 'a> Collector<'c, 'a> {
             lists: FxHashMap::default(),
             home: None,
             rows: None,
+            knows_refreshes: false,
         }
     }
 
@@ -190,6 +193,24 @@ impl<'c, 'a> Collector<'c, 'a> {
             for one in self.rows_over(device) {
                 self.write(&one, is_wanted, waiting)?;
             }
+            if device.kind == DeviceKind::X {
+                self.refreshes(waiting)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes in the rungs that read inputs anew in the middle of a scan.
+    fn refreshes(&mut self, waiting: &mut Vec<u32>) -> Result<(), Obstacle> {
+        if std::mem::replace(&mut self.knows_refreshes, true) {
+            return Ok(());
+        }
+        for statement in self.context.statements().filter(|one| one.flow() == Some(Flow::Refresh)) {
+            let Some((start, chunk, _)) = self.uses.chunk_at(statement.span.start) else { continue };
+            let behind = self.context.files().partition_point(|file| file.start <= start);
+            let file = behind.saturating_sub(1);
+            let stretch = Stretch { start: start as u32, end: (start + chunk.len()) as u32, file };
+            self.take(stretch, statement.span, false, waiting)?;
         }
         Ok(())
     }
@@ -221,16 +242,31 @@ impl<'c, 'a> Collector<'c, 'a> {
         if !self.uses.is_fx && home != (one.file, one.unit) {
             return Err(Obstacle::Elsewhere(one.span));
         }
-        let (regions, at) = (self.context.regions(), one.span.start);
+        let stretch = self.stretch(one).ok_or(Obstacle::Unread(one.span, Refusal::Unreadable))?;
+        self.take(stretch, one.span, is_wanted, waiting)?;
+        if is_wanted && let Some(refusal) = self.refusal(stretch, one) {
+            return Err(Obstacle::Unread(one.span, refusal));
+        }
+        Ok(())
+    }
+
+    /// Takes in a stretch, for what is done at `place`, with all that it has to do with.
+    fn take(
+        &mut self,
+        stretch: Stretch,
+        place: Span,
+        is_wanted: bool,
+        waiting: &mut Vec<u32>,
+    ) -> Result<(), Obstacle> {
+        let (regions, at) = (self.context.regions(), place.start);
         if regions.may_be_repeated(at) {
-            return Err(Obstacle::Loop(one.span));
+            return Err(Obstacle::Loop(place));
         }
         let region = regions.at(at);
         let is_skipped = !region.is_plain() || regions.may_be_skipped(at);
         if is_skipped && (is_wanted || !region.is_in_order()) {
-            return Err(Obstacle::Part(one.span));
+            return Err(Obstacle::Part(place));
         }
-        let stretch = self.stretch(one).ok_or(Obstacle::Unread(one.span, Refusal::Unreadable))?;
         if let Some(known) = self.stretches.get_mut(&stretch) {
             *known |= is_skipped;
         } else {
@@ -243,9 +279,6 @@ impl<'c, 'a> Collector<'c, 'a> {
                 waiting.push(number);
                 self.row(number, &other, waiting);
             }
-        }
-        if is_wanted && let Some(refusal) = self.refusal(stretch, one) {
-            return Err(Obstacle::Unread(one.span, refusal));
         }
         Ok(())
     }
@@ -442,7 +475,7 @@ fn note_terms(path: &Path, terms: &mut FxHashMap<SmolStr, Term>) {
     path.visit(
         &mut |action| {
             found.extend(action.terms.iter().cloned());
-            if let logic::Deed::Call(call) = action.deed {
+            if let logic::Deed::Call(call) = &action.deed {
                 found.extend(call.changes(&action.terms));
             }
         },

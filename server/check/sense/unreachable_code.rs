@@ -119,7 +119,8 @@ fn of_fx(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
 
 /// What may stand without a label where nothing leads to, as it closes something that others begin.
 fn is_structure(flow: Flow) -> bool {
-    !matches!(flow, Flow::Straight | Flow::Nothing | Flow::Call | Flow::Jump | Flow::LoopBegin)
+    use Flow::{Call, Jump, LoopBegin, Nothing, Refresh, Straight};
+    !matches!(flow, Straight | Refresh | Nothing | Call | Jump | LoopBegin)
 }
 
 impl Dead<'_> {

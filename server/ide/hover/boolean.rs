@@ -1,7 +1,7 @@
 //! The boolean form of the output under the pointer: as drawn, and shorter where there is a shorter one.
 
 use crate::document::Chunk;
-use crate::ladder::{CoilKind, ContactKind};
+use crate::ladder::ContactKind;
 use crate::logic::{
     self, Action, Atom, Contact, Deed, Drive, Expression, Formulas, Gate, Moment, Path, Run, Term, Test,
     sum_of_products,
@@ -79,11 +79,7 @@ fn minimal(path: &Path, place: usize) -> Option<(String, usize)> {
         true => Expression::Constant(true),
         false => Expression::or(products),
     };
-    let deed = match effect.action.deed {
-        Deed::Coil(CoilKind::Negated) => Deed::Coil(CoilKind::Plain),
-        deed => deed,
-    };
-    let drives = vec![Drive::Action(Action { deed, ..effect.action.clone() })];
+    let drives = vec![Drive::Action(Action { deed: effect.deed(), ..effect.action.clone() })];
     let equation =
         equations(&Path { gates: vec![Gate::Pass(sum)], drives }, Notation::Algebra).ok()?.pop()?;
     Some((equation, contacts))

@@ -322,7 +322,7 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// Comments on lines of their own stand above what they go with; those that span lines stay.
+    /// Comments on lines of their own stand above what they go with, or at the end of it; those that span lines stay.
     fn place_comments(&mut self) {
         let mut indent = None;
         for line in self.lines.iter_mut().rev() {
@@ -339,9 +339,11 @@ impl<'a> Printer<'a> {
                         indent = None;
                     }
                 }
-                Line::Code { indent: place, .. } | Line::Declaration { indent: place, .. } => {
-                    indent = Some(*place)
+                Line::Code { indent: place, code, .. } => {
+                    let ends = code.get(..4).is_some_and(|word| word.eq_ignore_ascii_case("END_"));
+                    indent = Some(if ends { *place + self.options.indent } else { *place });
                 }
+                Line::Declaration { indent: place, .. } => indent = Some(*place),
             }
         }
     }

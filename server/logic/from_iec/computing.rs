@@ -1,4 +1,5 @@
-//! Calculations with words: `LD a / ADD b / ST c`, and those that a jump over them makes conditional:
+//! Calculations with words, `LD a / ADD b / ST c`, and calls of functions that the program declares, `LD a / Scale b /
+//! ST c`; and those that a jump over them makes conditional:
 //!
 //! ```text
 //!     LD      Start
@@ -11,7 +12,7 @@
 
 use super::{Source, ValueKind, declares};
 use crate::document::DeclaredType;
-use crate::il::iec::{Condition, ItemKind, OperandId, Operation};
+use crate::il::iec::{Condition, Direction, ItemKind, ListForm, OperandId, Operation, ParameterValue};
 use crate::logic::Computation;
 use crate::target::Operand;
 use crate::target::iec::OperatorRole;
@@ -92,6 +93,9 @@ impl Source<'_> {
 
     /// The calculation that begins at item `index`, if one does whose result nothing else uses.
     pub(super) fn calculation(&self, pou: Option<usize>, index: usize) -> Option<Found> {
+        if let Some(found) = self.called_function(pou, index) {
+            return Some(found);
+        }
         let (load, first) = self.operation(index)?;
         if load.operator.role != OperatorRole::Load {
             return None;
@@ -105,16 +109,59 @@ impl Source<'_> {
             operands.push(second);
             store_at += 1;
         }
-        let (store, result) = self.operation(store_at)?;
+        operands.push(self.stored(pou, store_at)?);
+        self.are_words(pou, &computation, &operands).then_some(Found {
+            computation,
+            operands,
+            items: store_at + 1 - index,
+        })
+    }
+
+    /// The call of a function of the program that begins at item `index`, if its result is stored and each input has an
+    /// operand: `LD a / Scale b, c / ST d`, where the first input is loaded, or `Scale(IN := a, …) / ST d`.
+    fn called_function(&self, pou: Option<usize>, index: usize) -> Option<Found> {
+        let loaded = self.operation(index).filter(|(load, _)| load.operator.role == OperatorRole::Load);
+        let call_at = index + usize::from(loaded.is_some());
+        let call = self.tree.items.get(call_at).filter(|item| item.depth == 0)?;
+        let ItemKind::Function { name, form, parameters } = call.kind else { return None };
+        if loaded.is_some() != (form == ListForm::None) {
+            return None;
+        }
+        let computation = Computation::declared(name.of(self.text), self.scopes)?;
+        let inputs = computation.inputs();
+        let mut operands: Vec<Option<OperandId>> = vec![None; inputs.len()];
+        let mut next = 0;
+        if let Some((_, first)) = loaded {
+            *operands.first_mut()? = Some(first);
+            next = 1;
+        }
+        for parameter in parameters.of(&self.tree.parameters) {
+            let (Direction::In, ParameterValue::Operand(id)) = (parameter.direction, parameter.value) else {
+                return None;
+            };
+            let place = match parameter.name {
+                Some(name) => inputs.iter().position(|formal| formal.is_called(name.of(self.text)))?,
+                None => next,
+            };
+            next = place + 1;
+            if operands.get_mut(place)?.replace(id).is_some() {
+                return None;
+            }
+        }
+        let mut operands: Vec<OperandId> = operands.into_iter().collect::<Option<_>>()?;
+        operands.push(self.stored(pou, call_at + 1)?);
+        Some(Found { computation, operands, items: call_at + 2 - index })
+    }
+
+    /// The variable to which item `index` stores the current result, if nothing uses it behind that.
+    fn stored(&self, pou: Option<usize>, index: usize) -> Option<OperandId> {
+        let (store, result) = self.operation(index)?;
         let is_store = store.operator.role == OperatorRole::Store && !store.word.of(self.text).ends_with('?');
-        operands.push(result);
-        let is_last = self.tree.items.get(store_at + 1).is_none_or(|next| match next.kind {
-            ItemKind::Label { .. } => !self.needs_result(store_at + 1),
+        let is_last = self.tree.items.get(index + 1).is_none_or(|next| match next.kind {
+            ItemKind::Label { .. } => !self.needs_result(index + 1),
             kind => declares(&kind) || self.starts_afresh(&kind),
         });
-        let fits =
-            is_store && is_last && !self.feeds(store_at) && self.are_words(pou, computation, &operands);
-        fits.then_some(Found { computation, operands, items: store_at + 1 - index })
+        (is_store && is_last && !self.feeds(pou, index)).then_some(result)
     }
 
     /// An operation outside of parentheses, without a negation.
@@ -129,7 +176,7 @@ impl Source<'_> {
     }
 
     /// Whether operands are words, as far as they are declared. What can be done with bits as well must be told by one.
-    fn are_words(&self, pou: Option<usize>, computation: Computation, operands: &[OperandId]) -> bool {
+    fn are_words(&self, pou: Option<usize>, computation: &Computation, operands: &[OperandId]) -> bool {
         let kinds = operands.iter().map(|id| {
             let operand = self.tree.operand(*id);
             let word = operand.span.of(self.text);

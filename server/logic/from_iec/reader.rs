@@ -1,6 +1,7 @@
 //! Runs a rung of instruction list with conditions in place of the current result.
 
 mod call;
+pub(super) use call::edge_kind;
 mod held;
 
 use super::{Source, ValueKind};
@@ -8,7 +9,7 @@ use crate::il::iec::{Condition, Item, ItemKind, OperandId, Operation};
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::logic::block::Block;
 use crate::logic::builder::Builder;
-use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Term, Test};
+use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Refusal, Storage, Term, Test};
 use crate::target::Role;
 use crate::target::iec::OperatorRole;
 use crate::text::{Span, folded};
@@ -53,6 +54,8 @@ pub(super) struct Reader<'s, 'a> {
     edges: FxHashMap<SmolStr, Edge>,
     /// The keys of what was driven, with the number of the last instruction that did it.
     driven: FxHashMap<SmolStr, usize>,
+    /// The last instruction that ran a unit of the program, which may drive what others know, too.
+    ran: Option<usize>,
     /// The places whose power is kept, by the folded names of the helpers that keep it.
     held: FxHashMap<SmolStr, usize>,
     /// The instruction that is read, and the end of those of the rung.
@@ -78,6 +81,7 @@ impl<'s, 'a> Reader<'s, 'a> {
             frames: Vec::new(),
             edges: FxHashMap::default(),
             driven: FxHashMap::default(),
+            ran: None,
             held: FxHashMap::default(),
             at: 0,
             end: 0,
@@ -190,7 +194,7 @@ impl<'s, 'a> Reader<'s, 'a> {
                     return Err(Refusal::NotBoolean);
                 }
                 self.settle()?;
-                if self.source.feeds(index) {
+                if self.source.feeds(self.pou, index) {
                     return self.feed(id, operation.negated);
                 }
                 if operator.role == OperatorRole::Store && self.holds(id, operation.negated)? {
@@ -369,12 +373,17 @@ impl<'s, 'a> Reader<'s, 'a> {
     fn calculation(&mut self, index: usize) -> Result<Option<usize>, Refusal> {
         let Some(found) = self.source.calculation(self.pou, index) else { return Ok(None) };
         let terms = found.operands.iter().map(|id| self.term(*id)).collect::<Result<Vec<_>, _>>()?;
-        if let Some(result) = terms.last() {
-            self.driven.insert(result.key(), index);
-        }
         let span = self.source.item(index).span.to(self.source.item(index + found.items - 1).span);
-        self.builder.drive(Action { deed: Deed::Compute(found.computation), terms, span });
+        let action = Action { deed: Deed::Compute(found.computation), terms, span };
+        self.note(&action, index);
+        self.builder.drive(action);
         Ok(Some(found.items))
+    }
+
+    /// Notes what the instruction at item `index` may change, which is this action.
+    fn note(&mut self, action: &Action, index: usize) {
+        self.driven.extend(action.changes().iter().map(|term| (term.key(), index)));
+        self.ran = if action.runs_unit() { Some(index) } else { self.ran };
     }
 
     fn is_fresh(&self) -> bool {
@@ -401,7 +410,9 @@ impl<'s, 'a> Reader<'s, 'a> {
         {
             let term = self.bit(edge.operand)?;
             // What drives the variable behind the call of the detector, it did not see.
-            let is_late = self.driven.get(&term.key()).is_some_and(|driven| *driven > edge.called_at);
+            let ran = self.ran.filter(|_| term.storage != Storage::Local);
+            let driven = self.driven.get(&term.key()).copied();
+            let is_late = driven.max(ran).is_some_and(|driven| driven > edge.called_at);
             return match !is_late {
                 true => Ok(Contact { test: Test::Bit(edge.kind), terms: vec![term], span: operand.span }),
                 false => Err(Refusal::NotBoolean),

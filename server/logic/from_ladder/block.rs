@@ -1,29 +1,41 @@
 //! Reads a function block on the power line.
 
+use crate::document::Scopes;
 use crate::ladder::{Block, Element, Pin, PinWire};
-use crate::logic::{Action, Call, Computation, Deed, Refusal, Term};
+use crate::logic::{Action, Call, Callee, Computation, Deed, Refusal, Term};
 use crate::target::Operand;
-use crate::target::iec::{EN, ENO, FunctionBlock};
+use crate::target::iec::{EN, ENO, Function};
+use crate::text::folded;
+use std::sync::Arc;
 
 /// The call that a box is, and whether power goes on behind it.
 ///
-/// Power comes to one input of a standard block and goes on from its first output; the other pins have operands
-/// or nothing. A box without an instance is a calculation that power enables. Anything else, such as a circle at a pin
-/// or a block with EN, is refused.
-pub(super) fn call(text: &str, element: &Element, block: &Block) -> Result<(Action, bool), Refusal> {
+/// Power comes to one input of a block and goes on from its first output that is a bit, or it enables the call; the other
+/// pins have operands or nothing. A box without an instance is a function that power enables. Anything else, such as a
+/// circle at a pin, is refused.
+pub(super) fn call(
+    text: &str,
+    element: &Element,
+    block: &Block,
+    scopes: &Scopes,
+) -> Result<(Action, bool), Refusal> {
+    let name = block.type_text(text).ok_or(Refusal::Element)?;
+    let function = || Computation::declared(name, scopes).or_else(|| Computation::named(name));
     if block.instance.is_none()
-        && let Some(computation) = block.type_text(text).and_then(Computation::named)
+        && let Some(computation) = function()
     {
         return Ok((self::computation(text, element, block, computation)?, false));
     }
-    let row = block.type_text(text).and_then(FunctionBlock::named).ok_or(Refusal::Element)?;
+    let is_known = Function::named(name).is_some();
+    let unknown = || if is_known { Refusal::Element } else { Refusal::Callee(name.into()) };
+    let row = Callee::block(name, scopes).ok_or_else(unknown)?;
     let instance = block.instance.ok_or(Refusal::Element)?;
     let instance = Term::new(Operand::Variable, instance.of(text), instance);
     let mut arguments = Vec::new();
     let mut power = None;
     let mut goes_on = false;
-    for (side, pins, own) in [(0, &block.inputs, row.inputs), (1, &block.outputs, row.outputs)] {
-        let main = own.first().map_or("", |pin| pin.name);
+    for (side, pins, main) in [(0, &block.inputs, row.power_in()), (1, &block.outputs, row.power_out())] {
+        let main = main.unwrap_or_default();
         for pin in pins {
             let name = pin.formal(text);
             if pin.negated {
@@ -34,7 +46,7 @@ pub(super) fn call(text: &str, element: &Element, block: &Block) -> Result<(Acti
                 PinWire::Power if side == 0 && power.is_none() => {
                     power = Some(if name.is_empty() { main } else { name });
                 }
-                PinWire::Power if side == 1 && (name.is_empty() || name.eq_ignore_ascii_case(main)) => {
+                PinWire::Power if side == 1 && (name.is_empty() || folded(name) == folded(main)) => {
                     goes_on = true;
                 }
                 PinWire::Power => return Err(Refusal::Element),
@@ -48,8 +60,8 @@ pub(super) fn call(text: &str, element: &Element, block: &Block) -> Result<(Acti
         }
     }
     let power = power.ok_or(Refusal::Element)?;
-    let (call, terms) = Call::new(row, power, instance, arguments).ok_or(Refusal::Element)?;
-    Ok((Action { deed: Deed::Call(call), terms, span: element.span }, goes_on))
+    let (call, terms) = Call::new(row.clone(), power, instance, arguments).ok_or(Refusal::Element)?;
+    Ok((Action { deed: Deed::Call(Arc::new(call)), terms, span: element.span }, goes_on))
 }
 
 /// The calculation that a box with EN is, each of whose other pins has an operand.
@@ -66,14 +78,14 @@ fn computation(
         }
         _ => Err(Refusal::Element),
     };
-    let is = |pin: &Pin, name: &str| pin.formal(text).eq_ignore_ascii_case(name);
+    let is = |pin: &Pin, name: &str| folded(pin.formal(text)) == folded(name);
     let (enable, inputs) = block.inputs.split_first().ok_or(Refusal::Element)?;
     if !is(enable, EN.name) || enable.negated || enable.wire != PinWire::Power {
         return Err(Refusal::Element);
     }
-    let names = computation.function.inputs;
+    let names = computation.inputs();
     let in_order = inputs.len() == names.len()
-        && inputs.iter().zip(names).all(|(pin, parameter)| is(pin, parameter.name) || is(pin, ""));
+        && inputs.iter().zip(&names).all(|(pin, parameter)| is(pin, parameter.name) || is(pin, ""));
     // Where power goes on from ENO, something is drawn behind the box.
     let is_idle = |pin: &&Pin| is(pin, ENO.name) && pin.wire == PinWire::Open;
     let results: Vec<&Pin> = block.outputs.iter().filter(|pin| !is_idle(pin)).collect();

@@ -38,12 +38,12 @@ impl Lack {
 
     /// The same, said of what an action is called if it has no name so far: its instruction, else its operands.
     pub(super) fn of_action(self, action: &Action) -> Lack {
-        match action.deed {
+        match &action.deed {
             Deed::Instruction(form) => self.named(form.mnemonic()),
-            Deed::Compute(computation) => self.named(computation.function.name),
+            Deed::Compute(computation) => self.named(computation.name()),
             Deed::Call(call) => {
                 let instance = action.terms.first().map_or("", |term| term.text.as_str());
-                self.named(format_smolstr!("{instance} : {}", call.block.name))
+                self.named(format_smolstr!("{instance} : {}", call.block.name()))
             }
             Deed::Return => self.named("RET"),
             Deed::Coil(_) | Deed::Jump => {

@@ -174,13 +174,13 @@ impl Converter<'_> {
 
     /// The pulse form that the detector at the end of the gates of `path` and the calculation behind it are.
     fn pulsed(&self, detector: &Action, path: &Path) -> Option<Action> {
-        let (Deed::Call(call), [Drive::Action(driven)]) = (detector.deed, &path.drives[..]) else {
+        let (Deed::Call(call), [Drive::Action(driven)]) = (&detector.deed, &path.drives[..]) else {
             return None;
         };
-        let Deed::Compute(computation) = driven.deed else { return None };
+        let Deed::Compute(computation) = &driven.deed else { return None };
         let instance = detector.terms.first()?;
         let is_last = matches!(path.gates.last(), Some(Gate::Through(last)) if last == detector);
-        if call.block.name != "R_TRIG" || !is_last || !is_pulse(&instance.text) {
+        if !call.block.is_standard("R_TRIG") || !is_last || !is_pulse(&instance.text) {
             return None;
         }
         let action = self.calculation(computation, driven).ok()?;
@@ -297,7 +297,7 @@ impl Converter<'_> {
     /// The device that a variable stands for: by its address, or if it has none by its name.
     fn device(&self, term: &Term) -> Option<Device> {
         let device = match term.storage {
-            Storage::Own if term.operand == Operand::Variable => {
+            Storage::Own | Storage::Local if term.operand == Operand::Variable => {
                 self.named(&term.text).filter(|device| self.names.is_free(*device))
             }
             Storage::Anywhere => None,
@@ -316,8 +316,8 @@ impl Converter<'_> {
     }
 
     fn action(&self, action: &Action) -> Result<Action, Lack> {
-        let (deed, terms) = match (action.deed, &action.terms[..]) {
-            (Deed::Coil(_), [term]) => (action.deed, vec![self.bit(term)?]),
+        let (deed, terms) = match (&action.deed, &action.terms[..]) {
+            (Deed::Coil(_), [term]) => (action.deed.clone(), vec![self.bit(term)?]),
             (Deed::Jump, [label]) => {
                 let pointer = self.names.of_label(&label.text);
                 let operand = Operand::read(&pointer, self.target.model);
@@ -332,11 +332,11 @@ impl Converter<'_> {
     }
 
     /// The instruction that a calculation is.
-    fn calculation(&self, computation: Computation, action: &Action) -> Result<Action, Lack> {
+    fn calculation(&self, computation: &Computation, action: &Action) -> Result<Action, Lack> {
         let (inputs, result) = without(computation.operands(&action.terms))?;
         let register = self.word(result)?;
         without(matches!(register.operand, Operand::Device(_)).then_some(()))?;
-        let function = computation.function.name;
+        let function = without((!computation.is_declared()).then(|| computation.name()))?;
         let row = |rows: &[(&'static str, &str)]| {
             rows.iter().find(|(_, own)| *own == function).and_then(|(mnemonic, _)| Form::named(mnemonic))
         };
@@ -359,11 +359,12 @@ impl Converter<'_> {
     }
 
     /// The output that the call of a timer or counter is.
-    fn called(&self, call: Call, instance: &Term, terms: &[Term]) -> Result<(Deed, Vec<Term>), Lack> {
+    fn called(&self, call: &Call, instance: &Term, terms: &[Term]) -> Result<(Deed, Vec<Term>), Lack> {
         let device = without(self.named(&instance.text))?;
         let own = self.term(device, instance.span);
         let arguments = call.arguments(terms);
-        match (call.block.name, device.kind, call.power_in(), &arguments[..]) {
+        let block = without((!call.block.is_declared()).then(|| call.block.name()))?;
+        match (block, device.kind, call.power_in(), &arguments[..]) {
             ("CTU", DeviceKind::C, "R", []) if device.number < 200 => {
                 Ok((Deed::Coil(CoilKind::Reset), vec![own]))
             }

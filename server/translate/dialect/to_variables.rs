@@ -3,13 +3,14 @@
 use super::{COMPUTED, Lack, PULSE, STEPPED, address, without};
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{
-    Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test,
+    Action, Call, Callee, Computation, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test,
 };
 use crate::target::iec::FunctionBlock;
 use crate::target::{Constant, Device, DeviceKind, Form, Model, Operand, Target};
 use crate::text::Span;
 use smol_str::{SmolStr, ToSmolStr, format_smolstr};
 use std::cell::Cell;
+use std::sync::Arc;
 
 /// Whether a rung is but END, which IEC 61131-3 does not write.
 pub(super) fn is_end(path: &Path) -> bool {
@@ -124,7 +125,7 @@ impl Converter<'_> {
 
     fn action(&self, action: &Action) -> Result<Drive, Lack> {
         let span = action.span;
-        match (action.deed, &action.terms[..]) {
+        match (&action.deed, &action.terms[..]) {
             (Deed::Coil(CoilKind::Plain), [timed, preset]) => {
                 self.preset(timed, preset, span).map(Drive::Action)
             }
@@ -143,11 +144,11 @@ impl Converter<'_> {
                     _ => Ok(Drive::Action(Action { terms: vec![self.bit(term)?], ..action.clone() })),
                 }
             }
-            (Deed::Instruction(form), _) if self.calculation(form, action).is_some() => {
-                let action = without(self.calculation(form, action))??;
+            (Deed::Instruction(form), _) if self.calculation(*form, action).is_some() => {
+                let action = without(self.calculation(*form, action))??;
                 if form.pulse { self.on_arrival(action) } else { Ok(Drive::Action(action)) }
             }
-            (Deed::Instruction(form), [label]) if Form::named("CJ") == Some(form) => {
+            (Deed::Instruction(form), [label]) if Form::named("CJ") == Some(*form) => {
                 let label = variable(&label.key(), label.span);
                 Ok(Drive::Action(Action { deed: Deed::Jump, terms: vec![label], span }))
             }
@@ -226,10 +227,10 @@ fn call(
     argument: Option<(&str, Term)>,
     span: Span,
 ) -> Result<Action, Lack> {
-    let block = without(FunctionBlock::named(block))?;
+    let block = Callee::Block(without(FunctionBlock::named(block))?);
     let arguments = argument.into_iter().map(|(name, term)| (name, false, term));
     let (call, terms) = without(Call::new(block, power, variable(instance, span), arguments))?;
-    Ok(Action { deed: Deed::Call(call), terms, span })
+    Ok(Action { deed: Deed::Call(Arc::new(call)), terms, span })
 }
 
 fn variable(name: &str, span: Span) -> Term {

@@ -1,7 +1,10 @@
 //! The variables that a translation to instruction list of IEC 61131-3 needs.
 
+use crate::document::{DeclaredType, Variable};
+use crate::il::iec::SectionKind;
 use crate::ladder::CoilKind;
 use crate::logic::{HELPER, pulse_name};
+use crate::target::iec::ElementaryType;
 use crate::text::folded;
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
@@ -33,6 +36,18 @@ pub struct Helper {
     pub type_name: &'static str,
     /// The program unit that declares it.
     pub pou: Option<usize>,
+}
+
+impl Helper {
+    /// The variable that it is once it is declared.
+    pub(in crate::translate) fn variable(&self) -> Variable {
+        let declared = match self.type_name {
+            "BOOL" => DeclaredType::Elementary(ElementaryType::Bool),
+            name => DeclaredType::Named(folded(name)),
+        };
+        let (name, section) = (self.name.clone(), SectionKind::Local);
+        Variable { name, section, constant: false, declared, address: None }
+    }
 }
 
 impl Helpers {

@@ -4,27 +4,28 @@ use super::Planner;
 use crate::ladder::reduce::Shape;
 use crate::ladder::{Block, Element, ElementKind, Pin, PinWire};
 use crate::logic::{Action, Call, Computation, Term};
-use crate::target::iec::{EN, ENO, Parameter};
+use crate::target::iec::{EN, ENO};
 use crate::text::{Message, Span, Spanned};
 
 impl Planner {
     /// The box of a call. Its pins are drawn up to the last one with an operand; power `goes_on` from its first output
     /// or ends at the box.
-    pub(super) fn block(&mut self, action: &Action, call: Call, goes_on: bool) -> Result<Shape, Message> {
+    pub(super) fn block(&mut self, action: &Action, call: &Call, goes_on: bool) -> Result<Shape, Message> {
         let instance = action.terms.first().ok_or_else(|| Message::new("translate.no-drawing"))?;
         let instance = self.word(&instance.text);
-        let type_name = self.word(call.block.name);
+        let type_name = self.word(call.block.name());
         let mut element = Element::new(ElementKind::Invert, Span::default(), 0, (0, 0));
-        let inputs = self.pins(&mut element, action, call, (call.block.inputs, false), true);
-        let outputs = self.pins(&mut element, action, call, (call.block.outputs, true), goes_on);
-        let [inputs, outputs] = match call.is_enabled() {
-            true => {
-                let enable = [self.pin(EN.name, PinWire::Power), self.pin(ENO.name, PinWire::Open)];
-                let [enable, enabled] = enable.map(|pin| vec![pin]);
-                [[enable, inputs].concat(), [enabled, outputs].concat()]
-            }
-            false => [inputs, outputs],
-        };
+        let mut inputs = self.pins(&mut element, action, call, false, true);
+        let mut outputs = self.pins(&mut element, action, call, true, goes_on);
+        let arguments = call.arguments(&action.terms);
+        let enabled = arguments.last().filter(|last| last.is_output && last.name == ENO.name);
+        let enabled = enabled.map(|argument| self.operand(&mut element, &argument.term));
+        if call.is_enabled() {
+            inputs.insert(0, self.pin(EN.name, PinWire::Power));
+            outputs.insert(0, self.pin(ENO.name, enabled.unwrap_or(PinWire::Open)));
+        } else if let Some(wire) = enabled {
+            outputs.push(self.pin(ENO.name, wire));
+        }
         element.kind = ElementKind::Block(Box::new(Block {
             instance: Some(instance),
             type_name: Some(type_name),
@@ -40,14 +41,14 @@ impl Planner {
     pub(super) fn computation(
         &mut self,
         action: &Action,
-        computation: Computation,
+        computation: &Computation,
     ) -> Result<Shape, Message> {
         let (inputs, result) =
             computation.operands(&action.terms).ok_or_else(|| Message::new("translate.no-drawing"))?;
-        let type_name = self.word(computation.function.name);
+        let type_name = self.word(computation.name());
         let mut element = Element::new(ElementKind::Invert, Span::default(), 0, (0, 0));
         let mut left = vec![self.pin(EN.name, PinWire::Power)];
-        for (parameter, term) in computation.function.inputs.iter().zip(inputs) {
+        for (parameter, term) in computation.inputs().iter().zip(inputs) {
             let wire = self.operand(&mut element, term);
             left.push(self.pin(parameter.name, wire));
         }
@@ -80,8 +81,8 @@ impl Planner {
         &mut self,
         element: &mut Element,
         action: &Action,
-        call: Call,
-        (names, is_output): (&[Parameter], bool),
+        call: &Call,
+        is_output: bool,
         has_power: bool,
     ) -> Vec<Pin> {
         let arguments = call.arguments(&action.terms);
@@ -90,7 +91,7 @@ impl Planner {
         };
         let power = if is_output { call.power_out() } else { call.power_in() };
         let mut pins = Vec::new();
-        for parameter in names {
+        for parameter in if is_output { call.block.outputs() } else { call.block.inputs() } {
             let wire = match argument(parameter.name) {
                 Some(argument) => self.operand(element, &argument.term),
                 None if has_power && parameter.name == power => PinWire::Power,

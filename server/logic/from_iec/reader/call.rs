@@ -2,30 +2,39 @@
 
 use super::super::{is_pulse_name, output_of};
 use super::{Edge, Reader, Value};
+use crate::document::DeclaredType;
 use crate::il::iec::{Condition, Direction, Item, ItemKind, OperandId, Parameter, ParameterValue, Run};
 use crate::ladder::{CoilKind, ContactKind};
-use crate::logic::{Action, Call, Deed, Expression, Gate, Refusal, Term};
-use crate::target::iec::{EN, FunctionBlock, OperatorRole};
+use crate::logic::{Action, Call, Callee, Deed, Expression, Gate, Refusal, Term};
+use crate::target::iec::{EN, OperatorRole};
 use crate::text::{Span, folded};
+use std::sync::Arc;
 
 impl<'a> Reader<'_, 'a> {
     /// Power is stored for the block that is called next.
     pub(super) fn feed(&mut self, id: OperandId, negated: bool) -> Result<(), Refusal> {
         let path = self.source.tree.operand(id).span.of(self.source.text);
-        let (instance, pin) = path.rsplit_once('.').ok_or(Refusal::NotBoolean)?;
-        let block = self.source.block(self.pou, instance).ok_or(Refusal::NotBoolean)?;
-        if !block.inputs.first().is_some_and(|first| first.name.eq_ignore_ascii_case(pin)) {
-            return Err(Refusal::NotBoolean);
-        }
+        let (instance, _) = path.rsplit_once('.').ok_or(Refusal::NotBoolean)?;
+        self.source.block(self.pou, instance).ok_or(Refusal::NotBoolean)?;
         self.is_inverted ^= negated;
         self.invert()?;
         self.fed = Some(folded(instance));
         Ok(())
     }
 
-    pub(super) fn block_of(&self, instance: OperandId) -> Option<&'static FunctionBlock> {
+    pub(super) fn block_of(&self, instance: OperandId) -> Option<Callee> {
         let name = self.source.tree.operand(instance).span.of(self.source.text);
         self.source.block(self.pou, name)
+    }
+
+    /// The block that is called, or the name of what nothing declares.
+    fn called(&self, callee: OperandId) -> Result<Callee, Refusal> {
+        let name = self.source.tree.operand(callee).span.of(self.source.text);
+        self.block_of(callee).ok_or_else(|| match self.source.scopes.type_of(self.pou, name) {
+            Some(DeclaredType::Named(type_name)) => Refusal::Callee(type_name),
+            Some(_) => Refusal::Element,
+            None => Refusal::Callee(name.into()),
+        })
     }
 
     /// `R C1`: calls the block with this input alone. Nothing is known of the current result behind it.
@@ -35,13 +44,15 @@ impl<'a> Reader<'_, 'a> {
         instance: OperandId,
         span: Span,
     ) -> Result<(), Refusal> {
-        let block = self.block_of(instance).ok_or(Refusal::Element)?;
+        let block = self.called(instance)?;
         self.settle()?;
         self.invert()?;
         let term = self.source.term(self.pou, instance);
         let call = Call::new(block, input, term, std::iter::empty::<(&str, bool, Term)>());
         let (call, terms) = call.filter(|(call, _)| call.is_input_operator()).ok_or(Refusal::NotBoolean)?;
-        self.builder.drive(Action { deed: Deed::Call(call), terms, span });
+        let action = Action { deed: Deed::Call(Arc::new(call)), terms, span };
+        self.note(&action, self.at);
+        self.builder.drive(action);
         self.value = Value::Nothing;
         Ok(())
     }
@@ -52,13 +63,13 @@ impl<'a> Reader<'_, 'a> {
         let text = self.source.text;
         let called = self.source.tree.operand(callee);
         let instance = called.span.of(text);
-        let block = self.source.block(self.pou, instance).ok_or(Refusal::Element)?;
+        let block = self.called(callee)?;
         let parameters = parameters.of(&self.source.tree.parameters);
         let fed = self.fed.take();
         if fed.is_none() && self.is_edge(instance, parameters)? {
             return Ok(0);
         }
-        if fed.is_some() && parameters.is_empty() && self.pulse(instance, block, item)? {
+        if fed.is_some() && parameters.is_empty() && self.pulse(instance, &block, item)? {
             return Ok(2);
         }
         if fed.as_ref().is_some_and(|fed| *fed != folded(instance)) || fed.is_none() && !self.is_fresh() {
@@ -67,17 +78,15 @@ impl<'a> Reader<'_, 'a> {
         let mut power = None;
         let mut enable = None;
         let mut arguments = Vec::with_capacity(parameters.len());
+        let power_in = block.power_in().unwrap_or_default();
         for (place, parameter) in parameters.iter().enumerate() {
-            let (name, is_output, id) =
-                argument(parameter, text, || block.inputs.get(place).map(|pin| pin.name))?;
-            let is_power = block.inputs.first().is_some_and(|first| first.name.eq_ignore_ascii_case(name));
-            match is_power && !is_output {
+            let (name, is_output, id) = argument(parameter, text, (&block, place))?;
+            match folded(name) == folded(power_in) && !is_output {
                 _ if name.eq_ignore_ascii_case(EN.name) && !is_output => enable = Some(id),
                 true => power = Some(id),
                 false => arguments.push((name, is_output, self.term(id)?)),
             }
         }
-        let power_in = block.inputs.first().map_or("", |pin| pin.name);
         let (wired, power_in) = match (power, fed.is_some(), enable) {
             (Some(id), false, None) => (Some(id), power_in),
             (None, true, None) => (None, power_in),
@@ -94,11 +103,13 @@ impl<'a> Reader<'_, 'a> {
             self.builder.pass(Expression::Contact(contact)).ok_or(Refusal::TooDeep)?;
         }
         let own = self.source.term(self.pou, callee);
-        let (call, terms) = Call::new(block, power_in, own, arguments).ok_or(Refusal::Element)?;
-        self.driven.extend(call.changes(&terms).iter().map(|term| (term.key(), self.at)));
-        let action = Action { deed: Deed::Call(call), terms, span: item.span };
-        let output = self.next(1).filter(|_| !call.is_enabled());
-        match output.and_then(|next| self.loads(next, &output_of(block, instance))) {
+        let (call, terms) = Call::new(block.clone(), power_in, own, arguments).ok_or(Refusal::Element)?;
+        // An output that is written to an operand is no wire as well.
+        let is_given = call.arguments(&terms).iter().any(|one| one.is_output && one.name == call.power_out());
+        let output = self.next(1).filter(|_| !call.is_enabled() && !is_given);
+        let action = Action { deed: Deed::Call(Arc::new(call)), terms, span: item.span };
+        self.note(&action, self.at);
+        match output.and_then(|next| self.loads(next, &output_of(&block, instance))) {
             None => {
                 self.builder.drive(action);
                 self.value = Value::Nothing;
@@ -126,20 +137,20 @@ impl<'a> Reader<'_, 'a> {
         if !self.frames.is_empty() {
             return Err(Refusal::NotBoolean);
         }
-        let block = self.block_of(callee).ok_or(Refusal::Element)?;
+        let block = self.called(callee)?;
         let mut arguments = Vec::new();
         for (place, parameter) in parameters.of(&self.source.tree.parameters).iter().enumerate() {
-            let positional = || block.inputs.get(place).map(|pin| pin.name);
-            let (name, is_output, id) = argument(parameter, self.source.text, positional)?;
+            let (name, is_output, id) = argument(parameter, self.source.text, (&block, place))?;
             arguments.push((name, is_output, self.term(id)?));
         }
         self.settle()?;
         self.is_inverted ^= condition == Condition::IfFalse;
         self.invert()?;
         let own = self.source.term(self.pou, callee);
-        let (call, terms) = Call::new(block, EN.name, own, arguments).ok_or(Refusal::Element)?;
-        self.driven.extend(call.changes(&terms).iter().map(|term| (term.key(), self.at)));
-        self.builder.drive(Action { deed: Deed::Call(call), terms, span: item.span });
+        let (call, terms) = Call::new(block.clone(), EN.name, own, arguments).ok_or(Refusal::Element)?;
+        let action = Action { deed: Deed::Call(Arc::new(call)), terms, span: item.span };
+        self.note(&action, self.at);
+        self.builder.drive(action);
         self.value = Value::Nothing;
         Ok(0)
     }
@@ -152,10 +163,10 @@ impl<'a> Reader<'_, 'a> {
 
     /// Drives the coil of an edge that the call of a detector is whose output is stored and nothing else; tells
     /// whether it is that.
-    fn pulse(&mut self, instance: &str, block: &FunctionBlock, item: &Item) -> Result<bool, Refusal> {
-        let coil = match block.name {
-            "R_TRIG" => CoilKind::Rising,
-            "F_TRIG" => CoilKind::Falling,
+    fn pulse(&mut self, instance: &str, block: &Callee, item: &Item) -> Result<bool, Refusal> {
+        let coil = match edge_kind(block) {
+            Some(ContactKind::Rising) => CoilKind::Rising,
+            Some(ContactKind::Falling) => CoilKind::Falling,
             _ => return Ok(false),
         };
         let is_loaded = self.next(1).and_then(|next| self.loads(next, &output_of(block, instance)));
@@ -197,11 +208,11 @@ impl<'a> Reader<'_, 'a> {
     /// Whether a call is that of a detector which is an edge contact here.
     fn is_edge(&mut self, instance: &str, parameters: &[Parameter]) -> Result<bool, Refusal> {
         let block = self.source.block(self.pou, instance).ok_or(Refusal::Element)?;
-        let ([parameter], Some(kind)) = (parameters, edge_kind(block.name)) else { return Ok(false) };
+        let ([parameter], Some(kind)) = (parameters, edge_kind(&block)) else { return Ok(false) };
         if !self.frames.is_empty() || !self.source.is_edge(self.pou, instance, self.span) {
             return Ok(false);
         }
-        let (name, is_output, operand) = argument(parameter, self.source.text, || Some("CLK"))?;
+        let (name, is_output, operand) = argument(parameter, self.source.text, (&block, 0))?;
         if is_output || !name.eq_ignore_ascii_case("CLK") {
             return Ok(false);
         }
@@ -211,11 +222,12 @@ impl<'a> Reader<'_, 'a> {
     }
 }
 
-/// A parameter with the name of its pin, whether that is an output, and its operand.
+/// A parameter with its formal name, whether that is an output, and its operand. Without a name its place in the list
+/// tells: inputs, then outputs.
 fn argument<'t>(
     parameter: &Parameter,
     text: &'t str,
-    positional: impl FnOnce() -> Option<&'t str>,
+    (block, place): (&'t Callee, usize),
 ) -> Result<(&'t str, bool, OperandId), Refusal> {
     let ParameterValue::Operand(id) = parameter.value else { return Err(Refusal::NotBoolean) };
     let is_output = match parameter.direction {
@@ -223,15 +235,24 @@ fn argument<'t>(
         Direction::Out { negated: false } => true,
         Direction::Out { negated: true } => return Err(Refusal::NotBoolean),
     };
-    let name = parameter.name.map(|name| name.of(text)).or_else(positional);
-    Ok((name.ok_or(Refusal::Element)?, is_output, id))
+    if let Some(name) = parameter.name {
+        return Ok((name.of(text), is_output, id));
+    }
+    let inputs = block.inputs();
+    let is_output = place >= inputs.len();
+    let formal = if is_output {
+        block.outputs().into_iter().nth(place - inputs.len())
+    } else {
+        inputs.into_iter().nth(place)
+    };
+    Ok((formal.ok_or(Refusal::Element)?.name, is_output, id))
 }
 
 /// The contact for which the call of a detector stands.
-fn edge_kind(block: &str) -> Option<ContactKind> {
+pub(in crate::logic::from_iec) fn edge_kind(block: &Callee) -> Option<ContactKind> {
     match block {
-        "R_TRIG" => Some(ContactKind::Rising),
-        "F_TRIG" => Some(ContactKind::Falling),
+        Callee::Block(block) if block.name == "R_TRIG" => Some(ContactKind::Rising),
+        Callee::Block(block) if block.name == "F_TRIG" => Some(ContactKind::Falling),
         _ => None,
     }
 }
