@@ -116,8 +116,8 @@ fn may_be_skipped(document: &Document, before: ChunkRef<'_>, pou: Option<usize>)
     true
 }
 
-/// Whether the chunk may be a calculation with words: a load, perhaps an operation, and a store of something else than
-/// a bit.
+/// Whether the chunk may be calculations with words: a load, perhaps an operation, and a store of something else than a
+/// bit; or calls of functions.
 fn may_calculate(document: &Document, tree: &IecTree, text: &str, pou: Option<usize>) -> bool {
     let Some(ItemKind::Operation { operation, operand: Some(id) }) = tree.items.last().map(|item| item.kind)
     else {
@@ -128,7 +128,8 @@ fn may_calculate(document: &Document, tree: &IecTree, text: &str, pou: Option<us
         let kind = document.scopes().type_of(pou, result);
         kind == Some(DeclaredType::Elementary(ElementaryType::Bool))
     };
-    tree.items.len() <= 3 && operation.operator.role == OperatorRole::Store && !is_bit()
+    let calls = tree.items.iter().any(|item| matches!(item.kind, ItemKind::Function { .. }));
+    operation.operator.role == OperatorRole::Store && (calls || tree.items.len() <= 3 && !is_bit())
 }
 
 /// Whether an item is an instruction or a label, and no declaration.
