@@ -63,8 +63,8 @@ impl<'d> Neighbourhood<'d> {
         &self.rungs[self.here]
     }
 
-    /// Whether the helper `name` is stored to wherever it is read outside of these rungs. The proposals of a menu ask for
-    /// the same ones.
+    /// Whether the helper `name` is stored to wherever it is read outside of these rungs. The proposals of a menu ask
+    /// for the same ones.
     pub fn is_stored_outside(&self, name: &SmolStr) -> bool {
         let known = self.kept.borrow().get(name).copied();
         known.unwrap_or_else(|| {

@@ -15,6 +15,9 @@ use crate::text::{Span, TextEdit};
 use crate::translate::Source;
 use crate::translate::{to_fx, to_ladder};
 
+/// Writes paths in the place of rungs: the bytes of these in the document, and the new text.
+type Writer<'w> = dyn Fn(&[Source], &[Path]) -> Option<(Span, String)> + 'w;
+
 /// A proposal as edits of the document.
 pub(super) struct Written {
     /// In order.
@@ -28,7 +31,7 @@ pub(super) fn edits(around: &Neighbourhood<'_>, proposal: &Proposal, style: Styl
     let document = around.document;
     let mut declarations = proposal.declarations.clone();
     let changes = &proposal.changes;
-    let each = |write: &dyn Fn(&[Source], &[Path]) -> Option<(Span, String)>| {
+    let each = |write: &Writer<'_>| {
         let write = |change: &Change| write(around.replaced(change)?, &change.paths);
         changes.iter().map(write).collect::<Option<Vec<_>>>()
     };

@@ -149,7 +149,7 @@ fn list(
     let old = Old::of(rungs)?;
     let start = rungs.first()?.start;
     if written.is_empty() {
-        let whole_lines = old.prefix.trim().is_empty().then_some(old.prefix.len()).unwrap_or_default();
+        let whole_lines = if old.prefix.trim().is_empty() { old.prefix.len() } else { 0 };
         let span = Span::new(old.start - whole_lines, old.end).shifted(start);
         return old.comments.is_empty().then(|| (span, String::new()));
     }
