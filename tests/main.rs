@@ -26,6 +26,7 @@ mod ide_boolean;
 mod ide_devices;
 mod ide_names;
 mod ide_refactor;
+mod ide_refactor_iec;
 mod ide_signature;
 mod ide_structure;
 mod ide_typing;

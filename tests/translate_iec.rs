@@ -43,7 +43,7 @@ fn program(variables: &str, body: &str) -> String {
 const BITS: &str = "a, b, c, d, e : BOOL; x, y, z, w : BOOL; n, k : INT;";
 
 /// The instructions of the body of a list, one a line with single blanks.
-fn body(text: &str) -> Vec<String> {
+pub(crate) fn body(text: &str) -> Vec<String> {
     let from = text.rfind("END_VAR").map_or(0, |at| at + "END_VAR".len());
     let end = text.find("END_PROGRAM").unwrap_or(text.len());
     let lines = text[from..end].lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "));
@@ -65,10 +65,10 @@ fn drawn_again(drawn: &str) -> String {
 }
 
 /// The state of a program: bits as 0 and 1, and words.
-type State = HashMap<String, i64>;
+pub(crate) type State = HashMap<String, i64>;
 
 /// Runs the body of a list once.
-fn scan(text: &str, state: &mut State) {
+pub(crate) fn scan(text: &str, state: &mut State) {
     let lines = body(text);
     let value = |state: &State, word: &str| match word {
         "TRUE" => 1,
