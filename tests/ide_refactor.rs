@@ -8,7 +8,7 @@ use rungwise::target::Target;
 use rungwise::text::{Language, Span};
 use rungwise::translate::{Options, To, translate};
 
-const STYLE: Style = Style { kind: FormatStyle::Iec, width: 48 };
+pub(crate) const STYLE: Style = Style { kind: FormatStyle::Iec, width: 48 };
 
 fn fx2n() -> &'static Target {
     Target::named("fx2n").expect("a model")
@@ -22,7 +22,7 @@ fn drawing(text: &str) -> Document {
     Document::new(text, Notation::Ladder, fx2n())
 }
 
-fn offered(document: &Document, span: Span) -> Vec<Refactoring> {
+pub(crate) fn offered(document: &Document, span: Span) -> Vec<Refactoring> {
     ide::refactorings(&ProjectView::alone(document), span, STYLE)
 }
 
@@ -32,11 +32,11 @@ fn at(document: &Document, word: &str) -> Vec<Refactoring> {
     offered(document, Span::at(place))
 }
 
-fn titles(refactorings: &[Refactoring]) -> Vec<String> {
+pub(crate) fn titles(refactorings: &[Refactoring]) -> Vec<String> {
     refactorings.iter().map(|refactoring| refactoring.title.render(Language::English)).collect()
 }
 
-fn applied(document: &Document, refactoring: &Refactoring) -> String {
+pub(crate) fn applied(document: &Document, refactoring: &Refactoring) -> String {
     let mut after = document.clone();
     let edits = refactoring.edits.iter().rev();
     let edits = edits.map(|edit| Edit { range: Some(edit.span.range()), text: edit.text.clone() });
@@ -375,11 +375,11 @@ fn relay_of(refactoring: &Refactoring) -> usize {
     BITS.iter().position(|bit| *bit == name).unwrap_or(BITS.len())
 }
 
-/// Checks every refactoring at every line of `document`, whose list is `text`; how many there were.
-fn check_all(
+/// Checks every refactoring at every line of `document` by what `same` says of the text that it makes; how many there
+/// were.
+pub(crate) fn check_all(
     document: &Document,
-    text: &str,
-    listed: impl Fn(&str) -> String,
+    same: impl Fn(&Refactoring, &str) -> Result<(), String>,
 ) -> Result<usize, TestCaseError> {
     let mut places: Vec<Span> = vec![];
     let whole = document.text();
@@ -395,7 +395,7 @@ fn check_all(
             if seen.contains(&after) {
                 continue;
             }
-            let result = do_the_same(text, &listed(&after), relay_of(&refactoring));
+            let result = same(&refactoring, &after);
             prop_assert!(result.is_ok(), "{}\n{whole}\n{after}\n{result:?}", refactoring.kind);
             seen.push(after);
         }
@@ -409,7 +409,7 @@ proptest! {
     #[test]
     fn what_is_offered_in_a_list_changes_nothing(rungs in prop::collection::vec(rung(), 1..3)) {
         let text = program(&rungs);
-        check_all(&list(&text), &text, str::to_string)?;
+        check_all(&list(&text), |refactoring, after| do_the_same(&text, after, relay_of(refactoring)))?;
     }
 
     #[test]
@@ -418,6 +418,6 @@ proptest! {
         let translation = translate(&list(&text), None, To::Ladder, &Options { is_whole: false, ..Options::default() });
         prop_assume!(translation.is_certain());
         let document = drawing(&translation.text);
-        check_all(&document, &text, listed)?;
+        check_all(&document, |refactoring, after| do_the_same(&text, &listed(after), relay_of(refactoring)))?;
     }
 }

@@ -41,6 +41,21 @@ fn a_selection_is_extracted_and_an_extract_menu_has_nothing_else() {
 }
 
 #[test]
+fn a_variable_is_declared_in_the_edit_that_extracts_it() {
+    let mut client = Client::start();
+    let head = "PROGRAM P\nVAR\n    a, b, c, x : BOOL;\nEND_VAR\n";
+    client.open(URI, "plc-il", &format!("{head}    LD a\n    OR b\n    AND c\n    ST x\nEND_PROGRAM\n"));
+    let found = actions(&mut client, (5, 7), (5, 7), "refactor.extract");
+    assert_eq!(found[0]["title"], "Extract to internal relay Relay1");
+    let edits = found[0]["edit"]["changes"][URI].as_array().unwrap();
+    assert_eq!(edits[0]["newText"], "    Relay1     : BOOL;\n");
+    assert_eq!(edits[0]["range"]["start"], json!({"line": 3, "character": 0}));
+    assert!(edits.len() > 1);
+    let inlined = actions(&mut client, (5, 7), (5, 7), "refactor.rewrite.rung");
+    assert!(inlined.iter().all(|action| !action["title"].as_str().unwrap().contains("step")));
+}
+
+#[test]
 fn devices_of_other_files_of_the_project_are_not_free() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("rungwise.toml"), "[project]\nname = \"two\"\ntarget = \"fx2n\"\n")

@@ -197,6 +197,12 @@ impl Scopes {
                 .any(|variable| variable.address.is_some() || variable.section == SectionKind::InOut)
     }
 
+    /// Whether `name` is a global variable that another file of the project declares.
+    pub fn is_global_elsewhere(&self, name: &str) -> bool {
+        let name = folded(name);
+        self.globals.contains_key(&name) && !self.own_globals.contains(&name)
+    }
+
     /// Whether `name` is a declared data type.
     pub fn is_type(&self, name: &str) -> bool {
         self.types.contains_key(&folded(name))

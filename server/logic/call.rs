@@ -88,6 +88,13 @@ impl Call {
         self.power.is_none()
     }
 
+    /// Whether power enables the call and ENO is written to an operand, which happens without power, too: then `CALC`,
+    /// which does nothing without power, is not the same.
+    pub fn tells_enable(&self) -> bool {
+        let places = self.block.inputs().len() + self.block.outputs().len();
+        self.is_enabled() && self.given.last().is_some_and(|last| usize::from(*last) == places)
+    }
+
     /// Whether an input operator of instruction list is the whole of it: `R C1`.
     pub fn is_input_operator(&self) -> bool {
         let Callee::Block(block) = self.block else { return false };

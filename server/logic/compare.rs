@@ -89,8 +89,10 @@ pub fn compare_outcome(
     (may_be_off, is_private): (bool, &dyn Fn(&Term) -> bool),
     formulas: &mut Formulas,
 ) -> Comparison {
-    let skipped = run(Run::new(), &left[..known[0].min(left.len())], &mut Formulas::default());
-    let skipped = skipped.events() as usize;
+    let known = [(left, known[0]), (right, known[1])]
+        .map(|(paths, known)| run(Run::new(), &paths[..known.min(paths.len())], &mut Formulas::default()));
+    let skipped = known[0].events() as usize;
+    let known = known.map(|run| run.effects.len());
     let rail = if may_be_off { formulas.atom(Atom::Rail) } else { Formulas::TRUE };
     let [left, right] = [left, right].map(|paths| run(Run::by_outcome(rail), paths, formulas));
     let events = |run: &Run<'_>| run.events() as usize;
@@ -101,6 +103,8 @@ pub fn compare_outcome(
     if events(&left) != events(&right) || pairs().any(|(left, right)| !left.is_like(right)) {
         return Comparison::Unlike;
     }
+    let in_step = in_step([&left, &right], known, formulas);
+    let mut is_open = false;
     for (left, right) in pairs().skip(skipped) {
         let sides = [left.guard, right.guard];
         if let Some(difference) = difference(formulas, sides, || place_of(left)) {
@@ -115,9 +119,12 @@ pub fn compare_outcome(
                 };
             }
         }
-        // What an event makes of bits that differ when it happens, nobody knows.
-        if touches_bits(left.action) {
-            return Comparison::Undecided;
+        // What an event makes of bits that differ when it happens, nobody knows. Behind a unit that finds them
+        // different nothing is the same for sure, but what it leaves may still tell both sides apart.
+        match left.action.runs_unit() {
+            true => is_open |= left.event > in_step,
+            false if touches_bits(left.action) => return Comparison::Undecided,
+            false => {}
         }
     }
     let bits = left.bits().chain(right.bits()).filter(|term| !is_private(term));
@@ -132,7 +139,24 @@ pub fn compare_outcome(
             return difference;
         }
     }
-    Comparison::Same { is_boolean: left.is_boolean() }
+    match is_open {
+        true => Comparison::Undecided,
+        false => Comparison::Same { is_boolean: left.is_boolean() },
+    }
+}
+
+/// The last event that runs a unit of the program and before which both sides did the same step by step, so that the
+/// unit finds everything alike. The first `known` effects on either side are known to lead to the same.
+fn in_step(sides: [&Run<'_>; 2], known: [usize; 2], formulas: &mut Formulas) -> Option<u32> {
+    let runs_unit = |effect: &Effect<'_>| effect.action.runs_unit();
+    if !sides[0].effects.iter().any(runs_unit) {
+        return None;
+    }
+    let [left, right] = [0, 1].map(|side| sides[side].effects.iter().skip(known[side]));
+    let alike = left.zip(right).take_while(|(left, right)| {
+        left.is_like(right) && equal(formulas, left.guard, right.guard) == Verdict::Equal
+    });
+    alike.filter(|(left, _)| runs_unit(left)).last().and_then(|(left, _)| left.event)
 }
 
 /// `run`, after it went through `paths`.
@@ -178,8 +202,8 @@ fn what(effect: &Effect<'_>) -> String {
 }
 
 /// Whether an action looks at bits other than through its condition and the operands of a call, or may change bits
-/// whose values are known, or decides what comes next, as units of the program do that are called. What it does when its
-/// condition fails depends on what was before.
+/// whose values are known, as units of the program do that are called, or decides what comes next. What it does when
+/// its condition fails depends on what was before.
 pub fn touches_bits(action: &Action) -> bool {
     // States, timers and counters change in events only, and these come in the same order.
     let is_bit = |term: &Term| term.operand.device().is_some_and(|device| is_driven(device.kind));

@@ -5,11 +5,13 @@ use crate::document::Scopes;
 use crate::target::Operand;
 use crate::target::iec::Function;
 
+use std::fmt;
+
 /// A function whose result is stored: one of the standard with one or two words, or one of the program. The terms of
 /// its action are its inputs, then the result.
 ///
 /// Two are equal if they make the same of the same inputs: bits are joined alike in patterns and in numbers.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Computation {
     /// The function.
     pub function: Callee,
@@ -38,16 +40,20 @@ impl PartialEq for Computation {
     }
 }
 
+impl fmt::Debug for Computation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {:?}", self.name(), self.conversion)
+    }
+}
+
 impl Computation {
     /// The output for the result, which the standard gives no name.
     pub const RESULT: &'static str = "OUT";
 
     /// That of the standard function called `name`, letter case aside; nothing for functions of other shapes.
     pub fn named(name: &str) -> Option<Computation> {
-        let function = Function::named(name)?;
-        let is_operator = OPERATORS.contains(&function.name);
-        is_operator
-            .then_some(Computation { function: Callee::Function(function), conversion: Conversion::None })
+        let function = Function::named(name).filter(|function| OPERATORS.contains(&function.name))?;
+        Some(Computation { function: Callee::Function(function), conversion: Conversion::None })
     }
 
     /// That of the function called `name` which the program declares.
@@ -61,7 +67,7 @@ impl Computation {
         let makes_sense = match conversion {
             Conversion::None => true,
             Conversion::Patterns { .. } => self.is_bitwise(),
-            Conversion::Widened => !self.is_declared() && self.name() == "MUL",
+            Conversion::Widened => self.standard() == Some("MUL"),
         };
         makes_sense.then_some(Computation { conversion, ..self })
     }
@@ -81,14 +87,22 @@ impl Computation {
         self.function.is_declared()
     }
 
+    /// The name of a function of the standard; nothing if the program declares it.
+    pub fn standard(&self) -> Option<&'static str> {
+        match self.function {
+            Callee::Function(function) => Some(function.name),
+            _ => None,
+        }
+    }
+
     /// Whether it only copies a word.
     pub fn copies(&self) -> bool {
-        !self.is_declared() && self.name() == "MOVE"
+        self.standard() == Some("MOVE")
     }
 
     /// Whether it joins or inverts the bits of words, and single bits as well.
     pub fn is_bitwise(&self) -> bool {
-        !self.is_declared() && matches!(self.name(), "AND" | "OR" | "XOR" | "NOT")
+        matches!(self.standard(), Some("AND" | "OR" | "XOR" | "NOT"))
     }
 
     /// Whether its result has twice the bits of its inputs.

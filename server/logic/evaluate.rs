@@ -252,7 +252,7 @@ impl<'s> Scan<'s> {
 fn is_idle_without_power(action: &Action) -> bool {
     match &action.deed {
         Deed::Instruction(form) => matches!(form.instruction.flow(), Flow::Straight | Flow::Refresh),
-        Deed::Call(call) => call.is_enabled(),
+        Deed::Call(call) => call.is_enabled() && !call.tells_enable(),
         Deed::Compute(_) => true,
         _ => false,
     }

@@ -401,7 +401,7 @@ impl<'a> Source<'a> {
             let path = operand.span.of(self.text);
             let (instance, member) =
                 path.split_once('.').map_or((path, None), |(root, rest)| (root, Some(rest)));
-            if !self.block(pou, instance).is_some_and(|block| edge_kind(&block).is_some()) {
+            if self.block(pou, instance).is_none_or(|block| edge_kind(&block).is_none()) {
                 continue;
             }
             let detector = self.detectors.entry((pou, folded(instance))).or_default();

@@ -61,7 +61,8 @@ pub enum Deed {
     Instruction(Form),
     /// Calls a function block; the operands are the instance and those of its pins.
     Call(Arc<Call>),
-    /// Stores the result of a calculation with words, or of a function of the program; the operands are its inputs and the result.
+    /// Stores the result of a calculation with words, or of a function of the program; the operands are its inputs and
+    /// the result.
     Compute(Computation),
     /// Goes on at a network of the same program; the label is the operand.
     Jump,

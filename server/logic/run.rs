@@ -17,8 +17,8 @@ pub struct Effect<'p> {
     pub guard: Formula,
     /// Its number among the events, from 1; nothing if it drives a bit whose value is known.
     pub event: Option<u32>,
-    /// What a call or a calculation is handed over: the value of each of its operands but the instance, and of the inputs
-    /// that the instance keeps.
+    /// What a call or a calculation is handed over: the value of each of its operands but the instance, and of the
+    /// inputs that the instance keeps.
     pub reads: Vec<Formula>,
 }
 

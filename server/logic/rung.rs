@@ -57,8 +57,10 @@ pub enum Refusal {
     BehindOutput,
     /// A function block or a connector, which this reader does not take.
     Element,
-    /// It calls something of this name, which nothing declares.
+    /// It calls by this name what nothing declares.
     Callee(SmolStr),
+    /// It calls the block or function of this name with other parameters than are declared.
+    Parameters(SmolStr),
     /// Arithmetic on the current result, a jump into a block, and what else has no drawing.
     NotBoolean,
     /// It has a device or an instruction for which the other language has nothing.
@@ -70,6 +72,7 @@ impl Refusal {
     pub fn message(&self) -> Message {
         Message::new(match self {
             Refusal::Callee(word) => return Message::new("logic.callee").with("word", word),
+            Refusal::Parameters(word) => return Message::new("logic.parameters").with("word", word),
             Refusal::Unreadable => "logic.unreadable",
             Refusal::NoCurrentResult => "logic.no-current-result",
             Refusal::Blocks => "logic.blocks",

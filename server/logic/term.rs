@@ -164,7 +164,14 @@ impl Term {
 /// Whether a variable is one value that no other program unit has a name for.
 fn is_plain(scopes: &Scopes, variable: &Variable) -> bool {
     let is_own = matches!(variable.section, SectionKind::Local | SectionKind::Temporary);
-    is_own && matches!(scopes.resolved(variable.declared.clone()), Some(DeclaredType::Elementary(_)))
+    let is_elementary = match &variable.declared {
+        DeclaredType::Elementary(_) => true,
+        DeclaredType::Named(_) => {
+            matches!(scopes.resolved(variable.declared.clone()), Some(DeclaredType::Elementary(_)))
+        }
+        _ => false,
+    };
+    is_own && is_elementary
 }
 
 impl PartialEq for Term {

@@ -9,6 +9,7 @@ use crate::target::{Operand, Target};
 use crate::text::{Message, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
+use std::borrow::Cow;
 
 /// What is known of a translated rung.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -38,8 +39,8 @@ impl Certificate {
     }
 }
 
-/// Certifies each rung of `translation`, which was made of `sources` for `target` with the helpers `declared`; nothing if it was cancelled on the
-/// way.
+/// Certifies each rung of `translation`, which was made of `sources` for `target` with the helpers `declared`; nothing
+/// if it was cancelled on the way.
 pub(super) fn add(
     (document, target): (&Document, &'static Target),
     (sources, declared): (&[Source], &[Helper]),
@@ -48,7 +49,10 @@ pub(super) fn add(
     is_cancelled: &dyn Fn() -> bool,
 ) -> Option<()> {
     let unit = sources.first().and_then(|source| source.pou);
-    let around = || document.scopes().declaring(unit, declared.iter().map(Helper::variable));
+    let around = || match declared {
+        [] => Cow::Borrowed(&**document.scopes()),
+        _ => Cow::Owned(document.scopes().declaring(unit, declared.iter().map(Helper::variable))),
+    };
     let (written, is_declared) = read_again((document, target), to, &translation.text, (&around, unit));
     let mut written = written.into_iter().peekable();
     let mut effort = Effort::of_program();
@@ -98,8 +102,8 @@ fn located(path: Path, document: &Document, source: &Source) -> Path {
         return path.located(document.scopes(), source.pou);
     }
     let mut places: FxHashMap<SmolStr, Storage> = FxHashMap::default();
-    for path in source.rung.path.iter().flatten() {
-        path.clone().each_term(&mut |term| _ = places.insert(folded(&term.text), term.storage));
+    for term in source.rung.path.iter().flatten().flat_map(Path::terms) {
+        places.insert(folded(&term.text), term.storage);
     }
     let mut path = path;
     path.each_term(&mut |term| {
@@ -112,13 +116,13 @@ fn located(path: Path, document: &Document, source: &Source) -> Path {
     path
 }
 
-/// The rungs of the result, and whether it has declarations of its own. A part of a program has none, so it is read with
-/// those `around` it in a program unit.
-fn read_again(
-    (document, target): (&Document, &'static Target),
+/// The rungs of the result, and whether it has declarations of its own. A part of a program has none, so it is read
+/// with those `around` it in a program unit.
+fn read_again<'d>(
+    (document, target): (&'d Document, &'static Target),
     to: To,
     text: &str,
-    (around, unit): (&dyn Fn() -> Scopes, Option<usize>),
+    (around, unit): (&dyn Fn() -> Cow<'d, Scopes>, Option<usize>),
 ) -> (Vec<Written>, bool) {
     let Some(notation) = page::notation(to) else {
         let (equations, problems) = from_boolean::read(text, document.reader());

@@ -103,12 +103,6 @@ impl Work {
         WORKS.iter().find(|(mnemonic, _)| *mnemonic == form.instruction.mnemonic).map(|(_, work)| *work)
     }
 
-    /// That of the function of this name.
-    fn of_function(function: &str) -> Option<Work> {
-        let is_own = |work: &Work| matches!(work, Work::Function(own) | Work::Bits(own) if *own == function);
-        WORKS.iter().map(|(_, work)| *work).find(is_own)
-    }
-
     /// The instruction that does it with 16 or 32 bits.
     fn form(self, wide: bool) -> Option<Form> {
         let (mnemonic, _) = WORKS.iter().find(|(_, work)| *work == self)?;

@@ -139,7 +139,7 @@ fn root(term: &Term) -> &str {
 }
 
 /// The header of a program without one: its variables, typed by the declarations of the source if there are any, else
-/// by their use, and the helpers.
+/// by their use, and the helpers. Global variables of other files stay where they are.
 pub(super) fn header(document: &Document, sources: &[Source], helpers: &[Helper]) -> String {
     let scopes = document.scopes();
     let mut known: FxHashSet<SmolStr> = FxHashSet::default();
@@ -168,22 +168,25 @@ pub(super) fn header(document: &Document, sources: &[Source], helpers: &[Helper]
             });
         }
     }
+    let is_elsewhere = |name: &str| document.outer().is_some() && scopes.is_global_elsewhere(name);
+    let (external, mut variables): (Vec<_>, Vec<_>) =
+        variables.into_iter().partition(|(name, _)| is_elsewhere(name));
     variables.extend(helpers.iter().map(|helper| (helper.name.clone(), helper.type_name.into())));
-    format!("PROGRAM {PROGRAM}\n{}\n", section(&variables))
+    format!("PROGRAM {PROGRAM}\n{}{}\n", section("VAR_EXTERNAL", &external), section("VAR", &variables))
 }
 
 /// The declarations of the helpers of a program unit; empty if it has none.
 pub(super) fn helpers_of(helpers: &[Helper], pou: Option<usize>) -> String {
     let own = helpers.iter().filter(|helper| helper.pou == pou);
-    section(&own.map(|helper| (helper.name.clone(), helper.type_name.into())).collect::<Vec<_>>())
+    section("VAR", &own.map(|helper| (helper.name.clone(), helper.type_name.into())).collect::<Vec<_>>())
 }
 
-fn section(variables: &[(SmolStr, SmolStr)]) -> String {
+fn section(keyword: &str, variables: &[(SmolStr, SmolStr)]) -> String {
     if variables.is_empty() {
         return String::new();
     }
     let lines: String = variables.iter().map(|(name, kind)| format!("{name} : {kind};\n")).collect();
-    format!("VAR\n{lines}END_VAR\n")
+    format!("{keyword}\n{lines}END_VAR\n")
 }
 
 /// The type with which tables of the source declare a variable.

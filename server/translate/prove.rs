@@ -6,11 +6,11 @@
 use super::counterexample::{self, Counterexample};
 use super::source::{self, Source};
 use super::{To, declared, dialect, units};
-use crate::document::Document;
+use crate::document::{Document, Scopes};
 use crate::il::iec::SectionKind;
 use crate::logic::{
-    Action, Comparison, Deed, Effort, Path, Place, Storage, Term, compare, compare_outcome, is_helper_name,
-    may_drive, touches_bits,
+    Action, Comparison, Deed, Effort, Path, Place, State, Storage, Term, compare, compare_outcome,
+    is_helper_name, may_drive, touches_bits,
 };
 use crate::target::{Flow, Model, Target};
 use crate::text::{Message, Span, folded};
@@ -41,7 +41,7 @@ pub enum Proof {
 ///
 /// A program that stands in no project is compared with one of a project as if it stood in its place.
 pub fn prove(left: &Document, right: &Document) -> Proof {
-    let placed = [left.outer().is_none().then(|| right), right.outer().is_none().then(|| left)];
+    let placed = [left.outer().is_none().then_some(right), right.outer().is_none().then_some(left)];
     let placed = [left, right].into_iter().zip(placed).map(|(own, other)| {
         let (outer, number) = other?.outer().filter(|_| !own.target().is_fx())?;
         Some(own.linked(outer.clone(), number))
@@ -77,9 +77,11 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
     let mut prover = Prover {
         all: [&sources[0], &sources[1]],
         before: [Vec::new(), Vec::new()],
+        next: [0, 0],
         may_be_off,
         helpers: if is_mixed { helpers([left, right]) } else { FxHashSet::default() },
         is_reordered: false,
+        scopes: [left.scopes(), right.scopes()],
         effort: Effort::of_program(),
     };
     let [left, right] = &stretches;
@@ -216,11 +218,15 @@ struct Prover<'s> {
     all: [&'s [Source]; 2],
     /// The paths that are known to do the same, on either side.
     before: [Vec<&'s Path>; 2],
+    /// The first rung behind those, on either side.
+    next: [usize; 2],
     /// Whether a part of the program may be left out, so that there is no power at the left rail.
     may_be_off: bool,
     /// Variables that only one of the programs has.
     helpers: FxHashSet<SmolStr>,
     is_reordered: bool,
+    /// What either program declares.
+    scopes: [&'s Scopes; 2],
     effort: Effort,
 }
 
@@ -246,6 +252,14 @@ impl<'s> Prover<'s> {
             // What stands here may come after other rungs than those before it, or knows other variables.
             (Some(End::Label(..) | End::Unit(..) | End::Unread(..)), _) => {
                 self.before.iter_mut().for_each(Vec::clear);
+                for (next, (all, side)) in self.next.iter_mut().zip(self.all.iter().zip([left, right])) {
+                    *next = match &side.end {
+                        Some(End::Unread(source, _)) => behind(all, source.span()),
+                        // What a label or a unit begins with comes next.
+                        Some(end) => behind(all, end.span()).saturating_sub(1),
+                        None => *next,
+                    };
+                }
                 Ok(())
             }
             _ => Ok(()),
@@ -270,6 +284,9 @@ impl<'s> Prover<'s> {
         let [left, right] = paths;
         self.before[0].extend(left);
         self.before[1].extend(right);
+        for (next, (all, side)) in self.next.iter_mut().zip(self.all.iter().zip(sides)) {
+            *next = side.last().map_or(*next, |(last, _)| behind(all, last.span()));
+        }
         Ok(())
     }
 
@@ -292,21 +309,10 @@ impl<'s> Prover<'s> {
         let known = [self.before[0].len(), self.before[1].len()];
         let at = sides.map(|side| side.first().map(|(source, _)| source.span()));
         let undecided = |key| Err(Proof::Undecided { reason: Message::new(key), at });
-        let effort = &mut self.effort;
-        let mut compare = |may_be_off| {
-            effort.ask(|formulas| {
-                let comparison = compare_outcome(&left, &right, known, (may_be_off, &is_private), formulas);
-                let values = match &comparison {
-                    Comparison::Different { values, .. } => counterexample::state(formulas, values),
-                    _ => None,
-                };
-                (comparison, values)
-            })
-        };
-        let (comparison, state) = compare(false);
+        let (comparison, state) = self.compared([&left, &right], known, false);
         match comparison {
             // With no power at the rail they may do otherwise.
-            Comparison::Same { .. } if may_be_off => match compare(true) {
+            Comparison::Same { .. } if may_be_off => match self.compared([&left, &right], known, true) {
                 (Comparison::Same { .. }, _) => Ok(()),
                 _ => undecided("prove.left-out"),
             },
@@ -314,48 +320,137 @@ impl<'s> Prover<'s> {
             Comparison::Undecided => undecided("prove.undecided"),
             Comparison::Unlike => undecided("prove.unlike"),
             Comparison::Different { place: Place::Bit(key), .. } if self.is_driven_behind(sides, &key) => {
-                undecided("prove.driven-again")
+                self.beyond(sides).map_or_else(|| undecided("prove.driven-again"), Err)
             }
             Comparison::Different { what, place, .. } => {
-                // Formulas know less than a PLC: what they leave open may be what it never does.
-                let confirmed = state.and_then(|state| {
-                    let values = counterexample::confirmed(&state, [&left, &right], &place)?;
-                    Some((state, values))
-                });
-                let Some((state, values)) = confirmed else { return undecided("prove.unconfirmed") };
-                let at = sides.map(|side| rung_of(side, &what));
-                let (inputs, before) = counterexample::inputs(&state, [&left, &right]);
-                let found = Counterexample { inputs, before, what, sides: values, at };
-                Err(Proof::Different(Box::new(found)))
+                let found = different((what, place), state, [&left, &right], sides);
+                found.map_or_else(|| undecided("prove.unconfirmed"), Err)
             }
         }
     }
+
+    /// Compares what comes of paths, with the state in which they differ.
+    fn compared(
+        &mut self,
+        [left, right]: [&[&Path]; 2],
+        known: [usize; 2],
+        may_be_off: bool,
+    ) -> (Comparison, Option<State>) {
+        let is_private = |term: &Term| self.helpers.contains(&term.key());
+        self.effort.ask(|formulas| {
+            let comparison = compare_outcome(left, right, known, (may_be_off, &is_private), formulas);
+            let values = match &comparison {
+                Comparison::Different { values, .. } => counterexample::state(formulas, values),
+                _ => None,
+            };
+            (comparison, values)
+        })
+    }
+
+    /// Looks beyond the calls of units that follow for a difference that lasts: one side drives before a call what the
+    /// other drives behind it.
+    fn beyond(&mut self, sides: [Rungs<'_, 's>; 2]) -> Option<Proof> {
+        if self.may_be_off {
+            return None;
+        }
+        let ahead = [0, 1].map(|side| self.ahead(side, sides[side]));
+        let [left, right] = [0, 1].map(|side| {
+            let ahead = ahead[side].iter().map(|(_, path)| *path);
+            self.before[side].iter().copied().chain(ahead).collect::<Vec<&Path>>()
+        });
+        let known = [self.before[0].len(), self.before[1].len()];
+        let (comparison, state) = self.compared([&left, &right], known, false);
+        let Comparison::Different { what, place: Place::Bit(key), .. } = comparison else { return None };
+        let sides = [&ahead[0][..], &ahead[1][..]];
+        if self.is_driven_behind(sides, &key) {
+            return None;
+        }
+        different((what, Place::Bit(key)), state, [&left, &right], sides)
+    }
+
+    /// The rungs of a side and those behind, as far as they are executed one after the other.
+    fn ahead(&self, side: usize, rungs: Rungs<'_, 's>) -> Vec<(&'s Source, &'s Path)> {
+        let all = self.all[side];
+        let next = rungs.last().map_or(self.next[side], |(last, _)| behind(all, last.span()));
+        let mut ahead = rungs.to_vec();
+        for source in &all[next.min(all.len())..] {
+            let Ok(path) = &source.rung.path else { break };
+            let mut actions = path.iter().flat_map(Path::actions);
+            let is_straight = actions.all(|action| action.runs_unit() || !touches_bits(action));
+            let is_same_unit = ahead.last().is_none_or(|(last, _)| last.pou == source.pou);
+            if !source.rung.labels.is_empty() || !is_straight || !is_same_unit {
+                break;
+            }
+            ahead.extend(path.iter().map(|path| (source, path)));
+        }
+        ahead
+    }
+}
+
+/// The difference that running both programs from `state` confirms. Formulas know less than a PLC: what they leave open
+/// may be what it never does.
+fn different(
+    (what, place): (String, Place),
+    state: Option<State>,
+    paths: [&[&Path]; 2],
+    sides: [Rungs<'_, '_>; 2],
+) -> Option<Proof> {
+    let state = state?;
+    let values = counterexample::confirmed(&state, paths, &place)?;
+    let at = sides.map(|side| rung_of(side, &what));
+    let (inputs, before) = counterexample::inputs(&state, paths);
+    Some(Proof::Different(Box::new(Counterexample { inputs, before, what, sides: values, at })))
+}
+
+/// The number of the first rung behind the one at `span`.
+fn behind(all: &[Source], span: Span) -> usize {
+    all.partition_point(|source| source.span().start <= span.start)
 }
 
 impl Prover<'_> {
     /// Whether the bit with this key may be driven once more behind the rungs on either side, so that what it is at
     /// their end is not what the scan leaves.
     fn is_driven_behind(&self, sides: [&[(&Source, &Path)]; 2], key: &str) -> bool {
-        // What only its own unit knows, no unit that is called drives.
-        let is_it = |term: &Term| term.key() == key && term.storage == Storage::Local;
-        let changes = |action: &Action| action.changes().iter().any(|term| is_it(term));
-        let is_local =
-            sides.iter().copied().flatten().any(|(_, path)| path.actions().into_iter().any(changes));
+        let is_reached = self.reach(sides, key);
         self.all.iter().zip(sides).any(|(all, side)| {
             let last = side.last().map(|(source, _)| source.span());
             let behind = all.iter().filter(|source| last.is_none_or(|last| source.span() > last));
             let mut behind = behind.filter(|source| !side.iter().any(|(own, _)| std::ptr::eq(*own, *source)));
-            let drives = |action: &Action| may_drive(action, key) || !is_local && action.runs_unit();
+            let drives = |source: &Source, action: &Action| {
+                may_drive(action, key) || action.runs_unit() && is_reached(source)
+            };
             behind.any(|source| match &source.rung.path {
-                Ok(path) => path.iter().flat_map(Path::actions).any(drives),
+                Ok(path) => path.iter().flat_map(Path::actions).any(|action| drives(source, action)),
                 Err(_) => source.rung.span.of(source.chunk.text()).contains(key),
             })
         })
     }
+
+    /// From which rungs units are called that may drive the variable with this key, which `sides` drive: from none if
+    /// only its own unit knows it, else from those of its unit, or from all if all units know it.
+    fn reach(&self, sides: [&[(&Source, &Path)]; 2], key: &str) -> impl Fn(&Source) -> bool + use<> {
+        let mut found = (Storage::Anywhere, None);
+        for (source, path) in sides.into_iter().flatten() {
+            let changes = path.actions().into_iter().flat_map(Action::changes);
+            let own = changes.into_iter().find(|term| term.key() == key);
+            found = own.map_or(found, |own| (own.storage, source.pou));
+        }
+        let root = key.split(['.', '[', '^']).next().unwrap_or(key);
+        let is_global = self.scopes.iter().any(|scopes| scopes.variable(None, root).is_some());
+        let (storage, unit) = found;
+        move |source| match storage {
+            Storage::Local => false,
+            Storage::Own if !is_global => source.pou == unit,
+            _ => true,
+        }
+    }
 }
 
-/// A rung with its path, on either side.
-type Group<'r, 's> = [&'r [(&'s Source, &'s Path)]; 2];
+/// Rungs with their paths.
+type Rungs<'r, 's> = &'r [(&'s Source, &'s Path)];
+
+/// Those of either side.
+type Group<'r, 's> = [Rungs<'r, 's>; 2];
 
 /// The least groups of rungs with as many actions on either side; nothing if that does not come out even.
 fn groups<'r, 's>(sides: Group<'r, 's>) -> Option<Vec<Group<'r, 's>>> {

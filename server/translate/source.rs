@@ -49,27 +49,40 @@ impl Source {
         self.rung.span.of(self.chunk.text())
     }
 
-    /// The rungs of drawings and FX lists whose chunks lie in these bytes of `document`.
+    /// The rungs of `document` whose chunks lie in these bytes, as declarations around them have them. In a list of
+    /// IEC 61131-3 rungs must begin where the bytes do and where they end.
     pub fn within(document: &Document, bytes: Span) -> Vec<Source> {
+        let mut pous = pous_before(document, bytes.start as usize);
+        if document.notation() == Notation::IecIl {
+            let chunk = Arc::new(document.chunk_of(&document.slice(bytes)));
+            return Source::of_chunk(document, bytes.start as usize, &chunk, pous);
+        }
         let mut found = Vec::new();
         let mut offset = bytes.start as usize;
         while offset < bytes.end as usize
             && let Some(at) = document.chunk_at(offset)
             && at.start >= offset
         {
-            let declared = Declared { scopes: document.scopes(), pous: 0 };
-            let rungs = logic::rungs_with(&at.chunk.reading(), document.reader(), declared).into_iter();
-            found.extend(rungs.map(|rung| Source {
-                start: at.start,
-                chunk: at.chunk.clone(),
-                rung,
-                declarations: String::new(),
-                pou: None,
-                note: None,
-            }));
+            found.extend(Source::of_chunk(document, at.start, at.chunk, pous));
+            pous += at.chunk.pou_starts();
             offset = at.start + at.chunk.len();
         }
         found
+    }
+
+    /// The rungs of a chunk before which `pous` program units start.
+    fn of_chunk(document: &Document, start: usize, chunk: &Arc<Chunk>, pous: usize) -> Vec<Source> {
+        let declared = Declared { scopes: document.scopes(), pous };
+        let rungs = logic::rungs_with(&chunk.reading(), document.reader(), declared).into_iter();
+        let source = |rung| Source {
+            start,
+            chunk: chunk.clone(),
+            rung,
+            declarations: String::new(),
+            pou: pous.checked_sub(1),
+            note: None,
+        };
+        rungs.map(source).collect()
     }
 
     /// Its comments as written.
@@ -160,6 +173,27 @@ fn units_around(document: &Document, part: Span) -> (Span, usize) {
         count += starts;
     }
     (Span::new(first, document.len()), before)
+}
+
+/// How many program units start before the chunk at a byte.
+fn pous_before(document: &Document, offset: usize) -> usize {
+    let (mut start, mut count) = (0, 0);
+    for page in document.pages() {
+        let end = start + page.bytes();
+        if end > offset {
+            for chunk in page.chunks().iter().take_while(|_| page.pou_starts() > 0) {
+                if start >= offset {
+                    break;
+                }
+                count += chunk.pou_starts();
+                start += chunk.len();
+            }
+            return count;
+        }
+        count += page.pou_starts();
+        start = end;
+    }
+    count
 }
 
 /// So many chunks are worth the start of a thread that reads half of them.

@@ -44,9 +44,7 @@ impl Writer {
                 Drive::Path(path) => self.path(path, power.as_ref(), equations)?,
                 Drive::Action(action) if action.runs_unit() => return Err(lack_of(action)),
                 // A word of an equation stands for itself.
-                Drive::Action(Action { deed: Deed::Compute(computation), .. })
-                    if computation.conversion != Conversion::None =>
-                {
+                Drive::Action(action) if is_converted(action) => {
                     return Err(Message::new("translate.not-boolean"));
                 }
                 Drive::Action(action) => equations.push(match &power {
@@ -136,6 +134,11 @@ impl Writer {
             }
         }
     }
+}
+
+/// Whether it calculates with other types than its operands have.
+fn is_converted(action: &Action) -> bool {
+    matches!(&action.deed, Deed::Compute(computation) if computation.conversion != Conversion::None)
 }
 
 /// Equations know no function block and no function of the program.

@@ -11,7 +11,9 @@ mod helpers;
 pub use helpers::{Helper, Helpers};
 
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
-use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test};
+use crate::logic::{
+    Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test,
+};
 use crate::text::Message;
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
@@ -271,7 +273,7 @@ impl Writer<'_> {
 
     fn action(&mut self, action: &Action, inverse: bool) -> Result<(), Message> {
         let word = match (&action.deed, inverse) {
-            (Deed::Call(call), _) if call.is_enabled() => {
+            (Deed::Call(call), _) if call.is_enabled() && !call.tells_enable() => {
                 return self.conditional_call(action, if inverse { "CALCN" } else { "CALC" });
             }
             (Deed::Call(_), _) => return self.call(action, None),
@@ -323,26 +325,38 @@ impl Writer<'_> {
         let Some((computation, (inputs, result))) = operands else {
             return Err(Message::new("translate.no-instruction"));
         };
-        let (function, conversion) = (computation.name(), computation.conversion);
         match inputs {
-            [first, second] if let Some(converted) = conversion.of_input(second) => {
-                self.lines.push(format!("LD {first}"));
-                self.lines.extend(conversion.of_input(first).map(str::to_string));
-                self.lines.extend([format!("{function}( {second}"), converted.into(), ")".into()]);
-            }
-            [first, others @ ..] => {
-                self.lines.push(format!("LD {first}"));
-                self.lines.extend(conversion.of_input(first).map(str::to_string));
+            [] => self.lines.push(format!("{}()", computation.name())),
+            [first, others @ ..] if computation.is_declared() => {
                 let others: Vec<&str> = others.iter().map(|term| term.text.as_str()).collect();
-                let operands = format!("{function} {}", others.join(", "));
-                self.lines.extend((!computation.copies()).then(|| operands.trim_end().to_string()));
+                let operands = format!("{} {}", computation.name(), others.join(", "));
+                self.lines.extend([format!("LD {first}"), operands.trim_end().to_string()]);
             }
-            [] => self.lines.push(format!("{function}()")),
+            _ => self.operators(computation, inputs),
         }
-        self.lines.extend(computation.conversion.of_result().map(str::to_string));
         self.lines.push(format!("ST {result}"));
         self.driven.extend(computation.changes(&action.terms).into_iter().map(Term::key));
         Ok(())
+    }
+
+    /// A function of the standard on its inputs, which has an operator.
+    fn operators(&mut self, computation: &Computation, inputs: &[Term]) {
+        let (function, conversion) = (computation.name(), computation.conversion);
+        for (number, term) in inputs.iter().enumerate() {
+            match (number, conversion.of_input(term)) {
+                (0, conversion) => {
+                    self.lines.push(format!("LD {term}"));
+                    self.lines.extend(conversion.map(str::to_string));
+                }
+                (_, None) => self.lines.push(format!("{function} {term}")),
+                (_, Some(conversion)) => {
+                    self.lines.extend([format!("{function}( {term}"), conversion.into(), ")".into()]);
+                }
+            }
+        }
+        // What has one input but copies it is an operator without an operand.
+        self.lines.extend((inputs.len() == 1 && !computation.copies()).then(|| function.into()));
+        self.lines.extend(conversion.of_result().map(str::to_string));
     }
 
     fn leave(&mut self, action: &Action, condition: &str) -> Result<(), Message> {
@@ -359,6 +373,11 @@ impl Writer<'_> {
         };
         match power {
             None if call.is_input_operator() => self.lines.push(format!("{} {instance}", call.power_in())),
+            None if call.tells_enable() => {
+                let name = self.helpers.enable();
+                self.lines.push(format!("ST {name}"));
+                self.lines.push(call_text("CAL", call, Some(name.into()), &action.terms));
+            }
             None => {
                 self.lines.push(format!("ST {instance}.{}", call.power_in()));
                 self.lines.push(call_text("CAL", call, None, &action.terms));
@@ -433,7 +452,7 @@ fn called_next(path: &Path, number: usize) -> Option<&Action> {
         (Some(Gate::Through(action)), _) | (None, [Drive::Action(action)]) => action,
         _ => return None,
     };
-    let takes = |call: &Call| !call.is_input_operator() && !call.is_enabled();
+    let takes = |call: &Call| !call.is_input_operator() && (!call.is_enabled() || call.tells_enable());
     matches!(&next.deed, Deed::Call(call) if takes(call)).then_some(next)
 }
 
@@ -450,7 +469,7 @@ fn is_invertible(drive: &Drive) -> bool {
     use CoilKind::{Negated, Plain};
     let Drive::Action(action) = drive else { return false };
     match &action.deed {
-        Deed::Call(call) => call.is_enabled(),
+        Deed::Call(call) => call.is_enabled() && !call.tells_enable(),
         deed => matches!(deed, Deed::Coil(Plain | Negated) | Deed::Jump | Deed::Return),
     }
 }

@@ -15,6 +15,7 @@ pub fn measure(table: &Table) {
     let drawing = translate(&document, None, To::Ladder, &Options { proves: false, ..Options::default() });
     rows(table, "10000 rungs, ladder", ("lad", "ladder"), &drawing.text);
     rows(table, "10000 rungs, FX list", ("il", "plc-il"), &list);
+    rows(table, "10000 rungs, IEC list", ("il", "plc-il"), &programs::iec_unit(10_000));
     rows(table, "5000 lines, IEC list", ("il", "plc-il"), &programs::iec(5_000));
 }
 

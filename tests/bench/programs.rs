@@ -76,6 +76,23 @@ pub fn iec(lines: usize) -> String {
     text
 }
 
+/// Instruction list of IEC 61131-3 of so many rungs in one unit: seal-ins with a branch behind a contact, and rungs with
+/// an output behind another one's power.
+pub fn iec_unit(rungs: usize) -> String {
+    let mut text = "PROGRAM Main\nVAR\n    Held1 : BOOL;\n".to_string();
+    (0..=rungs).for_each(|rung| text += &format!("    Relay{rung} : BOOL;\n"));
+    text += "END_VAR\n";
+    for rung in 0..rungs {
+        let (next, other) = (rung + 1, rung * 7 % rungs);
+        text += &format!("    LDN Relay{next}\n    AND( Relay{rung}\n    OR Relay{other}\n    )\n");
+        if rung % 10 == 0 {
+            text += &format!("    ST Held1\n    AND Relay{next}\n    S Relay{other}\n    LD Held1\n");
+        }
+        text += &format!("    ST Relay{rung}\n");
+    }
+    text + "END_PROGRAM\n"
+}
+
 /// A rung of a program in which no rule finds anything: each coil, timer and latch is there once, and read.
 fn il_rung(number: usize, marked: bool) -> String {
     let input = if marked { "X10".to_string() } else { format!("X{:o}", number % 128) };

@@ -12,6 +12,8 @@ mod unknown_function_block;
 
 mod unknown_parameter;
 
+mod boxes;
+
 mod constant_written;
 
 mod address_overlap;

@@ -2,7 +2,8 @@
 //!
 //! A call gives a parameter that the function or block does not have, or reads a member that it lacks. Names are
 //! those of the declaration: a timer has the inputs `IN` and `PT` and the outputs `Q` and `ET`. Inputs are given with
-//! `:=` and outputs taken with `=>`; in a list without names the order of the declaration counts, inputs first.
+//! `:=` and outputs taken with `=>`; in a list without names the order of the declaration counts, inputs first. The box
+//! of a drawing has its inputs on the left side and its outputs on the right.
 //!
 //! ```iec
 //! PROGRAM Oven
@@ -21,6 +22,16 @@
 //!     CU Delay
 //!     ^^
 //! END_PROGRAM
+//! ```
+//!
+//! ```lad iec
+//! |                Delay                |
+//! |             +---------+             |
+//! |   Hot       |   TON   |       Late  |
+//! +---| |-------|IN      Q|-------( )---+
+//! |      T#5s---|TP       |             |
+//!                ^^
+//! |             +---------+             |
 //! ```
 //!
 //! An output that is given as if it were an input:
@@ -72,7 +83,7 @@ pub(super) const RULE: Rule = Rule {
 };
 
 fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
-    let Some(view) = View::of(context) else { return };
+    let Some(view) = View::of(context) else { return super::boxes::parameters(context, found) };
     for item in &view.tree.items {
         match item.kind {
             ItemKind::Call { callee: Some(id), form, parameters, .. } => {
@@ -198,7 +209,7 @@ fn no_member(view: &View<'_>, member: Span, owner: &DeclaredType) -> Diagnostic 
     with_names(diagnostic, view.text, member, names.iter().map(String::as_str))
 }
 
-fn with_names<'n>(
+pub(super) fn with_names<'n>(
     mut diagnostic: Diagnostic,
     text: &str,
     span: Span,

@@ -1,48 +1,108 @@
 //! A part of a condition as a rung of its own that drives a free relay, read in the place of the part.
 
+use super::declaration::Declaration;
 use super::neighbourhood::Neighbourhood;
 use super::{Change, Proposal};
-use crate::document::ProjectView;
+use crate::document::{ProjectView, Symbol};
 use crate::ide::bookkeeping::Book;
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
-use crate::target::{Device, DeviceKind};
-use crate::text::{Message, Span};
+use crate::target::iec::{FunctionBlock, Operator};
+use crate::target::{Device, DeviceKind, Model, Operand};
+use crate::text::{Message, Span, folded};
+use rustc_hash::FxHashSet;
+use smol_str::{SmolStr, format_smolstr};
+
+/// What the names of new relays begin with where relays are variables.
+const RELAY: &str = "Relay";
 
 pub(super) fn propose(
     around: &Neighbourhood<'_>,
     view: &ProjectView<'_>,
     selected: Span,
 ) -> Option<Proposal> {
-    if !around.document.target().is_fx() {
-        return None;
-    }
     let start = around.rung().start as u32;
     let selected = Span { start: selected.start.checked_sub(start)?, end: selected.end.checked_sub(start)? };
-    let chosen = chosen(around.path(), selected)?;
-    let relay = free_relay(view)?;
-    let term = || Term::of_device(relay, Span::default());
-    let contact =
-        Contact { test: Test::Bit(ContactKind::NormallyOpen), terms: vec![term()], span: Span::default() };
+    let chosen = chosen(around.path(), meant(around, selected))?;
+    let is_fx = around.document.target().is_fx();
+    let relay =
+        if is_fx { Term::of_device(free_device(view)?, Span::default()) } else { free_variable(around)? };
+    let contact = Contact {
+        test: Test::Bit(ContactKind::NormallyOpen),
+        terms: vec![relay.clone()],
+        span: Span::default(),
+    };
     let mut reading = around.path().clone();
     let part = taken_from_path(&mut reading, &chosen, &Expression::Contact(contact))?;
-    let coil = Action { deed: Deed::Coil(CoilKind::Plain), terms: vec![term()], span: Span::default() };
+    let coil =
+        Action { deed: Deed::Coil(CoilKind::Plain), terms: vec![relay.clone()], span: Span::default() };
     let driving = Path { gates: vec![Gate::Pass(part)], drives: vec![Drive::Action(coil)] };
+    let title = Message::new("refactor.extract").with("relay", &relay);
+    let changes = vec![Change { first: around.here, count: 1, paths: vec![driving, reading] }];
+    // Without a program unit variables are declared by their use.
+    let needs_declaration = !is_fx && around.unit.number.is_some();
+    let declaration = || Declaration { name: relay.text.clone(), type_name: "BOOL" };
     Some(Proposal {
-        kind: "refactor.extract.relay",
-        title: Message::new("refactor.extract").with("relay", relay),
-        changes: vec![Change { first: around.here, count: 1, paths: vec![driving, reading] }],
-        relay: Some(term().key()),
-        must_save: false,
+        relay: Some(relay.key()),
+        declarations: needs_declaration.then(declaration).into_iter().collect(),
+        ..Proposal::of("refactor.extract.relay", title, changes)
     })
 }
 
+/// What is selected, in the rung's chunk. The operand of an instruction of IEC 61131-3 is a contact, and the cursor may
+/// stand on its operator.
+fn meant(around: &Neighbourhood<'_>, selected: Span) -> Span {
+    let chunk = &around.rung().chunk;
+    let Some(tree) = chunk.iec().filter(|_| selected.is_empty()) else { return selected };
+    let line = |offset: usize| chunk.text()[..offset].rfind('\n').map_or(0, |end| end + 1);
+    let Some(place) = chunk.text().get(..selected.start as usize).map(|before| line(before.len())) else {
+        return selected;
+    };
+    let on_line = tree.items.iter().filter(|item| line(item.span.start as usize) == place);
+    let operands = tree.operands.iter().map(|operand| operand.span);
+    let mut on_line = on_line.filter(|item| item.span.touches(selected.start as usize));
+    let item = on_line.next().map(|item| item.span);
+    let inside = |item: Span| {
+        let mut operands = operands;
+        operands.find(|own| item.start <= own.start && own.end <= item.end)
+    };
+    item.and_then(inside).map_or(selected, |operand| Span::at(operand.start as usize))
+}
+
 /// The first relay that no file of the project uses and no comment names.
-fn free_relay(view: &ProjectView<'_>) -> Option<Device> {
+fn free_device(view: &ProjectView<'_>) -> Option<Device> {
     let book = Book::of(view);
     let comments = view.here().comments();
     let mut ranges = view.here().target().ranges(DeviceKind::M);
     ranges.find_map(|range| book.free(range, 1, |device| comments.of_device(device).is_some()))
+}
+
+/// A variable with a name that means nothing in the program unit.
+fn free_variable(around: &Neighbourhood<'_>) -> Option<Term> {
+    let scopes = around.document.scopes();
+    let own = around.unit.number.and_then(|number| scopes.own_pous().get(number));
+    let numbers = own.iter().flat_map(|pou| &pou.variables).filter_map(|variable| {
+        let (stem, number) = variable.name.split_at_checked(RELAY.len())?;
+        number.parse::<u32>().ok().filter(|_| stem.eq_ignore_ascii_case(RELAY))
+    });
+    let numbers: FxHashSet<u32> = numbers.collect();
+    let is_free = |name: &SmolStr| {
+        let is_named = |symbol| around.unit.tally(around.document, &symbol).mentions > 0;
+        let operand = Operand::read(name, Model::Iec);
+        operand == Operand::Variable
+            && scopes.variable(around.unit.number, name).is_none()
+            && scopes.pou_named(name).is_none()
+            && !scopes.is_type(name)
+            && FunctionBlock::named(name).is_none()
+            && Operator::written(name).is_none()
+            && !is_named(Symbol::variable(name))
+            && !is_named(Symbol::Label(folded(name)))
+    };
+    let name = (1..u32::MAX)
+        .filter(|number| !numbers.contains(number))
+        .map(|number| format_smolstr!("{RELAY}{number}"))
+        .find(is_free)?;
+    Some(Term::new(Operand::Variable, &name, Span::default()))
 }
 
 /// The places of the chosen contacts in their chunk: those that are selected or, at a cursor, those of the innermost

@@ -2,28 +2,29 @@
 
 use super::neighbourhood::Neighbourhood;
 use super::{Change, Proposal};
-use crate::document::{ProjectView, Symbol};
+use crate::document::{DeclaredType, ProjectView, Symbol};
 use crate::ide::bookkeeping::Book;
+use crate::il::iec::SectionKind;
 use crate::ladder::{CoilKind, ContactKind};
-use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Test};
-use crate::target::{Device, DeviceKind, Flow};
+use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
+use crate::target::iec::ElementaryType;
+use crate::target::{Device, DeviceKind, Flow, Operand};
 use crate::text::Message;
 use crate::translate::Source;
-use smol_str::SmolStr;
+use smol_str::{SmolStr, ToSmolStr};
 
 pub(super) fn propose(around: &Neighbourhood<'_>, view: &ProjectView<'_>) -> Option<Proposal> {
     let path = around.path();
-    let (place, relay) = driven_relay(path)?;
+    let (place, relay) = driven_relay(around, path)?;
     let head = &around.rung().rung;
-    if relay.is_special(around.document) || !head.labels.is_empty() || head.network.is_some() {
+    if !head.labels.is_empty() || head.network.is_some() {
         return None;
     }
     let condition = Gate::condition(&path.gates, None).ok()??;
-    let book = Book::of(view);
-    let tally = book.devices.get(&relay.device).filter(|_| !book.is_in_run(relay.device))?;
+    let (mentions, writes) = relay.uses(around, view)?;
     let others = around.rungs.get(around.here + 1..)?;
     // Every other place that names it reads it further down, as far as one can see.
-    let mut left = tally.mentions.checked_sub(1).filter(|reads| *reads > 0 && tally.writes == 1)?;
+    let mut left = mentions.checked_sub(1).filter(|reads| *reads > 0 && writes == 1)?;
     if relay.mentions(around.rung()) != 1 {
         return None;
     }
@@ -35,7 +36,7 @@ pub(super) fn propose(around: &Neighbourhood<'_>, view: &ProjectView<'_>) -> Opt
         if left == 0 {
             break;
         }
-        if !runs_straight(placed) {
+        if !runs_straight(placed) || placed.pou != around.rung().pou {
             return None;
         }
         let found = relay.mentions(placed);
@@ -45,29 +46,55 @@ pub(super) fn propose(around: &Neighbourhood<'_>, view: &ProjectView<'_>) -> Opt
             left = left.checked_sub(found)?;
         }
     }
-    (left == 0).then(|| Proposal {
-        kind: "refactor.inline.relay",
-        title: Message::new("refactor.inline").with("relay", relay.device),
-        changes,
-        relay: Some(relay.key),
-        must_save: false,
-    })
+    let title = Message::new("refactor.inline").with("relay", &relay.name);
+    (left == 0)
+        .then(|| Proposal { relay: Some(relay.key), ..Proposal::of("refactor.inline.relay", title, changes) })
 }
 
 struct Relay {
-    device: Device,
+    /// A device, or a variable.
+    symbol: Symbol,
+    /// As it is shown.
+    name: SmolStr,
     key: SmolStr,
 }
 
 /// The first plain coil of a relay that a path drives itself, and its place among the drives.
-fn driven_relay(path: &Path) -> Option<(usize, Relay)> {
+fn driven_relay(around: &Neighbourhood<'_>, path: &Path) -> Option<(usize, Relay)> {
     path.drives.iter().enumerate().find_map(|(place, drive)| {
         let Drive::Action(Action { deed: Deed::Coil(CoilKind::Plain), terms, .. }) = drive else {
             return None;
         };
         let [term] = &terms[..] else { return None };
-        let device = term.operand.device().filter(|device| device.kind == DeviceKind::M)?;
-        Some((place, Relay { device, key: term.key() }))
+        let relay = |symbol, name| Some((place, Relay { symbol, name, key: term.key() }));
+        match term.operand {
+            Operand::Device(device) if is_plain_relay(around, device) => {
+                relay(Symbol::Device(device), device.to_smolstr())
+            }
+            Operand::Variable if is_local(around, term) => {
+                relay(Symbol::variable(&term.text), term.text.clone())
+            }
+            _ => None,
+        }
+    })
+}
+
+/// Whether neither the PLC itself reads or writes a device, nor keeps it while it is off.
+fn is_plain_relay(around: &Neighbourhood<'_>, device: Device) -> bool {
+    let target = around.document.target();
+    let is_latched = device.range_on(target).is_none_or(|range| range.latched);
+    device.kind == DeviceKind::M && !is_latched && device.special_on(target).is_none()
+}
+
+/// Whether a bit is a variable that nobody outside of its program unit knows, in a place of its own. What is nowhere
+/// declared may be an output.
+fn is_local(around: &Neighbourhood<'_>, term: &Term) -> bool {
+    let variable = around.document.scopes().variable(around.unit.number, &term.text);
+    variable.is_some_and(|variable| {
+        variable.section == SectionKind::Local
+            && variable.declared == DeclaredType::Elementary(ElementaryType::Bool)
+            && variable.address.is_none()
+            && !variable.constant
     })
 }
 
@@ -84,20 +111,22 @@ fn runs_straight(placed: &Source) -> bool {
 }
 
 impl Relay {
-    /// Whether the PLC itself reads or writes it, or keeps it while it is off.
-    fn is_special(&self, document: &crate::document::Document) -> bool {
-        let target = document.target();
-        let is_latched = self.device.range_on(target).is_none_or(|range| range.latched);
-        is_latched || self.device.special_on(target).is_some()
+    /// How often it is named, and how often written; nothing if it is also a part of something else.
+    fn uses(&self, around: &Neighbourhood<'_>, view: &ProjectView<'_>) -> Option<(u32, u32)> {
+        let Symbol::Device(device) = self.symbol else {
+            let tally = around.unit.tally(around.document, &self.symbol);
+            return Some((u32::try_from(tally.mentions).ok()?, u32::try_from(tally.writes).ok()?));
+        };
+        let book = Book::of(view);
+        let tally = book.devices.get(&device).filter(|_| !book.is_in_run(device))?;
+        Some((tally.mentions, tally.writes))
     }
 
     /// How often the rung names it.
     fn mentions(&self, placed: &Source) -> u32 {
         let own = placed.rung.span;
         let mentions = placed.chunk.mentions().iter().filter(|mention| {
-            mention.symbol == Symbol::Device(self.device)
-                && own.start <= mention.span.start
-                && mention.span.end <= own.end
+            mention.symbol == self.symbol && own.start <= mention.span.start && mention.span.end <= own.end
         });
         mentions.count() as u32
     }

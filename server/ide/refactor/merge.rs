@@ -8,7 +8,7 @@ use crate::text::Message;
 
 pub(super) fn propose(around: &Neighbourhood<'_>) -> Option<Proposal> {
     let next = around.rungs.get(around.here + 1)?;
-    if !next.rung.labels.is_empty() || next.rung.network.is_some() {
+    if !next.rung.labels.is_empty() || next.rung.network.is_some() || next.pou != around.rung().pou {
         return None;
     }
     let (first, second) = (around.path(), next.path()?);
@@ -25,15 +25,11 @@ pub(super) fn propose(around: &Neighbourhood<'_>) -> Option<Proposal> {
     let mut drives = behind(own, first);
     drives.extend(behind(rest, second));
     let branches = drives.iter().any(|drive| matches!(drive, Drive::Path(_)));
-    let title = if branches && around.is_list() { "refactor.merge-branches" } else { "refactor.merge" };
+    let title =
+        if branches && around.has_branch_stack() { "refactor.merge-branches" } else { "refactor.merge" };
     let merged = Path { gates: vec![Gate::Pass(Expression::and(common))], drives };
-    Some(Proposal {
-        kind: "refactor.rewrite.rung.merge",
-        title: Message::new(title),
-        changes: vec![Change { first: around.here, count: 2, paths: vec![merged] }],
-        relay: None,
-        must_save: false,
-    })
+    let changes = vec![Change { first: around.here, count: 2, paths: vec![merged] }];
+    Some(Proposal::of("refactor.rewrite.rung.merge", Message::new(title), changes))
 }
 
 fn is_in(factor: &Expression, factors: &[Expression]) -> bool {

@@ -1,10 +1,20 @@
-//! Refactorings of rungs, in drawings and in FX lists: other words for what the program does already.
+//! Refactorings of rungs, in drawings and in lists: other words for what the program does already.
 //!
 //! Each looks at the paths of power around the cursor and proposes others. What is proposed is written, applied to a
 //! copy of the document, read again and compared with what stood there; only what is proved equal is offered. So the
 //! refactorings themselves need not know what depends on the order of reading and writing.
 
+mod unit;
+
+mod stretch;
+
+mod measure;
+
 mod neighbourhood;
+
+mod declaration;
+
+mod silent;
 
 mod writing;
 
@@ -29,10 +39,10 @@ mod extract;
 mod inline;
 
 use super::Style;
-use crate::document::{Document, ProjectView};
+use crate::document::ProjectView;
 use crate::logic::{Expression, Path};
 use crate::text::{Message, Span, TextEdit};
-use crate::translate::to_fx;
+use declaration::Declaration;
 use neighbourhood::Neighbourhood;
 use smol_str::SmolStr;
 
@@ -65,7 +75,9 @@ struct Proposal {
     changes: Vec<Change>,
     /// The key of the relay that only one side has; nothing else reads it.
     relay: Option<SmolStr>,
-    /// Whether it is of use only if it saves steps.
+    /// The variables that it needs.
+    declarations: Vec<Declaration>,
+    /// Whether it is of use only if rungs become shorter.
     must_save: bool,
 }
 
@@ -78,7 +90,11 @@ impl Proposal {
         paths: Vec<Path>,
     ) -> Proposal {
         let change = Change { first: around.here, count: 1, paths };
-        Proposal { kind, title: Message::new(title), changes: vec![change], relay: None, must_save: false }
+        Proposal::of(kind, Message::new(title), vec![change])
+    }
+
+    fn of(kind: &'static str, title: Message, changes: Vec<Change>) -> Proposal {
+        Proposal { kind, title, changes, relay: None, declarations: Vec::new(), must_save: false }
     }
 
     fn if_it_saves(self) -> Proposal {
@@ -92,7 +108,7 @@ const PARTS_MAX: usize = 400;
 /// The refactorings of the rung at the cursor, or of what is selected of it, that are proved.
 pub(super) fn at(view: &ProjectView<'_>, span: Span, style: Style) -> Vec<Refactoring> {
     let document = view.here();
-    let Some(around) = Neighbourhood::at(document, span.start as usize) else { return Vec::new() };
+    let Some(around) = Neighbourhood::at(document, span) else { return Vec::new() };
     if !is_bearable(around.path()) {
         return Vec::new();
     }
@@ -118,19 +134,20 @@ pub(super) fn at(view: &ProjectView<'_>, span: Span, style: Style) -> Vec<Refact
 }
 
 fn finished(around: &Neighbourhood<'_>, proposal: Proposal, style: Style) -> Option<Refactoring> {
-    let steps = steps_saved(around, &proposal);
-    if proposal.must_save && steps.is_some_and(|saved| saved <= 0) {
+    let saved = saved(around, &proposal);
+    if proposal.must_save && saved.is_some_and(|saved| saved <= 0) {
         return None;
     }
-    let edits = writing::edits(around, &proposal.changes, style)?;
-    let is_proved = !edits.is_empty() && proof::holds(around, &proposal, &edits);
-    let title = || match steps {
-        None | Some(0) => proposal.title.clone(),
+    let written = writing::edits(around, &proposal, style)?;
+    let is_proved = !written.edits.is_empty() && proof::holds(around, &proposal, &written);
+    let has_steps = around.document.target().is_fx();
+    let title = || match saved.filter(|saved| has_steps && *saved != 0) {
+        None => proposal.title.clone(),
         Some(saved) => Message::new("translating.detailed")
             .with_messages("title", vec![proposal.title.clone()])
             .with_messages("details", vec![saving(saved)]),
     };
-    is_proved.then(|| Refactoring { kind: proposal.kind, title: title(), edits })
+    is_proved.then(|| Refactoring { kind: proposal.kind, title: title(), edits: written.edits })
 }
 
 fn saving(saved: i64) -> Message {
@@ -143,27 +160,18 @@ fn saving(saved: i64) -> Message {
     message.with("steps", saved.abs())
 }
 
-/// The program steps that a proposal saves; nothing where steps have no meaning.
-fn steps_saved(around: &Neighbourhood<'_>, proposal: &Proposal) -> Option<i64> {
+/// The program steps that a proposal saves, in IEC 61131-3 the instructions; nothing where that is not known.
+fn saved(around: &Neighbourhood<'_>, proposal: &Proposal) -> Option<i64> {
     let mut saved = 0;
     for change in &proposal.changes {
         for number in change.first..change.first + change.count {
-            saved += i64::from(around.steps(number)?);
+            saved += i64::from(around.length(number)?);
         }
         for path in &change.paths {
-            saved -= i64::from(steps_of(path, around.document)?);
+            saved -= i64::from(measure::of_path(path, around.document)?);
         }
     }
     Some(saved)
-}
-
-/// The steps of a path in the shortest list.
-fn steps_of(path: &Path, document: &Document) -> Option<u32> {
-    if !document.target().is_fx() {
-        return None;
-    }
-    let lines = to_fx::lines(path, document.target()).ok()?;
-    Some(lines.iter().map(to_fx::Line::steps).fold(0, u32::saturating_add))
 }
 
 fn is_bearable(path: &Path) -> bool {

@@ -1,37 +1,72 @@
 //! The law of refactorings: what was written is read again, and does the same; everything around it stands as before.
 
-use super::Proposal;
+use super::declaration::adds_only;
 use super::neighbourhood::Neighbourhood;
-use crate::document::{Document, Edit};
+use super::unit::Unit;
+use super::writing::Written;
+use super::{Change, Proposal, silent, stretch};
+use crate::document::{Document, Edit, Notation, Symbol};
 use crate::logic::{Comparison, Formulas, Path, compare, compare_but};
 use crate::text::{Span, TextEdit};
 use crate::translate::Source;
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
-/// Whether the document with `edits` is the one without, but for the changed rungs, and these do the same.
-pub(super) fn holds(around: &Neighbourhood<'_>, proposal: &Proposal, edits: &[TextEdit]) -> bool {
-    proved(around, proposal, edits).is_some()
+/// Whether the document with the edits is the one without, but for the changed rungs, and these do the same.
+pub(super) fn holds(around: &Neighbourhood<'_>, proposal: &Proposal, written: &Written) -> bool {
+    proved(around, proposal, written).is_some()
 }
 
-fn proved(around: &Neighbourhood<'_>, proposal: &Proposal, edits: &[TextEdit]) -> Option<()> {
+fn proved(around: &Neighbourhood<'_>, proposal: &Proposal, written: &Written) -> Option<()> {
     let mut after = around.document.clone();
-    let reversed = edits.iter().rev();
+    let reversed = written.edits.iter().rev();
     let applied = reversed.map(|edit| Edit { range: Some(edit.span.range()), text: edit.text.clone() });
     after.apply(&applied.collect::<Vec<_>>());
     let (first, last) = (proposal.changes.first()?, proposal.changes.last()?);
     let window = window(around, first.first, last.first + last.count)?;
-    let grown = after.len() as i64 - around.document.len() as i64;
-    let new_window = Span { start: window.start, end: u32::try_from(i64::from(window.end) + grown).ok()? };
-    let old = Source::within(around.document, window);
-    let new = Source::within(&after, new_window);
-    if !ends_chunk(&after, new_window) || !same_comments(&old, &new) {
+    let new_window = moved(window, &written.edits)?;
+    let is_iec_list = around.document.notation() == Notation::IecIl;
+    let (old, ends) = match is_iec_list {
+        true => (around.rungs.clone(), ends_rungs(&after, new_window, around.unit.number)),
+        false => (Source::within(around.document, window), ends_chunk(&after, new_window)),
+    };
+    let declared = [around.document.scopes(), after.scopes()];
+    if !ends || !adds_only(declared[0], declared[1], around.unit.number, &written.declarations) {
         return None;
     }
-    // The numbers of changed rungs, counted from the window's first.
+    let new = Source::within(&after, new_window);
+    if !same_comments(&old, &new) {
+        return None;
+    }
+    // How many rungs stand before the window.
     let skipped = around.rungs.iter().take_while(|placed| placed.start < window.start as usize).count();
-    let changes =
-        proposal.changes.iter().map(|change| (change.first - skipped, change.count, change.paths.len()));
+    same_around(&proposal.changes, skipped, &old, &new)?;
+    let behind = old.len() - (last.first + last.count - skipped);
+    let changed = |placed| rungs_between(placed, first.first - skipped, behind);
+    let (old, new) = (changed(&old)?, changed(&new)?);
+    if is_iec_list && !keeps_to_itself(around, (&after, new_window), old, new) {
+        return None;
+    }
+    let (left, right) = (paths(old)?, paths(new)?);
+    match &proposal.relay {
+        None => matches!(compare(&left, &right, &mut Formulas::default()), Comparison::Same { .. }),
+        Some(relay) => same_but_for(relay, &left, &right),
+    }
+    .then_some(())
+}
+
+/// Where the window lies behind the edits; declarations may stand before it.
+fn moved(window: Span, edits: &[TextEdit]) -> Option<Span> {
+    let growth = |edit: &TextEdit| edit.text.len() as i64 - i64::from(edit.span.end - edit.span.start);
+    let before: i64 = edits.iter().filter(|edit| edit.span.end < window.start).map(growth).sum();
+    let all: i64 = edits.iter().map(growth).sum();
+    let at = |offset: u32, by: i64| u32::try_from(i64::from(offset) + by).ok();
+    Some(Span { start: at(window.start, before)?, end: at(window.end, all)? })
+}
+
+/// Whether the rungs of a window are the same but for `changes`, whose numbers count `skipped` rungs before it.
+fn same_around(changes: &[Change], skipped: usize, old: &[Source], new: &[Source]) -> Option<()> {
+    let changes = changes.iter().map(|change| (change.first - skipped, change.count, change.paths.len()));
     let (mut old_at, mut new_at) = (0, 0);
     for (first, count, instead) in changes.chain([(old.len(), 0, 0)]) {
         while old_at < first {
@@ -43,26 +78,26 @@ fn proved(around: &Neighbourhood<'_>, proposal: &Proposal, edits: &[TextEdit]) -
         }
         (old_at, new_at) = (old_at + count, new_at + instead);
     }
-    if new_at != new.len() {
-        return None;
-    }
-    let behind = old.len() - (last.first + last.count - skipped);
-    let changed = |placed: &[Source]| -> Option<Vec<Path>> {
-        let rungs = placed.get(first.first - skipped..placed.len().checked_sub(behind)?)?;
-        let paths = rungs.iter().map(|placed| placed.rung.path.clone().ok());
-        Some(paths.collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
-    };
-    let (left, right) = (changed(&old)?, changed(&new)?);
-    let (left, right): (Vec<&Path>, Vec<&Path>) = (left.iter().collect(), right.iter().collect());
-    match &proposal.relay {
-        None => matches!(compare(&left, &right, &mut Formulas::default()), Comparison::Same { .. }),
-        Some(relay) => same_but_for(relay, &left, &right),
-    }
-    .then_some(())
+    (new_at == new.len()).then_some(())
 }
 
-/// The bytes of the chunks of these rungs, with a chunk before and one behind.
+/// What rungs do; nothing if one of them cannot be read.
+fn paths(placed: &[Source]) -> Option<Vec<&Path>> {
+    let paths = placed.iter().map(|placed| placed.rung.path.as_ref().ok());
+    Some(paths.collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
+}
+
+/// The rungs without so many at the beginning and the end.
+fn rungs_between(placed: &[Source], before: usize, behind: usize) -> Option<&[Source]> {
+    placed.get(before..placed.len().checked_sub(behind)?)
+}
+
+/// The bytes of the chunks of these rungs, with a chunk before and one behind. In lists of IEC 61131-3 it takes more
+/// chunks to tell what a rung is.
 fn window(around: &Neighbourhood<'_>, first: usize, end: usize) -> Option<Span> {
+    if around.document.notation() == Notation::IecIl {
+        return Some(around.span);
+    }
     let (first, last) = (around.rungs.get(first)?, around.rungs.get(end.checked_sub(1)?)?);
     let before = around.document.chunk_before(first.start).filter(|before| before.start < first.start);
     let end = last.start + last.chunk.len();
@@ -80,14 +115,42 @@ fn ends_chunk(document: &Document, window: Span) -> bool {
     starts(window.start) && starts(window.end)
 }
 
+/// Whether rungs of a list begin where the window does and where it ends.
+fn ends_rungs(document: &Document, window: Span, pou: Option<usize>) -> bool {
+    let begins = |offset: u32| stretch::begins_rung(document, offset as usize, pou);
+    begins(window.start) && begins(window.end)
+}
+
+/// Whether the names that the paths of old or new rungs do not show mean nothing to other rungs: they are named nowhere
+/// else, or they are helpers that each rung stores to before it reads them.
+fn keeps_to_itself(
+    around: &Neighbourhood<'_>,
+    (after, window): (&Document, Span),
+    old: &[Source],
+    new: &[Source],
+) -> bool {
+    let unit = Unit::at(after, window.start as usize);
+    let inside = |start: usize| window.range().contains(&start);
+    let is_private = |symbol: &Symbol| match silent::helper(symbol) {
+        Some(name) => {
+            around.is_stored_outside(name) && silent::is_stored_wherever_read(after, unit, name, &inside)
+        }
+        None => silent::is_named_only_in(after, unit, symbol, new),
+    };
+    old.iter().chain(new).flat_map(silent::names).all(|symbol| is_private(&symbol))
+}
+
 fn same_rung(left: &Source, right: &Source) -> Option<()> {
     same_head(left, right)?;
     (left.text() == right.text()).then_some(())
 }
 
-/// The labels and the network of a rung.
+/// The labels, the network and the program unit of a rung.
 fn same_head(left: &Source, right: &Source) -> Option<()> {
-    (left.rung.labels == right.rung.labels && left.rung.network == right.rung.network).then_some(())
+    (left.pou == right.pou
+        && left.rung.labels == right.rung.labels
+        && left.rung.network == right.rung.network)
+        .then_some(())
 }
 
 fn same_comments(left: &[Source], right: &[Source]) -> bool {

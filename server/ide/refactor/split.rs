@@ -15,6 +15,7 @@ pub(super) fn propose(around: &Neighbourhood<'_>) -> Option<Proposal> {
         Drive::Path(inner) => Path { gates: joined(&path.gates, &inner.gates), drives: inner.drives.clone() },
     });
     let branches = path.drives.iter().any(|drive| matches!(drive, Drive::Path(_)));
-    let title = if branches && around.is_list() { "refactor.split-branches" } else { "refactor.split" };
+    let title =
+        if branches && around.has_branch_stack() { "refactor.split-branches" } else { "refactor.split" };
     Some(Proposal::here("refactor.rewrite.rung.split", title, around, rungs.collect()))
 }

@@ -1,4 +1,5 @@
-//! Moves a branch before the contacts in its connection: what comes first needs no ANB or ORB.
+//! Moves a branch before the contacts in its connection: what comes first needs no ANB or ORB, and no
+//! parentheses.
 
 use super::Proposal;
 use super::algebra::with_conditions;
@@ -6,9 +7,6 @@ use super::neighbourhood::Neighbourhood;
 use crate::logic::Expression;
 
 pub(super) fn propose(around: &Neighbourhood<'_>) -> Option<Proposal> {
-    if !around.document.target().is_fx() {
-        return None;
-    }
     let path = with_conditions(around.path(), &moved);
     let proposal =
         Proposal::here("refactor.rewrite.rung.wideFirst", "refactor.wide-first", around, vec![path]);

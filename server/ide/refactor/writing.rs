@@ -1,9 +1,13 @@
 //! Writes refactored rungs in the words of the document: its notation, margins and line ends, comments kept.
 
-use super::Change;
+mod iec;
+
+use super::declaration::{self, Declaration};
 use super::neighbourhood::Neighbourhood;
-use crate::document::{Document, Tree};
-use crate::ide::{Style, changes, drawing};
+use super::{Change, Proposal};
+use crate::document::{Document, Notation, Tree};
+use crate::ide::changes::{between, smallest};
+use crate::ide::{Style, drawing};
 use crate::il::fx::{FxLine, FxTree, LineKind};
 use crate::logic::Path;
 use crate::target::Flow;
@@ -11,18 +15,44 @@ use crate::text::{Span, TextEdit};
 use crate::translate::Source;
 use crate::translate::{to_fx, to_ladder};
 
-/// The edits that write `changes`; nothing where something would be lost.
-pub(super) fn edits(around: &Neighbourhood<'_>, changes: &[Change], style: Style) -> Option<Vec<TextEdit>> {
+/// Writes paths in the place of rungs: the bytes of these in the document, and the new text.
+type Writer<'w> = dyn Fn(&[Source], &[Path]) -> Option<(Span, String)> + 'w;
+
+/// A proposal as edits of the document.
+pub(super) struct Written {
+    /// In order.
+    pub edits: Vec<TextEdit>,
+    /// The variables that they declare.
+    pub declarations: Vec<Declaration>,
+}
+
+/// The edits that write a proposal; nothing where something would be lost.
+pub(super) fn edits(around: &Neighbourhood<'_>, proposal: &Proposal, style: Style) -> Option<Written> {
+    let document = around.document;
+    let mut declarations = proposal.declarations.clone();
+    let changes = &proposal.changes;
+    let each = |write: &Writer<'_>| {
+        let write = |change: &Change| write(around.replaced(change)?, &change.paths);
+        changes.iter().map(write).collect::<Option<Vec<_>>>()
+    };
+    let written = match document.notation() {
+        Notation::IecIl => iec::lists(around, changes, &mut declarations)?,
+        Notation::FxIl => each(&|rungs, paths| list(document, rungs, paths))?,
+        Notation::Ladder => each(&|rungs, paths| drawn(document, rungs, paths, style))?,
+    };
     let mut edits = Vec::new();
-    for change in changes {
-        let rungs = around.rungs.get(change.first..change.first + change.count)?;
-        let (old, new) = match around.is_list() {
-            true => list(around.document, rungs, &change.paths)?,
-            false => drawn(around.document, rungs, &change.paths, style)?,
-        };
-        edits.extend(changes::between(&around.document.slice(old), &new, old.start as usize));
+    for (old, new) in written {
+        let (text, start) = (document.slice(old), old.start as usize);
+        match document.notation() {
+            // Between two edits a parenthesis could be open, and what is open reaches to the end of the program unit.
+            Notation::IecIl => edits.extend(smallest(&text, &new, start)),
+            _ => edits.extend(between(&text, &new, start)),
+        }
     }
-    Some(edits)
+    if !declarations.is_empty() {
+        edits.insert(0, declaration::edit(around, &declarations)?);
+    }
+    Some(Written { edits, declarations })
 }
 
 /// The lines of instructions of `rungs`, in bytes of the document, and `paths` in their place.

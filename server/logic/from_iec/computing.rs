@@ -1,6 +1,6 @@
 //! Calculations with words: `LD a / ADD b / ST c`, with operands converted `LD a / INT_TO_WORD / AND 16#FF /
-//! WORD_TO_INT / ST c`, and calls of functions that the program declares, `LD a / Scale b / ST c`; and those that a
-//! jump over them makes conditional:
+//! WORD_TO_INT / ST c`, calls of functions that the program declares, `LD a / Scale b / ST c`, and those that a jump
+//! over them makes conditional:
 //!
 //! ```text
 //!     LD      Start
@@ -29,9 +29,6 @@ pub(super) struct Found {
     /// How many instructions it takes.
     pub items: usize,
 }
-
-/// The second operand of a calculation, with the conversion that it goes through.
-type Second = (OperandId, Option<Conversion>);
 
 /// Jumps over calculations alone.
 #[derive(Default)]
@@ -134,9 +131,56 @@ impl Source<'_> {
         fits.then_some(Found { computation, operands, items: at + 1 - index })
     }
 
+    /// The call of a function of the program that begins at item `index`, if its result is stored and each input has an
+    /// operand: `LD a / Scale b, c / ST d`, where the first input is loaded, or `Scale(IN := a, …) / ST d`.
+    fn called_function(&self, pou: Option<usize>, index: usize) -> Option<Found> {
+        let loaded = self.operation(index).filter(|(load, _)| load.operator.role == OperatorRole::Load);
+        let call_at = index + usize::from(loaded.is_some());
+        let call = self.tree.items.get(call_at).filter(|item| item.depth == 0)?;
+        let ItemKind::Function { name, form, parameters } = call.kind else { return None };
+        if loaded.is_some() != (form == ListForm::None) {
+            return None;
+        }
+        let computation = Computation::declared(name.of(self.text), self.scopes)?;
+        let inputs = computation.inputs();
+        let mut operands: Vec<Option<OperandId>> = vec![None; inputs.len()];
+        let mut next = 0;
+        if let Some((_, first)) = loaded {
+            *operands.first_mut()? = Some(first);
+            next = 1;
+        }
+        for parameter in parameters.of(&self.tree.parameters) {
+            let (Direction::In, ParameterValue::Operand(id)) = (parameter.direction, parameter.value) else {
+                return None;
+            };
+            let place = match parameter.name {
+                Some(name) => inputs.iter().position(|formal| formal.is_called(name.of(self.text)))?,
+                None => next,
+            };
+            next = place + 1;
+            if operands.get_mut(place)?.replace(id).is_some() {
+                return None;
+            }
+        }
+        let mut operands: Vec<OperandId> = operands.into_iter().collect::<Option<_>>()?;
+        operands.push(self.stored(pou, call_at + 1)?);
+        Some(Found { computation, operands, items: call_at + 2 - index })
+    }
+
+    /// The variable to which item `index` stores the current result, if nothing uses it behind that.
+    fn stored(&self, pou: Option<usize>, index: usize) -> Option<OperandId> {
+        let (store, result) = self.operation(index)?;
+        let is_store = store.operator.role == OperatorRole::Store && !store.word.of(self.text).ends_with('?');
+        let is_last = self.tree.items.get(index + 1).is_none_or(|next| match next.kind {
+            ItemKind::Label { .. } => !self.needs_result(index + 1),
+            kind => declares(&kind) || self.starts_afresh(&kind),
+        });
+        (is_store && is_last && !self.feeds(pou, index)).then_some(result)
+    }
+
     /// What is done at item `at` with the current result: the function, and its second operand with the conversion
     /// that it goes through. Nothing stands there before a store, which copies.
-    fn combination(&self, at: &mut usize) -> Option<(Computation, Option<Second>)> {
+    fn combination(&self, at: &mut usize) -> Option<(Computation, Option<(OperandId, Option<Conversion>)>)> {
         let item = self.tree.items.get(*at)?;
         let named = |operation: Operation| {
             let combines = operation.operator.role == (OperatorRole::Combine { comparison: false });
@@ -189,53 +233,6 @@ impl Source<'_> {
 
     fn is_literal(&self, id: OperandId) -> bool {
         matches!(self.tree.operand(id).value, Operand::Literal(_))
-    }
-
-    /// The call of a function of the program that begins at item `index`, if its result is stored and each input has an
-    /// operand: `LD a / Scale b, c / ST d`, where the first input is loaded, or `Scale(IN := a, …) / ST d`.
-    fn called_function(&self, pou: Option<usize>, index: usize) -> Option<Found> {
-        let loaded = self.operation(index).filter(|(load, _)| load.operator.role == OperatorRole::Load);
-        let call_at = index + usize::from(loaded.is_some());
-        let call = self.tree.items.get(call_at).filter(|item| item.depth == 0)?;
-        let ItemKind::Function { name, form, parameters } = call.kind else { return None };
-        if loaded.is_some() != (form == ListForm::None) {
-            return None;
-        }
-        let computation = Computation::declared(name.of(self.text), self.scopes)?;
-        let inputs = computation.inputs();
-        let mut operands: Vec<Option<OperandId>> = vec![None; inputs.len()];
-        let mut next = 0;
-        if let Some((_, first)) = loaded {
-            *operands.first_mut()? = Some(first);
-            next = 1;
-        }
-        for parameter in parameters.of(&self.tree.parameters) {
-            let (Direction::In, ParameterValue::Operand(id)) = (parameter.direction, parameter.value) else {
-                return None;
-            };
-            let place = match parameter.name {
-                Some(name) => inputs.iter().position(|formal| formal.is_called(name.of(self.text)))?,
-                None => next,
-            };
-            next = place + 1;
-            if operands.get_mut(place)?.replace(id).is_some() {
-                return None;
-            }
-        }
-        let mut operands: Vec<OperandId> = operands.into_iter().collect::<Option<_>>()?;
-        operands.push(self.stored(pou, call_at + 1)?);
-        Some(Found { computation, operands, items: call_at + 2 - index })
-    }
-
-    /// The variable to which item `index` stores the current result, if nothing uses it behind that.
-    fn stored(&self, pou: Option<usize>, index: usize) -> Option<OperandId> {
-        let (store, result) = self.operation(index)?;
-        let is_store = store.operator.role == OperatorRole::Store && !store.word.of(self.text).ends_with('?');
-        let is_last = self.tree.items.get(index + 1).is_none_or(|next| match next.kind {
-            ItemKind::Label { .. } => !self.needs_result(index + 1),
-            kind => declares(&kind) || self.starts_afresh(&kind),
-        });
-        (is_store && is_last && !self.feeds(pou, index)).then_some(result)
     }
 
     /// An operation outside of parentheses, without a negation.

@@ -140,6 +140,7 @@ impl<'s, 'a> Reader<'s, 'a> {
                         _ => self.conditional_call(item, callee, parameters, condition)?,
                     };
                 }
+                ItemKind::Function { name, .. } => return Err(self.uncalled(name.of(self.source.text))),
                 _ => return Err(Refusal::NotBoolean),
             }
         }
@@ -378,12 +379,6 @@ impl<'s, 'a> Reader<'s, 'a> {
         self.note(&action, index);
         self.builder.drive(action);
         Ok(Some(found.items))
-    }
-
-    /// Notes what the instruction at item `index` may change, which is this action.
-    fn note(&mut self, action: &Action, index: usize) {
-        self.driven.extend(action.changes().iter().map(|term| (term.key(), index)));
-        self.ran = if action.runs_unit() { Some(index) } else { self.ran };
     }
 
     fn is_fresh(&self) -> bool {

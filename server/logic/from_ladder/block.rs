@@ -10,9 +10,9 @@ use std::sync::Arc;
 
 /// The call that a box is, and whether power goes on behind it.
 ///
-/// Power comes to one input of a block and goes on from its first output that is a bit, or it enables the call; the other
-/// pins have operands or nothing. A box without an instance is a function that power enables. Anything else, such as a
-/// circle at a pin, is refused.
+/// Power comes to one input of a block and goes on from its first output that is a bit, or it enables the call; the
+/// other pins have operands or nothing. A box without an instance is a function that power enables. Anything else, such
+/// as a circle at a pin, is refused.
 pub(super) fn call(
     text: &str,
     element: &Element,
@@ -60,7 +60,8 @@ pub(super) fn call(
         }
     }
     let power = power.ok_or(Refusal::Element)?;
-    let (call, terms) = Call::new(row.clone(), power, instance, arguments).ok_or(Refusal::Element)?;
+    let (call, terms) =
+        Call::new(row.clone(), power, instance, arguments).ok_or_else(|| Refusal::Parameters(name.into()))?;
     Ok((Action { deed: Deed::Call(Arc::new(call)), terms, span: element.span }, goes_on))
 }
 

@@ -452,9 +452,9 @@ impl Types<'_> {
         let Deed::Compute(computation) = &action.deed else { return true };
         let Some((inputs, result)) = computation.operands(&action.terms) else { return false };
         let is_signed = || inputs.iter().all(|term| self.signed(term));
-        match computation.name() {
-            "MUL" if computation.widens() => is_signed() && self.fit(std::slice::from_ref(result)),
-            "DIV" | "MOD" => is_signed() && self.fit(&action.terms),
+        match computation.standard() {
+            Some("MUL") if computation.widens() => is_signed() && self.fit(std::slice::from_ref(result)),
+            Some("DIV" | "MOD") => is_signed() && self.fit(&action.terms),
             _ => self.fit(&action.terms),
         }
     }

@@ -108,6 +108,11 @@ impl Helpers {
         }
     }
 
+    /// The power of a call that has it as an operand of EN.
+    pub(super) fn enable(&mut self) -> SmolStr {
+        self.declare("Enable", "BOOL")
+    }
+
     /// A new variable.
     fn declare(&mut self, stem: &str, type_name: &'static str) -> SmolStr {
         let number = self.numbers.entry(type_name).or_default();

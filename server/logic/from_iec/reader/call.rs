@@ -2,11 +2,10 @@
 
 use super::super::{is_pulse_name, output_of};
 use super::{Edge, Reader, Value};
-use crate::document::DeclaredType;
 use crate::il::iec::{Condition, Direction, Item, ItemKind, OperandId, Parameter, ParameterValue, Run};
 use crate::ladder::{CoilKind, ContactKind};
-use crate::logic::{Action, Call, Callee, Deed, Expression, Gate, Refusal, Term};
-use crate::target::iec::{EN, OperatorRole};
+use crate::logic::{Action, Call, Callee, Computation, Deed, Expression, Gate, Refusal, Term};
+use crate::target::iec::{EN, Function, OperatorRole};
 use crate::text::{Span, folded};
 use std::sync::Arc;
 
@@ -27,14 +26,13 @@ impl<'a> Reader<'_, 'a> {
         self.source.block(self.pou, name)
     }
 
-    /// The block that is called, or the name of what nothing declares.
+    /// The block that is called, or the name by which nothing known is.
     fn called(&self, callee: OperandId) -> Result<Callee, Refusal> {
-        let name = self.source.tree.operand(callee).span.of(self.source.text);
-        self.block_of(callee).ok_or_else(|| match self.source.scopes.type_of(self.pou, name) {
-            Some(DeclaredType::Named(type_name)) => Refusal::Callee(type_name),
-            Some(_) => Refusal::Element,
-            None => Refusal::Callee(name.into()),
-        })
+        self.block_of(callee).ok_or_else(|| Refusal::Callee(self.name(callee).into()))
+    }
+
+    fn name(&self, operand: OperandId) -> &'a str {
+        self.source.tree.operand(operand).span.of(self.source.text)
     }
 
     /// `R C1`: calls the block with this input alone. Nothing is known of the current result behind it.
@@ -103,7 +101,8 @@ impl<'a> Reader<'_, 'a> {
             self.builder.pass(Expression::Contact(contact)).ok_or(Refusal::TooDeep)?;
         }
         let own = self.source.term(self.pou, callee);
-        let (call, terms) = Call::new(block.clone(), power_in, own, arguments).ok_or(Refusal::Element)?;
+        let call = Call::new(block.clone(), power_in, own, arguments);
+        let (call, terms) = call.ok_or_else(|| Refusal::Parameters(instance.into()))?;
         // An output that is written to an operand is no wire as well.
         let is_given = call.arguments(&terms).iter().any(|one| one.is_output && one.name == call.power_out());
         let output = self.next(1).filter(|_| !call.is_enabled() && !is_given);
@@ -147,12 +146,27 @@ impl<'a> Reader<'_, 'a> {
         self.is_inverted ^= condition == Condition::IfFalse;
         self.invert()?;
         let own = self.source.term(self.pou, callee);
-        let (call, terms) = Call::new(block.clone(), EN.name, own, arguments).ok_or(Refusal::Element)?;
+        let call = Call::new(block.clone(), EN.name, own, arguments);
+        let call = call.filter(|(call, _)| !call.tells_enable());
+        let (call, terms) = call.ok_or_else(|| Refusal::Parameters(self.name(callee).into()))?;
         let action = Action { deed: Deed::Call(Arc::new(call)), terms, span: item.span };
         self.note(&action, self.at);
         self.builder.drive(action);
         self.value = Value::Nothing;
         Ok(0)
+    }
+
+    /// Why a function is no box here: nobody knows it, or it is a part of a calculation that has no drawing.
+    pub(super) fn uncalled(&self, name: &str) -> Refusal {
+        let is_known =
+            Function::named(name).is_some() || Computation::declared(name, self.source.scopes).is_some();
+        if is_known { Refusal::NotBoolean } else { Refusal::Callee(name.into()) }
+    }
+
+    /// Notes what the instruction at item `index` may change, which is this action.
+    pub(super) fn note(&mut self, action: &Action, index: usize) {
+        self.driven.extend(action.changes().iter().map(|term| (term.key(), index)));
+        self.ran = if action.runs_unit() { Some(index) } else { self.ran };
     }
 
     /// The item of the rung that stands so many behind the one that is read.

@@ -11,6 +11,7 @@ use smol_str::format_smolstr;
 impl Converter<'_> {
     /// The instruction that a calculation is.
     pub(super) fn calculation(&self, computation: &Computation, action: &Action) -> Result<Action, Lack> {
+        let function = without(computation.standard())?;
         let (inputs, result) = without(computation.operands(&action.terms))?;
         if computation.widens() {
             return self.product(inputs, result, action);
@@ -22,7 +23,6 @@ impl Converter<'_> {
         if computation.is_bitwise() {
             self.patterns_fit(computation, inputs, width)?;
         }
-        let function = without((!computation.is_declared()).then(|| computation.name()))?;
         let instruction = |work: Work, terms: Vec<Term>| {
             let form = without(work.form(wide))?;
             Ok(Action { deed: Deed::Instruction(form), terms, span: action.span })
@@ -51,7 +51,8 @@ impl Converter<'_> {
         });
         let mut terms = terms.collect::<Result<Vec<_>, _>>()?;
         terms.push(register);
-        instruction(without(Work::of_function(function))?, terms)
+        let work = if computation.is_bitwise() { Work::Bits(function) } else { Work::Function(function) };
+        instruction(work, terms)
     }
 
     /// MUL of two words, which makes 32 bits.
@@ -145,9 +146,9 @@ impl Converter<'_> {
 }
 
 /// The function of a plain calculation.
-fn name(action: &Action) -> Option<&str> {
+fn name(action: &Action) -> Option<&'static str> {
     match &action.deed {
-        Deed::Compute(computation) => (!computation.is_declared()).then(|| computation.name()),
+        Deed::Compute(computation) => computation.standard(),
         _ => None,
     }
 }
