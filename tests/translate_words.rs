@@ -223,6 +223,14 @@ fn products_and_quotients() {
         certain(&program("LD n; INT_TO_DINT; MUL 10; ST d"), To::Fx),
         "LD M8000\nMUL D0 K10 D10\nEND\n"
     );
+    for body in ["LD n; DIV 7; ST q; LD n; MOD 7; ST r", "LD n; MOD 7; ST r; LD n; DIV 7; ST q"] {
+        assert_eq!(certain(&program(body), To::Fx), "LD M8000\nDIV D0 K7 D2\nEND\n", "{body}");
+    }
+    // Where both are kept after all, nothing of them is lost.
+    let unit = "FUNCTION_BLOCK f\nVAR\nD5 AT %MW1005 : INT; D6 AT %MW1006 : INT; D7 AT %MW1007 : INT;\nEND_VAR\n\
+                LD D7\nDIV 7\nST D5\nLD D7\nMOD 7\nST D6\nEND_FUNCTION_BLOCK\n";
+    let kept = to(&list(unit), To::Fx).text;
+    assert_eq!((kept.matches("DIV").count(), kept.matches("MOD").count()), (1, 1), "{kept}");
     let quotient = |word: &str| {
         format!(
             "`{word}` of an FX writes the quotient and behind it the remainder: DIV and MOD of the same two by a \
