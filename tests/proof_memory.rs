@@ -212,7 +212,7 @@ fn words_of_a_counterexample_are_numbers() {
 fn a_counterexample_has_the_names_of_the_program() {
     let named = |left: &Document, right: &Document| {
         let Proof::Different(found) = prove(left, right) else { panic!("{}", left.text()) };
-        found.inputs.into_iter().map(|(name, _)| name).collect::<Vec<_>>()
+        found.inputs.into_keys().collect::<Vec<_>>()
     };
     let variables = "Start AT %IX0.0 : BOOL; Stop AT %IX0.1 : BOOL; Lamp AT %QX0.0 : BOOL;";
     let bodies = ["LD Start; AND Stop; ST Lamp", "LD Start; OR Stop; ST Lamp"];

@@ -51,6 +51,9 @@ impl Skips {
     }
 }
 
+/// A second operand, with the conversion that it goes through.
+type Second = (OperandId, Option<Conversion>);
+
 impl Source<'_> {
     /// The jumps that only skip calculations, to labels that nobody else jumps to.
     pub(super) fn find_skips(&self, pous: usize) -> Skips {
@@ -180,7 +183,7 @@ impl Source<'_> {
 
     /// What is done at item `at` with the current result: the function, and its second operand with the conversion
     /// that it goes through. Nothing stands there before a store, which copies.
-    fn combination(&self, at: &mut usize) -> Option<(Computation, Option<(OperandId, Option<Conversion>)>)> {
+    fn combination(&self, at: &mut usize) -> Option<(Computation, Option<Second>)> {
         let item = self.tree.items.get(*at)?;
         let named = |operation: Operation| {
             let combines = operation.operator.role == (OperatorRole::Combine { comparison: false });
