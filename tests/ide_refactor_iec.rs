@@ -548,3 +548,48 @@ fn a_long_section_of_variables_is_added_to_for_who_selects() {
     assert_eq!(extracted.edits.len(), 2);
     assert!(applied(&document, extracted).contains("    v2999 : BOOL;\n    Relay1 : BOOL;\nEND_VAR"));
 }
+
+#[test]
+fn who_else_asks_for_a_variable_by_its_instance_keeps_it() {
+    let unit = "FUNCTION_BLOCK Motor\nVAR\n    a, m, x : BOOL;\nEND_VAR\nLD a\nST m\nLD m\nST x\nEND_FUNCTION_BLOCK\n";
+    let caller = |read: &str| {
+        format!(
+            "{unit}PROGRAM P\nVAR\n    drive : Motor; z : BOOL;\nEND_VAR\nCAL drive\nLD drive.{read}\nST z\nEND_PROGRAM\n"
+        )
+    };
+    assert!(found(&list(&caller("x")), "LD a", "inline.relay").is_some());
+    assert!(found(&list(&caller("M")), "LD a", "inline.relay").is_none());
+}
+
+#[test]
+fn what_nobody_wants_written_so_is_not_offered() {
+    for (own, at, kind) in [
+        // XOR would be written as what it is made of.
+        ("LD a\nXOR b\nST x\nST y\n", "a", "rung.split"),
+        ("LD a\nXOR b\nST x\nLD a\nXOR b\nST y\n", "a", "rung.merge"),
+        // The comment of a rung that goes away would stand above another.
+        ("LD c\nST y\n\n(* drive *)\nLD a\nST m\n\n(* lamp *)\nLD m\nST x\n", "ST m", "inline.relay"),
+    ] {
+        assert_eq!(found(&list(&program(BITS, own)), at, kind), None, "{own}");
+    }
+    // What a jump leaves out would stand in one network with it.
+    let drawn = |output: &str| {
+        let head = program(BITS, "").replace("END_PROGRAM\n", "");
+        format!(
+            "{head}\n|   a     b          |\n+--| |---| |---{output}+\n\n|   a           x    |\n+--| |---------( )---+\n\nL1:\n|   b           y    |\n+--| |---------( )---+\n\nEND_PROGRAM\n"
+        )
+    };
+    for (output, is_offered) in [("(z)--", true), (">>L1 ", false)] {
+        let document = drawing(&drawn(output));
+        assert_eq!(found(&document, "| |", "rung.merge").is_some(), is_offered, "{}", document.text());
+    }
+}
+
+#[test]
+fn the_relay_at_the_cursor_is_inlined_else_any_that_can_be() {
+    let own = "LD a\nST m\nST c\nLD m\nAND b\nST x\nLD c\nAND d\nST y\n";
+    assert!(after(&list(&program(BITS, own)), "ST c", "inline.relay").0.ends_with("relay c"));
+    assert!(after(&list(&program(BITS, own)), "ST m", "inline.relay").0.ends_with("relay m"));
+    let unread = "LD a\nST z\nST m\nLD m\nST y\n";
+    assert!(after(&list(&program(BITS, unread)), "ST z", "inline.relay").0.ends_with("relay m"));
+}

@@ -234,3 +234,28 @@ fn a_counterexample_has_the_names_of_the_program() {
     };
     assert_eq!(named(&units("AND"), &units("OR")), ["v", "w"]);
 }
+
+#[test]
+fn what_a_reference_leads_to_may_be_any_variable() {
+    tells_apart("p : REF_TO BOOL;", "LD a; ST b; LD p^; ST x", "LD p^; ST x; LD a; ST b");
+}
+
+#[test]
+fn what_blocks_and_calculations_make_of_their_inputs_is_no_difference() {
+    for (variables, head, one, other) in [
+        ("f : SR;", "CAL f(S1 := a, R := b); LD f.Q1", "", "OR a; "),
+        ("f : RS;", "CAL f(S := b, R1 := a); LD f.Q1", "", "ANDN a; "),
+        ("f : CTU;", "CAL f(CU := b, R := a, PV := 5); LD f.Q", "", "ANDN a; "),
+        ("i, j : INT;", "LD i; ADD 1; ST j; LD j; GT i", "", "OR TRUE; "),
+        ("i, j : INT;", "LD i; AND 16#F; ST j; LD j; GE 0", "", "OR TRUE; "),
+    ] {
+        let [left, right] =
+            [one, other].map(|more| program(variables, &lines(&format!("{head}; {more}ST x"))));
+        for proof in [prove(&left, &right), prove(&right, &left)] {
+            assert!(!matches!(proof, Proof::Different(_)), "{proof:?}\n{}", right.text());
+        }
+        // What they leave open makes one.
+        let other = program(variables, &lines(&format!("{head}; NOT; ST x")));
+        assert!(matches!(prove(&left, &other), Proof::Different(_)), "{}", other.text());
+    }
+}

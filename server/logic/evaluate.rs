@@ -1,10 +1,11 @@
 //! Runs paths with plain values, one scan from a given state: a second opinion on what the diagrams say, that shares
 //! nothing with them but the reading of rungs.
 
-use super::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
+use super::{Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::target::iec::LiteralValue;
-use crate::target::{Constant, Device, DeviceKind, Flow, Operand};
+use crate::target::{Constant, Device, DeviceKind, Flow, Form, Operand};
+use crate::text::folded;
 use smol_str::{SmolStr, format_smolstr};
 use std::collections::BTreeMap;
 
@@ -40,12 +41,15 @@ pub struct Scan<'s> {
     words: BTreeMap<SmolStr, i64>,
     /// Whether each event had power, in order.
     pub events: Vec<bool>,
+    /// The events of which it was only guessed what they leave behind: units of the program may never leave it, nor
+    /// calculations come to it.
+    pub guesses: Vec<u32>,
 }
 
 /// One scan of `paths` from `state`.
 pub fn evaluate<'s>(paths: &[&Path], state: &'s State) -> Scan<'s> {
     let (bits, words) = (state.bits.clone(), state.words.clone());
-    let mut scan = Scan { state, bits, words, events: Vec::new() };
+    let mut scan = Scan { state, bits, words, events: Vec::new(), guesses: Vec::new() };
     paths.iter().for_each(|path| scan.path(path, true));
     scan
 }
@@ -168,9 +172,13 @@ impl<'s> Scan<'s> {
             }
         }
         let moved = self.moved(action, power);
+        let is_unknown = power && moved.is_none() && matches!(action.deed, Deed::Compute(_));
         self.events.push(power);
         let nothing = LeftBehind::default();
         let left = self.left_behind().unwrap_or(&nothing);
+        if (is_unknown || action.runs_unit()) && *left != nothing {
+            self.guesses.push(self.events.len() as u32);
+        }
         let own = action.terms.first().map(|term| (term.key(), self.value(term)));
         let bits = own.into_iter().chain(left.bits.iter().map(|(key, value)| (key.clone(), *value)));
         let bits: Vec<_> =
@@ -212,13 +220,29 @@ impl<'s> Scan<'s> {
     fn output_after(&self, call: &Call, terms: &[Term], power: bool, key: &str) -> Option<bool> {
         let instance = terms.first()?.key();
         let output = key.strip_prefix(&*instance)?.strip_prefix('.')?;
+        let arguments = call.arguments(terms);
         let input = || {
-            let arguments = call.arguments(terms);
             let given = arguments.iter().find(|argument| argument.name == call.power_in());
             given.map_or(power, |argument| self.value(&argument.term))
         };
         let is = |name: &str| call.block.is_standard(name);
+        let pin = |name: &str| {
+            let given = arguments.iter().find(|argument| !argument.is_output && argument.name == name);
+            match given {
+                Some(argument) => self.value(&argument.term),
+                None if call.power_in() == name => power,
+                None => self.bit(&format!("{instance}.{}", folded(name))),
+            }
+        };
+        let has_preset = arguments.iter().any(|argument| {
+            argument.name == "PV"
+                && matches!(argument.term.operand, Operand::Literal(_))
+                && self.word(&argument.term, false) > 0
+        });
         match output {
+            "q1" if is("SR") => Some(pin("S1") || self.bit(key) && !pin("R")),
+            "q1" if is("RS") => Some(!pin("R1") && (pin("S") || self.bit(key))),
+            "q" if is("CTU") && pin("R") && has_preset => Some(false),
             "q" if (is("TON") || is("R_TRIG")) && !input() => Some(false),
             "q" if is("TOF") && input() => Some(true),
             "q" if is("F_TRIG") && input() => Some(false),
@@ -234,17 +258,44 @@ impl<'s> Scan<'s> {
     fn moved(&self, action: &Action, power: bool) -> Option<(SmolStr, i64)> {
         let register = action.terms.last()?;
         let is_register = matches!(register.operand, Operand::Device(Device { kind: DeviceKind::D, .. }));
-        let copies = match &action.deed {
-            Deed::Compute(computation) => computation.copies(),
-            Deed::Instruction(form) if form.instruction.copies() && is_register => !form.wide && !form.pulse,
+        let copies = |form: &Form| form.instruction.copies() && is_register && !form.wide && !form.pulse;
+        let result = match &action.deed {
+            Deed::Compute(_) if !power => self.word(register, false),
+            Deed::Compute(computation) => self.result(computation, &action.terms)?,
+            Deed::Instruction(form) if copies(form) => {
+                let source = if power { action.terms.first()? } else { register };
+                self.word(source, false)
+            }
             _ => return None,
         };
-        let source = match power {
-            true if copies => action.terms.first()?,
-            true => return None,
-            false => register,
+        Some((register.key(), result))
+    }
+
+    /// What a function of the standard makes of whole numbers, if 16 bits hold it: of more, the types decide.
+    fn result(&self, computation: &Computation, terms: &[Term]) -> Option<i64> {
+        let (inputs, _) = computation.operands(terms)?;
+        let is_whole = |term: &Term| match term.operand {
+            Operand::Literal(literal) => matches!(literal.value, LiteralValue::Integer(_)),
+            _ => true,
         };
-        Some((register.key(), self.word(source, false)))
+        if !inputs.iter().all(is_whole) {
+            return None;
+        }
+        let inputs: Vec<i64> = inputs.iter().map(|term| self.word(term, false)).collect();
+        let result = match (computation.standard()?, &inputs[..]) {
+            ("MOVE", [word]) => *word,
+            ("NOT", [word]) => !word,
+            ("ADD", [left, right]) => left.checked_add(*right)?,
+            ("SUB", [left, right]) => left.checked_sub(*right)?,
+            ("MUL", [left, right]) => left.checked_mul(*right)?,
+            ("DIV", [left, right]) => left.checked_div(*right)?,
+            ("MOD", [left, right]) => left.checked_rem(*right)?,
+            ("AND", [left, right]) => left & right,
+            ("OR", [left, right]) => left | right,
+            ("XOR", [left, right]) => left ^ right,
+            _ => return None,
+        };
+        i16::try_from(result).is_ok().then_some(result)
     }
 }
 

@@ -31,13 +31,17 @@ pub enum Storage {
     Local,
     /// At an address, which other variables may have, too.
     At(DirectAddress),
-    /// Where somebody else says, so that any other variable may lie there: VAR_IN_OUT, `AT %Q*`.
+    /// Where somebody else says, so that any other variable may lie there: VAR_IN_OUT, `AT %Q*`, `reference^`.
     Anywhere,
 }
 
 impl Storage {
     /// Where the variable `name`, or the one that `name` is a part of, lies as declared in program unit number `pou`.
     pub fn declared(scopes: &Scopes, pou: Option<usize>, name: &str) -> Storage {
+        // What a reference leads to, nobody knows.
+        if name.contains('^') {
+            return Storage::Anywhere;
+        }
         let root = &name[..name.find(['.', '[', '^']).unwrap_or(name.len())];
         let Some(variable) = scopes.variable(pou, root) else { return Storage::Own };
         let variable = match variable.section {

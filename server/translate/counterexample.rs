@@ -1,13 +1,13 @@
 //! The scan in which two programs differ, made of the values for which their formulas do, and confirmed by running both
 //! programs with them.
 
-use crate::logic::{Atom, Formulas, Moment, Path, Place, State, Step, evaluate};
+use crate::logic::{Atom, Formulas, Moment, Path, Place, Scan, State, Step, evaluate};
 use crate::target::iec::LiteralValue;
 use crate::target::{Device, DirectAddress, Model, Operand};
 use crate::text::Span;
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A scan in which two programs differ.
 #[derive(Clone, PartialEq, Debug)]
@@ -63,14 +63,39 @@ fn names_of_addresses(paths: [&[&Path]; 2]) -> FxHashMap<SmolStr, SmolStr> {
     names
 }
 
-/// What `place` is in each of two programs when they are run from `state`, if it differs.
+/// What `place` is in each of two programs when they are run from `state`, if it differs. Where something is guessed of
+/// what units of the program leave behind, it must differ whatever that is.
 pub(super) fn confirmed(state: &State, paths: [&[&Path]; 2], place: &Place) -> Option<[bool; 2]> {
-    let [left, right] = paths.map(|paths| {
-        let scan = evaluate(paths, state);
-        match place {
-            Place::Bit(key) => Some(scan.bit(key)),
-            Place::Event(number) => scan.events.get((*number as usize).checked_sub(1)?).copied(),
+    let scans = paths.map(|paths| evaluate(paths, state));
+    let guesses: BTreeSet<u32> = scans.iter().flat_map(|scan| scan.guesses.iter().copied()).collect();
+    let found = differing(&scans, place)?;
+    let left = |event: &u32| state.left_behind.get(event);
+    if guesses.iter().filter_map(left).any(|left| !left.words.is_empty()) {
+        return None;
+    }
+    let bits = guesses.iter().flat_map(|event| {
+        let keys = left(event).into_iter().flat_map(|left| left.bits.keys());
+        keys.map(|key| (*event, key.clone()))
+    });
+    let bits: Vec<(u32, SmolStr)> = bits.collect();
+    let differs = |values: u32| {
+        let mut state = state.clone();
+        for (place, (event, key)) in bits.iter().enumerate() {
+            let left = state.left_behind.entry(*event).or_default();
+            left.bits.insert(key.clone(), values >> place & 1 == 1);
         }
+        differing(&paths.map(|paths| evaluate(paths, &state)), place).is_some()
+    };
+    (bits.len() <= GUESSES_MAX && (0..1 << bits.len()).all(differs)).then_some(found)
+}
+
+/// All values of so many guessed bits are tried.
+const GUESSES_MAX: usize = 8;
+
+fn differing(scans: &[Scan<'_>; 2], place: &Place) -> Option<[bool; 2]> {
+    let [left, right] = scans.each_ref().map(|scan| match place {
+        Place::Bit(key) => Some(scan.bit(key)),
+        Place::Event(number) => scan.events.get((*number as usize).checked_sub(1)?).copied(),
     });
     let values = [left?, right?];
     (values[0] != values[1]).then_some(values)

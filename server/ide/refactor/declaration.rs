@@ -45,7 +45,7 @@ pub(super) fn edit(around: &Neighbourhood<'_>, declarations: &[Declaration]) -> 
     let gap = gap(document, around.unit)?;
     let (Gap::Header(at) | Gap::Line(at, ..) | Gap::InLine(at)) = gap;
     let section = document.chunk_at(at)?.chunk;
-    if section.len() > SECTION_MAX && !around.is_selected {
+    if section.len() > SECTION_MAX && !around.is_selected() {
         return None;
     }
     let end = if document.line_at(at).2.ends_with("\r\n") { "\r\n" } else { "\n" };

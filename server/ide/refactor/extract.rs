@@ -16,17 +16,16 @@ use smol_str::{SmolStr, format_smolstr};
 /// What the names of new relays begin with where relays are variables.
 const RELAY: &str = "Relay";
 
-pub(super) fn propose(
-    around: &Neighbourhood<'_>,
-    view: &ProjectView<'_>,
-    selected: Span,
-) -> Option<Proposal> {
+pub(super) fn propose(around: &Neighbourhood<'_>, selected: Span) -> Option<Proposal> {
     let start = around.rung().start as u32;
     let selected = Span { start: selected.start.checked_sub(start)?, end: selected.end.checked_sub(start)? };
     let chosen = chosen(around.path(), meant(around, selected))?;
     let is_fx = around.document.target().is_fx();
-    let relay =
-        if is_fx { Term::of_device(free_device(view)?, Span::default()) } else { free_variable(around)? };
+    let relay = if is_fx {
+        Term::of_device(free_device(around.view)?, Span::default())
+    } else {
+        free_variable(around)?
+    };
     let contact = Contact {
         test: Test::Bit(ContactKind::NormallyOpen),
         terms: vec![relay.clone()],

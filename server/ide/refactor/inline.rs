@@ -1,27 +1,32 @@
 //! The condition of a relay in the place of its contacts, and the relay gone.
 
 use super::neighbourhood::Neighbourhood;
+use super::unit::is_member;
 use super::{Change, Proposal};
-use crate::document::{DeclaredType, ProjectView, Symbol};
+use crate::document::{DeclaredType, Symbol};
 use crate::ide::bookkeeping::Book;
 use crate::il::iec::SectionKind;
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
 use crate::target::iec::ElementaryType;
 use crate::target::{Device, DeviceKind, Flow, Operand};
-use crate::text::Message;
+use crate::text::{Message, Span};
 use crate::translate::Source;
 use smol_str::{SmolStr, ToSmolStr};
 
-pub(super) fn propose(around: &Neighbourhood<'_>, view: &ProjectView<'_>) -> Option<Proposal> {
+pub(super) fn propose(around: &Neighbourhood<'_>) -> Option<Proposal> {
+    let relays = driven_relays(around);
+    relays.into_iter().find_map(|(place, relay)| proposed(around, place, relay))
+}
+
+fn proposed(around: &Neighbourhood<'_>, place: usize, relay: Relay) -> Option<Proposal> {
     let path = around.path();
-    let (place, relay) = driven_relay(around, path)?;
     let head = &around.rung().rung;
     if !head.labels.is_empty() || head.network.is_some() {
         return None;
     }
     let condition = Gate::condition(&path.gates, None).ok()??;
-    let (mentions, writes) = relay.uses(around, view)?;
+    let (mentions, writes) = relay.uses(around)?;
     let others = around.rungs.get(around.here + 1..)?;
     // Every other place that names it reads it further down, as far as one can see.
     let mut left = mentions.checked_sub(1).filter(|reads| *reads > 0 && writes == 1)?;
@@ -31,6 +36,10 @@ pub(super) fn propose(around: &Neighbourhood<'_>, view: &ProjectView<'_>) -> Opt
     let mut rest = path.clone();
     rest.drives.remove(place);
     let paths = if rest.drives.is_empty() { Vec::new() } else { vec![rest] };
+    // The comment of a rung that goes away would stand above another.
+    if paths.is_empty() && !head.comments.is_empty() {
+        return None;
+    }
     let mut changes = vec![Change { first: around.here, count: 1, paths }];
     for (number, placed) in (around.here + 1..).zip(others) {
         if left == 0 {
@@ -57,16 +66,17 @@ struct Relay {
     /// As it is shown.
     name: SmolStr,
     key: SmolStr,
+    /// Its coil, in the chunk of the rung.
+    span: Span,
 }
 
-/// The first plain coil of a relay that a path drives itself, and its place among the drives.
-fn driven_relay(around: &Neighbourhood<'_>, path: &Path) -> Option<(usize, Relay)> {
-    path.drives.iter().enumerate().find_map(|(place, drive)| {
-        let Drive::Action(Action { deed: Deed::Coil(CoilKind::Plain), terms, .. }) = drive else {
-            return None;
-        };
-        let [term] = &terms[..] else { return None };
-        let relay = |symbol, name| Some((place, Relay { symbol, name, key: term.key() }));
+/// The plain coils of relays that the rung drives itself, with their places among its drives; one at the cursor first.
+fn driven_relays(around: &Neighbourhood<'_>) -> Vec<(usize, Relay)> {
+    let drives = around.path().drives.iter().enumerate();
+    let relays = drives.filter_map(|(place, drive)| {
+        let Drive::Action(action) = drive else { return None };
+        let (Deed::Coil(CoilKind::Plain), [term]) = (&action.deed, &action.terms[..]) else { return None };
+        let relay = |symbol, name| Some((place, Relay { symbol, name, key: term.key(), span: action.span }));
         match term.operand {
             Operand::Device(device) if is_plain_relay(around, device) => {
                 relay(Symbol::Device(device), device.to_smolstr())
@@ -76,7 +86,10 @@ fn driven_relay(around: &Neighbourhood<'_>, path: &Path) -> Option<(usize, Relay
             }
             _ => None,
         }
-    })
+    });
+    let mut relays: Vec<(usize, Relay)> = relays.collect();
+    relays.sort_by_key(|(_, relay)| !around.is_at_cursor(relay.span));
+    relays
 }
 
 /// Whether neither the PLC itself reads or writes a device, nor keeps it while it is off.
@@ -112,12 +125,15 @@ fn runs_straight(placed: &Source) -> bool {
 
 impl Relay {
     /// How often it is named, and how often written; nothing if it is also a part of something else.
-    fn uses(&self, around: &Neighbourhood<'_>, view: &ProjectView<'_>) -> Option<(u32, u32)> {
+    fn uses(&self, around: &Neighbourhood<'_>) -> Option<(u32, u32)> {
         let Symbol::Device(device) = self.symbol else {
+            if is_member(around.view, &self.name) {
+                return None;
+            }
             let tally = around.unit.tally(around.document, &self.symbol);
             return Some((u32::try_from(tally.mentions).ok()?, u32::try_from(tally.writes).ok()?));
         };
-        let book = Book::of(view);
+        let book = Book::of(around.view);
         let tally = book.devices.get(&device).filter(|_| !book.is_in_run(device))?;
         Some((tally.mentions, tally.writes))
     }

@@ -3,7 +3,8 @@
 use super::algebra::{alike, factors, joined};
 use super::neighbourhood::Neighbourhood;
 use super::{Change, Proposal};
-use crate::logic::{Drive, Expression, Gate, Path};
+use crate::logic::{Deed, Drive, Expression, Gate, Path};
+use crate::target::Flow;
 use crate::text::Message;
 
 pub(super) fn propose(around: &Neighbourhood<'_>) -> Option<Proposal> {
@@ -12,6 +13,10 @@ pub(super) fn propose(around: &Neighbourhood<'_>) -> Option<Proposal> {
         return None;
     }
     let (first, second) = (around.path(), next.path()?);
+    // What a jump leaves out would stand in one network with it.
+    if first.actions().iter().any(|action| leaves(&action.deed)) {
+        return None;
+    }
     let (Some(Gate::Pass(one)), Some(Gate::Pass(other))) = (first.gates.first(), second.gates.first()) else {
         return None;
     };
@@ -30,6 +35,14 @@ pub(super) fn propose(around: &Neighbourhood<'_>) -> Option<Proposal> {
     let merged = Path { gates: vec![Gate::Pass(Expression::and(common))], drives };
     let changes = vec![Change { first: around.here, count: 2, paths: vec![merged] }];
     Some(Proposal::of("refactor.rewrite.rung.merge", Message::new(title), changes))
+}
+
+fn leaves(deed: &Deed) -> bool {
+    match deed {
+        Deed::Jump | Deed::Return => true,
+        Deed::Instruction(form) => form.instruction.flow() == Flow::Jump,
+        _ => false,
+    }
 }
 
 fn is_in(factor: &Expression, factors: &[Expression]) -> bool {

@@ -107,8 +107,7 @@ const PARTS_MAX: usize = 400;
 
 /// The refactorings of the rung at the cursor, or of what is selected of it, that are proved.
 pub(super) fn at(view: &ProjectView<'_>, span: Span, style: Style) -> Vec<Refactoring> {
-    let document = view.here();
-    let Some(around) = Neighbourhood::at(document, span) else { return Vec::new() };
+    let Some(around) = Neighbourhood::at(view, span) else { return Vec::new() };
     if !is_bearable(around.path()) {
         return Vec::new();
     }
@@ -118,8 +117,8 @@ pub(super) fn at(view: &ProjectView<'_>, span: Span, style: Style) -> Vec<Refact
         factor::propose(&around),
         split::propose(&around),
         merge::propose(&around),
-        extract::propose(&around, view, span),
-        inline::propose(&around, view),
+        extract::propose(&around, span),
+        inline::propose(&around),
     ];
     // De Morgan's form says more than that it is shorter.
     let proposals = de_morgan::propose(&around).into_iter().chain(proposals.into_iter().flatten());

@@ -4,7 +4,7 @@ use super::Change;
 use super::stretch::{self, BYTES_MAX, CHUNKS_BEHIND};
 use super::unit::Unit;
 use super::{measure, silent};
-use crate::document::{Document, Notation};
+use crate::document::{Document, Notation, ProjectView};
 use crate::logic::Path;
 use crate::text::Span;
 use crate::translate::Source;
@@ -15,14 +15,16 @@ use std::cell::RefCell;
 /// The rung at the cursor, those before it in its chunk and in the chunk before, and some behind it.
 pub(super) struct Neighbourhood<'d> {
     pub document: &'d Document,
+    /// The project that it is a part of.
+    pub view: &'d ProjectView<'d>,
     /// In order.
     pub rungs: Vec<Source>,
     /// The number of the rung at the cursor.
     pub here: usize,
     /// The program unit in which it stands.
     pub unit: Unit,
-    /// Whether there is a selection, and not just a cursor that passes by.
-    pub is_selected: bool,
+    /// The cursor or the selection, in bytes of the document.
+    pub selected: Span,
     /// The bytes of whole chunks in which the rungs stand.
     pub span: Span,
     /// Whether helpers are stored to wherever they are read outside of these bytes, as far as it was asked.
@@ -30,8 +32,9 @@ pub(super) struct Neighbourhood<'d> {
 }
 
 impl<'d> Neighbourhood<'d> {
-    /// That of the rung at a cursor or selection in `document`; nothing where there is none that can be read.
-    pub fn at(document: &'d Document, selected: Span) -> Option<Neighbourhood<'d>> {
+    /// That of the rung at a cursor or selection in the document of `view`; nothing where there is none that can be read.
+    pub fn at(view: &'d ProjectView<'d>, selected: Span) -> Option<Neighbourhood<'d>> {
+        let document = view.here();
         let offset = selected.start as usize;
         let at = document.chunk_at(offset)?;
         let unit = Unit::at(document, at.start);
@@ -47,15 +50,18 @@ impl<'d> Neighbourhood<'d> {
             }
         };
         rungs.get(here)?.path()?;
-        Some(Neighbourhood {
-            document,
-            rungs,
-            here,
-            unit,
-            is_selected: !selected.is_empty(),
-            span,
-            kept: RefCell::default(),
-        })
+        Some(Neighbourhood { document, view, rungs, here, unit, selected, span, kept: RefCell::default() })
+    }
+
+    /// Whether there is a selection, and not just a cursor that passes by.
+    pub fn is_selected(&self) -> bool {
+        !self.selected.is_empty()
+    }
+
+    /// Whether the cursor or selection touches this place in the chunk of the rung.
+    pub fn is_at_cursor(&self, place: Span) -> bool {
+        let place = place.shifted(self.rung().start);
+        place.start <= self.selected.end && self.selected.start <= place.end
     }
 
     /// The rung at the cursor.

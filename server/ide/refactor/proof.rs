@@ -2,7 +2,7 @@
 
 use super::declaration::adds_only;
 use super::neighbourhood::Neighbourhood;
-use super::unit::Unit;
+use super::unit::{Unit, is_member};
 use super::writing::Written;
 use super::{Change, Proposal, silent, stretch};
 use crate::document::{Document, Edit, Notation, Symbol};
@@ -131,11 +131,12 @@ fn keeps_to_itself(
 ) -> bool {
     let unit = Unit::at(after, window.start as usize);
     let inside = |start: usize| window.range().contains(&start);
+    let is_seen = |symbol: &Symbol| matches!(symbol, Symbol::Variable(name) if is_member(around.view, name));
     let is_private = |symbol: &Symbol| match silent::helper(symbol) {
         Some(name) => {
             around.is_stored_outside(name) && silent::is_stored_wherever_read(after, unit, name, &inside)
         }
-        None => silent::is_named_only_in(after, unit, symbol, new),
+        None => !is_seen(symbol) && silent::is_named_only_in(after, unit, symbol, new),
     };
     old.iter().chain(new).flat_map(silent::names).all(|symbol| is_private(&symbol))
 }

@@ -1,7 +1,7 @@
 //! The program unit around the cursor, and what is named in it.
 
-use crate::document::{Chunk, Document, Mention, Names, Symbol, Use};
-use crate::text::Span;
+use crate::document::{Chunk, Document, Mention, Names, ProjectView, Symbol, Use};
+use crate::text::{Span, folded};
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 
@@ -103,4 +103,19 @@ impl Unit {
 /// Whether something is done with what is named, or a label stands there.
 pub(super) fn is_use(mention: &Mention) -> bool {
     mention.usage != Use::Declare || matches!(mention.symbol, Symbol::Label(_))
+}
+
+/// Whether somewhere in the project a part of something has this name: `pump.Relay1`. Who calls a function block may
+/// ask for its variables so, and the access paths of a configuration do.
+pub(super) fn is_member(view: &ProjectView<'_>, name: &str) -> bool {
+    let wanted = folded(name);
+    let is_part = |c: char| c.is_alphanumeric() || c == '_';
+    view.members().iter().flat_map(|member| member.document.chunks()).any(|at| {
+        let text = at.chunk.text();
+        text.match_indices('.').any(|(dot, _)| {
+            let rest = &text[dot + 1..];
+            let end = rest.find(|c: char| !is_part(c)).unwrap_or(rest.len());
+            end == wanted.len() && folded(&rest[..end]) == wanted
+        })
+    })
 }

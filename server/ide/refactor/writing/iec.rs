@@ -26,6 +26,10 @@ pub(super) fn lists(
     changes: &[Change],
     declarations: &mut Vec<Declaration>,
 ) -> Option<Vec<(Span, String)>> {
+    // XOR would be written as what it is made of, which nobody asks for.
+    if changes.iter().filter_map(|change| around.replaced(change)).flatten().any(has_xor) {
+        return None;
+    }
     let mut helpers = Helpers::beside(None);
     helpers.pou = around.unit.number;
     spares(around, changes, &mut helpers)?;
@@ -48,6 +52,18 @@ pub(super) fn lists(
         lists.push(list(around, rungs, &change.paths, &written)?);
     }
     Some(lists)
+}
+
+fn has_xor(placed: &Source) -> bool {
+    let own = placed.rung.span;
+    let items = placed.chunk.iec().map_or(&[][..], |tree| &tree.items);
+    let inside = items.iter().filter(|item| own.start <= item.span.start && item.span.end <= own.end);
+    inside.into_iter().any(|item| match item.kind {
+        ItemKind::Operation { operation, .. } | ItemKind::Open { operation, .. } => {
+            operation.operator.name == "XOR"
+        }
+        _ => false,
+    })
 }
 
 fn instructions(changes: &[Change], helpers: &mut Helpers) -> Option<Vec<Vec<Instructions>>> {
