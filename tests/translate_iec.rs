@@ -951,3 +951,34 @@ fn a_call_without_its_condition_changes_nothing() {
     let proof = prove(&one(idle), &one(&idle.replace("LD T1.Q\nST y", "LDN w\nST y")));
     assert!(!matches!(proof, Proof::Equal { .. }), "{proof:?}");
 }
+
+#[test]
+fn what_depends_on_a_rung_that_is_kept_is_kept_with_it() {
+    for (text, translated) in [
+        ("LD X0\nMC N0 M100\nLD X1\nOUT Y0\nMCR N0\nLD X2\nOUT Y1\nEND\n", &["Y1"][..]),
+        ("FOR K3\nLD X3\nOUT Y2\nNEXT\nLD X2\nOUT Y1\nEND\n", &["Y1"]),
+        ("LD X7\nOUT Y7\nFEND\nP1\nLD X5\nOUT Y3\nSRET\nEND\n", &["Y7"]),
+        ("LD T250\nCJ P1\nLD X5\nOUT Y3\nP1\nLD X2\nOUT Y1\nEND\n", &["Y1"]),
+        // A jump that is translated, or leads back, leaves the others to themselves.
+        ("LD X0\nCJ P1\nLD X5\nOUT Y3\nP1\nLD X2\nOUT Y1\nEND\n", &["Y3", "Y1"]),
+        ("P1\nLD X5\nOUT Y3\nLD T250\nCJ P1\nLD X2\nOUT Y1\nEND\n", &["Y3", "Y1"]),
+    ] {
+        let iec = to(&fx(text), To::Iec).text;
+        let stores = iec.lines().filter_map(|line| line.trim().strip_prefix("ST "));
+        assert_eq!(stores.map(str::trim).collect::<Vec<_>>(), translated, "{iec}");
+    }
+    // A detector of its own has no counterpart, so its jump has none.
+    let jump = "LD a\nST R.CLK\nCAL R\nLD R.Q\nJMPCN L\nLD b\nST y\nL:\nLD c\nST z\n";
+    let variables = "a AT %IX0.0, b AT %IX0.1, c AT %IX0.2, y AT %QX0.0, z AT %QX0.1 : BOOL; R : R_TRIG;";
+    let variables = variables.replace(", ", " : BOOL; ");
+    let translation =
+        to(&list(&format!("PROGRAM P\nVAR\n{variables}\nEND_VAR\n{jump}END_PROGRAM\n")), To::Fx);
+    assert!(
+        !translation.text.contains("OUT Y0") && translation.text.contains("OUT Y1"),
+        "{}",
+        translation.text
+    );
+    let notes: Vec<&str> =
+        translation.rungs.iter().filter_map(|rung| rung.note.as_ref()).map(|note| note.key()).collect();
+    assert_eq!(notes, ["translate.no-counterpart", "translate.guarded"]);
+}

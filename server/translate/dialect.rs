@@ -33,11 +33,13 @@
 //! how words lie in a double word. The way back takes variables by their addresses, and by their names where they
 //! have none and these are names of devices that nothing else is.
 
+mod guarded;
 mod lack;
 mod registers;
 mod to_devices;
 mod to_variables;
 
+use self::guarded::Guard;
 use self::lack::{Lack, without};
 use self::registers::Registers;
 use super::To;
@@ -46,6 +48,7 @@ use crate::document::Document;
 use crate::il::iec::PouKind;
 use crate::logic::{Action, Deed, Drive, Path, Refusal};
 use crate::target::{Device, DeviceKind, DirectAddress, Form, Location, Model, Target, Width};
+use crate::text::Message;
 use std::cell::Cell;
 use std::sync::Arc;
 
@@ -157,13 +160,35 @@ pub(super) fn convert(
     if target.is_fx() {
         join_divisions(document, target, (&names, &registers), program);
     }
-    for source in &mut program.rungs {
+    let guards = guarded::all(&program.rungs);
+    let mut open: Vec<Guard> = Vec::new();
+    let mut unit = None;
+    for (source, own) in program.rungs.iter_mut().zip(guards) {
+        if unit.replace(source.pou) != Some(source.pou) {
+            open.clear();
+        }
+        guarded::close_before(&mut open, source);
+        let guard = open.last().map(|guard| Message::new("translate.guarded").with("word", &guard.word));
+        guarded::close_with(&mut open, source);
         if target.is_fx() {
             source.rung.labels.iter_mut().for_each(|label| *label = names.of_label(label));
         }
         // The words of the other language are no list in this one.
         source.rung.is_list = false;
-        let Ok(Some(path)) = &source.rung.path else { continue };
+        let path = match &source.rung.path {
+            Ok(None) => continue,
+            Ok(Some(path)) => path,
+            Err(_) => {
+                open.extend(own);
+                continue;
+            }
+        };
+        if guard.is_some() {
+            source.note = guard;
+            source.rung.path = Err(Refusal::NoCounterpart);
+            open.extend(own);
+            continue;
+        }
         let converted = match target.is_fx() {
             false => to_variables::path(path, document.target(), &registers, &pulses),
             // What a function or a block does it does for whoever calls it.
@@ -173,6 +198,9 @@ pub(super) fn convert(
             }
             true => to_devices::path(path, target, (&names, &registers), (document.scopes(), source.pou)),
         };
+        if converted.is_err() {
+            open.extend(own);
+        }
         source.note = converted.as_ref().err().map(Lack::message);
         source.rung.path = converted.map(Some).map_err(|_| Refusal::NoCounterpart);
     }

@@ -32,7 +32,7 @@ pub(super) struct Neighbourhood<'d> {
 }
 
 impl<'d> Neighbourhood<'d> {
-    /// That of the rung at a cursor or selection in the document of `view`; nothing where there is none that can be read.
+    /// That of the rung at a cursor or selection in the document of `view`; nothing where none can be read.
     pub fn at(view: &'d ProjectView<'d>, selected: Span) -> Option<Neighbourhood<'d>> {
         let document = view.here();
         let offset = selected.start as usize;

@@ -1,0 +1,101 @@
+//! What a jump leaves out, a master control gates or a loop repeats. Where that is kept as a comment, so is what
+//! depends on it: done in each scan, it would be something else.
+
+use crate::logic::{Action, Deed, Path};
+use crate::target::Flow;
+use crate::text::folded;
+use crate::translate::Source;
+use rustc_hash::FxHashMap;
+use smol_str::{SmolStr, format_smolstr};
+
+/// Something that decides whether, or how often, the rungs behind it are done.
+pub(super) struct Guard {
+    /// As it is said in a message.
+    pub(super) word: SmolStr,
+    until: Until,
+}
+
+#[derive(PartialEq)]
+enum Until {
+    /// The rung with this folded label.
+    Label(SmolStr),
+    /// Behind the rung with this instruction.
+    Behind(Flow),
+    /// The end of the program unit.
+    End,
+}
+
+/// The guards that each rung sets up. Jumps back guard nothing.
+pub(super) fn all(sources: &[Source]) -> Vec<Vec<Guard>> {
+    let mut last: FxHashMap<(Option<usize>, SmolStr), usize> = FxHashMap::default();
+    for (number, source) in sources.iter().enumerate() {
+        let labels = source.rung.labels.iter().map(|label| (source.pou, folded(label)));
+        labels.for_each(|label| _ = last.insert(label, number));
+    }
+    let guards = |(number, source): (usize, &Source)| {
+        let is_ahead = |label: &SmolStr| last.get(&(source.pou, label.clone())) > Some(&number);
+        let holds = |guard: &Guard| !matches!(&guard.until, Until::Label(label) if !is_ahead(label));
+        of(source).into_iter().filter(holds).collect()
+    };
+    sources.iter().enumerate().map(guards).collect()
+}
+
+fn of(source: &Source) -> Vec<Guard> {
+    match &source.rung.path {
+        Ok(path) => path.iter().flat_map(Path::actions).filter_map(guard).collect(),
+        // What cannot be read may jump as well.
+        Err(_) => {
+            let words: Vec<&str> = source.text().split_whitespace().collect();
+            let jumps = words
+                .windows(2)
+                .filter(|pair| pair[0].get(..3).is_some_and(|word| word.eq_ignore_ascii_case("JMP")));
+            jumps.map(|pair| jump("JMP", pair[1])).collect()
+        }
+    }
+}
+
+/// Closes the guards that end before a rung.
+pub(super) fn close_before(guards: &mut Vec<Guard>, source: &Source) {
+    let labels: Vec<SmolStr> = source.rung.labels.iter().map(|label| folded(label)).collect();
+    guards.retain(|guard| !matches!(&guard.until, Until::Label(label) if labels.contains(label)));
+}
+
+/// Closes the guards that end with a rung.
+pub(super) fn close_with(guards: &mut Vec<Guard>, source: &Source) {
+    let flows = source.path().map(Path::actions).unwrap_or_default();
+    let flows: Vec<Flow> = flows.into_iter().filter_map(flow).collect();
+    guards.retain(|guard| !matches!(guard.until, Until::Behind(flow) if flows.contains(&flow)));
+}
+
+fn guard(action: &Action) -> Option<Guard> {
+    let label = action.terms.first().map_or("", |term| term.text.as_str());
+    let until = match &action.deed {
+        Deed::Jump => return Some(jump("JMP", label)),
+        Deed::Return => Until::End,
+        Deed::Instruction(form) => match form.instruction.flow() {
+            Flow::Jump => return Some(jump("CJ", label)),
+            Flow::SectionBegin => Until::Behind(Flow::SectionEnd),
+            Flow::LoopBegin => Until::Behind(Flow::LoopEnd),
+            Flow::Step => Until::Behind(Flow::StepsEnd),
+            Flow::MainEnd => Until::End,
+            _ => return None,
+        },
+        _ => return None,
+    };
+    let word = match &action.deed {
+        Deed::Instruction(form) => form.mnemonic().into(),
+        _ => "RET".into(),
+    };
+    Some(Guard { word, until })
+}
+
+fn jump(word: &str, label: &str) -> Guard {
+    Guard { word: format_smolstr!("{word} {label}"), until: Until::Label(folded(label)) }
+}
+
+fn flow(action: &Action) -> Option<Flow> {
+    match &action.deed {
+        Deed::Instruction(form) => Some(form.instruction.flow()),
+        _ => None,
+    }
+}
