@@ -129,6 +129,21 @@ fn what_differs_is_different() {
 }
 
 #[test]
+fn what_instructions_make_of_bits_is_no_difference() {
+    check(
+        &[
+            ("LD X0;WAND K0 D0 D0;LD X0;AND D0.1;OUT Y0", "LD X0;WAND K0 D0 D0;LDI M8000;OUT Y0"),
+            ("LD X0;CMP D0 D1 M0;LD M0;AND M1;OUT Y0", "LD X0;CMP D0 D1 M0;LD M0;AND M1;ANI X0;OUT Y0"),
+            ("LD M6;CML D4 D1;MOV D2 D1", "LD M6;AND X1;CML D4 D1;LD M6;MOV D2 D1"),
+        ],
+        |verdict| verdict == "undecided",
+    );
+    check(&[("LD X0;CMP D0 D1 M0;LD M0;OUT Y0", "LD X0;CMP D0 D1 M0;LDI M0;OUT Y0")], |verdict| {
+        verdict == "different"
+    });
+}
+
+#[test]
 fn declarations_count() {
     let list = |variables: &str| {
         let text = format!("PROGRAM p\n{variables}\nEND_VAR\nLD n\nGT lim\nST y\nEND_PROGRAM\n");

@@ -185,11 +185,11 @@ fn difference(
 
 fn place_of(effect: &Effect<'_>) -> (String, Place) {
     let bit = || effect.action.terms.first().map(Term::key).unwrap_or_default();
-    (what(effect), effect.event.map_or_else(|| Place::Bit(bit()), Place::Event))
+    (shown(effect.action), effect.event.map_or_else(|| Place::Bit(bit()), Place::Event))
 }
 
-fn what(effect: &Effect<'_>) -> String {
-    let action = effect.action;
+/// What an action is called in a counterexample: the instruction with its operands, or what it drives.
+pub fn shown(action: &Action) -> String {
     match (&action.deed, action.terms.first()) {
         (Deed::Coil(_), Some(term)) => term.text.to_string(),
         (Deed::Instruction(form), _) => {

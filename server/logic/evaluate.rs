@@ -41,15 +41,17 @@ pub struct Scan<'s> {
     words: BTreeMap<SmolStr, i64>,
     /// Whether each event had power, in order.
     pub events: Vec<bool>,
-    /// The events of which it was only guessed what they leave behind: units of the program may never leave it, nor
-    /// calculations come to it.
+    /// The events of which it was only guessed what bits they leave behind: units of the program, instructions and
+    /// calculations may never leave these.
     pub guesses: Vec<u32>,
+    /// Whether words were guessed that units of the program and calculations may never come to.
+    pub guesses_words: bool,
 }
 
 /// One scan of `paths` from `state`.
 pub fn evaluate<'s>(paths: &[&Path], state: &'s State) -> Scan<'s> {
     let (bits, words) = (state.bits.clone(), state.words.clone());
-    let mut scan = Scan { state, bits, words, events: Vec::new(), guesses: Vec::new() };
+    let mut scan = Scan { state, bits, words, events: Vec::new(), guesses: Vec::new(), guesses_words: false };
     paths.iter().for_each(|path| scan.path(path, true));
     scan
 }
@@ -176,7 +178,10 @@ impl<'s> Scan<'s> {
         self.events.push(power);
         let nothing = LeftBehind::default();
         let left = self.left_behind().unwrap_or(&nothing);
-        if (is_unknown || action.runs_unit()) && *left != nothing {
+        self.guesses_words |= (is_unknown || action.runs_unit()) && !left.words.is_empty();
+        let is_guessed =
+            action.runs_unit() || power && matches!(action.deed, Deed::Instruction(_) | Deed::Compute(_));
+        if is_guessed && !left.bits.is_empty() {
             self.guesses.push(self.events.len() as u32);
         }
         let own = action.terms.first().map(|term| (term.key(), self.value(term)));

@@ -58,7 +58,7 @@ mod minimal;
 pub use minimal::{Sum, sum_of_products};
 
 mod compare;
-pub use compare::{Comparison, Place, compare, compare_but, compare_outcome, may_drive, touches_bits};
+pub use compare::{Comparison, Place, compare, compare_but, compare_outcome, may_drive, shown, touches_bits};
 
 mod evaluate;
 pub use evaluate::{LeftBehind, Scan, State, evaluate};

@@ -2,7 +2,7 @@
 //! programs with them.
 
 use crate::logic::{Atom, Formulas, Moment, Path, Place, Scan, State, Step, evaluate};
-use crate::target::iec::LiteralValue;
+use crate::target::iec::{ElementaryType, LiteralValue};
 use crate::target::{Device, DirectAddress, Model, Operand};
 use crate::text::Span;
 use rustc_hash::FxHashMap;
@@ -70,7 +70,7 @@ pub(super) fn confirmed(state: &State, paths: [&[&Path]; 2], place: &Place) -> O
     let guesses: BTreeSet<u32> = scans.iter().flat_map(|scan| scan.guesses.iter().copied()).collect();
     let found = differing(&scans, place)?;
     let left = |event: &u32| state.left_behind.get(event);
-    if guesses.iter().filter_map(left).any(|left| !left.words.is_empty()) {
+    if scans.iter().any(|scan| scan.guesses_words) {
         return None;
     }
     let bits = guesses.iter().flat_map(|event| {
@@ -87,6 +87,15 @@ pub(super) fn confirmed(state: &State, paths: [&[&Path]; 2], place: &Place) -> O
         differing(&paths.map(|paths| evaluate(paths, &state)), place).is_some()
     };
     (bits.len() <= GUESSES_MAX && (0..1 << bits.len()).all(differs)).then_some(found)
+}
+
+/// Whether each number is one that a variable of its type can have; `type_of` tells that of a key.
+pub(super) fn is_possible(state: &State, type_of: &dyn Fn(&str) -> Option<ElementaryType>) -> bool {
+    let left = state.left_behind.values().flat_map(|left| &left.words);
+    state.words.iter().chain(left).all(|(key, value)| {
+        let range = type_of(key.trim_start_matches(WIDE)).and_then(ElementaryType::integers);
+        range.is_none_or(|range| range.contains(&i128::from(*value)))
+    })
 }
 
 /// All values of so many guessed bits are tried.

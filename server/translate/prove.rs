@@ -6,16 +6,17 @@
 use super::counterexample::{self, Counterexample};
 use super::source::{self, Source};
 use super::{To, declared, dialect, units};
-use crate::document::{Document, Scopes};
+use crate::document::{DeclaredType, Document, Scopes};
 use crate::il::iec::SectionKind;
 use crate::logic::{
     Action, Comparison, Deed, Effort, Path, Place, State, Storage, Term, compare, compare_outcome,
-    is_helper_name, may_drive, touches_bits,
+    is_helper_name, may_drive, shown, touches_bits,
 };
 use crate::target::{Flow, Model, Target};
 use crate::text::{Message, Span, folded};
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
+use std::borrow::Cow;
 
 /// What is known of two programs.
 #[derive(Clone, PartialEq, Debug)]
@@ -81,6 +82,7 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
         may_be_off,
         helpers: if is_mixed { helpers([left, right]) } else { FxHashSet::default() },
         is_reordered: false,
+        is_mixed,
         scopes: [left.scopes(), right.scopes()],
         effort: Effort::of_program(),
     };
@@ -225,6 +227,8 @@ struct Prover<'s> {
     /// Variables that only one of the programs has.
     helpers: FxHashSet<SmolStr>,
     is_reordered: bool,
+    /// Whether one of them is for the FX family and the other of IEC 61131-3.
+    is_mixed: bool,
     /// What either program declares.
     scopes: [&'s Scopes; 2],
     effort: Effort,
@@ -323,7 +327,7 @@ impl<'s> Prover<'s> {
                 self.beyond(sides).map_or_else(|| undecided("prove.driven-again"), Err)
             }
             Comparison::Different { what, place, .. } => {
-                let found = different((what, place), state, [&left, &right], sides);
+                let found = self.different((what, place), state, [&left, &right], sides);
                 found.map_or_else(|| undecided("prove.unconfirmed"), Err)
             }
         }
@@ -365,7 +369,7 @@ impl<'s> Prover<'s> {
         if self.is_driven_behind(sides, &key) {
             return None;
         }
-        different((what, Place::Bit(key)), state, [&left, &right], sides)
+        self.different((what, Place::Bit(key)), state, [&left, &right], sides)
     }
 
     /// The rungs of a side and those behind, as far as they are executed one after the other.
@@ -387,27 +391,71 @@ impl<'s> Prover<'s> {
     }
 }
 
-/// The difference that running both programs from `state` confirms. Formulas know less than a PLC: what they leave open
-/// may be what it never does.
-fn different(
-    (what, place): (String, Place),
-    state: Option<State>,
-    paths: [&[&Path]; 2],
-    sides: [Rungs<'_, '_>; 2],
-) -> Option<Proof> {
-    let state = state?;
-    let values = counterexample::confirmed(&state, paths, &place)?;
-    let at = sides.map(|side| rung_of(side, &what));
-    let (inputs, before) = counterexample::inputs(&state, paths);
-    Some(Proof::Different(Box::new(Counterexample { inputs, before, what, sides: values, at })))
-}
-
 /// The number of the first rung behind the one at `span`.
 fn behind(all: &[Source], span: Span) -> usize {
     all.partition_point(|source| source.span().start <= span.start)
 }
 
 impl Prover<'_> {
+    /// The difference that running both programs from `state` confirms. Formulas know less than a PLC: what they leave
+    /// open may be what it never does.
+    fn different(
+        &self,
+        (what, place): (String, Place),
+        state: Option<State>,
+        paths: [&[&Path]; 2],
+        sides: [Rungs<'_, '_>; 2],
+    ) -> Option<Proof> {
+        let state = state.filter(|state| self.is_possible(state))?;
+        if matches!(place, Place::Event(_)) && !self.lasts(&what) {
+            return None;
+        }
+        let values = counterexample::confirmed(&state, paths, &place)?;
+        let at = sides.map(|side| rung_of(side, &what));
+        let (inputs, before) = counterexample::inputs(&state, paths);
+        Some(Proof::Different(Box::new(Counterexample { inputs, before, what, sides: values, at })))
+    }
+
+    fn is_possible(&self, state: &State) -> bool {
+        let mut types = FxHashMap::default();
+        for (all, scopes) in self.all.iter().zip(self.scopes) {
+            for source in all.iter() {
+                for term in source.path().map(Path::terms).unwrap_or_default() {
+                    if let Some(DeclaredType::Elementary(kind)) = scopes.type_of(source.pou, &term.text) {
+                        types.insert(term.key(), kind);
+                    }
+                }
+            }
+        }
+        counterexample::is_possible(state, &|key| types.get(key).copied())
+    }
+
+    /// Whether what an action does is still there when the scan ends, as far as one can see: nothing else writes what
+    /// it writes, or a block remembers it. A detector of edges does nothing that a program of the other family would
+    /// have to do.
+    fn lasts(&self, what: &str) -> bool {
+        let all =
+            || self.all.iter().flat_map(|all| all.iter()).filter_map(Source::path).flat_map(Path::actions);
+        let own: Vec<&Action> = all().filter(|action| shown(action) == what).collect();
+        let is_detector = |action: &&&Action| match &action.deed {
+            Deed::Call(call) => ["R_TRIG", "F_TRIG"].iter().any(|name| call.block.is_standard(name)),
+            _ => false,
+        };
+        if self.is_mixed && own.iter().any(|action| is_detector(&action)) {
+            return false;
+        }
+        let forgets = |action: &&&Action| matches!(action.deed, Deed::Instruction(_) | Deed::Compute(_));
+        let written = own.iter().filter(forgets).flat_map(|action| action.changes());
+        let written: Vec<Term> = written.map(Cow::into_owned).collect();
+        let mut others = all().filter(|action| shown(action) != what);
+        !others.any(|action| {
+            action
+                .changes()
+                .iter()
+                .any(|term| written.iter().any(|own| own.key() == term.key() || own.may_cover(term)))
+        })
+    }
+
     /// Whether the bit with this key may be driven once more behind the rungs on either side, so that what it is at
     /// their end is not what the scan leaves.
     fn is_driven_behind(&self, sides: [&[(&Source, &Path)]; 2], key: &str) -> bool {
