@@ -21,6 +21,8 @@ pub mod translate;
 
 pub mod check;
 
+pub mod simulate;
+
 pub mod project;
 
 pub mod ide;

@@ -252,3 +252,21 @@ fn files_keep_their_encoding_mark_and_line_ends() {
         assert_eq!(stdout, written, "{name}");
     }
 }
+
+/// A mistake in the manifest is one of the manifest, told at the value with what belongs there.
+#[test]
+fn a_mistake_in_the_manifest_is_told_at_its_value() {
+    let folder = folder(&[
+        ("rungwise.toml", "target = \"iec\"\n\n[translate]\ntarget = \"fx9\"\n"),
+        ("a.il", "LD a\nST b\n"),
+    ]);
+    for verb in [&["check", "."][..], &["translate", "a.il", "--to", "fx"], &["usage", "a.il"]] {
+        let (code, _, err) = run(&folder, verb);
+        assert_eq!(code, 2, "{err}");
+        assert!(err.starts_with("error[manifest]: "), "{err}");
+        let place = "rungwise.toml:4:11: `fx9` is no model of the FX family; fx1s, fx1n, fx2n and fx3u are\n";
+        assert!(err.contains(place) && err.contains("help: mend the manifest"), "{err}");
+    }
+    let (_, _, err) = run(&folder, &["check", ".", "--lang", "zh-CN"]);
+    assert!(err.contains("请改正清单文件"), "{err}");
+}

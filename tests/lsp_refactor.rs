@@ -58,8 +58,7 @@ fn a_variable_is_declared_in_the_edit_that_extracts_it() {
 #[test]
 fn devices_of_other_files_of_the_project_are_not_free() {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("rungwise.toml"), "[project]\nname = \"two\"\ntarget = \"fx2n\"\n")
-        .unwrap();
+    std::fs::write(folder.path().join("rungwise.toml"), "name = \"two\"\ntarget = \"fx2n\"\n").unwrap();
     std::fs::write(folder.path().join("other.il"), "LD M0\nOUT Y7\nEND\n").unwrap();
     let root = format!("file://{}", folder.path().display());
     let uri = format!("{root}/main.il");

@@ -12,6 +12,7 @@ const FLOORS: &[(&str, u8)] = &[
     ("logic", 4),
     ("translate", 5),
     ("check", 6),
+    ("simulate", 6),
     ("project", 7),
     ("ide", 8),
     ("lsp", 9),

@@ -10,16 +10,16 @@ use rungwise::translate::{Certificate, Options, Proof, To, Value, prove, transla
 use rungwise::translate::{from_boolean, to_boolean};
 use std::collections::{HashSet, VecDeque};
 
-fn list(text: &str) -> Document {
+pub(crate) fn list(text: &str) -> Document {
     Document::new(text, Notation::FxIl, Target::of(Model::Fx2n))
 }
 
-fn drawing(text: &str) -> Document {
+pub(crate) fn drawing(text: &str) -> Document {
     Document::new(text, Notation::Ladder, Target::of(Model::Fx2n))
 }
 
 /// The translation, of which every rung must be proved.
-fn certain(document: &Document, to: To) -> String {
+pub(crate) fn certain(document: &Document, to: To) -> String {
     let translation = translate(document, None, to, &Options::default());
     for rung in &translation.rungs {
         let certificate = rung.certificate;
@@ -98,7 +98,7 @@ fn naive(part: &Part, next: &mut u32, closed: u32, text: &mut String) {
 }
 
 /// All series-parallel rungs of up to five contacts, open and closed, as lists.
-fn all_small_rungs() -> Vec<String> {
+pub(crate) fn all_small_rungs() -> Vec<String> {
     let mut rungs = Vec::new();
     for contacts in 1..=5 {
         for part in parts(contacts, None) {
@@ -113,7 +113,7 @@ fn all_small_rungs() -> Vec<String> {
 }
 
 /// What a list drives Y0 with, for all values of X0 to X4, a bit each.
-fn truth_of_list(text: &str) -> u32 {
+pub(crate) fn truth_of_list(text: &str) -> u32 {
     (0..32).filter(|inputs| stack_machine_output(text, *inputs)).fold(0, |truth, inputs| truth | 1 << inputs)
 }
 
@@ -552,13 +552,13 @@ fn equations_that_cannot_be_read_say_where() {
 
 /// A rung made up for a property: how contacts are connected, what each asks, and what is driven behind them.
 #[derive(Clone, Debug)]
-struct MadeUp {
+pub(crate) struct MadeUp {
     part: Part,
     kinds: Vec<u8>,
     drives: Vec<(u8, Option<Part>)>,
 }
 
-fn made_up(most: u32) -> impl Strategy<Value = MadeUp> {
+pub(crate) fn made_up(most: u32) -> impl Strategy<Value = MadeUp> {
     let part = |size: u32| {
         Just(Part::Contact).prop_recursive(6, size, 6, |inner| {
             let several = proptest::collection::vec(inner, 2..6);
@@ -572,7 +572,7 @@ fn made_up(most: u32) -> impl Strategy<Value = MadeUp> {
 
 impl MadeUp {
     /// As a list that joins and branches as nobody would write it.
-    fn list(&self) -> String {
+    pub(crate) fn list(&self) -> String {
         let mut text = String::new();
         let mut next = 0;
         self.block(&self.part, &mut next, &mut text);

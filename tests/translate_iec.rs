@@ -12,20 +12,20 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::process::Command;
 
-fn list(text: &str) -> Document {
+pub(crate) fn list(text: &str) -> Document {
     Document::new(text, Notation::IecIl, Target::of(Model::Iec))
 }
 
-fn drawing(text: &str) -> Document {
+pub(crate) fn drawing(text: &str) -> Document {
     Document::new(text, Notation::Ladder, Target::of(Model::Iec))
 }
 
-fn to(document: &Document, to: To) -> Translation {
+pub(crate) fn to(document: &Document, to: To) -> Translation {
     translate(document, None, to, &Options::default())
 }
 
 /// The text of a translation of which nothing is kept and everything is proved.
-fn certain(document: &Document, form: To) -> String {
+pub(crate) fn certain(document: &Document, form: To) -> String {
     let translation = to(document, form);
     for rung in &translation.rungs {
         let said = (rung.certificate, rung.note.as_ref().map(|note| note.key()));
@@ -122,7 +122,8 @@ pub(crate) fn scan(text: &str, state: &mut State) {
     }
 }
 
-fn combine(operator: &str, left: i64, right: i64) -> i64 {
+/// What an operator makes of the current result and its operand.
+pub(crate) fn combine(operator: &str, left: i64, right: i64) -> i64 {
     match operator {
         "AND" | "&" => left & right,
         "ANDN" => left & (1 - right),
@@ -132,6 +133,9 @@ fn combine(operator: &str, left: i64, right: i64) -> i64 {
         "XORN" => left ^ (1 - right),
         "ADD" => left + right,
         "SUB" => left - right,
+        "MUL" => left * right,
+        "DIV" => left / right,
+        "MOD" => left % right,
         "GT" => i64::from(left > right),
         "GE" => i64::from(left >= right),
         "EQ" => i64::from(left == right),
@@ -442,7 +446,7 @@ fn translated(path: &Path, form: &str) -> String {
 }
 
 /// The program of an FX2N.
-fn fx(text: &str) -> Document {
+pub(crate) fn fx(text: &str) -> Document {
     Document::new(text, Notation::FxIl, Target::of(Model::Fx2n))
 }
 
@@ -534,7 +538,6 @@ fn note(translation: &Translation) -> String {
 fn what_has_no_counterpart_keeps_its_words() {
     for (rung, words, lack) in [
         ("LD X0\nOUT T246 K5", "OUT T246 K5", "T246"),
-        ("LD X0\nMOV D0 C0", "MOV D0 C0", "MOV"),
         ("LD X0\nMOVP K5 D0Z0", "MOVP K5 D0Z0", "D0Z0"),
         ("LD M8013\nOUT Y0", "LD M8013", "M8013"),
         ("LD X0\nBCD D0 D1", "BCD D0 D1", "BCD"),
@@ -552,6 +555,26 @@ fn what_has_no_counterpart_keeps_its_words() {
         assert!(translation.text.contains(&format!("(* {words} *)")), "{}", translation.text);
         assert!(problems(&translation.text).is_empty(), "{}", translation.text);
     }
+    for (rung, said, in_chinese) in [
+        (
+            "MOV D0 C0",
+            "`C0` is written to, and only its block writes the value of a counter",
+            "`C0` 被写入，而计数器的当前值只能由其功能块写入",
+        ),
+        (
+            "MUL K4 K5 D10",
+            "`MUL` of two constants makes 32 bits, and in IEC 61131-3 a product has the type of its operands",
+            "`MUL` 的两个常数之积为 32 位，而 IEC 61131-3 中积的类型与操作数相同",
+        ),
+    ] {
+        let translation = to(&fx(&format!("LD X0\n{rung}\nEND\n")), To::Iec);
+        assert_eq!(note(&translation), said);
+        let note = translation.rungs[0].note.as_ref().expect("a note");
+        assert_eq!(note.render(Language::SimplifiedChinese), in_chinese);
+    }
+    let wide = "D0 AT %MW1000 : INT; D4 AT %MD502 : DINT;";
+    let translation = to(&list(&program(wide, "LD D0\nINT_TO_DINT\nMUL 70000\nST D4")), To::Fx);
+    assert_eq!(note(&translation), "`70000` does not fit in 16 bits, with which the instruction calculates");
     for (body, lack) in [
         ("LD a\nST y", "a"),
         ("LD X0\nST T0.IN\nCAL T0(\nPT := T#50ms\n)", "T0 : TON"),
@@ -702,7 +725,7 @@ fn what_a_jump_skips_is_done_as_before() {
 }
 
 /// A random program of an FX2N, well formed.
-fn fx_programs() -> impl Strategy<Value = String> {
+pub(crate) fn fx_programs() -> impl Strategy<Value = String> {
     let bit = prop::sample::select(vec!["X0", "X1", "X17", "Y0", "M5", "S3", "T1", "C2"]);
     let contact = (prop::sample::select(vec!["LD", "LDI", "LDP", "LDF"]), bit)
         .prop_map(|(word, bit)| format!("{word} {bit}"));

@@ -1,6 +1,7 @@
 //! Calculations with words between the FX family and IEC 61131-3: what each instruction becomes, that it comes back, and
 //! that two small machines do the same with both.
 
+use crate::translate_iec::{certain, fx, list, to};
 use crate::word_machines::{Fx, Iec, types};
 use proptest::prelude::*;
 use rungwise::document::{Document, Notation};
@@ -8,29 +9,6 @@ use rungwise::target::{Model, Target};
 use rungwise::text::Language;
 use rungwise::translate::{Certificate, Options, Proof, To, Translation, prove, translate};
 use std::collections::BTreeMap;
-
-fn fx(text: &str) -> Document {
-    Document::new(text, Notation::FxIl, Target::of(Model::Fx2n))
-}
-
-fn list(text: &str) -> Document {
-    Document::new(text, Notation::IecIl, Target::of(Model::Iec))
-}
-
-fn to(document: &Document, to: To) -> Translation {
-    translate(document, None, to, &Options::default())
-}
-
-/// The text of a translation of which nothing is kept and everything is proved.
-fn certain(document: &Document, form: To) -> String {
-    let translation = to(document, form);
-    for rung in &translation.rungs {
-        let note = rung.note.as_ref().map(|note| note.render(Language::English));
-        let is_certain = rung.certificate.is_some_and(Certificate::is_certain) && note.is_none();
-        assert!(is_certain, "{:?} {note:?}\n{}", rung.certificate, translation.text);
-    }
-    translation.text
-}
 
 /// The instructions of the body of a list, separated by bars.
 fn body(text: &str) -> String {
@@ -178,7 +156,10 @@ fn variables_of_32_bits_are_two_registers() {
         ("LD d; GT n; ST y", "`n` is of type INT, with which no instruction of 32 bits calculates"),
         ("LD u; GT 5; ST y", "`u` is of type UDINT, and the FX family compares words with a sign"),
         ("LD %MD505; GT 5; ST y", "`%MD505` is of type DWORD, and the FX family compares words with a sign"),
-        ("LD d; GT 3000000000; ST y", "`3000000000` has no counterpart in the other language"),
+        (
+            "LD d; GT 3000000000; ST y",
+            "`3000000000` does not fit in 32 bits, with which the instruction calculates",
+        ),
     ] {
         let translation = to(&program(body), To::Fx);
         assert_eq!(note(&translation), reason, "{body}\n{}", translation.text);

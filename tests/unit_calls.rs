@@ -2,8 +2,7 @@
 //! across the files of a project.
 
 use crate::binary::{folder, run};
-use rungwise::document::{Document, Notation};
-use rungwise::target::{Model, Target};
+use crate::translate_iec::{certain, drawing, list, to};
 use rungwise::text::{Language, Span};
 use rungwise::translate::{Certificate, Options, Proof, To, Translation, prove, translate};
 
@@ -64,14 +63,6 @@ END_FUNCTION
 const VARIABLES: &str =
     "a, b, c, d, y, z : BOOL; n, k, m, t : INT; P, R : Pump; Q : Meter; Held1 : BOOL;\nOdd : Unheard;";
 
-fn list(text: &str) -> Document {
-    Document::new(text, Notation::IecIl, Target::of(Model::Iec))
-}
-
-fn drawing(text: &str) -> Document {
-    Document::new(text, Notation::Ladder, Target::of(Model::Iec))
-}
-
 /// A program with these variables behind the units.
 fn with(variables: &str, body: &str) -> String {
     format!("{UNITS}\nPROGRAM Main\nVAR\n{variables}\nEND_VAR\n{body}\nEND_PROGRAM\n")
@@ -79,21 +70,6 @@ fn with(variables: &str, body: &str) -> String {
 
 fn program(body: &str) -> String {
     with(VARIABLES, body)
-}
-
-fn to(document: &Document, form: To) -> Translation {
-    translate(document, None, form, &Options::default())
-}
-
-/// The text of a translation of which nothing is kept and everything is proved.
-fn certain(document: &Document, form: To) -> String {
-    let translation = to(document, form);
-    for rung in &translation.rungs {
-        let note = rung.note.as_ref().map(|note| note.render(Language::English));
-        let is_certain = rung.certificate.is_some_and(Certificate::is_certain) && note.is_none();
-        assert!(is_certain, "{note:?}\n{}\n--\n{}", document.slice(rung.span), translation.text);
-    }
-    translation.text
 }
 
 /// The instructions of the last body of a list, with single blanks, joined by ` | `.
@@ -499,4 +475,63 @@ fn the_check_looks_at_pins_as_the_translation_does() {
         assert!(errors.len() == 1 && errors[0].ends_with(said), "{errors:?}\n{wrong}");
         assert_eq!(code, 1, "{wrong}");
     }
+}
+
+/// Why what a unit does is not compared: who declares it where.
+#[test]
+fn a_unit_that_may_be_another_one_is_told_with_the_reason() {
+    let unit =
+        "FUNCTION Twice : INT\nVAR_INPUT\n    In : INT;\nEND_VAR\nLD In\nADD In\nST Twice\nEND_FUNCTION\n";
+    let caller = "PROGRAM Main\nVAR\n    n, k : INT;\nEND_VAR\nLD n\nTwice\nST k\nEND_PROGRAM\n";
+    let both = format!("{unit}{caller}");
+    let manifest = "target = \"iec\"\n";
+    let files = [
+        ("one/rungwise.toml", manifest),
+        ("one/unit.il", unit),
+        ("one/main.il", caller),
+        ("one/whole.il", &both),
+        ("two/rungwise.toml", manifest),
+        ("two/unit.il", unit),
+        ("two/main.il", caller),
+        ("two/whole.il", &both),
+    ];
+    let folder = folder(&files);
+    let told =
+        |left: &str, right: &str, language: &str| run(&folder, &["prove", left, right, "--lang", language]).1;
+    let says = |left, right, words: &str| {
+        let said = told(left, right, "en");
+        assert!(said.contains(words), "{said}");
+    };
+    says("one/main.il", "two/main.il", "declared in other files, which belong to different projects");
+    says("one/main.il", "two/whole.il", "one side declares it itself, for the other another file does");
+    let said = told("one/main.il", "two/whole.il", "zh-CN");
+    assert!(said.contains("一方自己声明了它"), "{said}");
+}
+
+#[test]
+fn a_long_chain_of_blocks_that_call_each_other_is_translated_and_proved() {
+    const BLOCKS: usize = 1000;
+    let chain = |last: &str| {
+        let block = |number: usize| {
+            let (own, body) = match number + 1 < BLOCKS {
+                true => {
+                    (format!("Next : B{};", number + 1), "CAL Next(\nRun := Run\n)\nLD Next.Q".to_string())
+                }
+                false => ("Own : BOOL;".to_string(), format!("{last} Run")),
+            };
+            format!(
+                "FUNCTION_BLOCK B{number}\nVAR_INPUT\nRun : BOOL;\nEND_VAR\nVAR_OUTPUT\nQ : BOOL;\nEND_VAR\n\
+                 VAR\n{own}\nEND_VAR\n{body}\nST Q\nEND_FUNCTION_BLOCK\n\n"
+            )
+        };
+        let blocks: String = (0..BLOCKS).map(block).collect();
+        list(&format!(
+            "{blocks}PROGRAM Main\nVAR\na, y : BOOL;\nB : B0;\nEND_VAR\nCAL B(\nRun := a\n)\nLD B.Q\nST y\nEND_PROGRAM\n"
+        ))
+    };
+    let (own, other) = (chain("LD"), chain("LDN"));
+    assert!(matches!(prove(&own, &own), Proof::Equal { .. }));
+    assert!(matches!(prove(&own, &other), Proof::Different(_)));
+    let translation = to(&own, To::Ladder);
+    assert!(translation.rungs.iter().all(|rung| rung.certificate.is_some_and(Certificate::is_certain)));
 }

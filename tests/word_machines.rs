@@ -1,6 +1,7 @@
 //! Two PLCs of a few lines that calculate with words: one runs the text of an FX list, the other that of a list of IEC
 //! 61131-3 by its declarations. They owe nothing to the product.
 
+use crate::translate_iec::combine;
 use std::collections::BTreeMap;
 
 /// Bits, and registers by number.
@@ -247,7 +248,7 @@ impl Iec {
             match word {
                 ")" => {
                     let (operator, before, was_bit) = stack.pop().unwrap();
-                    current = combined(&operator, before, current);
+                    current = combine(&operator, before, current);
                     is_bit = was_bit;
                 }
                 "LD" => (current, is_bit) = (value, kind == "BOOL"),
@@ -279,7 +280,7 @@ impl Iec {
                 own if own.ends_with(':') => {}
                 operator => {
                     let compares = ["GT", "GE", "EQ", "NE", "LE", "LT"].contains(&operator);
-                    current = combined(operator, current, value);
+                    current = combine(operator, current, value);
                     is_bit |= compares;
                 }
             }
@@ -311,27 +312,5 @@ impl Iec {
             _ => value,
         };
         self.values.insert(name.to_string(), value);
-    }
-}
-
-fn combined(operator: &str, left: i64, right: i64) -> i64 {
-    match operator {
-        "AND" | "&" => left & right,
-        "ANDN" => left & (1 - right),
-        "OR" => left | right,
-        "ORN" => left | (1 - right),
-        "XOR" => left ^ right,
-        "ADD" => left + right,
-        "SUB" => left - right,
-        "MUL" => left * right,
-        "DIV" => left / right,
-        "MOD" => left % right,
-        "GT" => i64::from(left > right),
-        "GE" => i64::from(left >= right),
-        "EQ" => i64::from(left == right),
-        "NE" => i64::from(left != right),
-        "LE" => i64::from(left <= right),
-        "LT" => i64::from(left < right),
-        other => panic!("{other}"),
     }
 }

@@ -53,6 +53,24 @@ pub(super) struct Beside {
     pub document: Document,
 }
 
+/// Why nothing is read at a path.
+enum Unusable {
+    /// No program can be read there.
+    Input(String),
+    /// The manifest of the project has a mistake, said with its place.
+    Manifest(String),
+}
+
+impl Unusable {
+    fn complain(&self, language: Language) {
+        let (code, reason, help) = match self {
+            Unusable::Input(reason) => ("unreadable-input", reason, "cli.give-program"),
+            Unusable::Manifest(reason) => ("manifest", reason, "cli.mend-manifest"),
+        };
+        complain(code, reason, &Message::new(help).render(language), language);
+    }
+}
+
 /// The programs at `paths`, or nothing after complaints about what cannot be read or that there are none.
 pub(super) fn programs(
     paths: &[PathBuf],
@@ -84,10 +102,9 @@ pub(super) fn programs(
                     }
                 }
             }
-            Err(reason) => {
+            Err(unusable) => {
                 failed = true;
-                let help = Message::new("cli.give-program").render(language);
-                complain("unreadable-input", &reason, &help, language);
+                unusable.complain(language);
             }
         }
     }
@@ -160,9 +177,10 @@ pub(super) fn caution(code: &str, reason: &str, help: &str, language: Language) 
 }
 
 /// The files at `path` with the manifest of their project.
-fn files_at(path: &Path, language: Language) -> Result<Vec<(PathBuf, Arc<Manifest>)>, String> {
+fn files_at(path: &Path, language: Language) -> Result<Vec<(PathBuf, Arc<Manifest>)>, Unusable> {
     if !path.exists() {
-        return Err(Message::new("cli.no-such-file").with("path", path.display()).render(language));
+        let reason = Message::new("cli.no-such-file").with("path", path.display());
+        return Err(Unusable::Input(reason.render(language)));
     }
     if path.file_name().is_some_and(|name| name == MANIFEST_NAME) {
         return files_at(
@@ -172,21 +190,23 @@ fn files_at(path: &Path, language: Language) -> Result<Vec<(PathBuf, Arc<Manifes
     }
     if path.is_file() {
         if !is_program_file(path) && !is_markdown(path) {
-            return Err(Message::new("cli.no-program-file").with("path", path.display()).render(language));
+            let reason = Message::new("cli.no-program-file").with("path", path.display());
+            return Err(Unusable::Input(reason.render(language)));
         }
         let manifest = manifest_for(path, language)?;
         return Ok(vec![(path.to_path_buf(), manifest)]);
     }
+    let unread = |folder: &Path, reason| Unusable::Input(format!("{}: {reason}", folder.display()));
     if path.join(MANIFEST_NAME).is_file() {
         let mut files = Vec::new();
         for project in projects_in(path).iter().map(|folder| Project::read(folder)) {
             let manifest = usable(&project, language)?;
-            let own = project.files().map_err(|reason| format!("{}: {reason}", project.root.display()))?;
+            let own = project.files().map_err(|reason| unread(&project.root, reason))?;
             files.extend(own.into_iter().map(|file| (file, manifest.clone())));
         }
         return Ok(files);
     }
-    let files = program_files(path).map_err(|reason| format!("{}: {reason}", path.display()))?;
+    let files = program_files(path).map_err(|reason| unread(path, reason))?;
     files.into_iter().map(|file| manifest_for(&file, language).map(|manifest| (file, manifest))).collect()
 }
 
@@ -195,7 +215,7 @@ pub(super) fn folder_of(path: &Path) -> Option<PathBuf> {
     Project::folder_of(&path.canonicalize().ok()?)
 }
 
-fn manifest_for(path: &Path, language: Language) -> Result<Arc<Manifest>, String> {
+fn manifest_for(path: &Path, language: Language) -> Result<Arc<Manifest>, Unusable> {
     match Project::of(&path.canonicalize().unwrap_or_else(|_| path.to_path_buf())) {
         Some(project) => usable(&project, language),
         None => Ok(Arc::default()),
@@ -203,12 +223,12 @@ fn manifest_for(path: &Path, language: Language) -> Result<Arc<Manifest>, String
 }
 
 /// The manifest, or its mistake with the place.
-fn usable(project: &Project, language: Language) -> Result<Arc<Manifest>, String> {
+fn usable(project: &Project, language: Language) -> Result<Arc<Manifest>, Unusable> {
     let Some(error) = &project.error else { return Ok(Arc::new(project.manifest.clone())) };
     let path = project.root.join(MANIFEST_NAME);
     let LineColumn { line, column } = project.position(error.span.start, Encoding::Utf32);
     let reason = error.message.render(language);
-    Err(format!("{}:{}:{}: {reason}", path.display(), line + 1, column + 1))
+    Err(Unusable::Manifest(format!("{}:{}:{}: {reason}", path.display(), line + 1, column + 1)))
 }
 
 /// The program in a file, or all those in the fences of a Markdown text.

@@ -14,6 +14,7 @@ mod input;
 mod language;
 mod prove;
 mod render;
+mod run;
 mod sarif;
 mod server;
 mod translate;
@@ -62,6 +63,8 @@ enum Verb {
     Translate(translate::Arguments),
     /// Tell whether two programs do the same, and if not, for which inputs.
     Prove(prove::Arguments),
+    /// Run a program on a simulated PLC.
+    Run(run::Arguments),
     /// List the devices that programs use: where read, where written, comment.
     Usage(usage::Arguments),
     /// Show the page of a rule, an instruction, a function or a function block.
@@ -116,6 +119,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Verb::Fmt(verb) => fmt::run(&verb, arguments.color, language).into(),
         Verb::Translate(verb) => translate::run(&verb, language).into(),
         Verb::Prove(verb) => prove::run(&verb, language).into(),
+        Verb::Run(verb) => run::run(&verb, language).into(),
         Verb::Usage(verb) => usage::run(&verb, language).into(),
         Verb::Explain(arguments) => explain::run(&arguments, language).into(),
         Verb::Import(arguments) => import::run(&arguments, language).into(),

@@ -4,7 +4,7 @@ use super::input::{Program, folder_of, programs, say};
 use super::{Outcome, paths_or_here};
 use crate::document::{Document, Member, ProjectView};
 use crate::ide::{self, Usage};
-use crate::text::Language;
+use crate::text::{Language, csv_line};
 use clap::ValueEnum;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -130,16 +130,7 @@ fn as_csv(usage: &Usage, group: &Group, with_header: bool) -> String {
             uses.collect::<Vec<_>>().join(" "),
             gaps.collect::<Vec<_>>().join(" "),
         ];
-        text += &fields.iter().map(|field| quoted(field)).collect::<Vec<_>>().join(",");
-        text.push('\n');
+        text += &csv_line(fields);
     }
     text
-}
-
-/// A field as RFC 4180 wants it.
-fn quoted(field: &str) -> String {
-    match field.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", field.replace('"', "\"\"")),
-        false => field.to_string(),
-    }
 }

@@ -221,7 +221,9 @@ fn of_ladder(text: &str, tree: &LadderTree, mentions: &mut Vec<Mention>) {
             }
             ElementKind::Block(block) => {
                 if let Some(instance) = block.instance {
-                    mentions.push(one(Symbol::variable(instance.of(text)), instance, Use::ReadWrite));
+                    // An element of an array of instances is a use of the array.
+                    let root = root_of(text, instance);
+                    mentions.push(one(Symbol::variable(root.of(text)), root, Use::ReadWrite));
                 }
                 if let Some(name) = block.type_name {
                     mentions.push(one(

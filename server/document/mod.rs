@@ -10,6 +10,9 @@ pub use notation::{Notation, detect_ladder_target, detect_notation, dialect_comm
 mod snapshot;
 pub use snapshot::{ChunkRef, Document, Edit, LIMIT_BYTES};
 
+mod unit;
+pub use unit::Unit;
+
 mod both;
 pub use both::both;
 

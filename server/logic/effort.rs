@@ -2,7 +2,8 @@
 //!
 //! Effort is counted in nodes of decision diagrams, not in time, so that the answers are the same on every machine.
 
-use super::Formulas;
+use super::{Formulas, Types};
+use std::sync::Arc;
 
 /// A question alone may be so much work: some tenths of a second.
 pub(super) const QUESTION: usize = 1_000_000;
@@ -15,17 +16,23 @@ const PROGRAM: usize = 8_000_000;
 pub struct Effort {
     left: usize,
     most: usize,
+    types: Arc<Types>,
 }
 
 impl Effort {
     /// So much in all, and `most` for each question.
     pub fn of(all: usize, most: usize) -> Effort {
-        Effort { left: all, most }
+        Effort { left: all, most, types: Arc::default() }
     }
 
     /// For all the proofs of a program.
     pub fn of_program() -> Effort {
         Effort::of(PROGRAM, QUESTION)
+    }
+
+    /// The questions to come are about variables of these types.
+    pub fn know(&mut self, types: Types) {
+        self.types = Arc::new(types);
     }
 
     /// What is left.
@@ -36,7 +43,7 @@ impl Effort {
     /// The answer of `question`, whose work is taken off.
     pub fn ask<T>(&mut self, question: impl FnOnce(&mut Formulas) -> T) -> T {
         let given = self.left.min(self.most);
-        let mut formulas = Formulas::limited(given);
+        let mut formulas = Formulas::limited(given).with_types(self.types.clone());
         let answer = question(&mut formulas);
         self.left -= given - formulas.effort();
         answer

@@ -4,7 +4,7 @@
 use super::{Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::target::iec::LiteralValue;
-use crate::target::{Constant, Device, DeviceKind, Flow, Form, Operand};
+use crate::target::{Constant, Device, DeviceKind, Flow, Form, Model, Operand};
 use crate::text::folded;
 use smol_str::{SmolStr, format_smolstr};
 use std::collections::BTreeMap;
@@ -108,7 +108,7 @@ impl<'s> Scan<'s> {
                 }
             }
             (Test::Compare(operator), [left, right]) => {
-                let [left, right] = [left, right].map(|term| self.word(term, operator.is_wide()));
+                let [left, right] = [left, right].map(|term| self.compared(term, operator.is_wide()));
                 match operator {
                     CompareOperator::Equal { .. } => left == right,
                     CompareOperator::NotEqual { .. } => left != right,
@@ -131,6 +131,14 @@ impl<'s> Scan<'s> {
                 self.words[&*word.to_string()] >> bit & 1 == 1
             }
             _ => self.bit(&term.key()),
+        }
+    }
+
+    /// What is compared: a literal may be larger than any word that a state has.
+    fn compared(&self, term: &Term, wide: bool) -> i128 {
+        match term.operand {
+            Operand::Literal(literal) if let LiteralValue::Integer(value) = literal.value => value,
+            _ => i128::from(self.word(term, wide)),
         }
     }
 
@@ -174,13 +182,14 @@ impl<'s> Scan<'s> {
             }
         }
         let moved = self.moved(action, power);
-        let is_unknown = power && moved.is_none() && matches!(action.deed, Deed::Compute(_));
+        let copied = self.copied_bits(action, power);
+        let works = matches!(action.deed, Deed::Instruction(_) | Deed::Compute(_));
+        let is_guessed = action.runs_unit() || power && works && copied.is_none();
         self.events.push(power);
         let nothing = LeftBehind::default();
-        let left = self.left_behind().unwrap_or(&nothing);
-        self.guesses_words |= (is_unknown || action.runs_unit()) && !left.words.is_empty();
-        let is_guessed =
-            action.runs_unit() || power && matches!(action.deed, Deed::Instruction(_) | Deed::Compute(_));
+        let left = self.left_behind().filter(|_| copied.is_none()).unwrap_or(&nothing);
+        let words: Vec<_> = left.words.iter().filter(|(key, _)| may_write_word(action, key)).collect();
+        self.guesses_words |= is_guessed && moved.is_none() && !words.is_empty();
         if is_guessed && !left.bits.is_empty() {
             self.guesses.push(self.events.len() as u32);
         }
@@ -190,9 +199,10 @@ impl<'s> Scan<'s> {
             bits.map(|(key, value)| (self.bit_after(action, power, &key, value), key)).collect();
         self.bits.extend(bits.into_iter().map(|(value, key)| (key, value)));
         if power || !is_idle_without_power(action) {
-            self.words.extend(left.words.iter().map(|(key, value)| (key.clone(), *value)));
+            self.words.extend(words.into_iter().map(|(key, value)| (key.clone(), *value)));
         }
         self.words.extend(moved);
+        self.bits.extend(copied.into_iter().flatten());
     }
 
     /// What the bit with this key is after an event that is said to leave `left`, as far as its working is known:
@@ -226,10 +236,6 @@ impl<'s> Scan<'s> {
         let instance = terms.first()?.key();
         let output = key.strip_prefix(&*instance)?.strip_prefix('.')?;
         let arguments = call.arguments(terms);
-        let input = || {
-            let given = arguments.iter().find(|argument| argument.name == call.power_in());
-            given.map_or(power, |argument| self.value(&argument.term))
-        };
         let is = |name: &str| call.block.is_standard(name);
         let pin = |name: &str| {
             let given = arguments.iter().find(|argument| !argument.is_output && argument.name == name);
@@ -239,6 +245,7 @@ impl<'s> Scan<'s> {
                 None => self.bit(&format!("{instance}.{}", folded(name))),
             }
         };
+        let input = || pin(call.power_in());
         let has_preset = arguments.iter().any(|argument| {
             argument.name == "PV"
                 && matches!(argument.term.operand, Operand::Literal(_))
@@ -276,6 +283,27 @@ impl<'s> Scan<'s> {
         Some((register.key(), result))
     }
 
+    /// The bits that MOV with power copies to a group of relays, by their keys. It changes nothing else.
+    fn copied_bits(&self, action: &Action, power: bool) -> Option<Vec<(SmolStr, bool)>> {
+        let (Deed::Instruction(form), [source, group]) = (&action.deed, &action.terms[..]) else {
+            return None;
+        };
+        let Operand::Nibbles { digits, first, index: None } = group.operand else { return None };
+        let is_plain = |term: &Term| match term.operand {
+            Operand::Nibbles { first, index: None, .. } => !first.is_special(),
+            Operand::Device(_) | Operand::Constant { index: None, .. } => true,
+            _ => false,
+        };
+        let is_known = form.instruction.copies() && !form.wide && !form.pulse && is_plain(source);
+        if !is_known || !power || first.is_special() {
+            return None;
+        }
+        let word = self.word(source, false);
+        let bit = |number: u32| (Device::new(first.kind, first.number + number).to_string().into(), number);
+        let bits = (0..u32::from(digits) * 4).map(bit);
+        Some(bits.map(|(key, number)| (key, word >> number & 1 == 1)).collect())
+    }
+
     /// What a function of the standard makes of whole numbers, if 16 bits hold it: of more, the types decide.
     fn result(&self, computation: &Computation, terms: &[Term]) -> Option<i64> {
         let (inputs, _) = computation.operands(terms)?;
@@ -302,6 +330,23 @@ impl<'s> Scan<'s> {
         };
         i16::try_from(result).is_ok().then_some(result)
     }
+}
+
+/// Whether an action may change the word with this key: an instruction writes from its operand on upwards.
+fn may_write_word(action: &Action, key: &str) -> bool {
+    let Deed::Instruction(form) = &action.deed else { return true };
+    let is_wide = key.starts_with("D ");
+    let Operand::Device(word) = Operand::read(key.trim_start_matches("D "), Model::Fx3u) else { return true };
+    if form.instruction.flow() != Flow::Straight {
+        return true;
+    }
+    let last = word.number + u32::from(is_wide);
+    // A flag turns the way of some copies, so what is read counts, too.
+    action.terms.iter().any(|term| match term.operand {
+        Operand::Constant { index: None, .. } => false,
+        Operand::Device(first) => first.kind == word.kind && first.number <= last,
+        _ => term.operand.device().is_none_or(|device| device.kind == word.kind),
+    })
 }
 
 /// Whether an action changes nothing while it has no power.

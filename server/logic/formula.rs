@@ -2,9 +2,15 @@
 //! are done when they are written down.
 
 use super::effort;
+use crate::target::iec::ElementaryType;
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 use std::collections::hash_map::Entry;
+use std::sync::Arc;
+
+/// The types of variables by their [keys](super::Term::key), as far as they are known beyond doubt; nothing inside
+/// where several names of one place have different types.
+pub type Types = FxHashMap<SmolStr, Option<ElementaryType>>;
 
 /// The number of a formula in its [`Formulas`].
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -93,6 +99,7 @@ pub struct Formulas {
     atom_numbers: FxHashMap<Atom, u32>,
     steps: Vec<Step>,
     step_numbers: FxHashMap<Step, u32>,
+    types: Arc<Types>,
     effort: usize,
 }
 
@@ -117,8 +124,24 @@ impl Formulas {
             atom_numbers: FxHashMap::default(),
             steps: Vec::new(),
             step_numbers: FxHashMap::default(),
+            types: Arc::default(),
             effort,
         }
+    }
+
+    /// The same, about variables of these types.
+    pub fn with_types(self, types: Arc<Types>) -> Formulas {
+        Formulas { types, ..self }
+    }
+
+    /// The type of the variable with this key, if it is known.
+    pub fn type_of(&self, key: &str) -> Option<ElementaryType> {
+        self.types.get(key).copied().flatten()
+    }
+
+    /// Whether what has this key is several numbers, each as another type reads it.
+    pub fn is_of_many_types(&self, key: &str) -> bool {
+        matches!(self.types.get(key), Some(None))
     }
 
     /// How many nodes of diagrams proofs may still need.

@@ -12,11 +12,14 @@
 //! - A jump over calculations: they are done under its condition.
 
 mod computing;
+mod loose;
 mod reader;
 
 use self::computing::Skips;
-use self::reader::{Reader, edge_kind};
-use super::{Callee, Declared, Path, Refusal, Rung, Term};
+use self::loose::Helper;
+use self::reader::Reader;
+pub(super) use self::reader::edge_kind;
+use super::{Callee, Declared, Elsewhere, Path, Refusal, Rung, Term};
 use crate::document::{DeclaredType, Scopes};
 use crate::il::iec::{Condition, IecTree, Item, ItemKind, ListForm, OperandId, SectionKind};
 use crate::ladder::CoilKind;
@@ -28,20 +31,22 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
 use std::ops::Range;
 
-/// The rungs of a piece of a file.
-pub(super) fn rungs(text: &str, tree: &IecTree, declared: Declared<'_>) -> Vec<Rung> {
-    let mut source = Source::new(text, tree, declared.scopes, declared.pous);
-    let found = read_all(&source);
-    let shown = source.shown_helpers(&found);
-    if shown.is_empty() {
-        return found.into_iter().map(|(_, rung)| rung).collect();
-    }
-    source.shown.extend(shown);
-    read_all(&source).into_iter().map(|(_, rung)| rung).collect()
+/// The rungs of a piece of a file, of which `elsewhere` is what the rest of its program unit says of its names.
+pub(super) fn rungs(text: &str, tree: &IecTree, declared: Declared<'_>, elsewhere: &Elsewhere) -> Vec<Rung> {
+    read_all(&Source::new(text, tree, declared, elsewhere))
 }
 
-/// All rungs, each with its program unit.
-fn read_all(source: &Source<'_>) -> Vec<(Option<usize>, Rung)> {
+/// The helpers, by program unit and folded name, that a piece of a file uses for more than to keep power.
+pub(super) fn loose_helpers(
+    text: &str,
+    tree: &IecTree,
+    declared: Declared<'_>,
+    elsewhere: &Elsewhere,
+) -> FxHashSet<Helper> {
+    Source::new(text, tree, declared, elsewhere).shown
+}
+
+fn read_all(source: &Source<'_>) -> Vec<Rung> {
     let (text, tree) = (source.text, source.tree);
     let mut comments = Comments::of(text, tree);
     let mut rungs = Vec::new();
@@ -57,7 +62,7 @@ fn read_all(source: &Source<'_>) -> Vec<(Option<usize>, Rung)> {
         let span = Span::at(text.len());
         let path = Ok(None);
         let rung = Rung { labels: Vec::new(), network: None, comments: rest, span, is_list: true, path };
-        rungs.push((None, rung));
+        rungs.push(rung);
     }
     rungs
 }
@@ -84,7 +89,7 @@ pub fn declarations(text: &str, tree: &IecTree) -> Vec<Span> {
 }
 
 /// Where the line of `offset` ends, its line feed included.
-fn end_of_line(text: &str, offset: usize) -> usize {
+pub(super) fn end_of_line(text: &str, offset: usize) -> usize {
     let rest = text.as_bytes().get(offset..).unwrap_or(&[]);
     rest.iter().position(|byte| *byte == b'\n').map_or(text.len(), |length| offset + length + 1)
 }
@@ -157,8 +162,8 @@ struct Region {
 }
 
 /// How the instance of an edge detector is used.
-#[derive(Default)]
-struct Detector {
+#[derive(Clone, Default)]
+pub(super) struct Detector {
     /// Its name standing alone: in a call, or handed over.
     bare: u32,
     /// Its input stored to.
@@ -168,6 +173,26 @@ struct Detector {
     reads: Option<Span>,
     /// Whether another part of it is used.
     is_opened: bool,
+}
+
+impl Detector {
+    /// Counts a use of it, or of one of its parts, at a place.
+    fn count(&mut self, member: Option<&str>, place: Span) {
+        match member {
+            None => self.bare += 1,
+            Some(member) if member.eq_ignore_ascii_case("Q") => {
+                self.read += 1;
+                self.reads = Some(self.reads.map_or(place, |reads| reads.to(place)));
+            }
+            Some(member) if member.eq_ignore_ascii_case("CLK") => self.fed += 1,
+            Some(_) => self.is_opened = true,
+        }
+    }
+
+    /// The same for a use outside of the text: no rung reaches from there to any place in it.
+    pub(super) fn count_elsewhere(&mut self, member: Option<&str>) {
+        self.count(member, Span { start: 0, end: u32::MAX });
+    }
 }
 
 struct Source<'a> {
@@ -182,13 +207,14 @@ struct Source<'a> {
     detectors: FxHashMap<(Option<usize>, SmolStr), Detector>,
     /// The places of mistakes, in order.
     mistakes: Vec<u32>,
-    /// Helpers that are used in other ways than to keep the power of a rung, by program unit and folded name.
-    shown: FxHashSet<(Option<usize>, SmolStr)>,
+    /// Helpers that are used in other ways than to keep the power of a rung.
+    shown: FxHashSet<Helper>,
     skips: Skips,
 }
 
 impl<'a> Source<'a> {
-    fn new(text: &'a str, tree: &'a IecTree, scopes: &'a Scopes, pous: usize) -> Source<'a> {
+    fn new(text: &'a str, tree: &'a IecTree, declared: Declared<'a>, elsewhere: &Elsewhere) -> Source<'a> {
+        let Declared { scopes, pous } = declared;
         let mut mistakes: Vec<u32> = tree
             .problems
             .iter()
@@ -208,9 +234,14 @@ impl<'a> Source<'a> {
             shown: FxHashSet::default(),
             skips: Skips::default(),
         };
-        source.skips = source.find_skips(pous);
+        let pou = pous.checked_sub(1);
+        source.skips = source.find_skips(pous, elsewhere);
         let starts = source.cut(pous);
+        let detectors = elsewhere.detectors.iter();
+        source.detectors.extend(detectors.map(|(name, detector)| ((pou, name.clone()), detector.clone())));
         source.find_detectors(&starts, pous);
+        source.shown = source.loose_helpers(&starts, pous);
+        source.shown.extend(elsewhere.loose.iter().map(|name| (pou, name.clone())));
         source
     }
 
@@ -345,25 +376,7 @@ impl<'a> Source<'a> {
     /// Whether the variable with this folded name keeps the power of a rung and nothing else: a translation from a
     /// drawing made it.
     fn is_helper(&self, pou: Option<usize>, name: &str) -> bool {
-        is_helper_name(name)
-            && self.scopes.variable(pou, name).is_some_and(|variable| {
-                variable.declared == DeclaredType::Elementary(ElementaryType::Bool)
-                    && variable.section == SectionKind::Local
-                    && variable.address.is_none()
-            })
-            && !self.shown.contains(&(pou, SmolStr::from(name)))
-    }
-
-    /// The helpers that `rungs` show as variables although they also keep power: for these nothing is left out.
-    fn shown_helpers(&self, rungs: &[(Option<usize>, Rung)]) -> Vec<(Option<usize>, SmolStr)> {
-        let mut shown = Vec::new();
-        for (pou, rung) in rungs {
-            let Ok(Some(path)) = &rung.path else { continue };
-            let names = path.terms().into_iter().filter(|term| is_helper_name(&term.text));
-            let names = names.map(|term| folded(&term.text)).filter(|name| self.is_helper(*pou, name));
-            shown.extend(names.map(|name| (*pou, name)));
-        }
-        shown
+        is_declared_helper(self.scopes, pou, name) && !self.shown.contains(&(pou, SmolStr::from(name)))
     }
 
     /// Whether item `index` stores the power of the call that follows it: `ST T1.IN` before `CAL T1`. What is stored to
@@ -404,26 +417,13 @@ impl<'a> Source<'a> {
             if self.block(pou, instance).is_none_or(|block| edge_kind(&block).is_none()) {
                 continue;
             }
-            let detector = self.detectors.entry((pou, folded(instance))).or_default();
-            match member {
-                None => detector.bare += 1,
-                Some(member) if member.eq_ignore_ascii_case("Q") => {
-                    detector.read += 1;
-                    detector.reads =
-                        Some(detector.reads.map_or(operand.span, |reads| reads.to(operand.span)));
-                }
-                Some(member) if member.eq_ignore_ascii_case("CLK") => detector.fed += 1,
-                Some(_) => detector.is_opened = true,
-            }
+            self.detectors.entry((pou, folded(instance))).or_default().count(member, operand.span);
         }
     }
 
     /// The function block that a variable is an instance of.
     fn block(&self, pou: Option<usize>, instance: &str) -> Option<Callee> {
-        match self.scopes.type_of(pou, instance)? {
-            DeclaredType::Named(name) => Callee::block(&name, self.scopes),
-            _ => None,
-        }
+        block_of(self.scopes, pou, instance)
     }
 
     /// Whether nobody but the instructions in `span` asks for the output of this detector, which is called once with
@@ -469,13 +469,15 @@ impl<'a> Source<'a> {
     }
 
     /// Reads segments, joined where they make one rung.
-    fn read(&self, segments: &[Segment], comments: &mut Comments, rungs: &mut Vec<(Option<usize>, Rung)>) {
+    fn read(&self, segments: &[Segment], comments: &mut Comments, rungs: &mut Vec<Rung>) {
         let mut at = 0;
         while let Some(first) = segments.get(at) {
-            let more =
-                segments[at + 1..].iter().take(JOINED_MAX).take_while(|segment| segment.goes_on).count();
-            let joined =
-                (more > 0).then(|| self.path(first.pou, first.items.start..segments[at + more].items.end));
+            let rest = segments[at + 1..].iter().take(JOINED_MAX + 1);
+            let more = rest.take_while(|segment| segment.goes_on).count();
+            // What a helper keeps goes on to the end, so a part of them is no rung.
+            let joined = (1..=JOINED_MAX)
+                .contains(&more)
+                .then(|| self.path(first.pou, first.items.start..segments[at + more].items.end));
             // What a jump skips stays with it.
             let skipped = segments[at + 1..]
                 .iter()
@@ -499,7 +501,7 @@ impl<'a> Source<'a> {
                 is_list: true,
                 path,
             };
-            rungs.push((first.pou, rung));
+            rungs.push(rung);
             at += count;
         }
     }
@@ -527,6 +529,24 @@ impl<'a> Source<'a> {
 
 /// So many segments are tried as one rung.
 const JOINED_MAX: usize = 64;
+
+/// Whether a variable is named and declared as those that keep the power of a rung.
+pub(super) fn is_declared_helper(scopes: &Scopes, pou: Option<usize>, name: &str) -> bool {
+    is_helper_name(name)
+        && scopes.variable(pou, name).is_some_and(|variable| {
+            variable.declared == DeclaredType::Elementary(ElementaryType::Bool)
+                && variable.section == SectionKind::Local
+                && variable.address.is_none()
+        })
+}
+
+/// The function block that a variable is an instance of.
+pub(super) fn block_of(scopes: &Scopes, pou: Option<usize>, instance: &str) -> Option<Callee> {
+    match scopes.type_of(pou, instance)? {
+        DeclaredType::Named(name) => Callee::block(&name, scopes),
+        _ => None,
+    }
+}
 
 /// `Held1`: so the translation from drawings names the helpers that keep power.
 pub fn is_helper_name(name: &str) -> bool {

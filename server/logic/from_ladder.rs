@@ -5,7 +5,9 @@ mod block;
 use super::builder::Builder;
 use super::from_fx;
 use super::from_iec;
-use super::{Action, Contact, Declared, Deed, Expression, Gate, Network, Path, Refusal, Rung, Term, Test};
+use super::{
+    Action, Contact, Declared, Deed, Elsewhere, Expression, Gate, Network, Path, Refusal, Rung, Term, Test,
+};
 use crate::document::{Scopes, boxed};
 use crate::il::{fx, iec};
 use crate::ladder::reduce::{NotSeriesParallel, Shape, reduce};
@@ -89,7 +91,7 @@ fn list_rung(
 
 /// The rung that a list of IEC 61131-3 is as a whole.
 fn iec_rung(list: &str, target: &Target, declared: Declared<'_>) -> Rung {
-    let mut rungs = from_iec::rungs(list, &iec::parse(list, target), declared);
+    let mut rungs = from_iec::rungs(list, &iec::parse(list, target), declared, &Elsewhere::default());
     match rungs.pop() {
         Some(rung) if rungs.is_empty() => rung,
         _ => Rung {

@@ -33,6 +33,11 @@ mod from_fx;
 mod from_iec;
 pub use from_iec::{HELPER, declarations, is_helper_name, pulse_name};
 
+mod elsewhere;
+pub use elsewhere::Elsewhere;
+
+pub mod stretch;
+
 mod from_ladder;
 pub use from_ladder::of_graph;
 
@@ -40,7 +45,9 @@ mod apart;
 pub use apart::apart;
 
 mod formula;
-pub use formula::{Atom, Formula, Formulas, Moment, Step};
+pub use formula::{Atom, Formula, Formulas, Moment, Step, Types};
+
+mod number;
 
 mod run;
 pub use run::{Effect, Run};
@@ -87,6 +94,19 @@ pub fn rungs_with(chunk: &Chunk, target: &Target, declared: Declared<'_>) -> Vec
     match chunk.tree() {
         Tree::Fx(tree) => vec![from_fx::rung(chunk.text(), tree)],
         Tree::Ladder(tree) => from_ladder::rungs(chunk.text(), tree, target, declared),
-        Tree::Iec(tree) => from_iec::rungs(chunk.text(), tree, declared),
+        Tree::Iec(tree) => from_iec::rungs(chunk.text(), tree, declared, &Elsewhere::default()),
+    }
+}
+
+/// The same where the chunk is a stretch of a program unit; `elsewhere` is what the rest of the unit says of its names.
+pub fn rungs_of_stretch(
+    chunk: &Chunk,
+    target: &Target,
+    declared: Declared<'_>,
+    elsewhere: &Elsewhere,
+) -> Vec<Rung> {
+    match chunk.tree() {
+        Tree::Iec(tree) => from_iec::rungs(chunk.text(), tree, declared, elsewhere),
+        _ => rungs_with(chunk, target, declared),
     }
 }

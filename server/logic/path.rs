@@ -1,6 +1,6 @@
 //! What power does in a rung: conditions that it passes, and what it drives behind them.
 
-use super::{Call, Computation, Expression, Term};
+use super::{Call, Computation, Expression, Term, Test};
 use crate::document::{Scopes, coil_form};
 use crate::ladder::CoilKind;
 use crate::target::{Access, Flow, Form, Role};
@@ -173,6 +173,17 @@ impl Path {
             condition.contacts().into_iter().for_each(|contact| terms.borrow_mut().extend(&contact.terms));
         });
         terms.into_inner()
+    }
+
+    /// The operands that are compared with each other, in the order of execution.
+    pub fn compared(&self) -> Vec<&Term> {
+        let compared = RefCell::new(Vec::new());
+        self.visit(&mut |_| {}, &mut |condition| {
+            let contacts = condition.contacts().into_iter();
+            let own = contacts.filter(|contact| matches!(contact.test, Test::Compare(_)));
+            own.for_each(|contact| compared.borrow_mut().extend(&contact.terms));
+        });
+        compared.into_inner()
     }
 
     /// The same with its variables where they lie as declared in program unit number `pou`.

@@ -1,10 +1,12 @@
 //! Runs paths with formulas in place of bits: what is done, under which conditions, in which order.
 
 use super::formula::{Atom, Moment, Step};
+use super::number::{NUMBER_MAX, number, range};
 use super::{Action, Contact, Deed, Drive, Expression, Formula, Formulas, Gate, Path, Storage, Term, Test};
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::target::iec::LiteralValue;
-use crate::target::{Access, Constant, Device, DeviceKind, Flow, Form, Location, Operand};
+use crate::target::{Access, Device, DeviceKind, Flow, Form, Location, Operand};
+use crate::text::folded;
 use rustc_hash::FxHashMap;
 use smol_str::{SmolStr, format_smolstr};
 
@@ -303,43 +305,51 @@ impl<'p> Run<'p> {
     }
 
     fn at_least(&self, left: &Term, right: &Term, wide: bool, formulas: &mut Formulas) -> Formula {
-        match (number(left, wide), number(right, wide)) {
-            (Some(left), Some(right)) => Formulas::constant(left >= right),
-            (None, Some(number)) => self.reaches(left, number, wide, formulas),
+        let sides = [(left, right), (right, left)].map(|(own, other)| number(own, other, wide, formulas));
+        let known = match sides {
+            [Some(left), Some(right)] => return Formulas::constant(left >= right),
+            [None, Some(number)] => self.reaches(left, number, wide, formulas),
             // 10 ≥ D0 unless D0 ≥ 11.
-            (Some(number), None) => {
+            [Some(number), None] => {
                 let beyond = self.reaches(right, number + 1, wide, formulas);
-                formulas.not(beyond)
+                beyond.map(|beyond| formulas.not(beyond))
             }
-            (None, None) => {
-                let [word, other] = [left, right].map(|term| self.word(term, wide, formulas));
-                match word == other {
-                    true => Formulas::TRUE,
-                    false => formulas.atom(Atom::AtLeast { word, other }),
-                }
+            [None, None] => None,
+        };
+        known.unwrap_or_else(|| {
+            let [word, other] = [left, right].map(|term| self.word(term, wide, formulas));
+            match word == other {
+                true => Formulas::TRUE,
+                false => formulas.atom(Atom::AtLeast { word, other }),
             }
-        }
+        })
     }
 
-    fn reaches(&self, term: &Term, number: i64, wide: bool, formulas: &mut Formulas) -> Formula {
-        let (least, greatest) = match wide {
-            true => (i64::from(i32::MIN), i64::from(i32::MAX)),
-            false => (i64::from(i16::MIN), i64::from(i16::MAX)),
-        };
-        match number {
-            _ if number <= least => Formulas::TRUE,
-            _ if number > greatest => Formulas::FALSE,
-            _ => {
-                let word = self.word(term, wide, formulas);
-                formulas.atom(Atom::Reaches { word, number })
-            }
+    /// Whether `term` is at least `number`; nothing if that is too large a number to work with.
+    fn reaches(&self, term: &Term, number: i128, wide: bool, formulas: &mut Formulas) -> Option<Formula> {
+        let range = range(term, wide, formulas);
+        if number <= *range.start() {
+            return Some(Formulas::TRUE);
         }
+        if number > *range.end() {
+            return Some(Formulas::FALSE);
+        }
+        let number = i64::try_from(number).ok().filter(|number| number.unsigned_abs() < NUMBER_MAX)?;
+        let word = self.word(term, wide, formulas);
+        Some(formulas.atom(Atom::Reaches { word, number }))
     }
 
     /// The moment at which `term` is read as a word.
     fn word(&self, term: &Term, wide: bool, formulas: &mut Formulas) -> Moment {
         let key = term.key();
-        let name = if wide { format_smolstr!("D {key}") } else { key.clone() };
+        let name = match wide {
+            true => format_smolstr!("D {key}"),
+            // An INT and a UINT at one address are two numbers, which no scan with plain values has.
+            false if term.address().is_some() && formulas.is_of_many_types(&key) => {
+                format_smolstr!("{key} {}", folded(&term.text))
+            }
+            false => key.clone(),
+        };
         let since = match term.operand {
             Operand::Literal(_) | Operand::Constant { index: None, .. } => 0,
             // A variable whose type nobody knows was driven as a bit.
@@ -552,17 +562,5 @@ fn slot(term: &Term) -> usize {
         (Operand::Variable, Storage::At(address)) => area(address.location),
         (Operand::Variable, Storage::Anywhere) => ANYWHERE,
         _ => term.operand.device().map_or(VARIABLES, |device| device.kind as usize),
-    }
-}
-
-/// The whole number that a term is, in 16 or 32 bits.
-fn number(term: &Term, wide: bool) -> Option<i64> {
-    match term.operand {
-        Operand::Constant { value: Constant::Decimal(value), index: None } => Some(value),
-        Operand::Constant { value: Constant::Hexadecimal(bits), index: None } => match wide {
-            true => u32::try_from(bits).ok().map(|bits| i64::from(bits as i32)),
-            false => u16::try_from(bits).ok().map(|bits| i64::from(bits as i16)),
-        },
-        _ => None,
     }
 }

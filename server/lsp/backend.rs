@@ -11,7 +11,7 @@ use super::tokens;
 use super::typed;
 use super::workspace::{SNAPSHOT, Snapshot, Workspace};
 use super::written::{given, write};
-use super::{capabilities, features, proving, translating, usage};
+use super::{capabilities, features, proving, simulation, translating, usage};
 use crate::ide;
 use crate::text::Message;
 use serde_json::{Value, json};
@@ -26,11 +26,16 @@ pub(super) struct Backend {
     workspace: Arc<Workspace>,
     /// Whether the client asks for the edits of code actions later.
     resolves_actions: AtomicBool,
+    simulations: simulation::Simulations,
 }
 
 impl Backend {
     pub(super) fn new(workspace: Arc<Workspace>) -> Backend {
-        Backend { workspace, resolves_actions: AtomicBool::new(false) }
+        Backend {
+            workspace,
+            resolves_actions: AtomicBool::new(false),
+            simulations: simulation::Simulations::default(),
+        }
     }
 }
 
@@ -426,6 +431,10 @@ impl LanguageServer for Backend {
         }
         if params.command == proving::PROVE {
             return proving::answer(params.arguments.first()).await;
+        }
+        if params.command.starts_with(simulation::PREFIX) {
+            let argument = params.arguments.first();
+            return self.simulations.answer(&params.command, argument, &self.workspace).await;
         }
         let Some(uri) =
             params.arguments.first().and_then(|value| value.as_str()).and_then(|text| text.parse().ok())

@@ -15,6 +15,18 @@ pub(super) const COMMANDS: &[&str] = &[
     translating::BESIDE,
     proving::PROVE,
     APPLY,
+    "rungwise.simulate.start",
+    "rungwise.simulate.stop",
+    "rungwise.simulate.pause",
+    "rungwise.simulate.run",
+    "rungwise.simulate.step",
+    "rungwise.simulate.stepBack",
+    "rungwise.simulate.reset",
+    "rungwise.simulate.set",
+    "rungwise.simulate.force",
+    "rungwise.simulate.release",
+    "rungwise.simulate.watch",
+    "rungwise.simulate.state",
 ];
 
 /// Applies the `WorkspaceEdit` that is its argument: what a code action does where clients know commands alone.

@@ -29,6 +29,7 @@ mod recording;
 mod service;
 mod settings;
 mod sheets;
+mod simulation;
 mod status;
 mod to_proto;
 mod tokens;

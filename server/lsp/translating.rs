@@ -73,6 +73,13 @@ pub(super) struct Asked {
     target: Option<String>,
 }
 
+impl Asked {
+    /// The whole of a file.
+    fn of(uri: &Uri, to: To) -> Asked {
+        Asked { uri: uri.clone(), position: None, range: None, to: to.name().into(), target: None }
+    }
+}
+
 /// What is wanted of a translation.
 pub(super) struct Wanted {
     pub asked: Asked,
@@ -229,13 +236,7 @@ pub(super) fn actions(
     if only.is_some() {
         for to in forms() {
             let kind = format!("source.translate.{}", to.name());
-            let asked = Asked {
-                uri: around.here().uri.clone(),
-                position: None,
-                range: None,
-                to: to.name().into(),
-                target: None,
-            };
+            let asked = Asked::of(&around.here().uri, to);
             let title = title("translating.translate", "translating.file", to, Vec::new(), place.language);
             let title_copy =
                 self::title("translating.copy", "translating.file", to, Vec::new(), place.language);
@@ -301,13 +302,7 @@ fn of_part(
         details.clone_from(&copied);
         details.extend(form.certificate.map(certificate));
     }
-    let asked = Asked {
-        uri: around.here().uri.clone(),
-        position: None,
-        range: None,
-        to: to.name().into(),
-        target: None,
-    };
+    let asked = Asked::of(&around.here().uri, to);
     let asked = match range.start == range.end {
         true => Asked { position: Some(range.start), ..asked },
         false => Asked { range: Some(range), ..asked },

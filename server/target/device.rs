@@ -130,6 +130,9 @@ impl Device {
     /// See [`Device::FIRST_SCAN`].
     pub const OFF_AT_FIRST: Device = Device::new(DeviceKind::M, 8003);
 
+    /// The pointer that means the end of the program.
+    pub const PROGRAM_END: Device = Device::new(DeviceKind::P, 63);
+
     /// Whether it is a timer that forgets its time without power. T246 to T255 of the FX1N, FX2N and FX3U keep it.
     pub fn is_forgetful_timer(self) -> bool {
         self.kind == DeviceKind::T && self.number < 246

@@ -1,6 +1,6 @@
 //! The shape of a row of the FX instruction table, and the forms in which an instruction is written.
 
-use super::{Accepts, Constant, DeviceKind, Model, Operand, instructions};
+use super::{Accepts, Constant, DeviceKind, Model, Operand, Semantics, instructions};
 use crate::text::{self, Book, Language};
 use std::borrow::Cow;
 use std::fmt;
@@ -24,6 +24,8 @@ pub struct Instruction {
     pub steps: Steps,
     /// How it is coded.
     pub opcode: Opcode,
+    /// What it does in a scan.
+    pub semantics: Semantics,
     /// The models that have it.
     pub models: &'static [Model],
     /// The page: Markdown, one paragraph and a fenced `il` example that checks clean on each of `models`.

@@ -24,6 +24,12 @@ pub use instruction::{Access, Drive, Extent, Form, Instruction, Opcode, OperandS
 mod flow;
 pub use flow::Flow;
 
+pub mod outside;
+pub use outside::Outside;
+
+pub mod semantics;
+pub use semantics::{Execution, Fault, Semantics};
+
 pub mod instructions;
 
 mod fx;

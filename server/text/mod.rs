@@ -5,6 +5,9 @@
 mod case;
 pub use case::folded;
 
+mod csv;
+pub use csv::csv_line;
+
 mod span;
 pub use span::{Span, Spanned};
 

@@ -63,9 +63,35 @@ fn names_of_addresses(paths: [&[&Path]; 2]) -> FxHashMap<SmolStr, SmolStr> {
     names
 }
 
+/// A state in which two programs are confirmed to differ at `place`, and what that is in each of them: `state`, or one
+/// in which one bit is another. What formulas leave open, such as what an instruction makes of bits, may be the only
+/// thing that is wrong with a state.
+pub(super) fn confirmed_near(
+    state: State,
+    paths: [&[&Path]; 2],
+    place: &Place,
+) -> Option<(State, [bool; 2])> {
+    if let Some(values) = confirmed(&state, paths, place) {
+        return Some((state, values));
+    }
+    let groups = state.words.keys().filter_map(|key| group(key));
+    let grouped: BTreeSet<SmolStr> = groups.flatten().collect();
+    // The bits of a word that the counterexample shows as a number stay as they are.
+    let own = state.bits.keys().filter(|key| !grouped.contains(*key)).take(RETRIES_MAX);
+    own.cloned().collect::<Vec<_>>().into_iter().find_map(|key| {
+        let mut other = state.clone();
+        other.bits.entry(key).and_modify(|bit| *bit = !*bit);
+        let values = confirmed(&other, paths, place)?;
+        Some((other, values))
+    })
+}
+
+/// So many states near to one that is not confirmed are looked at.
+const RETRIES_MAX: usize = 32;
+
 /// What `place` is in each of two programs when they are run from `state`, if it differs. Where something is guessed of
 /// what units of the program leave behind, it must differ whatever that is.
-pub(super) fn confirmed(state: &State, paths: [&[&Path]; 2], place: &Place) -> Option<[bool; 2]> {
+fn confirmed(state: &State, paths: [&[&Path]; 2], place: &Place) -> Option<[bool; 2]> {
     let scans = paths.map(|paths| evaluate(paths, state));
     let guesses: BTreeSet<u32> = scans.iter().flat_map(|scan| scan.guesses.iter().copied()).collect();
     let found = differing(&scans, place)?;
@@ -218,12 +244,19 @@ fn event(formulas: &Formulas, of: &Moment) -> Option<u32> {
 
 /// A word of bits gives them their values, as far as they have none.
 fn spread(state: &mut State, name: &str, number: i64) {
-    let name = name.trim_start_matches(WIDE);
-    let Operand::Nibbles { digits, first, index: None } = Operand::read(name, Model::Fx3u) else { return };
-    for bit in 0..u32::from(digits) * 4 {
-        let device = Device::new(first.kind, first.number + bit);
-        state.bits.entry(device.to_string().into()).or_insert(number >> bit & 1 == 1);
+    for (bit, key) in group(name).into_iter().flatten().enumerate() {
+        state.bits.entry(key).or_insert(number >> bit & 1 == 1);
     }
+}
+
+/// The keys of the bits that a word is made of, from the lowest on; nothing if it is not made of relays.
+fn group(name: &str) -> Option<impl Iterator<Item = SmolStr> + use<>> {
+    let name = name.trim_start_matches(WIDE);
+    let Operand::Nibbles { digits, first, index: None } = Operand::read(name, Model::Fx3u) else {
+        return None;
+    };
+    let device = move |bit| Device::new(first.kind, first.number + bit).to_string().into();
+    Some((0..u32::from(digits) * 4).map(device))
 }
 
 /// The whole number that a literal of IEC 61131-3 is.
@@ -258,7 +291,7 @@ impl Bounds {
         let number = self.words.len();
         self.numbers.insert(word.clone(), number);
         if let Some(value) = integer(&word.name) {
-            self.least.extend([(number, 0, value), (0, number, -value)]);
+            self.least.extend([(number, 0, value), (0, number, value.saturating_neg())]);
         }
         number
     }

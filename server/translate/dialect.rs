@@ -160,6 +160,15 @@ pub(super) fn convert(
     if target.is_fx() {
         join_divisions(document, target, (&names, &registers), program);
     }
+    let convert_path = |path: &Path, unit: Option<usize>| match target.is_fx() {
+        false => to_variables::path(path, document.target(), &registers, &pulses),
+        // What a function or a block does it does for whoever calls it.
+        true if !is_of_program(document, unit) => {
+            let unit = unit.and_then(|unit| document.scopes().pous.get(unit));
+            Err(unit.map_or(Lack::Unnamed, |unit| Lack::Word(unit.name.clone())))
+        }
+        true => to_devices::path(path, target, (&names, &registers), (document.scopes(), unit)),
+    };
     let guards = guarded::all(&program.rungs);
     let mut open: Vec<Guard> = Vec::new();
     let mut unit = None;
@@ -175,34 +184,19 @@ pub(super) fn convert(
         }
         // The words of the other language are no list in this one.
         source.rung.is_list = false;
-        let path = match &source.rung.path {
-            Ok(None) => continue,
-            Ok(Some(path)) => path,
-            Err(_) => {
-                open.extend(own);
-                continue;
-            }
+        let converted = match (&source.rung.path, guard) {
+            (Ok(None), _) => continue,
+            (Err(_), _) => None,
+            (Ok(Some(_)), Some(guard)) => Some(Err(guard)),
+            (Ok(Some(path)), None) => Some(convert_path(path, source.pou).map_err(|lack| lack.message())),
         };
-        if guard.is_some() {
-            source.note = guard;
-            source.rung.path = Err(Refusal::NoCounterpart);
-            open.extend(own);
-            continue;
+        if let Some(converted) = converted {
+            source.note = converted.as_ref().err().cloned();
+            source.rung.path = converted.map(Some).map_err(|_| Refusal::NoCounterpart);
         }
-        let converted = match target.is_fx() {
-            false => to_variables::path(path, document.target(), &registers, &pulses),
-            // What a function or a block does it does for whoever calls it.
-            true if !is_of_program(document, source.pou) => {
-                let unit = source.pou.and_then(|pou| document.scopes().pous.get(pou));
-                Err(unit.map_or(Lack::Unnamed, |unit| Lack::Word(unit.name.clone())))
-            }
-            true => to_devices::path(path, target, (&names, &registers), (document.scopes(), source.pou)),
-        };
-        if converted.is_err() {
+        if source.rung.path.is_err() {
             open.extend(own);
         }
-        source.note = converted.as_ref().err().map(Lack::message);
-        source.rung.path = converted.map(Some).map_err(|_| Refusal::NoCounterpart);
     }
 }
 

@@ -20,6 +20,8 @@ mod declared;
 
 mod units;
 
+mod types;
+
 mod prove;
 pub use prove::{Proof, prove};
 

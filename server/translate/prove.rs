@@ -5,7 +5,7 @@
 
 use super::counterexample::{self, Counterexample};
 use super::source::{self, Source};
-use super::{To, declared, dialect, units};
+use super::{To, declared, dialect, types, units};
 use crate::document::{DeclaredType, Document, Scopes};
 use crate::il::iec::SectionKind;
 use crate::logic::{
@@ -71,10 +71,12 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
         let reason = Message::new("prove.declared").with("name", name);
         return Proof::Undecided { reason, at: at.map(Some) };
     }
-    if let Some((name, at)) = units::unlike([left, right], [&sources[0], &sources[1]]) {
-        return Proof::Undecided { reason: Message::new("prove.unit").with("name", name), at };
+    if let Some((reason, at)) = units::unlike([left, right], [&sources[0], &sources[1]]) {
+        return Proof::Undecided { reason, at };
     }
     let may_be_off = sources.iter().flatten().any(leaves_out);
+    let mut effort = Effort::of_program();
+    effort.know(types::compared([left, right], [&sources[0], &sources[1]]));
     let mut prover = Prover {
         all: [&sources[0], &sources[1]],
         before: [Vec::new(), Vec::new()],
@@ -84,7 +86,7 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
         is_reordered: false,
         is_mixed,
         scopes: [left.scopes(), right.scopes()],
-        effort: Effort::of_program(),
+        effort,
     };
     let [left, right] = &stretches;
     let outcome = left.iter().zip(right).try_for_each(|(left, right)| prover.stretches(left, right));
@@ -406,20 +408,22 @@ impl Prover<'_> {
         paths: [&[&Path]; 2],
         sides: [Rungs<'_, '_>; 2],
     ) -> Option<Proof> {
-        let state = state.filter(|state| self.is_possible(state))?;
+        let state = state.filter(|state| self.is_possible(state, sides))?;
         if matches!(place, Place::Event(_)) && !self.lasts(&what) {
             return None;
         }
-        let values = counterexample::confirmed(&state, paths, &place)?;
+        let (state, values) = counterexample::confirmed_near(state, paths, &place)?;
         let at = sides.map(|side| rung_of(side, &what));
         let (inputs, before) = counterexample::inputs(&state, paths);
         Some(Proof::Different(Box::new(Counterexample { inputs, before, what, sides: values, at })))
     }
 
-    fn is_possible(&self, state: &State) -> bool {
+    /// Whether the numbers of a state are those of the types that variables have in the units of `sides`.
+    fn is_possible(&self, state: &State, sides: [Rungs<'_, '_>; 2]) -> bool {
         let mut types = FxHashMap::default();
-        for (all, scopes) in self.all.iter().zip(self.scopes) {
-            for source in all.iter() {
+        for ((all, scopes), side) in self.all.iter().zip(self.scopes).zip(sides) {
+            let unit = side.first().map(|(source, _)| source.pou);
+            for source in all.iter().filter(|source| unit.is_none_or(|unit| source.pou == unit)) {
                 for term in source.path().map(Path::terms).unwrap_or_default() {
                     if let Some(DeclaredType::Elementary(kind)) = scopes.type_of(source.pou, &term.text) {
                         types.insert(term.key(), kind);

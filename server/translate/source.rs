@@ -3,7 +3,7 @@
 use crate::document::{Chunk, ChunkRef, Document, Notation, Scopes, Tree, both};
 use crate::il::iec::{IecTree, ItemKind};
 use crate::ladder;
-use crate::logic::{self, Declared, Path, Rung};
+use crate::logic::{self, Declared, Elsewhere, Path, Rung};
 use crate::text::{Message, Span};
 use std::sync::Arc;
 
@@ -52,7 +52,9 @@ impl Source {
     /// The rungs of `document` whose chunks lie in these bytes, as declarations around them have them. In a list of
     /// IEC 61131-3 rungs must begin where the bytes do and where they end.
     pub fn within(document: &Document, bytes: Span) -> Vec<Source> {
-        let mut pous = pous_before(document, bytes.start as usize);
+        let unit = document.unit_at(bytes.start as usize);
+        let is_first = unit.span.start == bytes.start;
+        let mut pous = if is_first { unit.before } else { unit.started() };
         if document.notation() == Notation::IecIl {
             let chunk = Arc::new(document.chunk_of(&document.slice(bytes)));
             return Source::of_chunk(document, bytes.start as usize, &chunk, pous);
@@ -130,9 +132,15 @@ pub(super) fn program(document: &Document, part: Option<Span>) -> Program {
 
 /// The same where `scopes` holds, and so many program units have started before.
 fn read((document, scopes): (&Document, &Scopes), part: Option<Span>, pous: usize) -> Program {
-    let new = || Reader { document, scopes, part, pous, program: Program::default() };
+    let elsewhere = Elsewhere::default();
+    let new = || Reader { document, scopes, part, pous, elsewhere: &elsewhere, program: Program::default() };
     let mut reader = new();
     if document.notation() == Notation::IecIl {
+        if let Some((bytes, pous, whole, elsewhere)) = part.and_then(|part| stretch(document, part)) {
+            let mut reader = Reader { pous, elsewhere: &elsewhere, ..reader };
+            reader.chunk(bytes.start as usize, &whole);
+            return reader.program;
+        }
         // A rung of instruction list may reach over several chunks: the calls before it belong to it.
         let (bytes, started) =
             part.map_or((Span::new(0, document.len()), 0), |part| units_around(document, part));
@@ -158,42 +166,27 @@ fn read((document, scopes): (&Document, &Scopes), part: Option<Span>, pous: usiz
     program
 }
 
+/// The bytes of a few rungs around `part` that can be read without the rest of their program unit, how many units have
+/// started there, the rungs' text, and what the rest says of the names in it; nothing where only the whole unit tells.
+fn stretch(document: &Document, part: Span) -> Option<(Span, usize, Arc<Chunk>, Elsewhere)> {
+    let (bytes, unit) = logic::stretch::holding(document, part)?;
+    let own = Arc::new(document.chunk_of(&document.slice(bytes)));
+    let elsewhere = Elsewhere::of(document, unit, bytes, &own)?;
+    Some((bytes, unit.started(), own, elsewhere))
+}
+
 /// The bytes of the program units around `part`, and how many units start before them. A chunk in which a unit starts
 /// may begin with the end of the one before.
 fn units_around(document: &Document, part: Span) -> (Span, usize) {
-    let (mut first, mut before, mut count) = (0, 0, 0);
-    for at in document.chunks() {
-        let (end, starts) = (at.start + at.chunk.len(), at.chunk.pou_starts());
-        if starts > 0 && at.start > part.end as usize {
-            return (Span::new(first, at.start), before);
-        }
-        if starts > 0 && end <= part.start as usize {
-            (first, before) = (at.start, count);
-        }
-        count += starts;
-    }
-    (Span::new(first, document.len()), before)
-}
-
-/// How many program units start before the chunk at a byte.
-fn pous_before(document: &Document, offset: usize) -> usize {
-    let (mut start, mut count) = (0, 0);
-    for page in document.pages() {
-        let end = start + page.bytes();
-        if end > offset {
-            for chunk in page.chunks().iter().take_while(|_| page.pou_starts() > 0) {
-                if start >= offset {
-                    break;
-                }
-                count += chunk.pou_starts();
-                start += chunk.len();
-            }
-            return count;
-        }
-        count += page.pou_starts();
-        start = end;
-    }
-    count
+    let own = document.unit_at(part.start as usize);
+    let starts_here =
+        document.chunk_at(part.start as usize).is_some_and(|at| at.start == own.span.start as usize);
+    let first = match own.span.start.checked_sub(1).filter(|_| starts_here) {
+        Some(before) => document.unit_at(before as usize),
+        None => own,
+    };
+    let last = document.unit_at(part.end as usize);
+    (first.span.to(last.span), first.before)
 }
 
 /// So many chunks are worth the start of a thread that reads half of them.
@@ -205,6 +198,8 @@ struct Reader<'a> {
     part: Option<Span>,
     /// How many program units have started.
     pous: usize,
+    /// What the program unit says outside of what is read.
+    elsewhere: &'a Elsewhere,
     program: Program,
 }
 
@@ -219,11 +214,14 @@ impl Reader<'_> {
             Tree::Iec(tree) => logic::declarations(reading.text(), tree),
             _ => Vec::new(),
         };
+        // The tables of an LDmicro export mean nothing without its head.
+        let is_table = !declared.is_empty() && ladder::kind_of(reading.text()) == ladder::ChunkKind::Ldmicro;
+        let is_kept = self.part.is_none() && !is_table;
         let mut declared = declared.into_iter().peekable();
         let context = Declared { scopes: self.scopes, pous: self.pous };
-        for rung in logic::rungs_with(&reading, self.document.reader(), context) {
+        for rung in logic::rungs_of_stretch(&reading, self.document.reader(), context, self.elsewhere) {
             while let Some(span) = declared.next_if(|span| span.start <= rung.span.start) {
-                self.declare(&reading, span);
+                self.declare(&reading, span, is_kept);
             }
             let declarations = std::mem::take(&mut self.program.tail);
             let pou = self.pous.checked_sub(1);
@@ -233,13 +231,11 @@ impl Reader<'_> {
                 false => self.program.tail = source.declarations,
             }
         }
-        declared.for_each(|span| self.declare(&reading, span));
+        declared.for_each(|span| self.declare(&reading, span, is_kept));
     }
 
-    fn declare(&mut self, chunk: &Chunk, span: Span) {
-        // The tables of an LDmicro export mean nothing without its head.
-        let is_table = ladder::kind_of(chunk.text()) == ladder::ChunkKind::Ldmicro;
-        if self.part.is_none() && !is_table {
+    fn declare(&mut self, chunk: &Chunk, span: Span, is_kept: bool) {
+        if is_kept {
             self.program.tail += span.of(chunk.text());
         }
         if let Tree::Iec(tree) = chunk.tree() {
@@ -249,7 +245,9 @@ impl Reader<'_> {
 }
 
 fn pous_within(tree: &IecTree, span: Span) -> usize {
-    let inside = |at: u32| span.start <= at && at < span.end;
-    let starts = tree.items.iter().filter(|item| matches!(item.kind, ItemKind::Pou { .. }));
-    starts.filter(|item| inside(item.span.start)).count()
+    // Items stand in the order of the text.
+    let [first, end] =
+        [span.start, span.end].map(|at| tree.items.partition_point(|item| item.span.start < at));
+    let inside = tree.items.get(first..end).unwrap_or_default();
+    inside.iter().filter(|item| matches!(item.kind, ItemKind::Pou { .. })).count()
 }

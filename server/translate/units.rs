@@ -3,16 +3,16 @@
 use super::source::Source;
 use crate::document::Document;
 use crate::logic::{Deed, Path};
-use crate::text::Span;
+use crate::text::{Message, Span};
 use smol_str::SmolStr;
 
-/// The first unit that the programs call under one name although it may be another one: declared in one of them and in
-/// another file for the other, or in other files of different projects; with the rungs that call it. What both declare
-/// is a part of what is compared, and the files of one project have the same units.
+/// Why the first unit that the programs call under one name may be another one, with the rungs that call it: it is
+/// declared in one of them and in another file for the other, or in other files of different projects. What both
+/// declare is a part of what is compared, and the files of one project have the same units.
 pub(super) fn unlike(
     documents: [&Document; 2],
     sources: [&[Source]; 2],
-) -> Option<(SmolStr, [Option<Span>; 2])> {
+) -> Option<(Message, [Option<Span>; 2])> {
     let [left, right] = documents.map(|document| document.outer().map(|(outer, _)| outer));
     let is_of_one = left.zip(right).is_some_and(|(left, right)| left.is_of_project(right));
     let is_unlike = |name: &str| {
@@ -32,7 +32,19 @@ pub(super) fn unlike(
     if let Some((other, rung)) = other {
         at[other] = Some(rung.span());
     }
-    Some((name, at))
+    Some((reason(documents, &name), at))
+}
+
+/// Why it is not known whether a unit is the same for both.
+fn reason(documents: [&Document; 2], name: &str) -> Message {
+    let is_known = |document: &Document| document.scopes().pou_number(name).is_some();
+    let [left, right] = documents.map(|document| is_own(document, name));
+    let key = match documents.into_iter().all(is_known) {
+        false => "prove.unit-unknown",
+        true if left != right => "prove.unit-own",
+        true => "prove.unit",
+    };
+    Message::new(key).with("name", name)
 }
 
 /// Whether `document` declares the unit itself.

@@ -25,6 +25,8 @@ mod translation;
 
 mod cursor;
 
+mod simulation;
+
 use figures::{Figures, Table, calibrate, milliseconds};
 use lsp_client::{Client, at};
 use programs::Program;
@@ -57,6 +59,7 @@ fn main() {
     interleaved::measure(&table);
     translation::measure(&table);
     cursor::measure(&table);
+    simulation::measure(&table);
     command_line::measure(&table);
     println!("| (calibration again) | {} | | | | |", milliseconds(calibrate()));
 }

@@ -12,7 +12,7 @@
 
 import { cellWidth, filling, isWords } from './cells';
 import type { PlainChange } from './mending';
-import type { PlainPosition, PlainRange } from './structuralEdits';
+import { comparePositions, type PlacedEdit, type PlainPosition, type PlainRange } from './structuralEdits';
 
 export interface PlainEdit {
   readonly range: PlainRange;
@@ -131,7 +131,7 @@ export class Burst {
 
   /** Answers the first change that waits. Rejects if the drawing cannot be kept whole in this way. */
   async answerNext(ask: Ask): Promise<void> {
-    const keystrokes = [...(this.waiting[0] ?? [])].sort((a, b) => compare(a.range.start, b.range.start));
+    const keystrokes = [...(this.waiting[0] ?? [])].sort((a, b) => comparePositions(a.range.start, b.range.start));
     // One part after another, so that each is answered in a drawing that is whole.
     for (const part of this.parts(keystrokes)) {
       await this.answer(part, ask);
@@ -143,7 +143,7 @@ export class Burst {
    * The lines that change as one edit, and what is to be selected in its text; `undefined` if the cursor stays at what was
    * typed.
    */
-  placed(): { edit: PlainEdit; from: number; to: number } | undefined {
+  placed(): PlacedEdit | undefined {
     const { text, marks } = this.answered;
     const behind = this.cursor ?? this.target?.behind;
     const from = behind === undefined ? 0 : marks.indexOf(behind) + 1;
@@ -446,8 +446,4 @@ export function isLineEnd(text: string): boolean {
 
 function plainText(text: string): string {
   return text.replace(/\r\n?/g, '\n');
-}
-
-function compare(a: PlainPosition, b: PlainPosition): number {
-  return a.line - b.line || a.character - b.character;
 }

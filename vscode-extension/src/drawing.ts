@@ -4,7 +4,16 @@ import * as vscode from 'vscode';
 import { areKeystrokes, Burst, isLineEnd, isMadeBy, type Typed } from './burst';
 import { joinStretches, linesToMend, MOST_LINES, rungPlaces, type PlainChange, type Stretch } from './mending';
 import type { ServerController } from './server';
-import { operandOf, parseEditAnswer, STRUCTURAL_EDITS, type EditAnswer, type PlainRange, type StructuralEdit } from './structuralEdits';
+import {
+  operandOf,
+  parseEditAnswer,
+  placedEdit,
+  STRUCTURAL_EDITS,
+  type EditAnswer,
+  type PlacedEdit,
+  type PlainRange,
+  type StructuralEdit,
+} from './structuralEdits';
 
 const LANGUAGE = 'ladder';
 const EDIT_REQUEST = 'rungwise/edit';
@@ -18,6 +27,11 @@ const STEP_MS = 10;
 const MOST_CURSORS = 16;
 /** Error code of the protocol for a request about a text that is not the current one. */
 const CONTENT_MODIFIED = -32801;
+
+interface UndoStops {
+  readonly undoStopBefore: boolean;
+  readonly undoStopAfter: boolean;
+}
 
 export class DrawingEditor implements vscode.Disposable {
   /** Edits run one after another: each one must see the text that the one before it left. */
@@ -77,8 +91,8 @@ export class DrawingEditor implements vscode.Disposable {
           }
           return undefined;
         });
-        if (answer !== undefined && isCurrent()) {
-          return await this.apply(editor, answer, { undoStopBefore: true, undoStopAfter: true });
+        if (answer !== undefined && isCurrent() && (await this.applyAnswer(editor, answer))) {
+          return true;
         }
       }
       return false;
@@ -108,29 +122,50 @@ export class DrawingEditor implements vscode.Disposable {
     return answer;
   }
 
-  private async apply(
-    editor: vscode.TextEditor,
-    answer: EditAnswer,
-    undo: { undoStopBefore: boolean; undoStopAfter: boolean },
-  ): Promise<boolean> {
+  /** Makes the edits of an answer as one undo step, and selects what it names. */
+  private async applyAnswer(editor: vscode.TextEditor, { edits, selection }: EditAnswer): Promise<boolean> {
+    const undo = { undoStopBefore: true, undoStopAfter: true };
     const { document } = editor;
-    this.making.set(document, answer.edits);
+    if (selection === undefined || !vscode.window.visibleTextEditors.includes(editor)) {
+      return this.apply(document, edits, undo);
+    }
+    const { start, end } = toRange(selection);
+    if (edits.length === 0) {
+      editor.selection = new vscode.Selection(start, end);
+    } else if (!(await this.place(editor, placedEdit((line) => document.lineAt(line).text, edits, selection), undo))) {
+      return false;
+    }
+    editor.revealRange(new vscode.Range(start, end));
+    return true;
+  }
+
+  private async apply(document: vscode.TextDocument, edits: EditAnswer['edits'], undo: UndoStops): Promise<boolean> {
+    this.making.set(document, edits);
     const shown = vscode.window.visibleTextEditors.find((other) => other.document === document);
     try {
-      const done =
-        answer.edits.length === 0 ||
+      return (
+        edits.length === 0 ||
         // A person may have gone to another file in a hurry; then it is an undo step of its own.
         (await (shown
-          ? shown.edit((builder) => answer.edits.forEach((edit) => builder.replace(toRange(edit.range), edit.newText)), undo)
-          : applied(document, answer.edits)));
-      if (done && answer.selection !== undefined) {
-        const { start, end } = toRange(answer.selection);
-        editor.selection = new vscode.Selection(start, end);
-        editor.revealRange(editor.selection);
-      }
-      return done;
+          ? shown.edit((builder) => edits.forEach((edit) => builder.replace(toRange(edit.range), edit.newText)), undo)
+          : applied(document, edits)))
+      );
     } finally {
       this.making.delete(document);
+    }
+  }
+
+  /** Makes an edit and selects in its text at once: a key that came before a cursor set afterwards would go elsewhere. */
+  private async place(editor: vscode.TextEditor, { edit, from, to }: PlacedEdit, undo: UndoStops): Promise<boolean> {
+    const text = edit.newText;
+    // A snippet brings its cursor along.
+    const snippet = new vscode.SnippetString().appendText(text.slice(0, from));
+    snippet.appendPlaceholder(text.slice(from, to), 0).appendText(text.slice(to));
+    this.making.set(editor.document, [edit]);
+    try {
+      return await editor.insertSnippet(snippet, toRange(edit.range), undo);
+    } finally {
+      this.making.delete(editor.document);
     }
   }
 
@@ -262,18 +297,8 @@ export class DrawingEditor implements vscode.Disposable {
     this.applying = burst;
     try {
       const placed = burst.placed();
-      if (placed === undefined) {
-        return await this.apply(editor, { edits, selection: undefined }, undo);
-      }
-      // A snippet brings its cursor along; a key that came before a cursor set afterwards would go elsewhere.
-      const { edit, from, to } = placed;
-      const text = edit.newText;
-      const snippet = new vscode.SnippetString().appendText(text.slice(0, from));
-      snippet.appendPlaceholder(text.slice(from, to), 0).appendText(text.slice(to));
-      this.making.set(editor.document, [edit]);
-      return await editor.insertSnippet(snippet, toRange(edit.range), undo);
+      return await (placed === undefined ? this.apply(editor.document, edits, undo) : this.place(editor, placed, undo));
     } finally {
-      this.making.delete(editor.document);
       this.applying = undefined;
     }
   }
@@ -373,7 +398,7 @@ export class DrawingEditor implements vscode.Disposable {
         if (document.version === version) {
           this.dirty.delete(document);
           // The cursor stays where the person left it, so no selection.
-          await this.apply(editor, { edits, selection: undefined }, { undoStopBefore: false, undoStopAfter: false });
+          await this.apply(document, edits, { undoStopBefore: false, undoStopAfter: false });
           return;
         }
       }

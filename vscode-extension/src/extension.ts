@@ -11,6 +11,7 @@ import { ProofView } from './proving';
 import { Pages } from './pages';
 import { ServerController } from './server';
 import type { ProgramStatus, ServerState } from './status';
+import { SimulationView } from './simulationView';
 import { StatusBar } from './statusBar';
 import { RungwiseTasks } from './tasks';
 import { registerTranslations } from './translations';
@@ -48,6 +49,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<Rungwi
     new DevicesView(controller),
     new FormsView(controller),
     new ProofView(controller),
+    new SimulationView(controller),
     RungwiseTasks.register(controller),
     registerExample(context),
     registerWalkthrough(),

@@ -46,6 +46,7 @@ export class ServerController implements vscode.Disposable {
   readonly onDidStart = this.started.event;
   private readonly watcher = vscode.workspace.createFileSystemWatcher('**/{rungwise.toml,*.lad,*.il}');
   private readonly crashes = new CrashPolicy();
+  private readonly handlers = new Map<string, Set<(params: unknown) => void>>();
   /** Starts and stops run one after another; two restarts in a row must not leave two servers. */
   private queue: Promise<void> = Promise.resolve();
   private runningVersion: string | undefined;
@@ -103,6 +104,13 @@ export class ServerController implements vscode.Disposable {
       throw new Error(vscode.l10n.t('the language server is not running'));
     }
     return this.client.sendRequest(ExecuteCommandRequest.type, { command, arguments: [...args] }, token);
+  }
+
+  /** Hears notifications of the server's own kind, of this server and of those that follow it. */
+  onNotification(method: string, handler: (params: unknown) => void): vscode.Disposable {
+    const handlers = this.handlers.get(method) ?? new Set();
+    this.handlers.set(method, handlers.add(handler));
+    return new vscode.Disposable(() => handlers.delete(handler));
   }
 
   /** Sends a request of the server's own kind. Rejects as `executeCommand` does. */
@@ -235,6 +243,9 @@ export class ServerController implements vscode.Disposable {
       getState: () => ({ kind: 'static' }),
       clear: () => undefined,
     });
+    for (const [method, handlers] of this.handlers) {
+      client.onNotification(method, (params: unknown) => handlers.forEach((handler) => handler(params)));
+    }
     client.onNotification('rungwise/status', (value: unknown) => {
       const status = parseStatus(value);
       if (status !== undefined) {

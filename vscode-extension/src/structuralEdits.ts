@@ -40,6 +40,35 @@ export interface EditAnswer {
   readonly selection: PlainRange | undefined;
 }
 
+/** An edit with what is to be selected in its text, from one offset to the other. */
+export interface PlacedEdit {
+  readonly edit: { readonly range: PlainRange; readonly newText: string };
+  readonly from: number;
+  readonly to: number;
+}
+
+/** All edits of an answer as one that holds what is selected afterwards, from the begin of a line to the end of one. */
+export function placedEdit(
+  lineAt: (line: number) => string,
+  edits: EditAnswer['edits'],
+  selection: PlainRange,
+): PlacedEdit {
+  const added = edits.reduce((sum, { range, newText }) => sum + newText.split('\n').length - 1 - rowsBelow(range), 0);
+  const first = Math.min(selection.start.line, ...edits.map(({ range }) => range.start.line));
+  const last = Math.max(selection.end.line - added, ...edits.map(({ range }) => range.end.line));
+  let newText = Array.from({ length: last - first + 1 }, (_, index) => lineAt(first + index)).join('\n');
+  const offset = ({ line, character }: PlainPosition) => {
+    const above = newText.split('\n').slice(0, line - first);
+    return above.reduce((sum, row) => sum + row.length + 1, character);
+  };
+  const latestFirst = [...edits].sort((a, b) => comparePositions(b.range.start, a.range.start));
+  for (const { range, newText: put } of latestFirst) {
+    newText = newText.slice(0, offset(range.start)) + put + newText.slice(offset(range.end));
+  }
+  const range = { start: { line: first, character: 0 }, end: { line: last, character: lineAt(last).length } };
+  return { edit: { range, newText }, from: offset(selection.start), to: offset(selection.end) };
+}
+
 /** Checks what came over the wire; `undefined` if it is not an answer. */
 export function parseEditAnswer(value: unknown): EditAnswer | undefined {
   const fields = record(value);
@@ -62,6 +91,14 @@ export function parseEditAnswer(value: unknown): EditAnswer | undefined {
 export function operandOf(args: unknown): string | undefined {
   const operand = typeof args === 'string' ? args : record(args)?.['operand'];
   return typeof operand === 'string' && operand.trim() !== '' ? operand.trim() : undefined;
+}
+
+export function comparePositions(a: PlainPosition, b: PlainPosition): number {
+  return a.line - b.line || a.character - b.character;
+}
+
+function rowsBelow({ start, end }: PlainRange): number {
+  return end.line - start.line;
 }
 
 function parseRange(value: unknown): PlainRange | undefined {

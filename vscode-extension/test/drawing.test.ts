@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { joinStretches, linesToMend, rungPlaces, type PlainChange } from '../src/mending';
-import { operandOf, parseEditAnswer } from '../src/structuralEdits';
+import { operandOf, parseEditAnswer, placedEdit } from '../src/structuralEdits';
 
 /** First line, last line and places of a stretch, each place as [line, character]. */
 const plain = (stretch: ReturnType<typeof linesToMend>) =>
@@ -50,6 +50,25 @@ test('stretches are joined with a line to spare', () => {
   const later = { first: 7, last: 7, places: [{ line: 7, character: 3 }] };
   assert.equal(joinStretches(undefined, later), later);
   assert.deepEqual(plain(joinStretches({ first: 0, last: 4, places: [] }, later)), [0, 7, [7, 3]]);
+});
+
+test('edits with a selection are one edit of whole lines, which holds what is selected', () => {
+  const lines = ['a', '|   |', '+---+', 'b', 'c'];
+  const edits = [change(1, 1, 1, 4, '???'), change(2, 2, 2, 3, '|'), change(3, 1, 3, 1, '\nB')].map(({ range, text }) => ({
+    range,
+    newText: text,
+  }));
+  const placed = (from: number, line: number, to: number, count: number, some = edits) => {
+    const selection = { start: { line: from, character: to }, end: { line, character: to + count } };
+    const { edit, from: start, to: end } = placedEdit((at) => lines[at]!, some, selection);
+    return [edit.range.start.line, edit.range.end.line, edit.range.end.character, edit.newText, edit.newText.slice(start, end)];
+  };
+  const text = '|???|\n+-|-+\nb\nB';
+  assert.deepEqual(placed(1, 1, 1, 3), [1, 3, 1, text, '???']);
+  assert.deepEqual(placed(4, 4, 0, 1), [1, 3, 1, text, 'B']);
+  assert.deepEqual(placed(5, 5, 0, 1), [1, 4, 1, `${text}\nc`, 'c']);
+  assert.deepEqual(placed(0, 0, 0, 1), [0, 3, 1, `a\n${text}`, 'a']);
+  assert.deepEqual(placed(0, 0, 1, 0, edits.slice(0, 1)), [0, 1, 5, 'a\n|???|', '']);
 });
 
 test('an answer of the server is read, a broken one is refused', () => {

@@ -86,7 +86,12 @@ function M.config()
     init_options = settings,
     settings = { rungwise = settings },
     capabilities = require('rungwise.translations').capabilities(),
-    handlers = { ['rungwise/status'] = on_status },
+    handlers = {
+      ['rungwise/status'] = on_status,
+      ['rungwise/monitor'] = function(...)
+        require('rungwise.simulation').on_monitor(...)
+      end,
+    },
   }
 end
 

@@ -99,6 +99,14 @@ M.subcommands = {
     end,
   },
   restart = { run = client.restart },
+  simulate = {
+    run = function(words)
+      require('rungwise.simulation').run(words)
+    end,
+    complete = function()
+      return require('rungwise.simulation').names()
+    end,
+  },
   target = {
     run = function(words)
       M.target(words[1] or '')

@@ -1,32 +1,115 @@
 //! Boxes in drawings, whose parameters have the names of the declaration like those of a call in a list.
 
+use super::constant_written;
 use super::unknown_parameter::{RULE, with_names};
 use crate::check::ChunkContext;
+use crate::check::iec::{View, constant_written as constant_at_pin, expression_written};
 use crate::document::Tree;
-use crate::ladder::{Block, ElementKind, Pin};
+use crate::il::iec::IecTree;
+use crate::ladder::{Block, Element, ElementKind, Pin, PinWire};
 use crate::logic::{Callee, Formal};
+use crate::target::Operand;
 use crate::target::iec::{EN, ENO};
 use crate::text::{Diagnostic, Message, Span, folded};
 
 /// The pins of function blocks, and of functions of the program, that these do not have.
 pub(super) fn parameters(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
+    each(context, |_, block, callee| unknown_pins(context.chunk.text(), block, callee, found));
+}
+
+/// What the pins of boxes write that is only to be read: variables declared so, and outputs of blocks.
+pub(super) fn variables(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
+    let text = context.chunk.text();
+    let tree = IecTree::default();
+    let view = View { text, tree: &tree, scopes: context.scopes, pou: context.pou };
+    each(context, |element, block, callee| {
+        for (_, place) in written(text, block, callee) {
+            let Written::Operand(place) = place else { continue };
+            let Some(operand) = element.operands.get(place) else { continue };
+            if operand.value == Operand::Variable {
+                found.extend(constant_written::judge(
+                    &view,
+                    &element.operand_text(place, text),
+                    operand.span,
+                ));
+            }
+        }
+    });
+}
+
+/// What the pins of boxes would have to write and that is no variable: constants, inverted values, power.
+pub(in crate::check) fn values(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
+    let text = context.chunk.text();
+    // What looks like power may be a name that could not be read.
+    let is_read = matches!(context.chunk.tree(), Tree::Ladder(tree) if tree.problems.is_empty());
+    each(context, |element, block, callee| {
+        for (name, place) in written(text, block, callee) {
+            match place {
+                Written::Expression(_) if !is_read => {}
+                Written::Expression(span) => found.push(expression_written(span, name)),
+                Written::Operand(place) => {
+                    let operand = element.operands.get(place);
+                    let literal = operand.filter(|one| matches!(one.value, Operand::Literal(_)));
+                    found.extend(literal.map(|one| constant_at_pin(one.span, one.span.of(text), name)));
+                }
+            }
+        }
+    });
+}
+
+/// What is at a pin that writes.
+enum Written {
+    /// The operand of the element at this place.
+    Operand(usize),
+    /// Power, or an inverted value, at the pin of this name.
+    Expression(Span),
+}
+
+/// The pins that write to what is connected to them, by name: outputs, and inputs that are VAR_IN_OUT.
+fn written<'t>(text: &'t str, block: &Block, callee: &'t Callee) -> Vec<(&'t str, Written)> {
+    let inputs = callee.inputs();
+    let named = |pin: &Pin| match pin.name.map_or("", |name| name.of(text)) {
+        "" => callee.name(),
+        name => name,
+    };
+    let is_in_out = |pin: &&Pin| {
+        let name = pin.formal(text);
+        inputs.iter().any(|formal| formal.is_in_out && formal.is_called(name))
+    };
+    let handed_over = block.inputs.iter().filter(is_in_out).filter_map(|pin| {
+        let place = match (&pin.wire, pin.name) {
+            (PinWire::Operand(place), _) if !pin.negated => Written::Operand(*place),
+            (PinWire::Operand(_) | PinWire::Power, Some(name)) => Written::Expression(name),
+            _ => return None,
+        };
+        Some((named(pin), place))
+    });
+    let outputs = block.outputs.iter().filter_map(|pin| match pin.wire {
+        PinWire::Operand(place) => Some((named(pin), Written::Operand(place))),
+        _ => None,
+    });
+    handed_over.chain(outputs).collect()
+}
+
+/// Calls `found` with each box that has a name, and with what it calls.
+fn each(context: &ChunkContext<'_>, mut found: impl FnMut(&Element, &Block, &Callee)) {
     let Tree::Ladder(tree) = context.chunk.tree() else { return };
     if context.target.is_fx() {
         return;
     }
+    let text = context.chunk.text();
     for element in tree.rungs.iter().flat_map(|rung| &rung.graph.elements) {
-        if let ElementKind::Block(block) = &element.kind {
-            of_box(context, block, found);
+        let ElementKind::Block(block) = &element.kind else { continue };
+        // The boxes of LDmicro have no names but what stands in for them.
+        let Some(name) = block.type_text(text).filter(|_| block.ldmicro.is_none()) else { continue };
+        let function = Callee::declared_function(name, context.scopes).filter(|_| block.instance.is_none());
+        if let Some(callee) = function.or_else(|| Callee::block(name, context.scopes)) {
+            found(element, block, &callee);
         }
     }
 }
 
-fn of_box(context: &ChunkContext<'_>, block: &Block, found: &mut Vec<Diagnostic>) {
-    let text = context.chunk.text();
-    // The boxes of LDmicro have no names but what stands in for them.
-    let Some(name) = block.type_text(text).filter(|_| block.ldmicro.is_none()) else { return };
-    let function = || Callee::declared_function(name, context.scopes).filter(|_| block.instance.is_none());
-    let Some(callee) = function().or_else(|| Callee::block(name, context.scopes)) else { return };
+fn unknown_pins(text: &str, block: &Block, callee: &Callee, found: &mut Vec<Diagnostic>) {
     // The result of a function has no name of its own, so people give it many.
     let has_result = callee.result_type().is_some();
     let sides = [

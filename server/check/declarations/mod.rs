@@ -12,7 +12,7 @@ mod unknown_function_block;
 
 mod unknown_parameter;
 
-mod boxes;
+pub(super) mod boxes;
 
 mod constant_written;
 

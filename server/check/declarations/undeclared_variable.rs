@@ -41,7 +41,7 @@ use super::guess::types_of;
 use crate::check::iec::View;
 use crate::check::{ProgramContext, Rule, Run};
 use crate::document::{Chunk, ChunkRef, DeclaredType, Document, Mention, Pou, Scopes, Symbol, Use};
-use crate::il::iec::{IecTree, ItemKind, PouKind, SectionKind, TypeSpec};
+use crate::il::iec::{self, IecTree, ItemKind, PouKind, SectionEnd, SectionKind, TypeSpec};
 use crate::target::iec::{Function, FunctionBlock, nearest};
 use crate::text::{Diagnostic, Message, Severity, Span, TextEdit, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -227,19 +227,12 @@ impl Unit<'_> {
             }
         }
         let Some((at, span)) = section else { return header.map(Gap::Header) };
-        let text = at.chunk.text();
-        let end = (span.end as usize).checked_sub("END_VAR".len())?;
-        if !text.get(end..)?.get(.."END_VAR".len())?.eq_ignore_ascii_case("END_VAR") {
-            return None;
-        }
-        let line = text.get(..end)?.rfind('\n').map_or(0, |newline| newline + 1);
-        if !text.get(line..end)?.trim().is_empty() {
-            return Some(Gap::InLine(at.start + end));
-        }
-        let before = text.get(..line)?.trim_end().rsplit('\n').next().unwrap_or("");
-        let indent = &before[..before.len() - before.trim_start().len()];
-        let indent = if indent.is_empty() { "    " } else { indent };
-        Some(Gap::Line(at.start + line, indent.to_string()))
+        Some(match iec::section_end(at.chunk.text(), span)? {
+            SectionEnd::Behind(end) => Gap::InLine(at.start + end),
+            SectionEnd::Alone(line, before) => {
+                Gap::Line(at.start + line, SectionEnd::margin(before).to_string())
+            }
+        })
     }
 }
 

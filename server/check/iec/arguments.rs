@@ -28,7 +28,10 @@ impl Walk<'_> {
         if let Some(current) = &first
             && let Some(pin) = callee.pin_at(&view, 0)
         {
-            self.input(current, pin, &mut groups, &mut constants);
+            match pin.flow {
+                Flow::InOut if !self.is_variable(current.source) => self.not_writable(current, pin),
+                _ => self.input(current, pin, &mut groups, &mut constants),
+            }
         }
         for (position, parameter) in parameters.of(&view.tree.parameters).iter().enumerate() {
             let pin = match (parameter.name, form) {
@@ -40,6 +43,9 @@ impl Walk<'_> {
             match parameter.value {
                 ParameterValue::Operand(id) => {
                     self.parameter(parameter, pin, id, &mut groups, &mut constants);
+                }
+                ParameterValue::Instructions if pin.flow == Flow::InOut => {
+                    self.found.push(expression_written(parameter.name.unwrap_or(parameter.span), pin.name));
                 }
                 ParameterValue::Instructions => {
                     _ = self.awaited.insert(parameters.start + position as u32, pin.expected);
@@ -76,10 +82,7 @@ impl Walk<'_> {
         }
         let is_constant = matches!(self.view.tree.operand(id).value, Operand::Literal(_));
         if pin.flow != Flow::In && is_constant {
-            let message = Message::new("operand-kind.output-constant")
-                .with("word", span.of(self.view.text))
-                .with("pin", pin.name);
-            return self.found.push(Diagnostic::new("operand-kind", span, message));
+            return self.found.push(constant_written(span, span.of(self.view.text), pin.name));
         }
         if let Expected::Elementary(kind) = pin.expected {
             self.guess(Some(id), kind, &value.kind);
@@ -123,6 +126,25 @@ impl Walk<'_> {
             }
             _ => {}
         }
+    }
+
+    /// Whether a value is a variable as it stands: what is handed over to be changed.
+    fn is_variable(&self, source: Option<OperandId>) -> bool {
+        source.is_some_and(|id| !matches!(self.view.tree.operand(id).value, Operand::Literal(_)))
+    }
+
+    /// The current result, which the callee is to change and which is no variable.
+    fn not_writable(&mut self, current: &Value, pin: Pin<'_>) {
+        let diagnostic = match current.source {
+            Some(id) => {
+                let span = self.view.tree.operand(id).span;
+                constant_written(span, span.of(self.view.text), pin.name)
+            }
+            // Where nothing is known of the current result, that is told already.
+            None if current.kind == ValueType::Unknown => return,
+            None => expression_written(current.at, pin.name),
+        };
+        self.found.push(diagnostic);
     }
 
     fn judge_input(&mut self, value: &Value, pin: Pin<'_>) {
@@ -335,6 +357,17 @@ impl Expected {
             _ => ValueType::Unknown,
         }
     }
+}
+
+/// The constant `word` at a pin that writes to its operand.
+pub fn constant_written(span: Span, word: &str, pin: &str) -> Diagnostic {
+    let message = Message::new("operand-kind.output-constant").with("word", word).with("pin", pin);
+    Diagnostic::new("operand-kind", span, message)
+}
+
+/// A value that is no variable at a pin that writes to its operand.
+pub fn expression_written(span: Span, pin: &str) -> Diagnostic {
+    Diagnostic::new("operand-kind", span, Message::new("operand-kind.output-expression").with("pin", pin))
 }
 
 /// A constant that a type cannot hold.

@@ -20,4 +20,4 @@ mod initial;
 pub(super) use initial::initial_values;
 
 mod arguments;
-pub(super) use arguments::out_of_range;
+pub(super) use arguments::{constant_written, expression_written, out_of_range};

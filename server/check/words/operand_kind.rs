@@ -82,6 +82,7 @@
 //! END_PROGRAM
 //! ```
 
+use crate::check::declarations::boxes;
 use crate::check::iec::{View, initial_values, misplaced_words};
 use crate::check::{ChunkContext, Rule, Run};
 use crate::document::Operation;
@@ -102,7 +103,7 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
         return misplaced_words(&view, found);
     }
     if !context.target.is_fx() {
-        return;
+        return boxes::values(context, found);
     }
     for operation in &context.doubtful {
         let Some(form) = operation.form.filter(|form| form.is_on(context.target.model)) else { continue };

@@ -1,9 +1,8 @@
 //! Declarations of the variables that a refactoring adds to a program unit.
 
 use super::neighbourhood::Neighbourhood;
-use super::unit::Unit;
-use crate::document::{DeclaredType, Document, Pou, Scopes};
-use crate::il::iec::{ItemKind, SectionKind};
+use crate::document::{DeclaredType, Document, Pou, Scopes, Unit};
+use crate::il::iec::{self, ItemKind, SectionEnd, SectionKind};
 use crate::target::iec::ElementaryType;
 use crate::text::{Span, TextEdit};
 use smol_str::SmolStr;
@@ -103,20 +102,13 @@ fn gap(document: &Document, unit: Unit) -> Option<Gap> {
         return Some(Gap::Header(line + text.trim_end_matches(['\r', '\n']).len()));
     };
     let text = at.chunk.text();
-    let end = (span.end as usize).checked_sub("END_VAR".len())?;
-    if !text.get(end..)?.get(.."END_VAR".len())?.eq_ignore_ascii_case("END_VAR") {
-        return None;
-    }
-    let line = text.get(..end)?.rfind('\n').map_or(0, |newline| newline + 1);
-    if !text.get(line..end)?.trim().is_empty() {
-        return Some(Gap::InLine(at.start + end));
-    }
-    let before = text.get(..line)?.trim_end().rsplit('\n').next().unwrap_or("");
-    let indent = &before[..before.len() - before.trim_start().len()];
-    let indent = if indent.is_empty() { "    " } else { indent };
+    let (line, before) = match iec::section_end(text, span)? {
+        SectionEnd::Behind(end) => return Some(Gap::InLine(at.start + end)),
+        SectionEnd::Alone(line, before) => (line, before),
+    };
     let declares = !before.trim_start().starts_with("(*") && !before.trim_start().starts_with("//");
     let colons = before.split_once(':').filter(|_| declares).map(|(names, _)| names.chars().count());
-    Some(Gap::Line(at.start + line, indent.to_string(), colons))
+    Some(Gap::Line(at.start + line, SectionEnd::margin(before).to_string(), colons))
 }
 
 /// Whether `after` declares what `before` does, and `declarations` in program unit number `unit` besides.

@@ -1,4 +1,9 @@
 //! A part of a condition as a rung of its own that drives a free relay, read in the place of the part.
+//!
+//! That is of use to somebody where the part is a word of its own: at least two contacts that ask something, for what
+//! is always on or off needs no relay. A cursor means the innermost such connection around it; all that a gate lets
+//! pass, inverted or not, is only meant by who selects it. And what a rung does with nothing but one plain coil has
+//! its relay already: that coil, or its inverse.
 
 use super::declaration::Declaration;
 use super::neighbourhood::Neighbourhood;
@@ -105,39 +110,67 @@ fn free_variable(around: &Neighbourhood<'_>) -> Option<Term> {
 }
 
 /// The places of the chosen contacts in their chunk: those that are selected or, at a cursor, those of the innermost
-/// connection around it. Nothing for one contact, or for all that there is.
+/// connection around it that is worth a relay. Nothing if nothing is.
 fn chosen(path: &Path, selected: Span) -> Option<Vec<Span>> {
     let mut conditions = Vec::new();
     path.visit(&mut |_| {}, &mut |condition| conditions.push(condition));
-    let spans =
-        |contacts: Vec<&Contact>| contacts.into_iter().map(|contact| contact.span).collect::<Vec<_>>();
-    if selected.is_empty() {
-        let found =
-            conditions.into_iter().find_map(|condition| around_cursor(condition, selected.start as usize));
-        return found.map(|condition| spans(condition.contacts()));
-    }
-    let is_meant = |span: Span| span.start < selected.end && selected.start < span.end;
-    let contacts = conditions.iter().flat_map(|condition| condition.contacts());
-    let meant = contacts
-        .filter(|contact| is_meant(contact.span) || contact.terms.iter().any(|term| is_meant(term.span)));
-    let meant: Vec<&Contact> = meant.collect();
-    (meant.len() > 1).then(|| spans(meant))
+    let all = || conditions.iter().flat_map(|condition| condition.contacts());
+    let chosen: Vec<&Contact> = if selected.is_empty() {
+        let at = |condition| around_cursor(whole(condition), selected.start as usize);
+        conditions.iter().copied().find_map(at)?.contacts()
+    } else {
+        let is_meant = |span: Span| span.start < selected.end && selected.start < span.end;
+        let is_meant = |contact: &&Contact| {
+            is_meant(contact.span) || contact.terms.iter().any(|term| is_meant(term.span))
+        };
+        all().filter(is_meant).collect()
+    };
+    let asking = chosen.iter().filter(|contact| asks(contact)).count();
+    let is_all = || all().filter(|contact| asks(contact)).count() == asking;
+    let is_worth_it = asking > 1 && !(drives_one_plain_coil(path) && is_all());
+    is_worth_it.then(|| chosen.into_iter().map(|contact| contact.span).collect())
 }
 
-/// The innermost connection in `condition` with a contact at the byte, but not `condition` itself.
+/// Whether a contact is not always on or off.
+fn asks(contact: &Contact) -> bool {
+    let is_constant = |term: &Term| {
+        matches!(term.operand, Operand::Literal(_) | Operand::Constant { .. }) || term.always().is_some()
+    };
+    !contact.terms.iter().all(is_constant)
+}
+
+/// Whether the path drives one bit that is what its condition is, or its inverse; a timer or a counter, which has a
+/// preset besides, is not.
+fn drives_one_plain_coil(path: &Path) -> bool {
+    match path.actions()[..] {
+        [action] => {
+            let is_plain = matches!(action.deed, Deed::Coil(CoilKind::Plain | CoilKind::Negated));
+            is_plain && action.terms.len() == 1
+        }
+        _ => false,
+    }
+}
+
+/// What an inversion inverts, or the condition itself.
+fn whole(condition: &Expression) -> &Expression {
+    let mut whole = condition;
+    while let Expression::Not(part) = whole {
+        whole = part;
+    }
+    whole
+}
+
+/// The innermost connection of several contacts in `condition` around the byte, but not `condition` itself.
 fn around_cursor(condition: &Expression, offset: usize) -> Option<&Expression> {
-    let is_at = |contact: &Contact| {
+    let is_at = |contact: &&Contact| {
         contact.span.touches(offset) || contact.terms.iter().any(|term| term.span.touches(offset))
     };
-    for part in condition.parts() {
-        let deeper = around_cursor(part, offset);
-        let has_it =
-            || part.parts().iter().any(|one| matches!(one, Expression::Contact(contact) if is_at(contact)));
-        if let Some(found) = deeper.or_else(|| has_it().then_some(part)) {
-            return Some(found);
-        }
-    }
-    None
+    condition.parts().iter().map(whole).find_map(|part| {
+        let contacts = part.contacts();
+        let is_worth_it = || contacts.iter().filter(|contact| asks(contact)).count() > 1;
+        let is_meant = contacts.iter().any(is_at);
+        is_meant.then(|| around_cursor(part, offset).or_else(|| is_worth_it().then_some(part)))?
+    })
 }
 
 /// Takes the chosen contacts out of the one condition that has all of them, with `instead` in their place.
@@ -162,6 +195,10 @@ fn count(condition: &Expression, chosen: &[Span]) -> usize {
 
 /// The same in a condition that has them all. They must be neighbours in one connection.
 fn taken(condition: &mut Expression, chosen: &[Span], instead: &Expression) -> Option<Expression> {
+    // An inversion stays where it is.
+    if let Expression::Not(part) = condition {
+        return taken(part, chosen, instead);
+    }
     let is_whole = |part: &Expression| count(part, chosen) == part.contacts().len();
     if is_whole(condition) {
         return Some(std::mem::replace(condition, instead.clone()));
@@ -169,8 +206,7 @@ fn taken(condition: &mut Expression, chosen: &[Span], instead: &Expression) -> O
     let (parts, in_series) = match condition {
         Expression::And(parts) => (parts, true),
         Expression::Or(parts) => (parts, false),
-        Expression::Not(part) => return taken(part, chosen, instead),
-        Expression::Contact(_) | Expression::Constant(_) => return None,
+        Expression::Not(_) | Expression::Contact(_) | Expression::Constant(_) => return None,
     };
     let meets = |part: &Expression| count(part, chosen) > 0;
     let first = parts.iter().position(meets)?;

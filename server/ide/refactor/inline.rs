@@ -56,7 +56,9 @@ fn proposed(around: &Neighbourhood<'_>, place: usize, relay: Relay) -> Option<Pr
         }
     }
     let title = Message::new("refactor.inline").with("relay", &relay.name);
-    (left == 0)
+    // All files are looked through for who asks for it by an instance, so that comes last.
+    let is_seen = || matches!(relay.symbol, Symbol::Variable(_)) && is_member(around.view, &relay.name);
+    (left == 0 && !is_seen())
         .then(|| Proposal { relay: Some(relay.key), ..Proposal::of("refactor.inline.relay", title, changes) })
 }
 
@@ -127,9 +129,6 @@ impl Relay {
     /// How often it is named, and how often written; nothing if it is also a part of something else.
     fn uses(&self, around: &Neighbourhood<'_>) -> Option<(u32, u32)> {
         let Symbol::Device(device) = self.symbol else {
-            if is_member(around.view, &self.name) {
-                return None;
-            }
             let tally = around.unit.tally(around.document, &self.symbol);
             return Some((u32::try_from(tally.mentions).ok()?, u32::try_from(tally.writes).ok()?));
         };

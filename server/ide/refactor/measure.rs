@@ -1,9 +1,9 @@
 //! How long rungs are: in program steps on the FX family, in instructions of a list in IEC 61131-3.
 
-use super::stretch::is_instruction;
 use crate::document::{Document, Tree};
 use crate::il::fx::LineKind;
 use crate::logic::Path;
+use crate::logic::stretch::is_instruction;
 use crate::translate::Source;
 use crate::translate::to_iec::Helpers;
 use crate::translate::{to_fx, to_iec};

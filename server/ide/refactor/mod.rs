@@ -6,8 +6,6 @@
 
 mod unit;
 
-mod stretch;
-
 mod measure;
 
 mod neighbourhood;
@@ -39,7 +37,7 @@ mod extract;
 mod inline;
 
 use super::Style;
-use crate::document::ProjectView;
+use crate::document::{Notation, ProjectView};
 use crate::logic::{Expression, Path};
 use crate::text::{Message, Span, TextEdit};
 use declaration::Declaration;
@@ -79,6 +77,8 @@ struct Proposal {
     declarations: Vec<Declaration>,
     /// Whether it is of use only if rungs become shorter.
     must_save: bool,
+    /// Whether instructions stay in a form that has shorter ones, such as a call behind the stores of its inputs.
+    keeps_forms: bool,
 }
 
 impl Proposal {
@@ -94,7 +94,8 @@ impl Proposal {
     }
 
     fn of(kind: &'static str, title: Message, changes: Vec<Change>) -> Proposal {
-        Proposal { kind, title, changes, relay: None, declarations: Vec::new(), must_save: false }
+        let (relay, declarations) = (None, Vec::new());
+        Proposal { kind, title, changes, relay, declarations, must_save: false, keeps_forms: true }
     }
 
     fn if_it_saves(self) -> Proposal {
@@ -164,7 +165,10 @@ fn saved(around: &Neighbourhood<'_>, proposal: &Proposal) -> Option<i64> {
     let mut saved = 0;
     for change in &proposal.changes {
         for number in change.first..change.first + change.count {
-            saved += i64::from(around.length(number)?);
+            // Forms that stay make no difference.
+            let is_written = !proposal.keeps_forms || around.document.notation() != Notation::IecIl;
+            let length = if is_written { around.length(number) } else { around.shortest(number) };
+            saved += i64::from(length?);
         }
         for path in &change.paths {
             saved -= i64::from(measure::of_path(path, around.document)?);

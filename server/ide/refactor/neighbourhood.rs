@@ -1,11 +1,10 @@
 //! The rungs around the cursor, as the logic sees them.
 
 use super::Change;
-use super::stretch::{self, BYTES_MAX, CHUNKS_BEHIND};
-use super::unit::Unit;
 use super::{measure, silent};
-use crate::document::{Document, Notation, ProjectView};
+use crate::document::{Document, Notation, ProjectView, Unit};
 use crate::logic::Path;
+use crate::logic::stretch::{self, BYTES_MAX, CHUNKS_BEHIND};
 use crate::text::Span;
 use crate::translate::Source;
 use rustc_hash::FxHashMap;
@@ -37,7 +36,7 @@ impl<'d> Neighbourhood<'d> {
         let document = view.here();
         let offset = selected.start as usize;
         let at = document.chunk_at(offset)?;
-        let unit = Unit::at(document, at.start);
+        let unit = document.unit_at(at.start);
         let is_iec = document.notation() == Notation::IecIl;
         let span =
             if is_iec { stretch::around(document, offset, unit)? } else { chunks_around(document, offset)? };
@@ -106,6 +105,11 @@ impl<'d> Neighbourhood<'d> {
     /// list.
     pub fn length(&self, number: usize) -> Option<u32> {
         measure::of_rung(self.rungs.get(number)?, self.document)
+    }
+
+    /// The length of a rung in the shortest list.
+    pub fn shortest(&self, number: usize) -> Option<u32> {
+        measure::of_path(self.rungs.get(number)?.path()?, self.document)
     }
 }
 

@@ -2,11 +2,11 @@
 
 use super::declaration::adds_only;
 use super::neighbourhood::Neighbourhood;
-use super::unit::{Unit, is_member};
+use super::unit::is_member;
 use super::writing::Written;
-use super::{Change, Proposal, silent, stretch};
+use super::{Change, Proposal, silent};
 use crate::document::{Document, Edit, Notation, Symbol};
-use crate::logic::{Comparison, Formulas, Path, compare, compare_but};
+use crate::logic::{Comparison, Formulas, Path, compare, compare_but, stretch};
 use crate::text::{Span, TextEdit};
 use crate::translate::Source;
 use rustc_hash::FxHashSet;
@@ -129,14 +129,14 @@ fn keeps_to_itself(
     old: &[Source],
     new: &[Source],
 ) -> bool {
-    let unit = Unit::at(after, window.start as usize);
+    let unit = after.unit_at(window.start as usize);
     let inside = |start: usize| window.range().contains(&start);
     let is_seen = |symbol: &Symbol| matches!(symbol, Symbol::Variable(name) if is_member(around.view, name));
     let is_private = |symbol: &Symbol| match silent::helper(symbol) {
         Some(name) => {
             around.is_stored_outside(name) && silent::is_stored_wherever_read(after, unit, name, &inside)
         }
-        None => !is_seen(symbol) && silent::is_named_only_in(after, unit, symbol, new),
+        None => silent::is_named_only_in(after, unit, symbol, new) && !is_seen(symbol),
     };
     old.iter().chain(new).flat_map(silent::names).all(|symbol| is_private(&symbol))
 }

@@ -9,5 +9,6 @@ pub(super) fn propose(around: &Neighbourhood<'_>) -> Option<Proposal> {
     let has_steps = around.document.target().is_fx();
     let title = if has_steps { "refactor.shorten" } else { "refactor.shorten-instructions" };
     let proposal = Proposal::here("refactor.rewrite.rung.shorten", title, around, paths);
-    around.is_list().then(|| proposal.if_it_saves())
+    let proposal = Proposal { keeps_forms: false, ..proposal.if_it_saves() };
+    around.is_list().then_some(proposal)
 }

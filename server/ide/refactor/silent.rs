@@ -1,10 +1,10 @@
 //! Names that stand in the rungs of a list and not in their paths: detectors of edges, helpers that keep power, labels
 //! behind calculations. Whoever writes such a rung anew moves or drops them, so nothing else may ask for them.
 
-use super::stretch::is_instruction;
-use super::unit::{Unit, is_use};
-use crate::document::{Chunk, Document, Symbol};
+use super::unit::is_use;
+use crate::document::{Chunk, Document, Symbol, Unit};
 use crate::il::iec::{Item, ItemKind};
+use crate::logic::stretch::is_instruction;
 use crate::logic::{Path, is_helper_name};
 use crate::target::iec::OperatorRole;
 use crate::text::{Span, folded};
@@ -38,13 +38,13 @@ pub(super) fn names(placed: &Source) -> Vec<Symbol> {
 /// The folded names of what the operands of a path are, or are parts of.
 fn shown(path: &Path) -> FxHashSet<SmolStr> {
     let mut names = FxHashSet::default();
-    path.clone().each_term(&mut |term| {
+    for term in path.terms() {
         let end = term.text.find(['.', '[', '^']).unwrap_or(term.text.len());
         names.insert(folded(&term.text[..end]));
         // A subscript is read as well.
         let words = term.text[end..].split(|c: char| !c.is_alphanumeric() && c != '_');
         names.extend(words.filter(|word| !word.is_empty()).map(folded));
-    });
+    }
     names
 }
 

@@ -36,7 +36,7 @@ pub(super) fn edits(around: &Neighbourhood<'_>, proposal: &Proposal, style: Styl
         changes.iter().map(write).collect::<Option<Vec<_>>>()
     };
     let written = match document.notation() {
-        Notation::IecIl => iec::lists(around, changes, &mut declarations)?,
+        Notation::IecIl => iec::lists(around, changes, proposal.keeps_forms, &mut declarations)?,
         Notation::FxIl => each(&|rungs, paths| list(document, rungs, paths))?,
         Notation::Ladder => each(&|rungs, paths| drawn(document, rungs, paths, style))?,
     };
@@ -69,6 +69,9 @@ fn list(document: &Document, rungs: &[Source], paths: &[Path]) -> Option<(Span, 
         }
     }
     let old = Span { start: first.span().start, end: last.span().end };
+    if paths.is_empty() {
+        return (!first.has_comments()).then(|| (without_gap(document, old), String::new()));
+    }
     let line_end = if document.slice(old).contains("\r\n") { "\r\n" } else { "\n" };
     let mut written = Vec::new();
     for path in paths {
@@ -90,6 +93,42 @@ fn list(document: &Document, rungs: &[Source], paths: &[Path]) -> Option<(Span, 
         new.truncate(new.len() - line_end.len());
     }
     Some((old, new))
+}
+
+/// The mark at the beginning of a file that says how its characters are stored.
+const BYTE_ORDER_MARK: char = '\u{feff}';
+
+/// Whether an instruction behind this stands at the beginning of its line.
+fn is_margin(before: &str) -> bool {
+    margin_of(before).trim().is_empty()
+}
+
+/// The blanks of it.
+fn margin_of(before: &str) -> &str {
+    before.trim_start_matches(BYTE_ORDER_MARK)
+}
+
+/// Lines of `document` that are to go, with the blank lines behind them if there is one before them or nothing: what
+/// parted them from their neighbours need not stand there twice.
+fn without_gap(document: &Document, lines: Span) -> Span {
+    let before = (lines.start as usize).checked_sub(1).map(|end| document.line_at(end).2);
+    match before.is_none_or(|before| margin_of(&before).trim().is_empty()) {
+        true => with_blank_lines(document, lines),
+        false => lines,
+    }
+}
+
+/// Lines of `document` with the blank lines behind them.
+fn with_blank_lines(document: &Document, lines: Span) -> Span {
+    let mut end = lines.end as usize;
+    while end < document.len() {
+        let (_, start, line) = document.line_at(end);
+        if start != end || !line.trim().is_empty() {
+            break;
+        }
+        end += line.len();
+    }
+    Span::new(lines.start as usize, end)
 }
 
 /// The instructions of a rung of a list.
@@ -123,11 +162,16 @@ impl<'a> Lines<'a> {
             let end = text[line.span.end as usize..].find('\n');
             (start, end.map_or(text.len(), |end| line.span.end as usize + end + 1))
         };
-        let lines: Vec<(usize, usize)> = instructions.iter().map(|instruction| line(instruction)).collect();
+        let mut lines: Vec<(usize, usize)> =
+            instructions.iter().map(|instruction| line(instruction)).collect();
         let (start, end) = (lines.first()?.0, lines.last()?.1);
-        let margin = text.get(start..instructions.first()?.span.start as usize)?;
-        if !margin.trim().is_empty() {
+        let before = text.get(start..instructions.first()?.span.start as usize)?;
+        if !is_margin(before) {
             return None;
+        }
+        let margin = margin_of(before);
+        if let Some(first) = lines.first_mut() {
+            first.0 += before.len() - margin.len();
         }
         let comments = tree.comments.iter().copied();
         let comments =

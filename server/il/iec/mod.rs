@@ -37,6 +37,9 @@ mod call;
 mod split;
 pub use split::split;
 
+mod section;
+pub use section::{SectionEnd, section_end};
+
 mod parse;
 pub use parse::parse;
 

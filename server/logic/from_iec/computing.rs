@@ -14,7 +14,7 @@
 use super::{Source, ValueKind, declares};
 use crate::document::DeclaredType;
 use crate::il::iec::{Condition, Direction, ItemKind, ListForm, OperandId, Operation, ParameterValue};
-use crate::logic::{Computation, Conversion};
+use crate::logic::{Computation, Conversion, Elsewhere};
 use crate::target::Operand;
 use crate::target::iec::OperatorRole;
 use crate::text::folded;
@@ -55,12 +55,18 @@ impl Skips {
 type Second = (OperandId, Option<Conversion>);
 
 impl Source<'_> {
-    /// The jumps that only skip calculations, to labels that nobody else jumps to.
-    pub(super) fn find_skips(&self, pous: usize) -> Skips {
-        let mut mentions: FxHashMap<SmolStr, usize> = FxHashMap::default();
+    /// The jumps that only skip calculations, to labels of their program unit that nobody else jumps to.
+    pub(super) fn find_skips(&self, pous: usize, elsewhere: &Elsewhere) -> Skips {
+        let outside = elsewhere.labels.iter().map(|(name, count)| ((pous, name.clone()), *count));
+        let mut mentions: FxHashMap<(usize, SmolStr), usize> = outside.collect();
+        let mut units = pous;
         for item in &self.tree.items {
-            if let ItemKind::Label { name } | ItemKind::Jump { label: Some(name), .. } = item.kind {
-                *mentions.entry(folded(name.of(self.text))).or_default() += 1;
+            match item.kind {
+                ItemKind::Pou { .. } => units += 1,
+                ItemKind::Label { name } | ItemKind::Jump { label: Some(name), .. } => {
+                    *mentions.entry((units, folded(name.of(self.text)))).or_default() += 1;
+                }
+                _ => {}
             }
         }
         let mut skips = Skips::default();
@@ -76,7 +82,7 @@ impl Source<'_> {
                     let is_end = end > index + 1
                         && matches!(self.tree.items.get(end).map(|item| item.kind),
                             Some(ItemKind::Label { name: end }) if folded(end.of(self.text)) == name);
-                    if is_end && mentions.get(&name) == Some(&2) && !self.needs_result(end) {
+                    if is_end && mentions.get(&(units, name)) == Some(&2) && !self.needs_result(end) {
                         skips.labels.insert(index, end);
                         skips.inside.extend(index + 1..=end);
                     }

@@ -1,7 +1,7 @@
 //! Runs a rung of instruction list with conditions in place of the current result.
 
 mod call;
-pub(super) use call::edge_kind;
+pub(in crate::logic) use call::edge_kind;
 mod held;
 
 use super::{Source, ValueKind};

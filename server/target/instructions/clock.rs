@@ -4,7 +4,8 @@
 //! day of the week (0 is Sunday).
 
 use super::specs::{applied, bits_out, operand, source};
-use crate::target::{Accepts, Access, Instruction, OperandSpec};
+use crate::target::semantics::{BORROW, CARRY, ZERO};
+use crate::target::{Accepts, Access, Execution, Fault, Instruction, OperandSpec};
 
 const STORED: Accepts = Accepts::T.or(Accepts::C).or(Accepts::D).or(Accepts::R);
 
@@ -29,7 +30,8 @@ pub const ROWS: &[Instruction] = &[
          switches one of three bits on: `D` while it is earlier than the given time, the next when it \
          is equal, the third when it is later. Fetch the clock first: `TRD` puts the hour into the \
          fourth of its seven words, so `TRD D0` and then `D3` here. The middle bit is on for just one \
-         second. When the drive goes off the bits keep their state.\n\n\
+         second. When the drive goes off the bits keep their state. An hour above 23, or a minute or \
+         second above 59, is an operation error.\n\n\
          ```il\n\
          LD M8000\n\
          TRD D0\n\
@@ -39,7 +41,8 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
-    .pulse(),
+    .pulse()
+    .doing(compare_time),
     applied(
         161,
         "TZCP",
@@ -52,8 +55,9 @@ pub const ROWS: &[Instruction] = &[
         ],
         "Compares a time of three words with two others and switches one of three bits on: `D` before \
          `S1`, the next from `S1` to `S2`, the third after `S2`. The limits must be registers in order \
-         hour, minute, second, and `S1` must not be later than `S2`: a shift across midnight takes the \
-         two outer bits, with the limits exchanged. When the drive goes off the bits keep their state.\n\n\
+         hour, minute, second, and `S1` must not be later than `S2`, or `S2` counts as equal to it: a \
+         shift across midnight takes the two outer bits, with the limits exchanged. When the drive \
+         goes off the bits keep their state.\n\n\
          ```il\n\
          LD M8002\n\
          MOV K6 D10\n\
@@ -70,7 +74,8 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
-    .pulse(),
+    .pulse()
+    .doing(compare_time_zone),
     applied(
         162,
         "TADD",
@@ -95,7 +100,8 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
-    .pulse(),
+    .pulse()
+    .doing(add_times),
     applied(
         163,
         "TSUB",
@@ -118,7 +124,8 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
-    .pulse(),
+    .pulse()
+    .doing(subtract_times),
     applied(
         166,
         "TRD",
@@ -128,7 +135,8 @@ pub const ROWS: &[Instruction] = &[
          week (0 is Sunday). The values come from `D8013` to `D8019` but in the order in which one \
          writes them. The year has two digits unless the program has chosen four by moving 2000 into \
          `D8018` in the first scan. A clock whose battery has run out starts at a wrong date without \
-         telling you: test the year for plausibility.\n\n\
+         telling you: test the year for plausibility. In simulation it starts at 0:00:00 on 1 January \
+         2000, a Saturday, and goes on with the time of the scans.\n\n\
          ```il\n\
          LD M8000\n\
          TRD D0\n\
@@ -137,7 +145,8 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
-    .pulse(),
+    .pulse()
+    .doing(read_clock),
     applied(
         167,
         "TWR",
@@ -146,8 +155,10 @@ pub const ROWS: &[Instruction] = &[
         "Sets the real-time clock from seven words in the order of `TRD`: year, month, day, hour, \
          minute, second, day of the week. Use `TWRP`: driven in every scan it holds the clock still. \
          Prepare values a minute ahead and press the button when the time comes. An impossible date is \
-         not accepted. For small corrections set `M8017`, which rounds to the nearest minute. The day \
-         of the week is not computed from the date.\n\n\
+         an operation error (`M8067`) and changes nothing. The other way is to hold `M8015` on, write \
+         `D8013` to `D8019` and let it go; there an impossible date switches `M8019` on and changes \
+         nothing either. For small corrections set `M8017`, which rounds to the nearest minute. The \
+         day of the week is not computed from the date.\n\n\
          ```il\n\
          LD X0\n\
          MOVP K24 D0\n\
@@ -161,7 +172,8 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
-    .pulse(),
+    .pulse()
+    .doing(set_clock),
     applied(
         169,
         "HOUR",
@@ -172,10 +184,10 @@ pub const ROWS: &[Instruction] = &[
             bits_out("D2", "alarm"),
         ],
         "Counts how long it is driven: `D1` holds full hours, the next register the seconds of the \
-         current hour (with `DHOUR` the hours are a pair and the seconds follow it). `D2` comes on when \
-         `S` is exceeded and the counting goes on, up to 32,767 hours. Choose registers that keep their \
-         values without power, or the meter starts again with each day. After maintenance move 0 into \
-         all of them; that also switches the alarm off.\n\n\
+         current hour (with `DHOUR` the hours are a pair and the seconds follow it). `D2` comes on \
+         when `S` is exceeded, which is a second later, and the counting goes on, up to 32,767 hours. \
+         Choose registers that keep their values without power, or the meter starts again with each \
+         day. After maintenance move 0 into all of them; that also switches the alarm off.\n\n\
          ```il\n\
          LD X0\n\
          HOUR K500 D200 Y0\n\
@@ -185,5 +197,85 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
-    .wide(),
+    .wide()
+    .doing(count_hours),
 ];
+
+const DAY: i64 = 86_400;
+const HOUR: i64 = 3_600;
+const SECOND_NS: i64 = 1_000_000_000;
+
+/// D8013 to D8019 in the order of TRD.
+const CLOCK: [u32; 7] = [8018, 8017, 8016, 8015, 8014, 8013, 8019];
+
+/// Hour, minute and second as seconds of the day.
+fn seconds([hour, minute, second]: [i64; 3], place: usize) -> Result<i64, Fault> {
+    let is_time = (0..24).contains(&hour) && (0..60).contains(&minute) && (0..60).contains(&second);
+    if is_time { Ok(hour * HOUR + minute * 60 + second) } else { Err(Fault::Value(place as u8)) }
+}
+
+/// The time in three registers.
+fn stored(execution: &mut dyn Execution, place: usize) -> Result<i64, Fault> {
+    let time = [execution.word(place, 0)?, execution.word(place, 1)?, execution.word(place, 2)?];
+    seconds(time, place)
+}
+
+fn compare_time(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let given = seconds([execution.word(0, 0)?, execution.word(1, 0)?, execution.word(2, 0)?], 0)?;
+    let time = stored(execution, 3)?;
+    execution.answer(4, given.cmp(&time))
+}
+
+fn compare_time_zone(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let (lower, upper, time) = (stored(execution, 0)?, stored(execution, 1)?, stored(execution, 2)?);
+    let upper = upper.max(lower);
+    execution.set_relays(3, &[time < lower, (lower..=upper).contains(&time), time > upper])
+}
+
+fn add_times(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let sum = stored(execution, 0)? + stored(execution, 1)?;
+    put_time(execution, sum, CARRY, sum >= DAY)
+}
+
+fn subtract_times(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let difference = stored(execution, 0)? - stored(execution, 1)?;
+    put_time(execution, difference, BORROW, difference < 0)
+}
+
+/// Writes a time of the day, and tells whether it is of another one.
+fn put_time(execution: &mut dyn Execution, time: i64, flag: u32, is_other_day: bool) -> Result<(), Fault> {
+    let time = time.rem_euclid(DAY);
+    execution.put_values(2, &[time / HOUR, time / 60 % 60, time % 60])?;
+    execution.set_relay(ZERO, time == 0);
+    execution.set_relay(flag, is_other_day);
+    Ok(())
+}
+
+fn read_clock(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let clock = CLOCK.map(|number| execution.register(number));
+    execution.put_values(0, &clock)
+}
+
+fn set_clock(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let mut clock = [0; 7];
+    for (offset, field) in (0..).zip(&mut clock) {
+        *field = execution.word(0, offset)?;
+    }
+    if execution.set_clock(clock) { Ok(()) } else { Err(Fault::Value(0)) }
+}
+
+/// Notes the nanoseconds of a second that is not full.
+fn count_hours(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let limit = execution.value(0)?;
+    let (place, greatest) = (if execution.is_wide() { 2 } else { 1 }, execution.limits().1);
+    let (hours, second) = (execution.value(1)?, execution.word(1, place)?);
+    execution.bit(2, 0)?;
+    // Time without power does not count; a meter that was jumped over goes on with the scan in which it is met again.
+    let passed = if execution.is_rising() { 0 } else { execution.scan_ns().max(0) };
+    let beyond = execution.noted(0).saturating_add(passed);
+    execution.note(0, beyond % SECOND_NS);
+    let total = (hours * HOUR + second + beyond / SECOND_NS).min(greatest * HOUR + HOUR - 1);
+    execution.put(1, total.div_euclid(HOUR))?;
+    execution.set_word(1, place, total.rem_euclid(HOUR))?;
+    execution.set_bit(2, 0, total > limit * HOUR)
+}

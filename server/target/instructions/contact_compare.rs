@@ -1,7 +1,7 @@
 //! FNC 224–246: comparisons that act as contacts.
 
 use super::specs::{applied, source};
-use crate::target::{Instruction, OperandSpec, Role};
+use crate::target::{Execution, Fault, Instruction, OperandSpec, Role};
 
 const OPERANDS: &[OperandSpec] = &[source("S1", "first value"), source("S2", "second value")];
 
@@ -12,7 +12,21 @@ const fn compare(
     role: Role,
     page: &'static str,
 ) -> Instruction {
-    applied(function, mnemonic, title, OPERANDS, page).wide().role(role)
+    applied(function, mnemonic, title, OPERANDS, page).wide().role(role).testing(test(function))
+}
+
+type Holds = fn(&mut dyn Execution) -> Result<bool, Fault>;
+
+/// The comparison that a function number stands for: the six are in the same order for LD, AND and OR.
+const fn test(function: u16) -> Holds {
+    match function % 8 {
+        0 => |execution| Ok(execution.value(0)? == execution.value(1)?),
+        1 => |execution| Ok(execution.value(0)? > execution.value(1)?),
+        2 => |execution| Ok(execution.value(0)? < execution.value(1)?),
+        4 => |execution| Ok(execution.value(0)? != execution.value(1)?),
+        5 => |execution| Ok(execution.value(0)? <= execution.value(1)?),
+        _ => |execution| Ok(execution.value(0)? >= execution.value(1)?),
+    }
 }
 
 /// What the page of each comparison says of its own (where it stands, when it conducts, a trap), then what is true of

@@ -1,7 +1,7 @@
 //! Contacts: LD, AND, OR and their kin.
 
 use super::specs::{ALL_FX, operand};
-use crate::target::{Accepts, Access, Instruction, Opcode, OperandSpec, Role, Steps, Wide};
+use crate::target::{Accepts, Access, Instruction, Opcode, OperandSpec, Role, Semantics, Steps, Wide};
 
 const CONTACT: &[OperandSpec] = &[operand("S", "bit device", Access::Read, Accepts::CONTACT)];
 
@@ -23,6 +23,7 @@ const fn contact(
         operands: CONTACT,
         steps: Steps::ByDevice,
         opcode: Opcode::Contact { class, extended },
+        semantics: Semantics::Basic,
         models: ALL_FX,
         page,
     }

@@ -1,5 +1,11 @@
 //! FNC 70–79: keys, switches, displays and special modules. Most multiplex inputs and outputs over several scans.
 
+mod keys;
+
+mod displays;
+
+mod modules;
+
 use super::specs::{FX1N_UP, FX2N_UP, applied, bits, bits_out, changed, count, destination, operand, source};
 use crate::target::{Accepts, Access, Instruction};
 
@@ -32,6 +38,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .always(keys::ten_keys)
     .wide()
     .on(FX2N_UP),
     applied(
@@ -45,11 +52,11 @@ pub const ROWS: &[Instruction] = &[
             bits_out("D3", "first of 8 flags: A to F, any of them, any digit").covering(8),
         ],
         "Takes numbers and six function keys from a keypad of 4 × 4 keys, scanned by four transistor \
-         outputs. Digits shift into `D2` from the right (0 to 9999, with `DHKY` to 99,999,999); the \
-         keys A to F switch the first six flags from `D3` on, the seventh is on while one of them is \
-         held, the eighth while a digit is. One round takes eight scans and ends with `M8029`, so a key \
-         must be held that long. With `M8167` on all sixteen keys are hexadecimal digits. A program can \
-         hold it only once.\n\n\
+         outputs. Digits shift into `D2` from the right (0 to 9999, with `DHKY` to 99,999,999); the keys \
+         A to F switch the first six flags from `D3` on, the seventh is on while one of them is held, the \
+         eighth while a digit is. One round takes eight scans and ends with `M8029`, so a key must be \
+         held that long. With `M8167` on all sixteen keys are hexadecimal digits. A program can hold it \
+         only once. The flag of a function key stays on until another function key is pressed.\n\n\
          ```il\n\
          LD M8000\n\
          HKY X0 Y0 D0 M0\n\
@@ -60,6 +67,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .always(keys::sixteen_keys)
     .wide()
     .on(FX2N_UP),
     applied(
@@ -78,8 +86,9 @@ pub const ROWS: &[Instruction] = &[
          outputs, and stores the decimal number, 0 to 9999, in `D2` (the second set in the next \
          register). `M8029` comes on after each round of four digits. With transistor outputs drive it \
          all the time; with relay outputs let a button start it and `M8029` stop it, so that the relays \
-         do not wear out. The strobes follow one another slowly, and a new setting takes some tenths of \
-         a second to arrive. The wheels need a diode in each line.\n\n\
+         do not wear out. The strobes follow one another slowly, and a new setting takes some tenths of a \
+         second to arrive. The wheels need a diode in each line. In the simulator a strobe lasts two \
+         scans. A digit above 9 is an operation error.\n\n\
          ```il\n\
          LD M8000\n\
          DSW X10 Y10 D0 K1\n\
@@ -87,7 +96,8 @@ pub const ROWS: &[Instruction] = &[
          OUT Y0\n\
          END\n\
          ```\n",
-    ),
+    )
+    .always(keys::digital_switches),
     applied(
         73,
         "SEGD",
@@ -96,7 +106,8 @@ pub const ROWS: &[Instruction] = &[
         "Turns the hexadecimal digit in the lower four bits of `S` into the pattern of a seven-segment \
          display: bit 0 of `D` is segment a, bit 6 is segment g, bit 7 stays off. The upper byte of `D` \
          is not changed. The usual destination is `K2Y0`, eight outputs for one digit. Only the lowest \
-         digit counts, so a number with more digits must be split first, for instance by `BCD`.\n\n\
+         digit counts, so a number with more digits must be split first, for instance by `BCD`. A 7 \
+         lights segment f as well.\n\n\
          ```il\n\
          LD M8000\n\
          SEGD D0 K2Y0\n\
@@ -105,6 +116,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .doing(displays::seven_segments)
     .pulse()
     .on(FX2N_UP),
     applied(
@@ -118,10 +130,10 @@ pub const ROWS: &[Instruction] = &[
         ],
         "Shows a number of four digits on a latching BCD display through four data outputs and four \
          strobes (four more data outputs for a second set, whose number is in the register after `S`). \
-         `n` from 0 to 3 is for one set, 4 to 7 for two; within each four it says whether data and \
-         strobe have the same sense as the outputs. If the display shows nonsense, try the other \
-         values. A round takes twelve scans and ends with `M8029`. Numbers above 9999 or below 0 are an \
-         operation error.\n\n\
+         `n` from 0 to 3 is for one set, 4 to 7 for two; within each four it says whether data and strobe \
+         have the same sense as the outputs. If the display shows nonsense, try the other values. A round \
+         takes twelve scans and ends with `M8029`. Numbers above 9999 or below 0 are an operation error. \
+         Each digit takes three scans, the units first.\n\n\
          ```il\n\
          LD M8002\n\
          MOV K1234 D0\n\
@@ -129,7 +141,8 @@ pub const ROWS: &[Instruction] = &[
          SEGL D0 Y0 K0\n\
          END\n\
          ```\n",
-    ),
+    )
+    .always(displays::latched_display),
     applied(
         75,
         "ARWS",
@@ -143,9 +156,9 @@ pub const ROWS: &[Instruction] = &[
         "Lets an operator change a number digit by digit with four keys while a latching display shows \
          it. When the drive comes on the thousands are chosen; the right and left keys move to another \
          digit, and the up and down keys change it. The strobe outputs show which digit is chosen. It \
-         needs transistor outputs and a scan that is not too short, and a program can hold it only \
-         once. The number in `D1` changes at once with each press: copy it when a confirming key is \
-         pressed.\n\n\
+         needs transistor outputs and a scan that is not too short, and a program can hold it only once. \
+         The number in `D1` changes at once with each press: copy it when a confirming key is pressed. \
+         The simulator sends only the chosen digit, whose strobe stays on.\n\n\
          ```il\n\
          LD M8000\n\
          ARWS X10 D0 Y0 K0\n\
@@ -154,6 +167,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .always(keys::arrow_switch)
     .on(FX2N_UP),
     applied(
         76,
@@ -163,11 +177,11 @@ pub const ROWS: &[Instruction] = &[
             operand("S", "eight characters", Access::Read, Accepts::TEXT),
             operand("D", "first of 4 words", Access::Write, STORED).covering(4),
         ],
-        "Stores a text of eight characters as ASCII codes in four words, two in each: the first \
-         character in the low byte, the second in the high byte. With `M8161` on each takes a word of \
-         its own, eight words in all. The text is a constant of the program; letters and digits are \
-         safe, blanks are not. Executing it in every scan is harmless, but once is enough. It takes 11 \
-         steps.\n\n\
+        "Stores a text of eight characters as ASCII codes in four words, two in each: the first character \
+         in the low byte, the second in the high byte. With `M8161` on each takes a word of its own, \
+         eight words in all. The text is a constant of the program; letters and digits are safe, blanks \
+         are not. Executing it in every scan is harmless, but once is enough. It takes 11 steps. A \
+         shorter text is filled up with blanks.\n\n\
          ```il\n\
          LD M8002\n\
          ASC \"MOTORRUN\" D100\n\
@@ -176,6 +190,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .doing(displays::characters)
     .taking(11)
     .on(FX2N_UP),
     applied(
@@ -186,11 +201,12 @@ pub const ROWS: &[Instruction] = &[
             operand("S", "first of 4 words of text", Access::Read, STORED).covering(4),
             operand("D", "first of 10 outputs: data, strobe, busy", Access::Write, Accepts::Y).covering(10),
         ],
-        "Sends the eight characters at `S`, as stored by `ASC`, one after the other through eight \
-         outputs with a strobe in the ninth; the tenth is on while it works. With `M8027` on up to \
-         sixteen characters are sent, ended by a zero byte. Each step takes scans, so use a constant \
-         scan to suit the receiver. Switching the drive off stops it, and it begins again from the \
-         first character. It needs transistor outputs, and a program can hold it at most twice.\n\n\
+        "Sends the eight characters at `S`, as stored by `ASC`, one after the other through eight outputs \
+         with a strobe in the ninth; the tenth is on while it works. With `M8027` on up to sixteen \
+         characters are sent, ended by a zero byte. Each step takes scans, so use a constant scan to suit \
+         the receiver. Switching the drive off stops it, and it begins again from the first character. It \
+         needs transistor outputs, and a program can hold it at most twice. In the simulator a character \
+         takes three scans, and `M8029` comes on at the end.\n\n\
          ```il\n\
          LD M8002\n\
          ASC \"BATCHEND\" D100\n\
@@ -199,6 +215,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .always(displays::print)
     .on(FX2N_UP),
     applied(
         78,
@@ -210,12 +227,13 @@ pub const ROWS: &[Instruction] = &[
             destination("D", "first word of the destination").counted_by(3),
             count("n", "words to read", (1, 32_767)).or_register(),
         ],
-        "Reads `n` words from the buffer memory of the special module `m1`, from number `m2` on, to \
-         `D`. Modules are counted from the CPU outwards beginning with 0; those with only inputs and \
-         outputs do not count. `DFROM` reads `n` pairs. It reads in every scan in which it is driven, \
-         and each word costs time: read many at once rarely, or the watchdog (`D8000`) trips. If no \
-         module answers at this number the CPU reports an error instead of a value. With `M8028` on, \
-         interrupts are accepted while words are transferred.\n\n\
+        "Reads `n` words from the buffer memory of the special module `m1`, from number `m2` on, to `D`. \
+         Modules are counted from the CPU outwards beginning with 0; those with only inputs and outputs \
+         do not count. `DFROM` reads `n` pairs. It reads in every scan in which it is driven, and each \
+         word costs time: read many at once rarely, or the watchdog (`D8000`) trips. If no module answers \
+         at this number the CPU reports an error instead of a value. With `M8028` on, interrupts are \
+         accepted while words are transferred. In the simulator all eight modules answer, with 0 where \
+         nothing has been written, unless a scenario takes one away.\n\n\
          ```il\n\
          LD M8000\n\
          FROM K0 K5 D0 K4\n\
@@ -224,6 +242,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .doing(modules::read)
     .wide()
     .pulse()
     .on(FX1N_UP),
@@ -238,10 +257,11 @@ pub const ROWS: &[Instruction] = &[
             count("n", "words to write", (1, 32_767)).or_register(),
         ],
         "Writes `n` words from `S` on to the buffer memory of the special module `m1`, beginning at \
-         number `m2`. `DTO` writes `n` pairs; a constant is written `n` times. It writes in every scan \
-         in which it is driven. Settings belong into `TOP` or the first scan: some modules store a \
-         number in EEPROM at each write, and that memory wears out. After power-up a module needs a \
-         moment before it accepts values, as its manual says.\n\n\
+         number `m2`. `DTO` writes `n` pairs; a constant is written `n` times. It writes in every scan in \
+         which it is driven. Settings belong into `TOP` or the first scan: some modules store a number in \
+         EEPROM at each write, and that memory wears out. After power-up a module needs a moment before \
+         it accepts values, as its manual says. The simulator keeps the words, and `FROM` reads them \
+         back.\n\n\
          ```il\n\
          LD M8002\n\
          TO K0 K1 K4 K1\n\
@@ -250,6 +270,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .doing(modules::write)
     .wide()
     .pulse()
     .on(FX1N_UP),

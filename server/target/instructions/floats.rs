@@ -3,7 +3,7 @@
 //! All but INT exist only with `D`; their `count` is that form's, 2 for a pair of registers.
 
 use super::specs::{FX2N_UP, applied, bits_out, operand};
-use crate::target::{Accepts, Access, Instruction, OperandSpec};
+use crate::target::{Accepts, Access, Execution, Fault, Instruction, OperandSpec};
 
 const REGISTER: Accepts = Accepts::D.or(Accepts::R);
 
@@ -49,7 +49,8 @@ pub const ROWS: &[Instruction] = &[
     )
     .wide_only()
     .pulse()
-    .on(FX2N_UP),
+    .on(FX2N_UP)
+    .doing(compare),
     applied(
         111,
         "EZCP",
@@ -75,16 +76,17 @@ pub const ROWS: &[Instruction] = &[
     )
     .wide_only()
     .pulse()
-    .on(FX2N_UP),
+    .on(FX2N_UP)
+    .doing(compare_zone),
     applied(
         118,
         "EBCD",
         "float to decimal exponent form",
         &[stored("S", "number"), result("mantissa and exponent")],
-        "Turns a floating point number into a decimal mantissa in `D` (1000 to 9999, or negative) and a \
-         power of ten in the next register, for people and for displays: 3.142 becomes 3142 and −3. It \
-         is written `DEBCD`. Only four digits survive, so do not compute on with the result. Zero gives \
-         0 and 0.\n\n\
+        "Turns a floating point number into a decimal mantissa in `D` (1000 to 9999, or negative) and \
+         a power of ten in the next register, for people and for displays: 3.142 becomes 3142 and −3. \
+         It is written `DEBCD`. Only four digits survive, the last one rounded, so do not compute on \
+         with the result. Zero gives 0 and 0.\n\n\
          ```il\n\
          LD M8000\n\
          FLT D0 D10\n\
@@ -95,7 +97,8 @@ pub const ROWS: &[Instruction] = &[
     )
     .wide_only()
     .pulse()
-    .on(FX2N_UP),
+    .on(FX2N_UP)
+    .doing(to_decimal_exponent),
     applied(
         119,
         "EBIN",
@@ -103,8 +106,8 @@ pub const ROWS: &[Instruction] = &[
         &[stored("S", "mantissa and exponent"), result("number")],
         "Makes a floating point number from a decimal mantissa in `S` and a power of ten in the next \
          register: 3142 and −3 become 3.142. It is written `DEBIN`. It is the way to write a fraction \
-         into a program for an FX2N, which has no real constants. Use four digits for the mantissa; the \
-         first scan is early enough.\n\n\
+         into a program for an FX2N, which has no real constants. Use four digits for the mantissa; \
+         the first scan is early enough. A number too large to be stored is an operation error.\n\n\
          ```il\n\
          LD M8002\n\
          MOV K3142 D0\n\
@@ -117,7 +120,8 @@ pub const ROWS: &[Instruction] = &[
     )
     .wide_only()
     .pulse()
-    .on(FX2N_UP),
+    .on(FX2N_UP)
+    .doing(from_decimal_exponent),
     applied(
         120,
         "EADD",
@@ -126,8 +130,9 @@ pub const ROWS: &[Instruction] = &[
         "Adds two floating point numbers, each in a pair of registers. It is written `DEADD`. An \
          integer constant is converted, an integer in a register is not: convert it by `FLT` first, or \
          the bits are read as nonsense. `M8020` shows zero, `M8021` a result too small and `M8022` one \
-         too large to be stored. With the same pair as source and destination use `DEADDP`, or it adds \
-         again in every scan.\n\n\
+         too large to be stored; the smallest or the largest number of its sign is stored then. A pair \
+         whose bits are no number is an operation error. With the same pair as source and destination \
+         use `DEADDP`, or it adds again in every scan.\n\n\
          ```il\n\
          LD M8000\n\
          FLT D0 D10\n\
@@ -138,7 +143,8 @@ pub const ROWS: &[Instruction] = &[
     )
     .wide_only()
     .pulse()
-    .on(FX2N_UP),
+    .on(FX2N_UP)
+    .doing(add),
     applied(
         121,
         "ESUB",
@@ -158,7 +164,8 @@ pub const ROWS: &[Instruction] = &[
     )
     .wide_only()
     .pulse()
-    .on(FX2N_UP),
+    .on(FX2N_UP)
+    .doing(subtract),
     applied(
         122,
         "EMUL",
@@ -178,7 +185,8 @@ pub const ROWS: &[Instruction] = &[
     )
     .wide_only()
     .pulse()
-    .on(FX2N_UP),
+    .on(FX2N_UP)
+    .doing(multiply),
     applied(
         123,
         "EDIV",
@@ -197,7 +205,8 @@ pub const ROWS: &[Instruction] = &[
     )
     .wide_only()
     .pulse()
-    .on(FX2N_UP),
+    .on(FX2N_UP)
+    .doing(divide),
     applied(
         127,
         "ESQR",
@@ -217,16 +226,18 @@ pub const ROWS: &[Instruction] = &[
     )
     .wide_only()
     .pulse()
-    .on(FX2N_UP),
+    .on(FX2N_UP)
+    .doing(square_root),
     applied(
         129,
         "INT",
         "float to integer",
         &[stored("S", "number"), operand("D", "integer", Access::Write, REGISTER)],
         "Turns a floating point number into an integer of 16 bits (`DINT`: 32 bits) by dropping the \
-         fraction, towards zero: 2.9 gives 2 and −2.9 gives −2. Add 0.5 before to round. `M8021` comes \
-         on when a number other than zero became 0, `M8022` when it does not fit: then use `DINT`. The \
-         source is a pair of registers in both forms.\n\n\
+         fraction, towards zero: 2.9 gives 2 and −2.9 gives −2. Add 0.5 before to round. `M8020` comes \
+         on when the result is 0, `M8021` when a fraction was dropped, and `M8022` when the number \
+         does not fit, which leaves `D` as it is: then use `DINT`. The source is a pair of registers \
+         in both forms.\n\n\
          ```il\n\
          LD M8000\n\
          FLT D0 D10\n\
@@ -239,7 +250,8 @@ pub const ROWS: &[Instruction] = &[
     )
     .wide()
     .pulse()
-    .on(FX2N_UP),
+    .on(FX2N_UP)
+    .doing(to_integer),
     applied(
         130,
         "SIN",
@@ -247,8 +259,8 @@ pub const ROWS: &[Instruction] = &[
         &[stored("S", "angle in radians").also(Accepts::E), result("sine")],
         "Takes the sine of an angle in radians, a floating point number. It is written `DSIN`. Degrees \
          must be multiplied by π ÷ 180 ≈ 0.0174533 before. Keep the angle between 0 and 2π; the older \
-         CPUs accept no other. It costs much more time than an addition: compute it when the angle \
-         changes, not in every scan.\n\n\
+         CPUs accept no other, simulation takes any. It costs much more time than an addition: compute \
+         it when the angle changes, not in every scan.\n\n\
          ```il\n\
          LD M8002\n\
          MOV K1745 D0\n\
@@ -263,7 +275,8 @@ pub const ROWS: &[Instruction] = &[
     )
     .wide_only()
     .pulse()
-    .on(FX2N_UP),
+    .on(FX2N_UP)
+    .doing(sine),
     applied(
         131,
         "COS",
@@ -283,7 +296,8 @@ pub const ROWS: &[Instruction] = &[
     )
     .wide_only()
     .pulse()
-    .on(FX2N_UP),
+    .on(FX2N_UP)
+    .doing(cosine),
     applied(
         132,
         "TAN",
@@ -303,5 +317,116 @@ pub const ROWS: &[Instruction] = &[
     )
     .wide_only()
     .pulse()
-    .on(FX2N_UP),
+    .on(FX2N_UP)
+    .doing(tangent),
 ];
+
+/// The number at an operand, which is neither infinite nor no number.
+fn number(execution: &mut dyn Execution, place: usize) -> Result<f64, Fault> {
+    let number = execution.real(place, 0)?;
+    if number.is_finite() { Ok(number) } else { Err(Fault::Value(place as u8)) }
+}
+
+/// Writes a result of arithmetic and its flags. Double precision is enough that rounding twice is rounding once.
+fn put(execution: &mut dyn Execution, value: f64) -> Result<(), Fault> {
+    let place = execution.operands() - 1;
+    let single = value as f32;
+    let (is_small, is_large) = (value != 0.0 && single.abs() < f32::MIN_POSITIVE, single.is_infinite());
+    let stored = match (is_small, is_large) {
+        (true, _) => f32::MIN_POSITIVE.copysign(single),
+        (_, true) => f32::MAX.copysign(single),
+        // 0 has no sign.
+        _ => single + 0.0,
+    };
+    execution.set_real(place, 0, f64::from(stored))?;
+    execution.set_flags(value == 0.0, is_small, is_large);
+    Ok(())
+}
+
+fn compare(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let ordering = number(execution, 0)?.partial_cmp(&number(execution, 1)?);
+    execution.answer(2, ordering.ok_or(Fault::Value(0))?)
+}
+
+fn compare_zone(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let (lower, upper, value) = (number(execution, 0)?, number(execution, 1)?, number(execution, 2)?);
+    let upper = upper.max(lower);
+    execution.set_relays(3, &[value < lower, (lower..=upper).contains(&value), value > upper])
+}
+
+fn to_decimal_exponent(execution: &mut dyn Execution) -> Result<(), Fault> {
+    // Written with four digits, `-3.142e0`, which is rounded as one expects.
+    let written = format!("{:.3e}", number(execution, 0)?);
+    let (digits, power) = written.split_once('e').ok_or(Fault::Value(0))?;
+    let mantissa: i64 = digits.replace('.', "").parse().map_err(|_| Fault::Value(0))?;
+    let power: i64 = power.parse().map_err(|_| Fault::Value(0))?;
+    let power = if mantissa == 0 { 0 } else { power - 3 };
+    execution.set_double(1, 0, power << 16 | mantissa & 0xFFFF)
+}
+
+fn from_decimal_exponent(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let (mantissa, power) = (execution.word(0, 0)?, execution.word(0, 1)?);
+    let number: f32 = format!("{mantissa}e{power}").parse().map_err(|_| Fault::Value(0))?;
+    if number.is_infinite() {
+        return Err(Fault::Overflow);
+    }
+    execution.set_real(1, 0, f64::from(number))
+}
+
+fn add(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let sum = number(execution, 0)? + number(execution, 1)?;
+    put(execution, sum)
+}
+
+fn subtract(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let difference = number(execution, 0)? - number(execution, 1)?;
+    put(execution, difference)
+}
+
+fn multiply(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let product = number(execution, 0)? * number(execution, 1)?;
+    put(execution, product)
+}
+
+fn divide(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let (dividend, divisor) = (number(execution, 0)?, number(execution, 1)?);
+    if divisor == 0.0 {
+        return Err(Fault::DivisionByZero);
+    }
+    put(execution, dividend / divisor)
+}
+
+fn square_root(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let value = number(execution, 0)?;
+    if value < 0.0 {
+        return Err(Fault::Value(0));
+    }
+    put(execution, value.sqrt())
+}
+
+fn to_integer(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let value = number(execution, 0)?;
+    let (least, greatest) = execution.limits();
+    let integer = value.trunc() as i64;
+    let does_fit = (least..=greatest).contains(&integer);
+    if does_fit {
+        execution.put(1, integer)?;
+    }
+    execution.set_flags(integer == 0, value != value.trunc(), !does_fit);
+    Ok(())
+}
+
+fn sine(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let angle = number(execution, 0)?;
+    execution.set_real(1, 0, angle.sin())
+}
+
+fn cosine(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let angle = number(execution, 0)?;
+    execution.set_real(1, 0, angle.cos())
+}
+
+fn tangent(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let angle = number(execution, 0)?;
+    execution.set_real(1, 0, angle.tan())
+}

@@ -96,9 +96,11 @@ pub const ROWS: &[Instruction] = &[
         "EI",
         "enable interrupts",
         &[],
-        "Allows interrupts from here on, until DI or the end of the main program; a PLC starts with \
-         all of them disabled. An interrupt that comes while they are disabled is executed after the \
-         next EI. Single sources can be blocked with the relays M8050 and up.\n\n\
+        "Allows interrupts from here on, until DI or the end of the main program; a PLC starts with all \
+         of them disabled. An interrupt that comes while they are disabled is executed after the next EI. \
+         Single sources can be blocked with the relays M8050 and up. The simulator looks at inputs, time \
+         and counters when a scan begins, so routines run at the first EI of the scan, those of a timer \
+         up to 100 times.\n\n\
          ```il\n\
          EI\n\
          LD X1\n\
@@ -111,6 +113,10 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .always(|execution| {
+        execution.allow_interrupts(true);
+        Ok(())
+    })
     .role(Role::Standalone),
     applied(
         5,
@@ -135,6 +141,10 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .always(|execution| {
+        execution.allow_interrupts(false);
+        Ok(())
+    })
     .role(Role::Standalone),
     applied(
         6,
@@ -163,8 +173,9 @@ pub const ROWS: &[Instruction] = &[
         "restart the watchdog",
         &[],
         "Restarts the watchdog in the middle of a scan. A scan longer than the time in D8000, 200 ms \
-         unless changed, stops the PLC; put WDT into long loops, or write a longer time to D8000 \
-         once.\n\n\
+         unless changed, stops the PLC; put WDT into long loops, or write a longer time to D8000 once. \
+         The simulator counts instructions instead of time: it stops a scan after 2,500,000 of them, and \
+         with WDT after nine times as many.\n\n\
          ```il\n\
          FOR K100\n\
          LD M8000\n\
@@ -174,6 +185,10 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .doing(|execution| {
+        execution.restart_watchdog();
+        Ok(())
+    })
     .pulse(),
     applied(
         8,

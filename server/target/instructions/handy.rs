@@ -1,5 +1,13 @@
 //! FNC 60–69: ready-made solutions for frequent tasks: step control, search, drums, special timers, ramps, sorting.
 
+mod drums;
+
+mod step_control;
+
+mod tables;
+
+mod times;
+
 use super::specs::{FX2N_UP, applied, bits, bits_out, count, destination, operand, source};
 use crate::target::{Accepts, Access, Extent, Instruction};
 
@@ -21,10 +29,16 @@ pub const ROWS: &[Instruction] = &[
         "Connects eight switches with a step program that has `S0` for manual operation, `S1` for the \
          return to the origin and `S2` for automatic operation. In order from `S`: manual, return to \
          origin, single step, one cycle, continuous, start of the return, start of automatic operation, \
-         stop. It then controls the relays `M8040` to `M8042` and `M8047`. Drive it by `M8000`, once in \
-         a program and before the step ladder that it controls. Use a rotary switch: never may two of \
-         the first five be on together. Use `S10` to `S19` for the return, and set `M8043` when it is \
-         done and `M8044` at the origin.\n\n\
+         stop. It then controls the relays `M8040` to `M8042` and `M8047`. Drive it by `M8000`, once in a \
+         program and before the step ladder that it controls. Use a rotary switch: never may two of the \
+         first five be on together. Use `S10` to `S19` for the return, and set `M8043` when it is done \
+         and `M8044` at the origin. When the mode changes, `S0` to `S2`, `S10` to `S19` and the states \
+         from `D1` to `D2` go off and the initial state of the new mode comes on; away from the origin \
+         all outputs go off as well, unless `M8045` is on. `M8040` is on in manual operation, in single \
+         step but for the scan in which start is pressed, and in the other modes from stop to start; in \
+         continuous operation stop takes `M8041` away instead, so that the cycle is finished. `M8041` is \
+         on in automatic operation while start is pressed, in continuous operation until stop. `M8042` is \
+         on for the scan in which start is pressed.\n\n\
          ```il\n\
          LD M8000\n\
          IST X0 S20 S29\n\
@@ -36,7 +50,8 @@ pub const ROWS: &[Instruction] = &[
          RET\n\
          END\n\
          ```\n",
-    ),
+    )
+    .doing(step_control::initial_state),
     applied(
         61,
         "SER",
@@ -49,10 +64,10 @@ pub const ROWS: &[Instruction] = &[
         ],
         "Looks through `n` words from `S1` on for the value `S2`. The five results from `D` on are how \
          many are equal, the position of the first and of the last equal one, and the positions of the \
-         smallest and of the largest value. Positions start at 0, so 0 in the second result means \
-         *first word* only if the first result is not 0. It works through the whole table in every scan \
-         in which it is driven: `SERP` does it once. In the 32-bit form table entries and results are \
-         pairs, and `n` goes to 128.\n\n\
+         smallest and of the largest value. Positions start at 0, so 0 in the second result means *first \
+         word* only if the first result is not 0. It works through the whole table in every scan in which \
+         it is driven: `SERP` does it once. In the 32-bit form table entries and results are pairs, and \
+         `n` goes to 128. Of several smallest or largest values the last one counts.\n\n\
          ```il\n\
          LD X0\n\
          SERP D100 K25 D200 K10\n\
@@ -61,6 +76,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .doing(tables::search)
     .wide()
     .pulse()
     .on(FX2N_UP),
@@ -77,12 +93,13 @@ pub const ROWS: &[Instruction] = &[
             bits_out("D", "first of n outputs").counted_by(3),
             count("n", "outputs", (1, 64)),
         ],
-        "A cam switch: each of `n` outputs from `D` on is on while the counter `S2` lies between its \
-         two values in the table at `S1` (on at, off at, for the first output; then the next pair …). \
-         All outputs are computed in each scan; with the drive off they stay as they are. Reset the \
-         counter yourself at the end of a turn. `DABSD` takes a 32-bit counter, even a high-speed one, \
-         but its outputs still follow only once in a scan. If the off value is the smaller one the \
-         output is on across the zero point.\n\n\
+        "A cam switch: each of `n` outputs from `D` on is on while the counter `S2` lies between its two \
+         values in the table at `S1` (on at, off at, for the first output; then the next pair …). All \
+         outputs are computed in each scan; with the drive off they stay as they are. Reset the counter \
+         yourself at the end of a turn. `DABSD` takes a 32-bit counter, even a high-speed one, but its \
+         outputs still follow only once in a scan. If the off value is the smaller one the output is on \
+         across the zero point. An output is on from its on value to just before its off value, and never \
+         where both are equal.\n\n\
          ```il\n\
          LD M8002\n\
          MOV K40 D0\n\
@@ -98,6 +115,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .doing(drums::absolute)
     .wide(),
     applied(
         63,
@@ -110,11 +128,12 @@ pub const ROWS: &[Instruction] = &[
             bits_out("D", "first of n outputs").counted_by(3),
             count("n", "steps", (1, 64)),
         ],
-        "A step switch: one of `n` outputs from `D` on is on at a time. When the counter `S2` reaches \
-         the count of the step in the table at `S1`, the instruction resets it, and the counter after \
-         it, which holds the number of the step, goes on by one. After the last step `M8029` comes on \
-         for a scan and the first begins again. Switching the drive off clears both counters and all \
-         outputs. Only the first counter needs an `OUT`; give it a preset that no step reaches.\n\n\
+        "A step switch: one of `n` outputs from `D` on is on at a time. When the counter `S2` reaches the \
+         count of the step in the table at `S1`, the instruction resets it, and the counter after it, \
+         which holds the number of the step, goes on by one. After the last step `M8029` comes on for a \
+         scan and the first begins again. Switching the drive off clears both counters and all outputs. \
+         Only the first counter needs an `OUT`; give it a preset that no step reaches. A count above that \
+         of the step counts as reached as well.\n\n\
          ```il\n\
          LD M8002\n\
          MOV K20 D0\n\
@@ -127,7 +146,8 @@ pub const ROWS: &[Instruction] = &[
          INCD D0 C0 Y0 K3\n\
          END\n\
          ```\n",
-    ),
+    )
+    .always(drums::incremental),
     applied(
         64,
         "TTMR",
@@ -151,6 +171,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .always(times::teach)
     .on(FX2N_UP),
     applied(
         65,
@@ -161,11 +182,12 @@ pub const ROWS: &[Instruction] = &[
             count("m", "time in units of 100 ms", (1, 32_767)).or_register(),
             bits_out("D", "first of 4 outputs").covering(4),
         ],
-        "Gives four timing functions with one timer. `D` goes off `m` × 100 ms after the drive does \
-         (off delay); the next output gives one pulse of that length when the drive goes off; the third \
-         one pulse when it comes on; the fourth comes on and goes off with that delay. It must be \
-         executed in every scan. Do not use the timer anywhere else. Put a normally closed contact of \
-         the fourth output in series with the drive, and the second and third flash in turn.\n\n\
+        "Gives four timing functions with one timer. `D` goes off `m` × 100 ms after the drive does (off \
+         delay); the next output gives one pulse of that length when the drive goes off; the third one \
+         pulse when it comes on; the fourth comes on and goes off with that delay. It must be executed in \
+         every scan. Do not use the timer anywhere else. Put a normally closed contact of the fourth \
+         output in series with the drive, and the second and third flash in turn. The third ends early if \
+         the drive goes off, and after a drive shorter than `m` × 100 ms the fourth stays off.\n\n\
          ```il\n\
          LD X0\n\
          STMR T10 K20 M0\n\
@@ -176,6 +198,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .always(times::special_timer)
     .on(FX2N_UP),
     applied(
         66,
@@ -193,6 +216,10 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .doing(|execution| {
+        let is_on = execution.bit(0, 0)?;
+        execution.set_bit(0, 0, !is_on)
+    })
     .pulse(),
     applied(
         67,
@@ -204,11 +231,12 @@ pub const ROWS: &[Instruction] = &[
             operand("D", "present value and scans done", Access::Write, REGISTER).covering(2),
             count("n", "scans", (1, 32_767)).or_register(),
         ],
-        "Moves `D` from `S1` to `S2` in `n` equal steps, one in each scan; the register after `D` \
-         counts the scans. At the end `M8029` comes on; with `M8026` on the value stays at the end, \
-         otherwise the ramp begins again. Switching the drive off stops it, and switching it on starts \
-         from `S1`. The time is `n` scans, not seconds: set a constant scan (`M8039`, `D8039`) if it \
-         matters. Write start and end values before the ramp begins and leave them alone while it runs.\n\n\
+        "Moves `D` from `S1` to `S2` in `n` equal steps, one in each scan; the register after `D` counts \
+         the scans. At the end `M8029` comes on; with `M8026` on the value stays at the end, otherwise \
+         the ramp begins again. Switching the drive off stops it, and switching it on starts from `S1`. \
+         The time is `n` scans, not seconds: set a constant scan (`M8039`, `D8039`) if it matters. Write \
+         start and end values before the ramp begins and leave them alone while it runs. Parts of 1 are \
+         cut off.\n\n\
          ```il\n\
          LD M8002\n\
          MOV K0 D0\n\
@@ -219,7 +247,8 @@ pub const ROWS: &[Instruction] = &[
          OUT Y0\n\
          END\n\
          ```\n",
-    ),
+    )
+    .always(times::ramp),
     applied(
         68,
         "ROTC",
@@ -233,9 +262,11 @@ pub const ROWS: &[Instruction] = &[
         "Turns a round table with `m1` divisions the shorter way until the item (number in `S`+2) is at \
          the station (`S`+1); `S` counts the position. The program copies the signals of the two-phase \
          encoder to `D` and `D`+1 and of the zero switch to `D`+2; the instruction gives fast forward, \
-         slow forward, stop, slow backward, fast backward in `D`+3 to `D`+7. The last `m2` divisions \
-         run slowly. Write station and item before switching the drive on. A program can hold it only \
-         once, and the table must turn slowly enough for the scan to see every edge of the encoder.\n\n\
+         slow forward, stop, slow backward, fast backward in `D`+3 to `D`+7. The last `m2` divisions run \
+         slowly. Write station and item before switching the drive on. A program can hold it only once, \
+         and the table must turn slowly enough for the scan to see every edge of the encoder. `S` is the \
+         number of the item at station 0, and a division forward raises it by one; where both ways are \
+         equally long the table turns forward.\n\n\
          ```il\n\
          LD X0\n\
          OUT M0\n\
@@ -252,6 +283,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .always(drums::rotary_table)
     .on(FX2N_UP),
     applied(
         69,
@@ -264,11 +296,12 @@ pub const ROWS: &[Instruction] = &[
             operand("D", "first word of the sorted table", Access::Write, REGISTER).reaching(Extent::Onwards),
             count("n", "column to sort by", (1, 6)).or_register(),
         ],
-        "Copies a table of `m1` rows and `m2` columns to `D` with the rows in rising order of column \
-         `n`. The table lies in memory column by column: first all values of column 1, then all of \
-         column 2. The work is spread over `m1` scans, and `M8029` comes on at the end: keep the drive \
-         on and the table unchanged until then. To sort again switch the drive off for a scan. A \
-         program can hold it only once. `n` must not exceed `m2`.\n\n\
+        "Copies a table of `m1` rows and `m2` columns to `D` with the rows in rising order of column `n`. \
+         The table lies in memory column by column: first all values of column 1, then all of column 2. \
+         The work is spread over `m1` scans, and `M8029` comes on at the end: keep the drive on and the \
+         table unchanged until then. To sort again switch the drive off for a scan. A program can hold it \
+         only once. `n` must not exceed `m2`. The sorted table appears all at once in the last of these \
+         scans, and rows with equal values keep their order.\n\n\
          ```il\n\
          LD X0\n\
          SORT D100 K10 K2 D200 K1\n\
@@ -279,5 +312,6 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .always(tables::sort)
     .on(FX2N_UP),
 ];

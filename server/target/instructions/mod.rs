@@ -39,6 +39,8 @@ mod shift;
 
 mod data;
 
+mod motion;
+
 mod high_speed;
 
 mod handy;

@@ -1,7 +1,7 @@
 //! Outputs: OUT, SET, RST, PLS, PLF.
 
 use super::specs::{ALL_FX, operand, source};
-use crate::target::{Accepts, Access, Drive, Instruction, Opcode, OperandSpec, Role, Steps, Wide};
+use crate::target::{Accepts, Access, Drive, Instruction, Opcode, OperandSpec, Role, Semantics, Steps, Wide};
 
 const PRESET: OperandSpec = source("K", "preset of a timer or counter")
     .accepting(Accepts::K.or(Accepts::D).or(Accepts::R))
@@ -33,6 +33,7 @@ const fn output(
         operands,
         steps: Steps::ByDevice,
         opcode: Opcode::ByDevice,
+        semantics: Semantics::Basic,
         models: ALL_FX,
         page,
     }

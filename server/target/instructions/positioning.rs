@@ -1,5 +1,7 @@
 //! FNC 147–159: swapping bytes, and positioning of servo and stepping drives by pulses.
 
+mod drives;
+
 use super::specs::{FX2N_UP, applied, bits, bits_out, changed, destination, operand, source};
 use crate::target::{Accepts, Access, Instruction, Model, OperandSpec};
 
@@ -47,7 +49,8 @@ pub const ROWS: &[Instruction] = &[
          written `DABS`. `M8029` comes on when the position stands in `D2`. Do it once after power-up, \
          before the first movement, and keep the drive on: switching it off breaks the reading off and \
          takes *servo on* away. Move the result into the current value register of the pulse output, or \
-         read it there directly. The outputs must be transistors.\n\n\
+         read it there directly. The outputs must be transistors. In the simulator the amplifier needs no \
+         signals and answers after 19 scans, with the position that a scenario gives it.\n\n\
          ```il\n\
          LD M8000\n\
          DABS X4 Y4 D0\n\
@@ -56,6 +59,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .always(drives::absolute)
     .wide_only()
     .on(WITH_POSITIONING),
     applied(
@@ -68,13 +72,13 @@ pub const ROWS: &[Instruction] = &[
             bits("S3", "proximity switch in front of zero"),
             pulse_output("D"),
         ],
-        "Drives a machine to its origin: it runs at `S1` until the proximity switch `S3` comes on, \
-         slows down to the creep speed `S2`, stops when the switch goes off, and clears the current \
-         position. `M8029` comes on at the end. It runs in one direction and does not search: if it \
-         starts beyond the switch it runs on, so end switches are needed. On FX1S and FX1N the \
-         direction output is the program's matter. Use an input that has no long filter; the scan \
-         limits how exactly the switch is seen. Do not drive two positioning instructions for one \
-         output at a time.\n\n\
+        "Drives a machine to its origin: it runs at `S1` until the proximity switch `S3` comes on, slows \
+         down to the creep speed `S2`, stops when the switch goes off, and clears the current position. \
+         `M8029` comes on at the end. It runs in one direction and does not search: if it starts beyond \
+         the switch it runs on, so end switches are needed. On FX1S and FX1N the direction output is the \
+         program's matter. Use an input that has no long filter; the scan limits how exactly the switch \
+         is seen. Do not drive two positioning instructions for one output at a time. In the simulator it \
+         moves backwards, and the output is on while it moves.\n\n\
          ```il\n\
          LD X0\n\
          DZRN K5000 K500 X4 Y0\n\
@@ -85,6 +89,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .always(drives::to_zero)
     .wide()
     .on(WITH_POSITIONING),
     applied(
@@ -96,11 +101,12 @@ pub const ROWS: &[Instruction] = &[
             pulse_output("D1"),
             bits_out("D2", "direction, on for forward"),
         ],
-        "Gives pulses without end at the speed `S`, which may change at any time while it runs; the \
-         sign sets the direction output `D2`. Moving 0 into `S`, or switching the drive off, stops it. \
-         The speed changes at once, without a ramp: let the program raise it in small steps (`RAMP`), \
-         or the motor loses steps. Before the direction turns stop for a moment. After switching off \
-         wait until the unit's *busy* relay is off before driving it again.\n\n\
+        "Gives pulses without end at the speed `S`, which may change at any time while it runs; the sign \
+         sets the direction output `D2`. Moving 0 into `S`, or switching the drive off, stops it. The \
+         speed changes at once, without a ramp: let the program raise it in small steps (`RAMP`), or the \
+         motor loses steps. Before the direction turns stop for a moment. After switching off wait until \
+         the unit's *busy* relay is off before driving it again. In the simulator the output is on while \
+         pulses are given.\n\n\
          ```il\n\
          LD M8002\n\
          MOV K1000 D0\n\
@@ -109,6 +115,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .always(drives::variable)
     .wide()
     .on(WITH_POSITIONING),
     applied(
@@ -121,12 +128,14 @@ pub const ROWS: &[Instruction] = &[
             pulse_output("D1"),
             bits_out("D2", "direction, on for forward"),
         ],
-        "Moves by `S1` pulses from where the machine stands, with ramps, at the speed `S2`; the sign \
-         sets the direction output `D2`. `M8029` comes on when it has arrived. Operands changed on the \
-         way count from the next start. Switching the drive off brakes with the ramp and stops, and \
-         then `M8029` stays off. Highest speed and ramp time stand in special registers (`D8146` and \
-         `D8148` on FX1S and FX1N; on FX3U each output has its own). Wait until the *busy* relay of the \
-         output is off before the next movement. Above 32,767 pulses or Hz use `DDRVI`.\n\n\
+        "Moves by `S1` pulses from where the machine stands, with ramps, at the speed `S2`; the sign sets \
+         the direction output `D2`. `M8029` comes on when it has arrived. Operands changed on the way \
+         count from the next start. Switching the drive off brakes with the ramp and stops, and then \
+         `M8029` stays off. Highest speed and ramp time stand in special registers (`D8146` and `D8148` \
+         on FX1S and FX1N; on FX3U each output has its own). Wait until the *busy* relay of the output is \
+         off before the next movement. Above 32,767 pulses or Hz use `DDRVI`. In the simulator the output \
+         is on while pulses are given, and a speed or time of 0 in these registers counts as 100,000 Hz \
+         or 100 ms.\n\n\
          ```il\n\
          LD X0\n\
          DDRVI K50000 K10000 Y0 Y4\n\
@@ -137,6 +146,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .always(drives::by_increment)
     .wide()
     .on(WITH_POSITIONING),
     applied(
@@ -151,10 +161,10 @@ pub const ROWS: &[Instruction] = &[
         ],
         "Moves to the position `S1`, counted from the origin, with ramps, at the speed `S2`; the \
          direction output `D2` follows by itself. `M8029` comes on when it has arrived. The present \
-         position is in a pair of special registers (`D8140` for `Y0` on FX1S and FX1N, `D8340` on \
-         FX3U), which `ZRN` sets to 0: return to zero first. Switching the drive off brakes and stops \
-         without `M8029`; driving it again goes on to the target. Above 32,767 pulses or Hz use \
-         `DDRVA`.\n\n\
+         position is in a pair of special registers (`D8140` for `Y0` on FX1S and FX1N, `D8340` on FX3U), \
+         which `ZRN` sets to 0: return to zero first. Switching the drive off brakes and stops without \
+         `M8029`; driving it again goes on to the target. Above 32,767 pulses or Hz use `DDRVA`. In the \
+         simulator the ramps are those of `DRVI`.\n\n\
          ```il\n\
          LD X0\n\
          DDRVA K25000 K10000 Y0 Y4\n\
@@ -165,6 +175,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .always(drives::to_position)
     .wide()
     .on(WITH_POSITIONING),
 ];

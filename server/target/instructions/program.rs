@@ -1,7 +1,7 @@
 //! The end of the program, empty steps, and labels.
 
 use super::specs::{operand, plain};
-use crate::target::{Accepts, Access, Instruction, Opcode, Role};
+use crate::target::{Accepts, Access, Instruction, Opcode, Role, Semantics};
 
 /// NOP END.
 pub const ROWS: &[Instruction] = &[
@@ -40,6 +40,7 @@ pub const ROWS: &[Instruction] = &[
 pub static LABEL: Instruction = Instruction {
     operands: &[operand("P", "pointer", Access::Read, Accepts::P.or(Accepts::I))],
     opcode: Opcode::Label,
+    semantics: Semantics::Basic,
     ..plain(
         0xB000,
         "label",

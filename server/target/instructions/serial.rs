@@ -1,5 +1,9 @@
 //! FNC 80–88: serial communication, ASCII conversion, the trimmers of the CPU, and PID control.
 
+mod characters;
+
+mod pid;
+
 use super::specs::{applied, count, destination, operand, source};
 use crate::target::{Accepts, Access, Extent, Instruction};
 
@@ -19,11 +23,12 @@ pub const ROWS: &[Instruction] = &[
             count("n", "bytes to receive at most", (0, 4_096)).or_register(),
         ],
         "Sends and receives frames of bytes through a serial board or adapter, with the format set in \
-         `D8120`. Drive it all the time; it only opens the port. Setting `M8122` sends `m` bytes, and \
-         the CPU resets it when they are out. `M8123` comes on when a frame has arrived: fetch the \
-         data, then reset `M8123` yourself, because nothing more is received before. With `M8161` on \
-         each word carries one byte, otherwise two. Write `D8120` before the first execution; only one \
-         `RS` may be active at a time.\n\n\
+         `D8120`. Drive it all the time; it only opens the port. Setting `M8122` sends `m` bytes, and the \
+         CPU resets it when they are out. `M8123` comes on when a frame has arrived: fetch the data, then \
+         reset `M8123` yourself, because nothing more is received before. With `M8161` on each word \
+         carries one byte, otherwise two. Write `D8120` before the first execution; only one `RS` may be \
+         active at a time. In the simulator a frame is sent within a scan, and the frames that a scenario \
+         hands over wait until they can be received.\n\n\
          ```il\n\
          LD M8002\n\
          MOV H0C81 D8120\n\
@@ -36,7 +41,8 @@ pub const ROWS: &[Instruction] = &[
          RST M8123\n\
          END\n\
          ```\n",
-    ),
+    )
+    .doing(characters::communicate),
     applied(
         81,
         "PRUN",
@@ -58,6 +64,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .doing(characters::copy_octal)
     .wide()
     .pulse(),
     applied(
@@ -69,12 +76,12 @@ pub const ROWS: &[Instruction] = &[
             destination("D", "first word of the characters").except(INDEX).reaching(Extent::Onwards),
             count("n", "characters", (1, 256)).or_register(),
         ],
-        "Writes the last `n` hexadecimal digits of the words from `S` on as ASCII characters to `D`, \
-         the highest digit first. With `M8161` off two characters share a word, the first in the low \
-         byte; with `M8161` on each has a word of its own. The same relay rules `HEX`, `CCD`, `RS` and \
-         `ASC`, so set it directly before the group that needs it, or once for the whole program. It \
-         works in every scan in which it is driven. `D` and the words after it must not overlap the \
-         source.\n\n\
+        "Writes the last `n` hexadecimal digits of the words from `S` on as ASCII characters to `D`, the \
+         highest digit first. With `M8161` off two characters share a word, the first in the low byte; \
+         with `M8161` on each has a word of its own. The same relay rules `HEX`, `CCD`, `RS` and `ASC`, \
+         so set it directly before the group that needs it, or once for the whole program. It works in \
+         every scan in which it is driven. `D` and the words after it must not overlap the source. If \
+         half of the last word gets no character it stays as it is.\n\n\
          ```il\n\
          LD M8002\n\
          MOV H12AB D0\n\
@@ -83,6 +90,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .doing(characters::to_characters)
     .pulse(),
     applied(
         83,
@@ -97,7 +105,8 @@ pub const ROWS: &[Instruction] = &[
          into `D`, four in a word, the last character in the lowest digit. Any other character, lower \
          case included, is an operation error (`M8067`), and nothing is converted. With `M8161` on each \
          character has a word of its own, otherwise two share one. If the peer sends decimal digits the \
-         result is BCD; `BIN` turns it into a number.\n\n\
+         result is BCD; `BIN` turns it into a number. Digits of the last word for which there is no \
+         character become 0.\n\n\
          ```il\n\
          LD M8002\n\
          MOV H3231 D0\n\
@@ -107,6 +116,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .doing(characters::from_characters)
     .pulse(),
     applied(
         84,
@@ -132,6 +142,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .doing(characters::check_code)
     .pulse(),
     applied(
         85,
@@ -141,8 +152,9 @@ pub const ROWS: &[Instruction] = &[
         "Reads the position of trimmer `S` as a number from 0 to 255. FX1S and FX1N have two of their \
          own, 0 and 1, which can also be read in `D8030` and `D8031`; larger CPUs need a trimmer board \
          with eight. Read it in every scan if the operator may turn it at any time. The value jumps by \
-         one or two on its own: do not compare it for equality. Multiply it before using it as the \
-         preset of a timer that runs longer than 25.5 s.\n\n\
+         one or two on its own: do not compare it for equality. Multiply it before using it as the preset \
+         of a timer that runs longer than 25.5 s. In the simulator trimmers stand at 0 until a scenario \
+         turns them.\n\n\
          ```il\n\
          LD M8000\n\
          VRRD K0 D0\n\
@@ -153,6 +165,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .doing(characters::read_trimmer)
     .pulse(),
     applied(
         86,
@@ -160,9 +173,9 @@ pub const ROWS: &[Instruction] = &[
         "read a trimmer as a switch",
         &[source("S", "trimmer number").within(0, 7), destination("D", "position, 0 to 10")],
         "Reads the position of trimmer `S` as one of eleven, 0 to 10, rounded, so that it serves as a \
-         rotary switch. Together with `DECO` it switches one of several relays. At the border between \
-         two positions the number may flutter: take it over only when the machine is at rest. Which \
-         trimmers there are is the same as for `VRRD`.\n\n\
+         rotary switch. Together with `DECO` it switches one of several relays. At the border between two \
+         positions the number may flutter: take it over only when the machine is at rest. Which trimmers \
+         there are is the same as for `VRRD`. The simulator rounds to the nearest position.\n\n\
          ```il\n\
          LDP X0\n\
          VRSC K1 D0\n\
@@ -171,6 +184,7 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
+    .doing(characters::read_switch)
     .pulse(),
     applied(
         88,
@@ -184,12 +198,16 @@ pub const ROWS: &[Instruction] = &[
         ],
         "A PID controller. The parameters from `S3` on are the sampling time in ms, the direction and \
          alarm switches, the input filter in %, the gain in %, the integral time in 100 ms, the \
-         derivative gain in % and the derivative time in 10 ms; the rest up to `S3`+24 is working \
-         memory and alarm limits, which nothing else may use. Drive it all the time: it computes once \
-         in each sampling time, which must be longer than the scan. Load the parameters once, before it \
-         starts. Bad ones set `M8067`, and `D8067` holds the code. Each loop needs 25 registers of its \
-         own. Limit the output before it goes to the plant, and clear it in the first scan if its \
-         register keeps its value without power.\n\n\
+         derivative gain in % and the derivative time in 10 ms; the rest up to `S3`+24 is working memory \
+         and alarm limits, which nothing else may use. Drive it all the time: it computes once in each \
+         sampling time, which must be longer than the scan. Load the parameters once, before it starts. \
+         Bad ones set `M8067`, and `D8067` holds the code. Each loop needs 25 registers of its own. Limit \
+         the output before it goes to the plant, and clear it in the first scan if its register keeps its \
+         value without power. The first computation comes with the drive: it takes the measured value for \
+         its past, no error before it, and goes on from what `D` holds. A sampling time below the scan \
+         counts as the scan, with the code 6740. An alarm comes on when a change is greater than its \
+         limit. The simulator keeps its working memory elsewhere and does not tune by itself: bit 4 of \
+         `S3`+1 is an operation error there.\n\n\
          ```il\n\
          LD M8002\n\
          MOV K500 D0\n\
@@ -206,5 +224,6 @@ pub const ROWS: &[Instruction] = &[
          MOV D2 D40\n\
          END\n\
          ```\n",
-    ),
+    )
+    .always(pid::control),
 ];

@@ -17,6 +17,7 @@
 //! assert_eq!(ROWS[0].operands.len(), 2);
 //! ```
 
+use crate::target::semantics::{Deed, Execution, Fault, Semantics};
 use crate::target::{
     Accepts, Access, Drive, Extent, Instruction, Model, Opcode, OperandSpec, Role, Steps, Wide,
 };
@@ -161,6 +162,7 @@ pub const fn applied(
         operands,
         steps: Steps::ByOperands,
         opcode: Opcode::Function(function),
+        semantics: Semantics::Basic,
         models: ALL_FX,
         page,
     }
@@ -183,6 +185,7 @@ pub const fn plain(
         operands: &[],
         steps: Steps::Fixed(1),
         opcode: Opcode::Word(word),
+        semantics: Semantics::Basic,
         models: ALL_FX,
         page,
     }
@@ -217,6 +220,21 @@ impl Instruction {
     /// Takes this many steps, whatever its operands.
     pub const fn taking(self, steps: u8) -> Instruction {
         Instruction { steps: Steps::Fixed(steps), ..self }
+    }
+
+    /// Conducts while this holds.
+    pub const fn testing(self, holds: fn(&mut dyn Execution) -> Result<bool, Fault>) -> Instruction {
+        Instruction { semantics: Semantics::Test(holds), ..self }
+    }
+
+    /// Does this in each scan in which it has power; the pulse form when power arrives.
+    pub const fn doing(self, deed: Deed) -> Instruction {
+        Instruction { semantics: Semantics::Powered(deed), ..self }
+    }
+
+    /// Does this in each scan, with power and without.
+    pub const fn always(self, deed: Deed) -> Instruction {
+        Instruction { semantics: Semantics::Always(deed), ..self }
     }
 
     /// Is coded like this.

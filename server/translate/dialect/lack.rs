@@ -15,6 +15,8 @@ pub(super) enum Lack {
     Reason(&'static str, SmolStr),
     /// A variable of a type that the other language does not calculate with in so many bits.
     Type(SmolStr, &'static str, u32),
+    /// A constant that does not fit in so many bits.
+    Range(SmolStr, u32),
     /// A variable of a type that the other language compares otherwise.
     Order(SmolStr, &'static str),
 }
@@ -30,6 +32,7 @@ impl Lack {
                 let message = Message::new("translate.type").with("word", word).with("type", *kind);
                 message.with("bits", *bits)
             }
+            Lack::Range(word, bits) => Message::new("translate.range").with("word", word).with("bits", *bits),
             Lack::Order(word, kind) => Message::new("translate.order").with("word", word).with("type", *kind),
         }
     }

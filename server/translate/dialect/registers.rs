@@ -59,12 +59,10 @@ impl Registers {
         let mut registers = Registers::default();
         let own = scopes.own_pous().iter().flat_map(|pou| &pou.variables);
         own.chain(scopes.globals.values()).for_each(|variable| registers.variable(variable, target));
-        for path in program.rungs.iter().filter_map(|source| source.path()) {
-            path.clone().each_term(&mut |term| {
-                if let Operand::Direct(address) = term.operand {
-                    registers.place(device_at(address), pair_at(address));
-                }
-            });
+        for term in program.rungs.iter().filter_map(|source| source.path()).flat_map(Path::terms) {
+            if let Operand::Direct(address) = term.operand {
+                registers.place(device_at(address), pair_at(address));
+            }
         }
         registers
     }

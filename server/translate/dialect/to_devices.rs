@@ -76,12 +76,10 @@ fn taken_devices(program: &Program, scopes: &Scopes, target: &Target) -> FxHashS
     let located: Vec<DirectAddress> =
         scopes.globals.values().filter_map(|variable| variable.address).collect();
     taken.extend(located.into_iter().flat_map(devices_at));
-    for path in program.rungs.iter().flat_map(|source| source.rung.path.iter().flatten()) {
-        path.clone().each_term(&mut |term| {
-            if let Operand::Direct(address) = term.operand {
-                taken.extend(devices_at(address));
-            }
-        });
+    for term in program.rungs.iter().filter_map(|source| source.path()).flat_map(Path::terms) {
+        if let Operand::Direct(address) = term.operand {
+            taken.extend(devices_at(address));
+        }
     }
     taken
 }
@@ -301,10 +299,11 @@ impl Converter<'_> {
     fn own_number(&self, term: &Term, width: Width) -> Result<Term, Lack> {
         if let Operand::Literal(literal) = term.operand {
             let LiteralValue::Integer(value) = literal.value else { return Err(Lack::Unnamed) };
-            let value = match width {
-                Width::Double => i64::from(without(i32::try_from(value).ok())?),
-                _ => i64::from(without(i16::try_from(value).ok())?),
+            let (fits, bits) = match width {
+                Width::Double => (i32::try_from(value).map(i64::from), 32),
+                _ => (i16::try_from(value).map(i64::from), 16),
             };
+            let value = fits.map_err(|_| Lack::Range(term.text.clone(), bits))?;
             return self.constant(value, term.span);
         }
         if width == Width::Double {

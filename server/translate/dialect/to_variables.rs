@@ -210,8 +210,12 @@ impl Converter<'_> {
 
     fn compute(&self, computation: Computation, terms: Vec<Term>, span: Span) -> Result<Action, Lack> {
         let (_, result) = without(computation.operands(&terms))?;
-        // The value of a counter belongs to its block.
-        without((result.address().is_some()).then_some(()))?;
+        if result.address().is_none() {
+            return Err(match result.text.split_once('.') {
+                Some((counter, _)) => Lack::Reason("translate.counter-value", counter.into()),
+                None => Lack::Unnamed.named(&result.text),
+            });
+        }
         Ok(Action { deed: Deed::Compute(computation), terms, span })
     }
 

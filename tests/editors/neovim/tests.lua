@@ -388,6 +388,58 @@ check('the forms of a rung follow the cursor with the real server', function()
   vim.cmd('bwipeout! rungwise://forms')
 end)
 
+check('a program runs, holds itself, shows its power and goes back', function()
+  open('motor.lad')
+  local simulation = require('rungwise.simulation')
+  local space = vim.api.nvim_get_namespaces().rungwise_simulation
+  --- The cells of a line, from 1, that have power, as text.
+  local function energised(line)
+    local cells = {}
+    for _, found in ipairs(vim.api.nvim_buf_get_extmarks(0, space, { line - 1, 0 }, { line - 1, -1 }, { details = true })) do
+      if found[4].hl_group == 'RungwiseEnergised' then
+        table.insert(cells, vim.fn.getline(line):sub(found[3] + 1, found[4].end_col))
+      end
+    end
+    return table.concat(cells)
+  end
+  local function has_coil(line)
+    return energised(line):find('( )', 1, true) ~= nil
+  end
+  vim.cmd('Rungwise simulate')
+  until_true('power at the rail', function()
+    return energised(3):find('---', 1, true) and not has_coil(3)
+  end)
+  vim.cmd('Rungwise simulate set X0 1')
+  until_true('the motor on', function()
+    return has_coil(3)
+  end)
+  vim.cmd('Rungwise simulate set X0 0')
+  until_true('the motor held by its own contact', function()
+    return has_coil(3) and energised(5):find('| |', 1, true) and not energised(3):find('| |', 1, true)
+  end)
+  until_true('the value of the timer', function()
+    local marks = vim.api.nvim_buf_get_extmarks(0, space, { 6, 0 }, { 6, -1 }, { details = true })
+    return vim.iter(marks):any(function(found)
+      return found[4].virt_text and found[4].virt_text[1][1] == 'T0 = 10'
+    end)
+  end)
+  local running = simulation.running[vim.uri_from_bufnr(0)]
+  -- To before the scan in which the motor came on.
+  vim.cmd('Rungwise simulate back Y0')
+  until_true('the motor off again, in a scan of before', function()
+    return running.mode == 'paused' and not has_coil(3)
+  end)
+  local scan = running.scan
+  vim.cmd('Rungwise simulate step')
+  until_true('one scan more', function()
+    return running.scan == scan + 1
+  end)
+  vim.cmd('Rungwise simulate stop')
+  until_true('a text without power', function()
+    return #vim.api.nvim_buf_get_extmarks(0, space, 0, -1, {}) == 0
+  end)
+end)
+
 check('two programs are compared with the real server', function()
   local other = vim.fn.tempname() .. '.il'
   vim.fn.writefile({ 'LD X0', 'OUT Y7', 'END' }, other)

@@ -2,9 +2,10 @@
 
 mod carrying;
 mod manner;
+mod wording;
 
 use super::super::silent;
-use super::{Change, Declaration, Neighbourhood};
+use super::{Change, Declaration, Neighbourhood, is_margin, margin_of, with_blank_lines, without_gap};
 use crate::document::{DeclaredType, Symbol};
 use crate::il::iec::{Item, ItemKind, SectionKind};
 use crate::logic::{Path, is_helper_name};
@@ -15,6 +16,7 @@ use crate::translate::to_iec::{self, Helpers};
 use manner::Manner;
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
+use wording::Wording;
 
 /// The instructions of a path, as the translator writes them.
 type Instructions = Vec<String>;
@@ -24,6 +26,7 @@ type Instructions = Vec<String>;
 pub(super) fn lists(
     around: &Neighbourhood<'_>,
     changes: &[Change],
+    keeps_forms: bool,
     declarations: &mut Vec<Declaration>,
 ) -> Option<Vec<(Span, String)>> {
     // XOR would be written as what it is made of, which nobody asks for.
@@ -49,9 +52,20 @@ pub(super) fn lists(
     for (change, mut written) in changes.iter().zip(written) {
         let rungs = around.replaced(change)?;
         keep_labels(rungs, &mut written);
-        lists.push(list(around, rungs, &change.paths, &written)?);
+        lists.push(list(around, change, (&old_instructions(around, change), keeps_forms), &written)?);
     }
     Some(lists)
+}
+
+/// What the translator would write for the rungs that a change replaces.
+fn old_instructions(around: &Neighbourhood<'_>, change: &Change) -> Vec<Instructions> {
+    let mut helpers = Helpers::beside(None);
+    helpers.pou = around.unit.number;
+    if spares(around, std::slice::from_ref(change), &mut helpers).is_none() {
+        return Vec::new();
+    }
+    let paths = around.replaced(change).into_iter().flatten().filter_map(Source::path);
+    paths.filter_map(|path| to_iec::lines(path, &mut helpers).ok()).collect()
 }
 
 fn has_xor(placed: &Source) -> bool {
@@ -155,30 +169,34 @@ fn keep_labels(rungs: &[Source], written: &mut [Instructions]) {
     }
 }
 
-/// The instructions of `rungs`, in bytes of the document, and those of `paths` in their place.
+/// The instructions of the rungs that `change` replaces, in bytes of the document, and those `written` for its paths in
+/// their place. The translator would write the old ones as `translated`; a form of theirs that is longer than the
+/// translator's is only kept if that is said beside it.
 fn list(
     around: &Neighbourhood<'_>,
-    rungs: &[Source],
-    paths: &[Path],
+    change: &Change,
+    (translated, keeps_forms): (&[Instructions], bool),
     written: &[Instructions],
 ) -> Option<(Span, String)> {
+    let rungs = around.replaced(change)?;
     let old = Old::of(rungs)?;
     let start = rungs.first()?.start;
     if written.is_empty() {
-        let whole_lines = if old.prefix.trim().is_empty() { old.prefix.len() } else { 0 };
-        let span = Span::new(old.start - whole_lines, old.end).shifted(start);
-        return old.comments.is_empty().then(|| (span, String::new()));
+        return old.comments.is_empty().then(|| (removed(around, &old, start), String::new()));
     }
     let manner = Manner::of(&old);
+    let mut wording = Wording::of(&old, translated, !keeps_forms);
     let mut lines: Vec<String> = Vec::new();
     for instructions in written {
         // A load behind a call would go on with its rung.
         if lines.last().is_some() && follows_call(&lines) {
             lines.push(String::new());
         }
-        lines.extend(manner.lines(instructions));
+        lines.extend(manner.lines(instructions, &mut wording));
     }
-    let lines = carrying::with_comments(around, &old, paths, lines)?;
+    let comments: Vec<Span> =
+        old.comments.iter().copied().filter(|comment| !wording.has_kept(*comment)).collect();
+    let lines = carrying::with_comments(around, (&old, &comments), &change.paths, lines)?;
     let line_end = if old.text[old.start..old.end].contains("\r\n") { "\r\n" } else { "\n" };
     let mut new = lines.join(line_end);
     if old.text[..old.end].ends_with('\n') {
@@ -189,9 +207,24 @@ fn list(
     Some((Span::new(old.start, old.end).shifted(start), new))
 }
 
+/// What goes where nothing is written in the place of `old`, whose chunk starts at byte `start` of the document. Blank
+/// lines behind a rung at the beginning of its chunk would go to what stands before that.
+fn removed(around: &Neighbourhood<'_>, old: &Old<'_>, start: usize) -> Span {
+    let own = Span::new(old.start, old.end).shifted(start);
+    if !is_margin(old.prefix) {
+        return own;
+    }
+    let whole = Span::new(old.start - margin_of(old.prefix).len(), old.end).shifted(start);
+    match whole.start as usize == start {
+        true => with_blank_lines(around.document, whole),
+        false => without_gap(around.document, whole),
+    }
+}
+
 fn follows_call(lines: &[String]) -> bool {
     let last = lines.last().map_or("", |line| line.trim());
-    last.ends_with(')') || last.get(..4).is_some_and(|word| word.eq_ignore_ascii_case("CAL "))
+    let word = last.split_whitespace().next().unwrap_or_default();
+    last.ends_with(')') || word.eq_ignore_ascii_case("CAL")
 }
 
 /// The instructions of rungs as they stand in their chunk.

@@ -263,7 +263,7 @@ fn argument<'t>(
 }
 
 /// The contact for which the call of a detector stands.
-pub(in crate::logic::from_iec) fn edge_kind(block: &Callee) -> Option<ContactKind> {
+pub(in crate::logic) fn edge_kind(block: &Callee) -> Option<ContactKind> {
     match block {
         Callee::Block(block) if block.name == "R_TRIG" => Some(ContactKind::Rising),
         Callee::Block(block) if block.name == "F_TRIG" => Some(ContactKind::Falling),

@@ -39,7 +39,9 @@ impl Converter<'_> {
                 let inputs = [self.number(left, width)?, self.number(right, width)?];
                 // Nothing would say of the product of two literals that it has 32 bits.
                 let is_literal = |term: &Term| matches!(term.operand, Operand::Literal(_));
-                without((!inputs.iter().all(is_literal)).then_some(()))?;
+                if inputs.iter().all(is_literal) {
+                    return Err(Lack::Reason("translate.constant-product", form.mnemonic().into()));
+                }
                 let terms = inputs.into_iter().chain([self.number(product, Width::Double)?]).collect();
                 self.compute(without(computation)?, terms, span).map(alone)
             }

@@ -15,19 +15,19 @@ struct Carried<'a> {
     behind: Option<(&'a str, Option<usize>)>,
 }
 
-/// `lines`, which are those of `paths`, with the comments of the old ones; nothing if one has no place.
+/// `lines`, which are those of `paths`, with `comments` of the old ones; nothing if one has no place.
 pub(super) fn with_comments(
     around: &Neighbourhood<'_>,
-    old: &Old<'_>,
+    (old, comments): (&Old<'_>, &[Span]),
     paths: &[Path],
     lines: Vec<String>,
 ) -> Option<Vec<String>> {
-    if old.comments.is_empty() {
+    if comments.is_empty() {
         return Some(lines);
     }
     let places = places(around, paths, &lines);
     let mut carried = vec![Carried::default(); lines.len()];
-    for comment in &old.comments {
+    for comment in comments {
         let words = comment.of(old.text).trim_end();
         if words.contains('\n') {
             return None;
@@ -50,7 +50,7 @@ pub(super) fn with_comments(
             false => place.above.push(words),
         }
     }
-    let mut all = Vec::with_capacity(lines.len() + old.comments.len());
+    let mut all = Vec::with_capacity(lines.len() + comments.len());
     for (line, Carried { above, behind }) in lines.into_iter().zip(carried) {
         let indent = &line[..line.len() - line.trim_start().len()];
         all.extend(above.iter().map(|words| format!("{indent}{words}")));
@@ -77,8 +77,7 @@ fn column(before: &str) -> Option<usize> {
 fn places(around: &Neighbourhood<'_>, paths: &[Path], lines: &[String]) -> Vec<(Span, usize)> {
     let text = lines.join("\n") + "\n";
     let chunk = around.document.chunk_of(&text);
-    let pous = around.unit.number.map_or(0, |number| number + 1);
-    let declared = Declared { scopes: around.document.scopes(), pous };
+    let declared = Declared { scopes: around.document.scopes(), pous: around.unit.started() };
     let rungs = logic::rungs_with(&chunk, around.document.reader(), declared);
     let new = rungs.iter().filter_map(|rung| rung.path.as_ref().ok()?.as_ref());
     let new: Vec<(SmolStr, Span)> = new.flat_map(words).collect();

@@ -1,0 +1,205 @@
+--- Running the program of a buffer on the simulated PLC: power as extmarks, values behind the lines.
+local client = require('rungwise.client')
+local t = require('rungwise.words').t
+local M = {}
+
+local PREFIX = 'rungwise.simulate.'
+local SPACE = vim.api.nvim_create_namespace('rungwise_simulation')
+--- The window is told when it stands still.
+local SCROLL_MS = 50
+
+--- What runs, by URI: { buffer, mode, scan }.
+M.running = {}
+local timer
+
+vim.api.nvim_set_hl(0, 'RungwiseEnergised', { default = true, link = 'DiffAdd' })
+vim.api.nvim_set_hl(0, 'RungwiseReady', { default = true, underdotted = true })
+vim.api.nvim_set_hl(0, 'RungwiseValue', { default = true, link = 'Comment' })
+
+--- Tells the server something about the program of a buffer; `done` gets the answer.
+local function tell(buffer, verb, more, done)
+  local running = client.expect(buffer)
+  if not running then
+    return
+  end
+  local argument = vim.tbl_extend('error', { uri = vim.uri_from_bufnr(buffer) }, more or {})
+  client.request(running, 'workspace/executeCommand', { command = PREFIX .. verb, arguments = { argument } },
+    function(err, result)
+      if err then
+        client.notify(err.message or vim.inspect(err), vim.log.levels.ERROR)
+      elseif done then
+        done(result)
+      end
+    end, buffer)
+end
+
+--- The lines that windows show of a buffer.
+local function watch(buffer)
+  local ranges = {}
+  for _, window in ipairs(vim.fn.win_findbuf(buffer)) do
+    local first, last = vim.fn.line('w0', window), vim.fn.line('w$', window)
+    table.insert(ranges, {
+      start = { line = first - 1, character = 0 }, ['end'] = { line = last, character = 0 },
+    })
+  end
+  tell(buffer, 'watch', { ranges = #ranges > 0 and ranges or vim.empty_dict() })
+end
+
+local function scrolled()
+  if not timer and next(M.running) then
+    timer = vim.defer_fn(function()
+      timer = nil
+      for _, running in pairs(M.running) do
+        if #vim.fn.win_findbuf(running.buffer) > 0 then
+          watch(running.buffer)
+        end
+      end
+    end, SCROLL_MS)
+  end
+end
+
+--- Marks the cells of a range, which stands in one line.
+local function mark(buffer, range, encoding, options)
+  local line = range.start.line
+  local text = vim.api.nvim_buf_get_lines(buffer, line, line + 1, false)[1]
+  if text and range['end'].line == line then
+    options.end_col = client.byte(text, range['end'].character, encoding)
+    vim.api.nvim_buf_set_extmark(buffer, SPACE, line, client.byte(text, range.start.character, encoding), options)
+  end
+end
+
+--- The notification `rungwise/monitor`.
+function M.on_monitor(_, picture, context)
+  local running = type(picture) == 'table' and M.running[picture.uri]
+  local server = vim.lsp.get_client_by_id(context.client_id)
+  if not running or not server or not vim.api.nvim_buf_is_loaded(running.buffer) then
+    return
+  end
+  running.mode, running.scan, running.time_ms = picture.mode, picture.scan, picture.time_ms
+  -- What was painted of another version stands in other places.
+  if picture.version ~= vim.lsp.util.buf_versions[running.buffer] then
+    return
+  end
+  vim.api.nvim_buf_clear_namespace(running.buffer, SPACE, 0, -1)
+  local values = {}
+  for _, element in ipairs(picture.elements or {}) do
+    if element.kind == 'value' then
+      local line = element.range.start.line
+      local text = vim.api.nvim_buf_get_lines(running.buffer, line, line + 1, false)[1] or ''
+      local first = client.byte(text, element.range.start.character, server.offset_encoding)
+      local last = client.byte(text, element.range['end'].character, server.offset_encoding)
+      values[line] = values[line] or {}
+      table.insert(values[line], ('%s = %s'):format(text:sub(first + 1, last), tostring(element.value)))
+    elseif element.energised or element.conducts then
+      mark(running.buffer, element.range, server.offset_encoding, {
+        hl_group = element.energised and 'RungwiseEnergised' or 'RungwiseReady', priority = 150,
+      })
+    end
+  end
+  for line, words in pairs(values) do
+    vim.api.nvim_buf_set_extmark(running.buffer, SPACE, line, 0, {
+      virt_text = { { table.concat(words, ', '), 'RungwiseValue' } }, virt_text_pos = 'eol',
+    })
+  end
+  for _, failed in ipairs(picture.errors or {}) do
+    vim.api.nvim_buf_set_extmark(running.buffer, SPACE, failed.range.start.line, 0, {
+      virt_text = { { failed.message, 'DiagnosticVirtualTextError' } }, virt_text_pos = 'eol',
+    })
+  end
+  vim.cmd.redrawstatus()
+end
+
+local function forget(buffer)
+  M.running[vim.uri_from_bufnr(buffer)] = nil
+  if vim.api.nvim_buf_is_valid(buffer) then
+    vim.api.nvim_buf_clear_namespace(buffer, SPACE, 0, -1)
+  end
+end
+
+local function start(buffer)
+  tell(buffer, 'start', {}, function()
+    M.running[vim.uri_from_bufnr(buffer)] = { buffer = buffer, mode = 'running' }
+    local group = vim.api.nvim_create_augroup('rungwise_simulation', { clear = true })
+    local events = { 'WinScrolled', 'BufWinEnter', 'TextChanged', 'TextChangedI' }
+    vim.api.nvim_create_autocmd(events, { group = group, callback = scrolled })
+    vim.api.nvim_create_autocmd('BufUnload', {
+      group = group,
+      callback = function(event)
+        if M.running[vim.uri_from_bufnr(event.buf)] then
+          forget(event.buf)
+        end
+      end,
+    })
+    watch(buffer)
+  end)
+end
+
+--- The word under the cursor, or the one that is named.
+local function name_of(words)
+  return words[1] or vim.fn.expand('<cword>')
+end
+
+--- What `:Rungwise simulate VERB …` does.
+M.verbs = {
+  start = start,
+  stop = function(buffer)
+    forget(buffer)
+    tell(buffer, 'stop')
+  end,
+  pause = function(buffer)
+    tell(buffer, 'pause')
+  end,
+  run = function(buffer)
+    tell(buffer, 'run')
+  end,
+  step = function(buffer, words)
+    tell(buffer, 'step', { count = tonumber(words[1]) })
+  end,
+  back = function(buffer, words)
+    local count = tonumber(words[1])
+    tell(buffer, 'stepBack', { count = count, changeOf = not count and words[1] or nil })
+  end,
+  reset = function(buffer)
+    tell(buffer, 'reset')
+  end,
+  toggle = function(buffer, words)
+    local name = name_of(words)
+    tell(buffer, 'state', { names = { name } }, function(state)
+      local value = state.values and state.values[1] and state.values[1].value
+      if type(value) == 'boolean' then
+        tell(buffer, 'set', { name = name, value = not value })
+      else
+        client.notify(t('"%s" is no relay', name), vim.log.levels.WARN)
+      end
+    end)
+  end,
+  set = function(buffer, words)
+    tell(buffer, 'set', { name = words[1], value = words[2] })
+  end,
+  force = function(buffer, words)
+    tell(buffer, 'force', { name = words[1], value = words[2] })
+  end,
+  release = function(buffer, words)
+    tell(buffer, 'release', { name = words[1] })
+  end,
+}
+
+--- The verbs, sorted.
+function M.names()
+  local names = vim.tbl_keys(M.verbs)
+  table.sort(names)
+  return names
+end
+
+--- Runs `:Rungwise simulate VERB WORD…`; without a verb it starts.
+function M.run(words)
+  local verb = M.verbs[words[1] or 'start']
+  if not verb then
+    client.notify(t('there is no ":Rungwise simulate %s"; there are %s', words[1], table.concat(M.names(), ', ')),
+      vim.log.levels.ERROR)
+    return
+  end
+  verb(vim.api.nvim_get_current_buf(), vim.list_slice(words, 2))
+end
+
+return M

@@ -1,0 +1,269 @@
+//! `rungwise run`
+
+use super::Outcome;
+use super::input::{Program, complain, programs, put, say};
+use crate::document::Document;
+use crate::simulate::{Code, Place, Session, Touch, Trace, TraceRow, Value, Variable, compile, milliseconds};
+use crate::target::iec::LiteralValue;
+use crate::target::{Model, Operand};
+use crate::text::{Encoding, Language, Message, text_width};
+use clap::ValueEnum;
+use serde_json::{Map, Value as Json, json};
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    /// A program, or a project.
+    file: PathBuf,
+    /// So many scans; the first is scan 0.
+    #[arg(long, value_name = "N", conflicts_with = "time")]
+    scans: Option<u64>,
+    /// Every scan from time 0 up to this time: 500ms, 1.5s, T#2m.
+    #[arg(long, value_name = "TIME", value_parser = duration, default_value = "1s")]
+    time: i64,
+    /// Time from one scan to the next.
+    #[arg(long, value_name = "TIME", value_parser = duration, default_value = "10ms")]
+    scan_time: i64,
+    /// Sets a device or variable, from time 0 or from a time on: X0=1, D0=25@100ms.
+    #[arg(long = "set", value_name = "NAME=VALUE[@TIME]", value_parser = setting)]
+    settings: Vec<Setting>,
+    /// What is shown, parted by commas; all that the program uses if left out.
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    watch: Vec<String>,
+    /// Writes the values over time to a file, as a value change dump (.vcd) or a table (.csv).
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
+    /// The shape of the result.
+    #[arg(long, value_enum, default_value = "text")]
+    format: RunFormat,
+}
+
+/// The shape of a run on standard output.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum RunFormat {
+    /// For people.
+    Text,
+    /// One JSON document.
+    Json,
+}
+
+/// A setting of the command line.
+#[derive(Clone, Debug)]
+struct Setting {
+    name: String,
+    value: Value,
+    from_ns: i64,
+}
+
+/// A time as people write it, in nanoseconds; a number alone is milliseconds.
+fn duration(word: &str) -> Result<i64, String> {
+    let bare = word.trim();
+    let time = match bare.parse::<f64>() {
+        Ok(_) => format!("T#{bare}ms"),
+        Err(_) if bare.contains('#') => bare.to_string(),
+        Err(_) => format!("T#{bare}"),
+    };
+    match Operand::read(&time, Model::Iec) {
+        Operand::Literal(literal) => match literal.value {
+            LiteralValue::Time(time_ns) if time_ns >= 0 => Ok(time_ns),
+            _ => Err(word.to_string()),
+        },
+        _ => Err(word.to_string()),
+    }
+}
+
+fn setting(word: &str) -> Result<Setting, String> {
+    let (setting, from) = word.rsplit_once('@').map_or((word, None), |(setting, from)| (setting, Some(from)));
+    let (name, value) = setting.split_once('=').ok_or("NAME=VALUE")?;
+    let value = Value::read(value).ok_or_else(|| value.to_string())?;
+    Ok(Setting { name: name.trim().to_string(), value, from_ns: from.map_or(Ok(0), duration)? })
+}
+
+pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
+    let Some(programs) = programs(std::slice::from_ref(&arguments.file), None, language) else {
+        return Outcome::Unusable;
+    };
+    let documents: Vec<&Document> = programs.iter().map(|program| &program.document).collect();
+    let code = match compile(&documents, false) {
+        Ok(code) => Arc::new(code),
+        Err(problems) => {
+            for problem in problems {
+                complain_at(&programs, Some(problem.place), problem.obstacle.message(), language);
+            }
+            return Outcome::Findings;
+        }
+    };
+    let Some((touches, watched)) = named(arguments, &code, language) else { return Outcome::Unusable };
+    let mut simulation = Simulation { session: Session::new(code), trace: Trace::new(watched), touches };
+    let is_clean = simulation.run(arguments, &programs, language);
+    if !simulation.tell(arguments, language) {
+        return Outcome::Unusable;
+    }
+    if is_clean { Outcome::Clean } else { Outcome::Findings }
+}
+
+/// What is set from which time on, and what is watched; nothing after complaints about names that there are not.
+#[allow(clippy::type_complexity, reason = "two lists that are made together")]
+fn named(
+    arguments: &Arguments,
+    code: &Code,
+    language: Language,
+) -> Option<(Vec<(i64, Touch)>, Vec<(String, Variable)>)> {
+    let mut is_known = true;
+    let mut complaint = |key: &'static str, name: &str| {
+        let help = Message::new("cli.run-names").render(language);
+        complain("unknown-name", &Message::new(key).with("name", name).render(language), &help, language);
+        is_known = false;
+    };
+    let mut touches = Vec::new();
+    for setting in &arguments.settings {
+        let Some(variable) = code.variable(&setting.name) else {
+            complaint("cli.run-unknown", &setting.name);
+            continue;
+        };
+        match variable.set(code, &setting.value) {
+            Some(touch) => touches.push((setting.from_ns, touch)),
+            None => complaint("cli.run-no-value", &setting.name),
+        }
+    }
+    // Of several settings for one time the last one counts.
+    touches.sort_by_key(|(from_ns, _)| *from_ns);
+    let names = if arguments.watch.is_empty() { code.named() } else { arguments.watch.clone() };
+    let mut watched = Vec::new();
+    for name in names {
+        match code.variable(&name) {
+            Some(variable) => watched.push((name.trim().to_string(), variable)),
+            None => complaint("cli.run-unknown", &name),
+        }
+    }
+    is_known.then_some((touches, watched))
+}
+
+struct Simulation {
+    session: Session,
+    trace: Trace,
+    touches: Vec<(i64, Touch)>,
+}
+
+impl Simulation {
+    /// Runs all scans; whether nothing went wrong.
+    fn run(&mut self, arguments: &Arguments, programs: &[Program], language: Language) -> bool {
+        let step = arguments.scan_time.max(1);
+        let scans = arguments.scans.unwrap_or((arguments.time / step) as u64 + 1);
+        let mut touches = std::mem::take(&mut self.touches).into_iter().peekable();
+        let mut told: Vec<(Option<Place>, Message)> = Vec::new();
+        for scan in 0..scans {
+            let now_ns = scan as i64 * step;
+            while let Some((_, touch)) = touches.next_if(|(from_ns, _)| *from_ns <= now_ns) {
+                self.session.touch(touch);
+            }
+            for error in self.session.scan(now_ns).errors {
+                let message = error.kind.message();
+                // What goes wrong in every scan is said once.
+                if !told.contains(&(error.place, message.clone())) {
+                    complain_at(programs, error.place, message.clone(), language);
+                    told.push((error.place, message));
+                }
+            }
+            self.trace.note(self.session.machine());
+        }
+        self.trace.end();
+        told.is_empty()
+    }
+
+    /// Writes what came out; whether that could be done.
+    fn tell(&self, arguments: &Arguments, language: Language) -> bool {
+        if let Some(path) = &arguments.trace {
+            let is_vcd = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vcd"));
+            let text = match is_vcd {
+                true => self.trace.vcd().map(|bytes| String::from_utf8_lossy(&bytes).into_owned()),
+                false => Ok(self.trace.csv()),
+            };
+            if !text.is_ok_and(|text| put(&text, Some(path), language)) {
+                return false;
+            }
+        }
+        match arguments.format {
+            RunFormat::Json => say(&format!("{:#}\n", json_of(&self.trace, arguments.scan_time))),
+            RunFormat::Text => say(&picture(&self.trace, language)),
+        }
+        true
+    }
+}
+
+fn json_of(trace: &Trace, scan_time_ns: i64) -> Json {
+    let scan = |row: &TraceRow| {
+        let values = trace.names.iter().zip(&row.values);
+        let values: Map<String, Json> = values.map(|(name, value)| (name.clone(), value.json())).collect();
+        json!({ "scan": row.scan, "time_ms": as_ms(row.time_ns), "values": values })
+    };
+    let scans: Vec<Json> = trace.rows.iter().map(scan).collect();
+    json!({ "scan_time_ms": as_ms(scan_time_ns), "scans": scans })
+}
+
+/// Milliseconds as a whole number where they are one.
+fn as_ms(time_ns: i64) -> Json {
+    match time_ns % 1_000_000 {
+        0 => json!(time_ns / 1_000_000),
+        _ => json!(time_ns as f64 / 1e6),
+    }
+}
+
+/// Columns of a picture that stand side by side.
+const PICTURE_WIDTH: usize = 100;
+
+/// A timing picture: a column for each scan in which something changed.
+fn picture(trace: &Trace, language: Language) -> String {
+    let heads =
+        [Message::new("cli.run-scan"), Message::new("cli.run-time")].map(|head| head.render(language));
+    let names = heads.iter().chain(&trace.names);
+    let margin = names.map(|name| text_width(name)).max().unwrap_or(0);
+    let cells = |row: &TraceRow| -> Vec<String> {
+        let head = [row.scan.to_string(), milliseconds(row.time_ns)];
+        head.into_iter().chain(row.values.iter().map(Value::to_string)).collect()
+    };
+    let mut text = String::new();
+    let mut rows = trace.rows.iter().peekable();
+    while rows.peek().is_some() {
+        let mut columns: Vec<(Vec<String>, usize, &TraceRow)> = Vec::new();
+        let mut width = 0;
+        while let Some(row) = rows.next_if(|row| {
+            let next = cells(row).iter().map(|cell| cell.len()).max().unwrap_or(0) + 2;
+            columns.is_empty() || width + next <= PICTURE_WIDTH
+        }) {
+            let cells = cells(row);
+            let own = cells.iter().map(|cell| cell.len()).max().unwrap_or(0) + 2;
+            width += own;
+            columns.push((cells, own, row));
+        }
+        for (line, name) in heads.iter().chain(&trace.names).enumerate() {
+            let _ = write!(text, "{name}{}", " ".repeat(margin - text_width(name)));
+            for (cells, width, row) in &columns {
+                match line.checked_sub(heads.len()).and_then(|value| row.values.get(value)) {
+                    Some(Value::Bit(on)) => text += &if *on { "▆" } else { "_" }.repeat(*width),
+                    _ => {
+                        let _ = write!(text, "{:>width$}", cells[line], width = *width);
+                    }
+                }
+            }
+            text.push('\n');
+        }
+        if rows.peek().is_some() {
+            text.push('\n');
+        }
+    }
+    text
+}
+
+/// A complaint about a place in one of the programs.
+fn complain_at(programs: &[Program], place: Option<Place>, message: Message, language: Language) {
+    let at = place.and_then(|place| {
+        let program = programs.get(place.document as usize)?;
+        let position = program.document.position(place.span.start as usize, Encoding::Utf32);
+        Some(format!("{}:{}:{}: ", program.path.display(), position.line + 1, position.column + 1))
+    });
+    let reason = format!("{}{}", at.unwrap_or_default(), message.render(language));
+    complain("simulation", &reason, &Message::new("cli.run-check").render(language), language);
+}

@@ -1,0 +1,142 @@
+//! `rungwise.simulate.…`: programs run on a simulated PLC beside the editor.
+//!
+//! Commands (`workspace/executeCommand`), each with one argument, an object with `uri`, the address of a program; files
+//! of a project that are one program with it run with it. The members that each takes besides:
+//!
+//! ```text
+//! rungwise.simulate.start     { scanTime?: ms = 10, speed?: number = 1, paused?: boolean }   // speed 0: no limit
+//! rungwise.simulate.stop      { }
+//! rungwise.simulate.pause     { }
+//! rungwise.simulate.run       { speed?: number }                  // goes on
+//! rungwise.simulate.step      { count?: scans = 1 }               // and pauses
+//! rungwise.simulate.stepBack  { count?: scans = 1, changeOf?: name }   // or back to the last change of a device
+//! rungwise.simulate.reset     { }                                 // as if just switched on, paused or not as before
+//! rungwise.simulate.set       { name, value }                     // "X0", true or 1; "D0", 25
+//! rungwise.simulate.force     { name, value }                     // holds it
+//! rungwise.simulate.release   { name? }                           // one, or all
+//! rungwise.simulate.watch     { ranges?: Range[], names?: string[] }   // what the client shows
+//! rungwise.simulate.state     { names?: string[] }
+//! ```
+//!
+//! Each answers the state:
+//!
+//! ```text
+//! { uri, mode: "running" | "paused" | "stopped", scan, first_scan, time_ms, speed, forced: string[],
+//!   values: { device, value, forced }[], errors: { range, message }[] }
+//! ```
+//!
+//! `values` are those of `names`, or of what is watched. While a simulation runs, the notification `rungwise/monitor`
+//! tells what is watched, at most thirty times a second, when something may have changed:
+//!
+//! ```text
+//! { uri, version, source: "simulator", mode, scan, time_ms,
+//!   elements: { range, kind: "wire" | "contact" | "output" | "line" | "value", energised, conducts?, value? }[],
+//!   values: { device, value, forced }[], errors: { range, message }[] }
+//! ```
+//!
+//! `scan` counts from 0. What an edit made of the program is taken over as soon as it can be run; until then the old
+//! program goes on and `elements` is empty.
+
+mod monitor;
+
+mod runner;
+
+use super::answering::{refused, snapshot};
+use super::workspace::Workspace;
+use crate::text::Message;
+use runner::{Order, Runner};
+use rustc_hash::FxHashMap;
+use serde::Deserialize;
+use serde_json::{Value, json};
+use std::sync::{Arc, Mutex, PoisonError};
+use tower_lsp::jsonrpc::Result;
+use tower_lsp::ls_types::{LSPAny, Range, Uri};
+
+/// What all commands begin with; [`COMMANDS`](super::capabilities::COMMANDS) has them.
+pub(super) const PREFIX: &str = "rungwise.simulate.";
+
+/// The argument of any of them.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Asked {
+    uri: Uri,
+    scan_time: Option<f64>,
+    speed: Option<f64>,
+    #[serde(default)]
+    paused: bool,
+    count: Option<u64>,
+    change_of: Option<String>,
+    name: Option<String>,
+    value: Option<Value>,
+    ranges: Option<Vec<Range>>,
+    names: Option<Vec<String>>,
+}
+
+/// The simulations that run.
+#[derive(Default)]
+pub(super) struct Simulations(Mutex<FxHashMap<Uri, Runner>>);
+
+impl Simulations {
+    /// Answers a command.
+    pub(super) async fn answer(
+        &self,
+        command: &str,
+        argument: Option<&Value>,
+        workspace: &Arc<Workspace>,
+    ) -> Result<Option<LSPAny>> {
+        let wrong = |reason: String| {
+            let message = Message::new("translating.argument").with("command", command);
+            refused(message.with("reason", reason))
+        };
+        let argument = argument.ok_or_else(|| wrong("arguments[0]".to_string()))?;
+        let asked = Asked::deserialize(argument).map_err(|reason| wrong(reason.to_string()))?;
+        let uri = asked.uri.clone();
+        let order = order(command, asked).map_err(refused)?;
+        if matches!(order, Order::Start { .. }) && snapshot().program(&uri).is_none() {
+            return Err(refused(Message::new("request.no-document").with("command", command)));
+        }
+        let is_stop = matches!(order, Order::Stop);
+        let runner = {
+            let mut running = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            running.retain(|_, runner| runner.is_alive());
+            match order {
+                Order::Start { .. } => Some(
+                    running.entry(uri.clone()).or_insert_with(|| Runner::new(uri.clone(), workspace)).clone(),
+                ),
+                Order::Stop => running.remove(&uri),
+                _ => running.get(&uri).cloned(),
+            }
+        };
+        match runner {
+            Some(runner) => runner.ask(order).await.map(Some).map_err(refused),
+            None if is_stop || matches!(order, Order::State { .. }) => {
+                Ok(Some(json!({ "uri": uri, "mode": "stopped" })))
+            }
+            None => Err(refused(Message::new("simulate.not-running"))),
+        }
+    }
+}
+
+fn order(command: &str, asked: Asked) -> std::result::Result<Order, Message> {
+    let verb = command.strip_prefix(PREFIX).unwrap_or_default();
+    let missing = |member: &'static str| {
+        let message = Message::new("translating.argument").with("command", command);
+        message.with("reason", member)
+    };
+    let name = asked.name.clone().ok_or_else(|| missing("name"));
+    let value = asked.value.clone().ok_or_else(|| missing("value"));
+    Ok(match verb {
+        "start" => Order::Start { scan_ms: asked.scan_time, speed: asked.speed, is_paused: asked.paused },
+        "stop" => Order::Stop,
+        "pause" => Order::Pause,
+        "run" => Order::Run { speed: asked.speed },
+        "step" => Order::Step { count: asked.count.unwrap_or(1) },
+        "stepBack" => Order::StepBack { count: asked.count.unwrap_or(1), change_of: asked.change_of },
+        "reset" => Order::Reset,
+        "set" => Order::Set { name: name?, value: value?, is_force: false },
+        "force" => Order::Set { name: name?, value: value?, is_force: true },
+        "release" => Order::Release { name: asked.name },
+        "watch" => Order::Watch { ranges: asked.ranges, names: asked.names },
+        _ => Order::State { names: asked.names },
+    })
+}

@@ -1,0 +1,492 @@
+//! A simulation on a thread of its own: it runs scans when they are due, and does what it is told between two of them.
+
+use super::super::projects::Around;
+use super::super::to_proto::Place;
+use super::super::workspace::Workspace;
+use super::monitor::{Monitor, MonitorMethod, Picture};
+use crate::check;
+use crate::document::Document;
+use crate::simulate::{Code, Error, Session, Sight, Touch, Value, Variable, compile};
+use crate::target::Device;
+use crate::text::Message;
+use serde_json::{Value as Json, json};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Weak};
+use std::time::{Duration, Instant};
+use tokio::sync::oneshot;
+use tower_lsp::ls_types::{Range, Uri};
+
+/// What a simulation is told to do.
+#[derive(Clone, Debug)]
+pub(super) enum Order {
+    Start { scan_ms: Option<f64>, speed: Option<f64>, is_paused: bool },
+    Stop,
+    Pause,
+    Run { speed: Option<f64> },
+    Step { count: u64 },
+    StepBack { count: u64, change_of: Option<String> },
+    Reset,
+    Set { name: String, value: Json, is_force: bool },
+    Release { name: Option<String> },
+    Watch { ranges: Option<Vec<Range>>, names: Option<Vec<String>> },
+    State { names: Option<Vec<String>> },
+}
+
+type Reply = Result<Json, Message>;
+
+/// The other end of a simulation's thread.
+#[derive(Clone)]
+pub(super) struct Runner {
+    sender: Sender<(Order, oneshot::Sender<Reply>)>,
+    is_alive: Arc<AtomicBool>,
+}
+
+impl Runner {
+    /// A simulation that was not started yet.
+    pub(super) fn new(uri: Uri, workspace: &Arc<Workspace>) -> Runner {
+        let (sender, receiver) = channel();
+        let is_alive = Arc::new(AtomicBool::new(true));
+        let (alive, workspace) = (Arc::clone(&is_alive), Arc::downgrade(workspace));
+        let tokio = tokio::runtime::Handle::current();
+        std::thread::spawn(move || {
+            let mut thread = Thread { uri, workspace, tokio, running: None };
+            thread.run(&receiver);
+            alive.store(false, Ordering::Release);
+        });
+        Runner { sender, is_alive }
+    }
+
+    /// Whether it still listens.
+    pub(super) fn is_alive(&self) -> bool {
+        self.is_alive.load(Ordering::Acquire)
+    }
+
+    /// Tells it something, and gives its answer.
+    pub(super) async fn ask(&self, order: Order) -> Reply {
+        let (reply, answer) = oneshot::channel();
+        let gone = || Message::new("simulate.not-running");
+        self.sender.send((order, reply)).map_err(|_| gone())?;
+        answer.await.map_err(|_| gone())?
+    }
+}
+
+struct Thread {
+    uri: Uri,
+    workspace: Weak<Workspace>,
+    tokio: tokio::runtime::Handle,
+    running: Option<Running>,
+}
+
+/// A program that runs, or pauses.
+struct Running {
+    session: Session,
+    watched: Arc<Code>,
+    /// The version of each file that was compiled, and the documents.
+    files: Vec<(Uri, i32, Document)>,
+    /// Whether the text is no longer what runs.
+    is_outdated: bool,
+    is_paused: bool,
+    /// Simulated time for each unit of real time; 0 for as fast as can be.
+    speed: f64,
+    scan_ns: i64,
+    /// A moment of real time and of simulated time that are the same.
+    since: (Instant, i64),
+    monitor: Monitor,
+    errors: Vec<Error>,
+    sights: Vec<Sight<u8>>,
+    shown: Instant,
+    is_news: bool,
+}
+
+/// How often the client is told something.
+const PICTURE: Duration = Duration::from_millis(33);
+/// So long scans are run before the next order is looked for.
+const SLICE: Duration = Duration::from_millis(10);
+/// A simulation that is so far behind does not catch up.
+const TOO_LATE: Duration = Duration::from_millis(500);
+/// How often a simulation that pauses looks for edits.
+const IDLE: Duration = Duration::from_millis(100);
+
+impl Thread {
+    fn run(&mut self, receiver: &Receiver<(Order, oneshot::Sender<Reply>)>) {
+        loop {
+            let wait = self.running.as_ref().map_or(Duration::from_secs(60), Running::wait);
+            match receiver.recv_timeout(wait) {
+                Ok((order, reply)) => {
+                    let is_stop = matches!(order, Order::Stop);
+                    let answer = self.obey(order);
+                    let has_failed = self.running.is_none();
+                    // Who asked may have gone.
+                    let _ = reply.send(answer);
+                    if is_stop || has_failed {
+                        return;
+                    }
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+            let Some(workspace) = self.workspace.upgrade() else { return };
+            if let Some(running) = &mut self.running {
+                running.follow(&workspace, &self.uri);
+                running.advance();
+                if let Some(picture) = running.picture(&workspace, &self.uri) {
+                    let client = workspace.client.clone();
+                    self.tokio.spawn(async move { client.send_notification::<MonitorMethod>(picture).await });
+                }
+            }
+        }
+    }
+
+    fn obey(&mut self, order: Order) -> Reply {
+        let workspace = self.workspace.upgrade().ok_or_else(|| Message::new("simulate.not-running"))?;
+        if let Order::Start { scan_ms, speed, is_paused } = &order {
+            let mut running = Running::start(&workspace, &self.uri)?;
+            if let Some(scan_ms) = scan_ms.filter(|ms| ms.is_finite()) {
+                running.scan_ns = ((scan_ms * 1e6) as i64).clamp(1_000, 60_000_000_000);
+            }
+            running.set_speed(*speed);
+            running.is_paused = *is_paused;
+            if let Some(before) = self.running.take() {
+                running.monitor = before.monitor;
+            }
+            self.running = Some(running);
+        }
+        let running = self.running.as_mut().ok_or_else(|| Message::new("simulate.not-running"))?;
+        let names = running.obey(order)?;
+        running.locate(&workspace, &self.uri);
+        Ok(running.state(&workspace, &self.uri, names))
+    }
+}
+
+impl Running {
+    /// Compiles the program that the document at `uri` is a part of.
+    fn start(workspace: &Workspace, uri: &Uri) -> Result<Running, Message> {
+        let around = around(workspace, uri).ok_or_else(|| Message::new("simulate.not-running"))?;
+        let files = files(&around);
+        let (code, watched) = compiled(&files)?;
+        Ok(Running {
+            session: Session::new(code),
+            watched,
+            files,
+            is_outdated: false,
+            is_paused: false,
+            speed: 1.0,
+            scan_ns: 10_000_000,
+            since: (Instant::now(), 0),
+            monitor: Monitor::default(),
+            errors: Vec::new(),
+            sights: Vec::new(),
+            shown: Instant::now(),
+            is_news: true,
+        })
+    }
+
+    /// How long there is nothing to do.
+    fn wait(&self) -> Duration {
+        let until_picture = PICTURE.saturating_sub(self.shown.elapsed());
+        match (self.is_paused, self.is_news) {
+            (true, true) => until_picture,
+            (true, false) => IDLE,
+            (false, _) if self.speed == 0.0 => Duration::ZERO,
+            (false, _) => {
+                let behind_ns = self.due_ns() - self.next_ns();
+                let ahead = Duration::from_nanos(((-behind_ns).max(0) as f64 / self.speed) as u64);
+                ahead.min(IDLE)
+            }
+        }
+    }
+
+    /// The simulated time that it should be.
+    fn due_ns(&self) -> i64 {
+        let (real, simulated) = self.since;
+        simulated + (real.elapsed().as_nanos() as f64 * self.speed) as i64
+    }
+
+    /// When the next scan begins.
+    fn next_ns(&self) -> i64 {
+        let machine = self.session.machine();
+        if machine.scans() == 0 { 0 } else { machine.now_ns() + self.scan_ns }
+    }
+
+    /// Simulated time goes on from here.
+    fn resume(&mut self) {
+        self.since = (Instant::now(), self.next_ns());
+    }
+
+    fn set_speed(&mut self, speed: Option<f64>) {
+        if let Some(speed) = speed.filter(|speed| speed.is_finite() && *speed >= 0.0) {
+            self.speed = speed.min(1e6);
+        }
+        self.resume();
+    }
+
+    /// Runs the scans that are due.
+    fn advance(&mut self) {
+        if self.is_paused {
+            return;
+        }
+        let started = Instant::now();
+        while self.speed == 0.0 || self.next_ns() <= self.due_ns() {
+            self.scan();
+            if started.elapsed() >= SLICE {
+                break;
+            }
+        }
+        let late_ns = self.due_ns() - self.next_ns();
+        if self.speed > 0.0 && late_ns > (TOO_LATE.as_nanos() as f64 * self.speed) as i64 {
+            self.resume();
+        }
+    }
+
+    fn scan(&mut self) {
+        let next = self.next_ns();
+        let is_picture = !self.is_outdated && !self.monitor.is_empty() && self.shown.elapsed() >= PICTURE;
+        let outcome = match is_picture {
+            true => {
+                let (sights, watched) = (&mut self.sights, &self.watched);
+                let shown = self.monitor.instructions(watched);
+                sights.clear();
+                self.session.scan_seen(next, watched, |sight| {
+                    if shown.contains(&sight.instruction) {
+                        sights.push(sight);
+                    }
+                })
+            }
+            false => {
+                self.sights.clear();
+                self.session.scan(next)
+            }
+        };
+        self.is_news = true;
+        self.note(outcome.errors);
+    }
+
+    fn note(&mut self, errors: Vec<Error>) {
+        for error in errors {
+            let is_same = |known: &Error| known.place == error.place && known.kind == error.kind;
+            if !self.errors.iter().any(is_same) {
+                self.errors.push(error);
+            }
+        }
+    }
+
+    /// Does what it is told; gives the names whose values are wanted.
+    fn obey(&mut self, order: Order) -> Result<Option<Vec<String>>, Message> {
+        if let Order::State { names } = order {
+            return Ok(names);
+        }
+        // What was seen was of another scan, or of other lines.
+        self.sights.clear();
+        self.is_news = true;
+        match order {
+            Order::Start { .. } => {
+                // The first scan is there as soon as it is asked for.
+                self.scan();
+                self.resume();
+            }
+            Order::Stop => self.is_paused = true,
+            Order::Pause => self.is_paused = true,
+            Order::Run { speed } => {
+                self.is_paused = false;
+                self.set_speed(speed);
+            }
+            Order::Step { count } => {
+                self.is_paused = true;
+                (0..count.min(MOST_STEPS)).for_each(|_| self.scan());
+            }
+            Order::StepBack { count, change_of } => self.step_back(count, change_of)?,
+            Order::Reset => {
+                self.session = Session::new(Arc::clone(self.session.machine().code()));
+                self.errors.clear();
+                self.scan();
+                self.resume();
+            }
+            Order::Set { name, value, is_force } => self.set(&name, &value, is_force)?,
+            Order::Release { name: Some(name) } => {
+                let touch = self.variable(&name)?.release(self.session.machine().code());
+                touch.into_iter().for_each(|touch| self.session.touch(touch));
+            }
+            Order::Release { name: None } => {
+                let forced: Vec<Device> = self.session.machine().forced().collect();
+                forced.into_iter().for_each(|device| self.session.touch(Touch::Release(device)));
+            }
+            Order::Watch { ranges, names } => self.monitor.watch(ranges, names),
+            Order::State { .. } => {}
+        }
+        Ok(None)
+    }
+
+    fn step_back(&mut self, count: u64, change_of: Option<String>) -> Result<(), Message> {
+        self.is_paused = true;
+        let scans = self.session.machine().scans();
+        let to = match change_of {
+            None => scans.saturating_sub(count),
+            Some(name) => {
+                let variable = self.variable(&name)?;
+                let changed = self.session.last_change(scans, |machine| machine.value(variable, 0));
+                // To before the change, so that the next step shows it.
+                changed.map_or(self.session.first_scan(), |scan| scan - 1)
+            }
+        };
+        // Something of the first scan remains to be seen.
+        self.session.back_to(to.max(self.session.first_scan()).max(1));
+        self.errors.clear();
+        self.resume();
+        Ok(())
+    }
+
+    fn variable(&self, name: &str) -> Result<Variable, Message> {
+        let found = self.session.machine().code().variable(name);
+        found.ok_or_else(|| Message::new("cli.run-unknown").with("name", name))
+    }
+
+    fn set(&mut self, name: &str, value: &Json, is_force: bool) -> Result<(), Message> {
+        let variable = self.variable(name)?;
+        let value = match value {
+            Json::Bool(on) => Some(Value::Bit(*on)),
+            Json::Number(number) => number.as_i64().map(Value::Number),
+            Json::String(word) => Value::read(word),
+            _ => None,
+        };
+        let code = self.session.machine().code();
+        let touch = value.and_then(|value| match is_force {
+            true => variable.force(code, &value),
+            false => variable.set(code, &value),
+        });
+        let touch = touch.ok_or_else(|| Message::new("cli.run-no-value").with("name", name))?;
+        self.session.touch(touch);
+        Ok(())
+    }
+
+    /// Takes over what edits made of the program, if that can be run.
+    fn follow(&mut self, workspace: &Workspace, uri: &Uri) {
+        let Some(around) = around(workspace, uri) else { return };
+        let is_same = |file: &(Uri, i32, Document)| {
+            around.files().iter().any(|open| open.uri == file.0 && open.version == file.1)
+        };
+        if self.files.iter().all(is_same) {
+            return;
+        }
+        let files = files(&around);
+        self.is_news = true;
+        match compiled(&files) {
+            Ok((code, watched)) => {
+                self.session.adopt(code);
+                (self.watched, self.is_outdated) = (watched, false);
+                self.sights.clear();
+            }
+            Err(_) => self.is_outdated = true,
+        }
+        self.files = files;
+        self.locate(workspace, uri);
+    }
+
+    /// Finds what the client shows in the text as it is now.
+    fn locate(&mut self, workspace: &Workspace, uri: &Uri) {
+        let Some(number) = self.files.iter().position(|(file, ..)| file == uri) else { return };
+        self.monitor.place(number as u32, Place::new(&self.files[number].2, workspace.snapshot().manner));
+    }
+
+    fn mode(&self) -> &'static str {
+        if self.is_paused { "paused" } else { "running" }
+    }
+
+    /// What the client is to show, if it is time for that.
+    fn picture(&mut self, workspace: &Workspace, uri: &Uri) -> Option<Picture> {
+        if !self.is_news || self.shown.elapsed() < PICTURE || self.monitor.is_empty() {
+            return None;
+        }
+        (self.is_news, self.shown) = (false, Instant::now());
+        let scans = self.session.machine().scans();
+        if !self.is_outdated && self.sights.is_empty() {
+            let watched = Arc::clone(&self.watched);
+            self.sights = self.session.sights(scans, &watched).unwrap_or_default();
+        }
+        let number = self.files.iter().position(|(file, ..)| file == uri)?;
+        let (_, version, document) = &self.files[number];
+        let place = Place::new(document, workspace.snapshot().manner);
+        let elements = match self.is_outdated {
+            true => Vec::new(),
+            false => {
+                let machine = self.session.machine();
+                self.monitor.elements(place, &self.watched, &self.sights, machine)
+            }
+        };
+        Some(Picture {
+            uri: uri.clone(),
+            version: *version,
+            source: "simulator",
+            mode: self.mode(),
+            scan: scans.saturating_sub(1),
+            time_ms: self.session.machine().now_ns() as f64 / 1e6,
+            elements,
+            values: self.monitor.values(None, self.session.machine()),
+            errors: self.errors_of(place, number as u32),
+        })
+    }
+
+    fn errors_of(&self, place: Place<'_>, number: u32) -> Vec<Json> {
+        let own = self.errors.iter().filter_map(|error| {
+            let at = error.place.filter(|at| at.document == number)?;
+            let message = error.kind.message().render(place.language);
+            Some(json!({ "range": place.range(at.span), "message": message }))
+        });
+        own.collect()
+    }
+
+    fn state(&self, workspace: &Workspace, uri: &Uri, names: Option<Vec<String>>) -> Json {
+        let machine = self.session.machine();
+        let number = self.files.iter().position(|(file, ..)| file == uri).unwrap_or(0);
+        let errors = self.files.get(number).map(|(_, _, document)| {
+            self.errors_of(Place::new(document, workspace.snapshot().manner), number as u32)
+        });
+        json!({
+            "uri": uri,
+            "mode": self.mode(),
+            "scan": machine.scans().saturating_sub(1),
+            "first_scan": self.session.first_scan().saturating_sub(1),
+            "time_ms": machine.now_ns() as f64 / 1e6,
+            "speed": self.speed,
+            "forced": machine.forced().map(|device| device.to_string()).collect::<Vec<_>>(),
+            "values": self.monitor.values(names, machine),
+            "errors": errors,
+        })
+    }
+}
+
+/// More steps at once are not taken.
+const MOST_STEPS: u64 = 1_000_000;
+
+/// The files around the document at `uri` as they are now.
+fn around(workspace: &Workspace, uri: &Uri) -> Option<Around> {
+    let snapshot = workspace.snapshot();
+    let open = snapshot.program(uri)?;
+    Some(snapshot.around(open))
+}
+
+/// The files that are one program with the one that is looked at, in the order of execution.
+fn files(around: &Around) -> Vec<(Uri, i32, Document)> {
+    let numbers = check::program_around(&around.view());
+    let files = numbers.into_iter().filter_map(|number| around.file(number));
+    files.map(|open| (open.uri.clone(), open.version, open.document.clone())).collect()
+}
+
+/// Code that is fast, and code that says what it sees.
+fn compiled(files: &[(Uri, i32, Document)]) -> Result<(Arc<Code>, Arc<Code>), Message> {
+    let documents: Vec<&Document> = files.iter().map(|(_, _, document)| document).collect();
+    let make = |is_watched| {
+        compile(&documents, is_watched).map(Arc::new).map_err(|problems| {
+            let first = problems.first();
+            let place = first.and_then(|problem| {
+                let document = documents.get(problem.place.document as usize)?;
+                Some(document.line_of(problem.place.span.start as usize) + 1)
+            });
+            let reason = first.map(|problem| problem.obstacle.message());
+            Message::new("simulate.refused")
+                .with("line", place.unwrap_or(0))
+                .with_messages("reason", reason.into_iter().collect())
+        })
+    };
+    Ok((make(false)?, make(true)?))
+}

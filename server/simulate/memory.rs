@@ -1,0 +1,66 @@
+//! What the simulated PLC remembers.
+
+use super::row::{CELLS, Cell};
+use super::{Lanes, Slot};
+
+/// Relays and words of all scenarios that run side by side.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Memory<L> {
+    pub(super) cells: Box<[L; CELLS]>,
+    /// The words of slot 0 in all scenarios, then those of slot 1.
+    words: Vec<i64>,
+}
+
+impl<L: Lanes> Memory<L> {
+    /// Memory in which all is off and 0, of `slots` words in each scenario.
+    pub fn new(slots: usize) -> Memory<L> {
+        let cells = vec![L::NONE; CELLS].into_boxed_slice();
+        // The length is right, so nothing is lost.
+        let cells = cells.try_into().unwrap_or_else(|_| Box::new([L::NONE; CELLS]));
+        Memory { cells, words: vec![0; slots * L::COUNT] }
+    }
+
+    /// The relay in all scenarios.
+    #[inline]
+    pub fn cell(&self, cell: Cell) -> L {
+        self.cells[usize::from(cell)]
+    }
+
+    /// Writes the relay in all scenarios.
+    #[inline]
+    pub fn set_cell(&mut self, cell: Cell, value: L) {
+        self.cells[usize::from(cell)] = value;
+    }
+
+    /// The relay in one scenario.
+    #[inline]
+    pub fn bit(&self, cell: Cell, lane: usize) -> bool {
+        self.cell(cell).lane(lane)
+    }
+
+    /// Writes the relay in one scenario.
+    #[inline]
+    pub fn set_bit(&mut self, cell: Cell, lane: usize, on: bool) {
+        let value = self.cell(cell).with(lane, on);
+        self.set_cell(cell, value);
+    }
+
+    /// The word in one scenario; 0 for a slot that there is not.
+    #[inline]
+    pub fn word(&self, slot: Slot, lane: usize) -> i64 {
+        self.words.get(slot as usize * L::COUNT + lane).copied().unwrap_or(0)
+    }
+
+    /// Writes the word in one scenario.
+    #[inline]
+    pub fn set_word(&mut self, slot: Slot, lane: usize, value: i64) {
+        if let Some(word) = self.words.get_mut(slot as usize * L::COUNT + lane) {
+            *word = value;
+        }
+    }
+
+    /// All words, those of a slot in all scenarios together.
+    pub fn words(&self) -> &[i64] {
+        &self.words
+    }
+}

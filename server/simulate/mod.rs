@@ -1,0 +1,60 @@
+//! The simulated PLC: programs become code, code runs scan by scan, and every scan can be looked into.
+//!
+//! Time is an argument: a scan happens at the moment that its caller names, so that the same inputs at the same times
+//! give the same outputs, bit for bit.
+
+mod lanes;
+pub use lanes::Lanes;
+
+mod row;
+pub use row::{CELLS, Cell, Row};
+
+mod layout;
+pub use layout::{Layout, Slot};
+
+mod memory;
+pub use memory::Memory;
+
+mod code;
+pub use code::{Code, Place};
+
+mod problem;
+pub use problem::{Obstacle, Problem};
+
+mod builder;
+
+mod from_list;
+
+mod from_path;
+
+mod compile;
+pub use compile::compile;
+
+mod annunciators;
+
+mod clock;
+
+mod execution;
+
+mod timing;
+
+mod terminals;
+
+mod pulses;
+
+mod interrupts;
+
+mod machine;
+pub use machine::{Error, ErrorKind, Machine, Outcome, Sight};
+
+mod session;
+pub use session::{Session, Touch};
+
+mod variable;
+pub use variable::{Value, Variable};
+
+mod trace;
+pub use trace::{Row as TraceRow, Trace, milliseconds};
+
+mod power_flow;
+pub use power_flow::{Energised, EnergisedKind, power_flow};

@@ -1,0 +1,306 @@
+//! A simulation that can be looked back into: what was done to the PLC is kept, what it did then is run again.
+//!
+//! A scan depends on nothing but the state before it, its time and what was set, so a log of these and the state at a
+//! few moments are a history of any length. Recent moments are close together and old ones far apart: their number is
+//! bounded, and any scan is reached by running on from the moment before it.
+
+use super::code::Code;
+use super::machine::{Machine, Outcome, Sight};
+use crate::target::Device;
+use crate::target::outside::Event;
+use std::sync::Arc;
+
+/// What is done to a PLC between two scans.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Touch {
+    /// Switches an input terminal, or writes a relay.
+    Set(Device, bool),
+    /// Writes a register, or a current value.
+    SetWord(Device, i64),
+    /// Holds a relay at a value.
+    Force(Device, bool),
+    /// Holds a register at a value.
+    ForceWord(Device, i64),
+    /// Lets a forced device go.
+    Release(Device),
+    /// Lets pulses arrive before the next scan, see [`Machine::pulse`].
+    Pulse(Device, i32),
+    /// Something happens around the CPU.
+    Around(Event),
+}
+
+impl Touch {
+    fn apply(self, machine: &mut Machine<u8>) {
+        match self {
+            Touch::Set(device, on) => machine.set(device, if on { 0xFF } else { 0 }),
+            Touch::SetWord(device, value) => machine.set_word(device, value),
+            Touch::Force(device, on) => machine.force(device, on),
+            Touch::ForceWord(device, value) => machine.force_word(device, value),
+            Touch::Release(device) => machine.release(device),
+            Touch::Pulse(device, count) => machine.pulse(device, count),
+            Touch::Around(event) => {
+                machine.outside_mut().iter_mut().for_each(|outside| outside.apply(event));
+            }
+        }
+    }
+}
+
+/// A simulation with its history. Scans are counted from 1; 0 is the state before the first.
+#[derive(Debug)]
+pub struct Session {
+    machine: Machine<u8>,
+    /// What was done before which scan, in order.
+    touches: Vec<(u64, Touch)>,
+    /// When scans began.
+    times: Times,
+    /// States after scans, in order; the first one is where history begins.
+    moments: Vec<Machine<u8>>,
+    /// Scans from one moment to the next while they are recent.
+    stride: u64,
+}
+
+/// More moments are thinned out.
+const MOST_MOMENTS: usize = 96;
+/// The latest moments, which are not.
+const RECENT_MOMENTS: usize = 48;
+/// Rows and ops that are run again at most to reach a recent scan; some milliseconds.
+const STRIDE_OPS: usize = 2_000_000;
+/// What was done is forgotten, oldest first, beyond so many touches.
+const MOST_TOUCHES: usize = 1 << 20;
+
+impl Session {
+    /// A PLC with this program that has not run yet.
+    pub fn new(code: Arc<Code>) -> Session {
+        let stride = stride(&code);
+        let machine = Machine::new(code);
+        let moments = vec![machine.clone()];
+        Session { machine, touches: Vec::new(), times: Times::default(), moments, stride }
+    }
+
+    /// The PLC as it is now.
+    pub fn machine(&self) -> &Machine<u8> {
+        &self.machine
+    }
+
+    /// The earliest scan whose state is known.
+    pub fn first_scan(&self) -> u64 {
+        self.moments.first().map_or(0, Machine::scans)
+    }
+
+    /// How many states it keeps.
+    pub fn moments(&self) -> usize {
+        self.moments.len()
+    }
+
+    /// Does something to the PLC before its next scan.
+    pub fn touch(&mut self, touch: Touch) {
+        touch.apply(&mut self.machine);
+        self.touches.push((self.machine.scans() + 1, touch));
+        if self.touches.len() > MOST_TOUCHES {
+            self.forget();
+        }
+    }
+
+    /// Runs a scan that begins at `now_ns`, which is not before the last one began.
+    pub fn scan(&mut self, now_ns: i64) -> Outcome {
+        let outcome = self.machine.scan(now_ns);
+        self.done(now_ns);
+        outcome
+    }
+
+    /// The same with what instructions see, as `watched` tells, which is code of the same program.
+    pub fn scan_seen(&mut self, now_ns: i64, watched: &Arc<Code>, mut see: impl FnMut(Sight<u8>)) -> Outcome {
+        let own = Arc::clone(self.machine.code());
+        self.machine.set_code(Arc::clone(watched));
+        let outcome = self.machine.scan_watched(now_ns, &mut |sight| {
+            see(sight);
+            true
+        });
+        self.machine.set_code(own);
+        self.done(now_ns);
+        outcome
+    }
+
+    fn done(&mut self, now_ns: i64) {
+        let scans = self.machine.scans();
+        self.times.push(scans, now_ns);
+        if scans.is_multiple_of(self.stride) {
+            self.moments.push(self.machine.clone());
+            if self.moments.len() > MOST_MOMENTS {
+                self.thin();
+            }
+        }
+    }
+
+    /// When a scan began, in nanoseconds.
+    pub fn time_of(&self, scan: u64) -> Option<i64> {
+        self.times.of(scan)
+    }
+
+    /// The PLC as it was after a scan, if that is known.
+    pub fn at(&self, scan: u64) -> Option<Machine<u8>> {
+        if scan == self.machine.scans() {
+            return Some(self.machine.clone());
+        }
+        let mut machine = self.moment_before(scan)?.clone();
+        self.replay(&mut machine, scan, |_| true);
+        Some(machine)
+    }
+
+    /// The last scan up to `scan` after which `of` gave something else than before it; nothing if that is not known.
+    pub fn last_change<T: PartialEq>(&self, scan: u64, of: impl Fn(&Machine<u8>) -> T) -> Option<u64> {
+        let mut end = scan.min(self.machine.scans());
+        while end > self.first_scan() {
+            let start = self.moment_before(end - 1)?;
+            let (mut machine, mut before) = (start.clone(), of(start));
+            let mut changed = None;
+            self.replay(&mut machine, end, |machine| {
+                let now = of(machine);
+                if now != before {
+                    changed = Some(machine.scans());
+                    before = now;
+                }
+                true
+            });
+            if changed.is_some() {
+                return changed;
+            }
+            end = start.scans();
+        }
+        None
+    }
+
+    /// Goes back to the PLC as it was after a scan; what came later is forgotten. Gives whether that was known.
+    pub fn back_to(&mut self, scan: u64) -> bool {
+        let Some(machine) = self.at(scan) else { return false };
+        self.machine = machine;
+        self.moments.retain(|moment| moment.scans() <= scan);
+        self.touches.retain(|(before, _)| *before <= scan);
+        self.times.cut(scan);
+        true
+    }
+
+    /// What the instructions saw in a scan that was run, in the order of execution; `watched` is code of the same
+    /// program that says it. Nothing if the scan is not known.
+    pub fn sights(&self, scan: u64, watched: &Arc<Code>) -> Option<Vec<Sight<u8>>> {
+        let mut machine = self.at(scan.checked_sub(1)?)?;
+        machine.set_code(Arc::clone(watched));
+        let mut sights = Vec::new();
+        self.touches_before(scan).for_each(|touch| touch.apply(&mut machine));
+        machine.scan_watched(self.times.of(scan)?, &mut |sight| {
+            sights.push(sight);
+            true
+        });
+        Some(sights)
+    }
+
+    /// Goes on with another program for the same PLC: devices keep their values, and history begins anew.
+    pub fn adopt(&mut self, code: Arc<Code>) {
+        self.stride = stride(&code);
+        self.machine.adopt(code);
+        self.moments = vec![self.machine.clone()];
+        let begin = self.machine.scans();
+        self.touches.clear();
+        self.times.forget(begin);
+    }
+
+    fn touches_before(&self, scan: u64) -> impl Iterator<Item = Touch> {
+        let first = self.touches.partition_point(|(before, _)| *before < scan);
+        let touches = self.touches.get(first..).unwrap_or_default().iter();
+        touches.take_while(move |(before, _)| *before == scan).map(|(_, touch)| *touch)
+    }
+
+    fn moment_before(&self, scan: u64) -> Option<&Machine<u8>> {
+        let after = self.moments.partition_point(|moment| moment.scans() <= scan);
+        self.moments.get(after.checked_sub(1)?)
+    }
+
+    /// Runs a PLC of an earlier moment on to `last`, and shows it after each scan until `see` returns false.
+    fn replay(&self, machine: &mut Machine<u8>, last: u64, mut see: impl FnMut(&Machine<u8>) -> bool) {
+        while machine.scans() < last {
+            let scan = machine.scans() + 1;
+            let Some(time) = self.times.of(scan) else { return };
+            self.touches_before(scan).for_each(|touch| touch.apply(machine));
+            machine.scan(time);
+            if !see(machine) {
+                return;
+            }
+        }
+    }
+
+    /// Leaves out every other one of the old moments, but for the first.
+    fn thin(&mut self) {
+        let old = self.moments.len() - RECENT_MOMENTS;
+        let mut number = 0;
+        self.moments.retain(|_| {
+            number += 1;
+            number > old || number % 2 == 1
+        });
+    }
+
+    /// Lets history begin later, with half of what was done.
+    fn forget(&mut self) {
+        let half = self.touches[self.touches.len() / 2].0;
+        let first = self.moments.partition_point(|moment| moment.scans() < half);
+        let first = first.min(self.moments.len() - 1);
+        self.moments.drain(..first);
+        let begin = self.first_scan();
+        self.touches.retain(|(before, _)| *before > begin);
+        self.times.forget(begin);
+    }
+}
+
+/// Scans between moments of a program.
+fn stride(code: &Code) -> u64 {
+    (STRIDE_OPS / code.instructions().max(1)).clamp(16, 16_384) as u64
+}
+
+/// When scans began: runs of scans that followed each other at one distance.
+#[derive(Debug, Default)]
+struct Times {
+    runs: Vec<Run>,
+    last: u64,
+}
+
+/// A run of scans.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    first: u64,
+    time_ns: i64,
+    step_ns: i64,
+}
+
+impl Times {
+    fn push(&mut self, scan: u64, time_ns: i64) {
+        self.last = scan;
+        match self.runs.last_mut() {
+            Some(run) if scan == run.first + 1 => {
+                run.step_ns = time_ns - run.time_ns;
+            }
+            Some(run) if run.at(scan) == time_ns => {}
+            _ => self.runs.push(Run { first: scan, time_ns, step_ns: 0 }),
+        }
+    }
+
+    fn of(&self, scan: u64) -> Option<i64> {
+        let after = self.runs.partition_point(|run| run.first <= scan);
+        let run = self.runs.get(after.checked_sub(1)?)?;
+        (scan <= self.last).then(|| run.at(scan))
+    }
+
+    fn cut(&mut self, last: u64) {
+        self.runs.retain(|run| run.first <= last);
+        self.last = self.last.min(last);
+    }
+
+    fn forget(&mut self, first: u64) {
+        let keep = self.runs.partition_point(|run| run.first <= first).saturating_sub(1);
+        self.runs.drain(..keep);
+    }
+}
+
+impl Run {
+    fn at(&self, scan: u64) -> i64 {
+        self.time_ns + (scan - self.first) as i64 * self.step_ns
+    }
+}

@@ -1,0 +1,106 @@
+//! `rungwise run`, through the binary.
+
+use crate::binary::{folder, run};
+use serde_json::{Value, json};
+
+const MOTOR: &str = "LD X0\nOR Y0\nANI X1\nOUT Y0\nOUT T0 K3\nLD T0\nOUT Y1\nEND\n";
+
+#[test]
+fn a_run_has_a_row_for_each_change_the_first_and_the_last_scan() {
+    let folder = folder(&[("motor.il", MOTOR)]);
+    let arguments = [
+        "run",
+        "motor.il",
+        "--set",
+        "X0=1@100ms",
+        "--set",
+        "X0=0@150ms",
+        "--watch",
+        "X0,Y0,Y1,T0",
+        "--format",
+        "json",
+    ];
+    let (code, out, err) = run(&folder, &arguments);
+    assert_eq!((code, err.as_str()), (0, ""));
+    let answer: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(answer["scan_time_ms"], json!(10));
+    let rows: Vec<(i64, i64, String)> = answer["scans"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|row| {
+            (row["scan"].as_i64().unwrap(), row["time_ms"].as_i64().unwrap(), row["values"].to_string())
+        })
+        .collect();
+    let expected = [
+        (0, 0, json!({"X0": false, "Y0": false, "Y1": false, "T0": 0})),
+        (10, 100, json!({"X0": true, "Y0": true, "Y1": false, "T0": 0})),
+        (15, 150, json!({"X0": false, "Y0": true, "Y1": false, "T0": 0})),
+        (20, 200, json!({"X0": false, "Y0": true, "Y1": false, "T0": 1})),
+        (30, 300, json!({"X0": false, "Y0": true, "Y1": false, "T0": 2})),
+        (40, 400, json!({"X0": false, "Y0": true, "Y1": true, "T0": 3})),
+        (100, 1000, json!({"X0": false, "Y0": true, "Y1": true, "T0": 3})),
+    ];
+    assert_eq!(rows, expected.map(|(scan, time, values)| (scan, time, values.to_string())));
+}
+
+#[test]
+fn scans_and_their_distance_are_what_was_asked_for() {
+    let folder = folder(&[("motor.il", MOTOR)]);
+    let arguments =
+        ["run", "motor.il", "--scans", "5", "--scan-time", "2.5ms", "--watch", "Y0", "--format", "json"];
+    let answer: Value = serde_json::from_str(&run(&folder, &arguments).1).unwrap();
+    let last = answer["scans"].as_array().unwrap().last().unwrap().clone();
+    assert_eq!(
+        (&answer["scan_time_ms"], &last["scan"], &last["time_ms"]),
+        (&json!(2.5), &json!(4), &json!(10))
+    );
+    let (_, out, _) =
+        run(&folder, &["run", "motor.il", "--time", "T#30ms", "--set", "X0=on", "--watch", "X0,Y0"]);
+    assert_eq!(
+        out,
+        "scan  0   3\nms    0  30\nX0   ▆▆▆▆▆▆▆\nY0   ▆▆▆▆▆▆▆\n".replace("   ▆▆▆▆▆▆▆", "  ▆▆▆▆▆▆▆"),
+        "{out}"
+    );
+}
+
+#[test]
+fn traces_are_files_that_other_tools_open() {
+    let folder = folder(&[("motor.il", MOTOR)]);
+    for name in ["out.vcd", "out.csv"] {
+        let (code, _, err) =
+            run(&folder, &["run", "motor.il", "--set", "X0=1", "--watch", "X0,Y0,T0", "--trace", name]);
+        assert_eq!((code, err.as_str()), (0, ""));
+    }
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    let csv = read("out.csv");
+    assert!(csv.starts_with("scan,time_ms,X0,Y0,T0\n0,0,1,1,0\n10,100,1,1,1\n"), "{csv}");
+    let dump = read("out.vcd");
+    for piece in ["$timescale 1 ns $end", "$var wire 1 ", " Y0 $end", "#100000000\nb0000000000000001 "] {
+        assert!(dump.contains(piece), "{piece}\n{dump}");
+    }
+}
+
+#[test]
+fn wrong_names_values_and_programs_are_told() {
+    let folder = folder(&[("motor.il", MOTOR), ("wrong.il", "LD X0\nCJ P1\nEND\n")]);
+    for (arguments, code, said) in [
+        (["run", "motor.il", "--watch", "Q5"], 2, "nothing called `Q5`"),
+        (["run", "motor.il", "--set", "X0=7"], 2, "`X0` cannot be set to this value"),
+        (["run", "wrong.il", "--scans", "1"], 1, "wrong.il:2:1: there is no label P1"),
+        (["run", "none.il", "--scans", "1"], 2, "no such file"),
+        (["run", "motor.il", "--time", "soon"], 2, "soon"),
+    ] {
+        let (found, out, err) = run(&folder, &arguments);
+        assert_eq!((found, out.as_str()), (code, ""), "{err}");
+        assert!(err.contains(said), "{err}");
+    }
+}
+
+#[test]
+fn what_goes_wrong_in_a_scan_is_said_once_at_its_instruction() {
+    let folder = folder(&[("loop.il", "P0\nLD M8000\nOUT Y0\nLD M8000\nCJ P0\nEND\n")]);
+    let (code, _, err) = run(&folder, &["run", "loop.il", "--scans", "3"]);
+    assert_eq!(code, 1);
+    assert_eq!(err.matches("does not end").count(), 1, "{err}");
+}

@@ -1,0 +1,184 @@
+//! `rungwise.simulate.…` and `rungwise/monitor` over the protocol.
+
+use super::lsp_client::Client;
+use serde_json::{Value, json};
+
+const MOTOR: &str = "|  X0        X1     Y0  |\n+--| |---+---|/|----( )-+\n|  Y0    |              |\n+--| |---+              |\n|  Y0          T0  K100 |\n+--| |---------------( )-+\n";
+const LIST: &str = "LD X0\nOR Y0\nANI X1\nOUT Y0\nOUT T0 K100\nEND\n";
+const URI: &str = "file:///simulated/motor.il";
+
+struct Simulated {
+    client: Client,
+    uri: String,
+}
+
+impl Simulated {
+    fn open(uri: &str, language: &str, text: &str) -> Simulated {
+        let mut client = Client::start();
+        client.open(uri, language, text);
+        client.diagnostics(uri, 1);
+        Simulated { client, uri: uri.to_string() }
+    }
+
+    fn answer(&mut self, verb: &str, more: Value) -> Value {
+        let mut argument = json!({ "uri": self.uri });
+        argument.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        let params = json!({ "command": format!("rungwise.simulate.{verb}"), "arguments": [argument] });
+        self.client.request("workspace/executeCommand", params)
+    }
+
+    #[track_caller]
+    fn tell(&mut self, verb: &str, more: Value) -> Value {
+        let answer = self.answer(verb, more);
+        assert!(answer["error"].is_null(), "{answer}");
+        answer["result"].clone()
+    }
+
+    /// The values of these names.
+    fn values(&mut self, names: &[&str]) -> Vec<Value> {
+        let state = self.tell("state", json!({ "names": names }));
+        state["values"].as_array().unwrap().iter().map(|value| value["value"].clone()).collect()
+    }
+
+    /// The next picture that is wanted.
+    fn picture(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
+        let is_one = |message: &Value| message["method"] == "rungwise/monitor" && wanted(&message["params"]);
+        self.client.wait_for("a picture", is_one)["params"].clone()
+    }
+}
+
+#[test]
+fn a_program_is_stepped_set_forced_and_looked_back_into() {
+    let mut plc = Simulated::open(URI, "plc-il", LIST);
+    let state = plc.tell("start", json!({ "paused": true }));
+    assert_eq!((&state["mode"], &state["scan"]), (&json!("paused"), &json!(0)), "{state}");
+    plc.tell("set", json!({ "name": "X0", "value": true }));
+    assert_eq!(plc.values(&["Y0"]), [json!(false)]);
+    plc.tell("step", json!({}));
+    assert_eq!(plc.values(&["Y0", "X0"]), [json!(true), json!(true)]);
+    plc.tell("set", json!({ "name": "X0", "value": "off" }));
+    let state = plc.tell("step", json!({ "count": 30 }));
+    assert_eq!((&state["scan"], &state["time_ms"]), (&json!(31), &json!(310.0)), "{state}");
+    assert_eq!(plc.values(&["Y0", "T0", "TS0"]), [json!(true), json!(3), json!(false)]);
+    // Back past the click that started it, in one go and scan by scan.
+    let state = plc.tell("stepBack", json!({ "changeOf": "Y0" }));
+    assert_eq!((&state["scan"], plc.values(&["Y0"])), (&json!(0), vec![json!(false)]), "{state}");
+    plc.tell("step", json!({ "count": 5 }));
+    assert_eq!(plc.values(&["Y0"]), [json!(false)]);
+    plc.tell("force", json!({ "name": "Y0", "value": 1 }));
+    let state = plc.tell("step", json!({ "count": 2 }));
+    assert_eq!((&state["forced"], plc.values(&["Y0"])), (&json!(["Y0"]), vec![json!(true)]), "{state}");
+    plc.tell("stepBack", json!({}));
+    assert_eq!(plc.values(&["Y0"]), [json!(true)]);
+    plc.tell("release", json!({}));
+    plc.tell("set", json!({ "name": "X1", "value": true }));
+    plc.tell("step", json!({}));
+    assert_eq!(plc.values(&["Y0"]), [json!(false)]);
+    assert_eq!(plc.tell("stop", json!({}))["mode"], json!("paused"));
+    assert_eq!(plc.tell("state", json!({}))["mode"], json!("stopped"));
+    let answer = plc.answer("step", json!({}));
+    assert!(
+        answer["error"]["message"].as_str().unwrap_or_default().contains("not being simulated"),
+        "{answer}"
+    );
+}
+
+#[test]
+fn what_is_shown_is_painted_as_power_flowed() {
+    let uri = "file:///simulated/motor.lad";
+    let mut plc = Simulated::open(
+        uri,
+        "ladder",
+        &MOTOR.replace("|  Y0          T0  K100 |\n+--| |---------------( )-+\n", ""),
+    );
+    plc.tell("start", json!({}));
+    let range = json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 3, "character": 0 } });
+    plc.tell("watch", json!({ "ranges": [range], "names": ["Y0"] }));
+    let off = plc.picture(|picture| picture["elements"].as_array().is_some_and(|all| !all.is_empty()));
+    let energised = |picture: &Value, kind: &str| -> Vec<(u64, u64)> {
+        let elements = picture["elements"].as_array().unwrap().iter();
+        let on = elements.filter(|element| element["kind"] == kind && element["energised"] == json!(true));
+        on.map(|element| {
+            let start = &element["range"]["start"];
+            (start["line"].as_u64().unwrap(), start["character"].as_u64().unwrap())
+        })
+        .collect()
+    };
+    assert_eq!((energised(&off, "contact"), energised(&off, "output")), (vec![], vec![]), "{off}");
+    assert_eq!(
+        (&off["source"], &off["mode"], &off["version"]),
+        (&json!("simulator"), &json!("running"), &json!(1))
+    );
+    plc.tell("set", json!({ "name": "X0", "value": 1 }));
+    let on = plc.picture(|picture| picture["values"][0]["value"] == json!(true));
+    let mut contacts = energised(&on, "contact");
+    contacts.sort_unstable();
+    assert_eq!((contacts.first(), energised(&on, "output").len()), (Some(&(1, 3)), 1), "{on}");
+    // Released, it holds itself: power comes through the branch, not through X0.
+    plc.tell("set", json!({ "name": "X0", "value": 0 }));
+    let held = plc.picture(|picture| !energised(picture, "contact").contains(&(1, 3)));
+    assert!(energised(&held, "contact").contains(&(3, 3)), "{held}");
+    assert_eq!(energised(&held, "output").len(), 1, "{held}");
+}
+
+#[test]
+fn what_is_shown_belongs_to_the_scan_and_the_lines_that_are_shown() {
+    let mut plc = Simulated::open(URI, "plc-il", LIST);
+    plc.tell("start", json!({ "paused": true }));
+    let lines = |first: u32, last: u32| json!([{ "start": { "line": first, "character": 0 }, "end": { "line": last, "character": 0 } }]);
+    plc.tell("watch", json!({ "ranges": lines(0, 4) }));
+    plc.tell("set", json!({ "name": "X0", "value": true }));
+    // So long that the scan itself is shown, and not looked up.
+    std::thread::sleep(std::time::Duration::from_millis(50));
+    plc.tell("step", json!({}));
+    let has = |picture: &Value, line: u64, energised: bool| {
+        picture["elements"].as_array().unwrap().iter().any(|element| {
+            element["range"]["start"]["line"] == json!(line) && element["energised"] == json!(energised)
+        })
+    };
+    plc.picture(|picture| has(picture, 3, true));
+    plc.tell("stepBack", json!({}));
+    plc.tell("state", json!({}));
+    plc.picture(|picture| has(picture, 3, false));
+    plc.tell("step", json!({}));
+    plc.tell("watch", json!({ "ranges": lines(4, 6) }));
+    plc.picture(|picture| has(picture, 4, true) && !has(picture, 3, true));
+}
+
+#[test]
+fn an_edit_is_taken_over_and_devices_keep_their_values() {
+    let mut plc = Simulated::open(URI, "plc-il", LIST);
+    plc.tell("start", json!({ "paused": true }));
+    plc.tell("set", json!({ "name": "X0", "value": true }));
+    plc.tell("step", json!({}));
+    plc.tell("set", json!({ "name": "X0", "value": false }));
+    let uri = plc.uri.clone();
+    plc.client.change(&uri, 2, (5, 0), (5, 0), "LD Y0\nOUT Y7\n");
+    plc.client.diagnostics(&uri, 2);
+    let is_there = (0..50).any(|_| {
+        plc.tell("step", json!({}));
+        std::thread::sleep(std::time::Duration::from_millis(20));
+        plc.values(&["Y7", "Y0"]) == [json!(true), json!(true)]
+    });
+    assert!(is_there, "the new rung runs");
+}
+
+#[test]
+fn what_cannot_be_run_is_refused_with_its_line() {
+    let mut plc = Simulated::open(URI, "plc-il", "LD X0\nOUT Y0\nLD X1\nCJ P5\nEND\n");
+    let answer = plc.answer("start", json!({}));
+    let message = answer["error"]["message"].as_str().unwrap_or_default();
+    assert!(message.contains("line 4") && message.contains("P5"), "{answer}");
+    let answer = plc.answer("set", json!({ "name": "X0" }));
+    assert!(answer["error"]["message"].as_str().unwrap_or_default().contains("value"), "{answer}");
+}
+
+#[test]
+fn an_endless_loop_is_told_at_its_jump_and_the_server_lives() {
+    let mut plc = Simulated::open(URI, "plc-il", "P0\nLD M8000\nOUT Y0\nLD M8000\nCJ P0\nEND\n");
+    let state = plc.tell("start", json!({}));
+    let errors = state["errors"].as_array().unwrap();
+    assert!(errors[0]["message"].as_str().unwrap().contains("does not end"), "{state}");
+    assert!((0..=4).contains(&errors[0]["range"]["start"]["line"].as_i64().unwrap()), "{state}");
+    plc.tell("stop", json!({}));
+}

@@ -1,0 +1,148 @@
+//! Looking back: any scan of a simulation is known again, and goes on from there in another way.
+
+use crate::simulate::device;
+use proptest::prelude::*;
+use rungwise::document::{Document, Notation};
+use rungwise::simulate::{EnergisedKind, Machine, Session, Touch, compile, power_flow};
+use rungwise::target::{Model, Target};
+use std::sync::Arc;
+
+const MS: i64 = 1_000_000;
+
+const PROGRAM: &str =
+    "LD X0\nOR Y0\nANI X1\nOUT Y0\nOUT T200 K3\nLD T200\nOUT Y1\nLDP X0\nOUT C0 K100\nEND\n";
+
+fn document(text: &str, notation: Notation) -> Document {
+    Document::new(text, notation, Target::of(Model::Fx3u))
+}
+
+fn session(text: &str) -> Session {
+    let code = compile(&[&document(text, Notation::FxIl)], false).expect("a program");
+    Session::new(Arc::new(code))
+}
+
+/// All that a person could ask the PLC.
+fn state(machine: &Machine<u8>) -> String {
+    let relays = ["X0", "X1", "Y0", "Y1", "T200", "C0"].map(|name| machine.bit(device(name)) != 0);
+    format!(
+        "{} {} {relays:?} {:?}",
+        machine.scans(),
+        machine.now_ns(),
+        ["T200", "C0"].map(|name| machine.word(device(name), 0))
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn every_scan_is_known_as_it_was(
+        touches in proptest::collection::vec((0..3_000u64, 0..2u8, any::<bool>()), 0..60),
+        steps in proptest::collection::vec(1..30i64, 1..8),
+        back in 0..3_000u64,
+    ) {
+        let mut session = session(PROGRAM);
+        let mut states = vec![state(session.machine())];
+        let mut now = 0;
+        for scan in 1..=3_000u64 {
+            for (_, input, on) in touches.iter().filter(|(at, ..)| *at == scan) {
+                session.touch(Touch::Set(device(&format!("X{input}")), *on));
+            }
+            session.scan(now);
+            // Scans are evenly apart for a while, then at another distance.
+            now += steps[scan as usize / 400 % steps.len()] * MS;
+            states.push(state(session.machine()));
+        }
+        for scan in (0..=3_000).step_by(97).chain([back]) {
+            let machine = session.at(scan);
+            prop_assert_eq!(machine.as_ref().map(state), Some(states[scan as usize].clone()));
+        }
+        let changed = session.last_change(3_000, |machine| machine.bit(device("Y0")));
+        let y0 = |scan: usize| states[scan].split_once('[').map(|(_, relays)| relays.split(", ").nth(2).map(str::to_string));
+        let expected = (1..=3_000usize).rev().find(|scan| y0(*scan) != y0(scan - 1));
+        prop_assert_eq!(changed, expected.map(|scan| scan as u64));
+        // Gone back, it goes on as it did before if the same is done.
+        prop_assert!(session.back_to(back));
+        prop_assert_eq!(state(session.machine()), states[back as usize].clone());
+        let time = session.time_of(back).unwrap_or(0);
+        session.scan(time + MS);
+        prop_assert_eq!(session.machine().scans(), back + 1);
+    }
+}
+
+#[test]
+fn a_million_scans_stay_in_bounded_memory_and_are_all_known() {
+    let mut session = session(PROGRAM);
+    for scan in 0..1_000_000u64 {
+        if scan % 100_000 == 50 {
+            session.touch(Touch::Set(device("X0"), scan % 200_000 == 50));
+        }
+        session.scan(scan as i64 * 10 * MS);
+    }
+    assert_eq!(session.first_scan(), 0);
+    assert!(session.moments() <= 96, "{}", session.moments());
+    for scan in [1, 51, 60, 99_999, 500_051, 999_999] {
+        let machine = session.at(scan).expect("a scan");
+        assert_eq!(machine.now_ns(), (scan as i64 - 1) * 10 * MS);
+        assert_eq!(machine.bit(device("Y0")) != 0, scan > 50, "{scan}");
+    }
+    assert_eq!(session.last_change(1_000_000, |machine| machine.bit(device("Y1"))), Some(54));
+}
+
+/// The text with what is energised marked below each line: `=` for wires, `#` for contacts and outputs.
+fn marked(text: &str, touches: &str) -> String {
+    let drawing = document(text, Notation::Ladder);
+    let code = Arc::new(compile(&[&drawing], false).expect("a program"));
+    let watched = Arc::new(compile(&[&drawing], true).expect("a program"));
+    let mut session = Session::new(code);
+    for name in touches.split_whitespace() {
+        session.touch(Touch::Set(device(name), true));
+    }
+    session.scan(0);
+    let sights = session.sights(1, &watched).expect("a scan");
+    let mut marks = vec![' '; text.len()];
+    for shown in power_flow(&drawing, 0, &watched, &sights, 0..text.len()) {
+        let mark = if shown.kind == EnergisedKind::Wire { '=' } else { '#' };
+        for at in shown.span.start..shown.span.end {
+            if shown.energised {
+                marks[at as usize] = mark;
+            }
+        }
+    }
+    let mut lines = Vec::new();
+    let mut start = 0;
+    for line in text.lines() {
+        let below: String = marks[start..start + line.len()].iter().collect();
+        lines.push(line.to_string());
+        if !below.trim().is_empty() {
+            lines.push(below.trim_end().to_string());
+        }
+        start += line.len() + 1;
+    }
+    lines.join("\n")
+}
+
+#[test]
+fn power_is_where_it_flowed_when_contacts_were_executed() {
+    let text = "\
+|   X0         X1     Y0 |
++---| |---+----|/|---( )-+
+|   Y0    |              |
++---| |---+              |
+
+|   Y0      X2        Y1 |
++---| |-----| |------( )-+
++--[END]-----------------+
+";
+    let expected = "\
+|   X0         X1     Y0 |
++---| |---+----|/|---( )-+
+ ===###=======#####==###=
+|   Y0    |              |
++---| |---+              |
+ ===
+";
+    let found = marked(text, "X0");
+    println!("{found}");
+    assert!(found.contains(" ==="), "{expected}\n{found}");
+}
