@@ -73,6 +73,7 @@ mod rules_iec;
 mod rules_proof;
 mod rules_sense;
 mod rules_sense_fixes;
+mod scenario_mutants;
 mod simulate;
 mod simulate_devices;
 mod simulate_rungs;

@@ -135,7 +135,9 @@ impl Coverage {
         let mut seats: FxHashMap<Place, Seat> = FxHashMap::default();
         for (number, document) in (0..).zip(documents) {
             for source in Source::within(document, Span::new(0, document.len())) {
-                if let Some(path) = source.path() {
+                // END and its kin are no rungs that anything could be seen of.
+                let is_rung = |path: &&Path| !path.actions().iter().all(|action| action.deed.stands_alone());
+                if let Some(path) = source.path().filter(is_rung) {
                     coverage.rung(number, &source, path, &places, &mut seats);
                 }
             }

@@ -162,8 +162,8 @@ impl<'d> Mutants<'d> {
 
 /// The lines in which a drawing stands.
 fn lines(document: &Document, span: Span) -> Span {
-    let (start, _, _) = document.line_at(span.start as usize);
-    let (last, _, text) = document.line_at(span.end as usize);
+    let (_, start, _) = document.line_at(span.start as usize);
+    let (_, last, text) = document.line_at(span.end as usize);
     let end = last + text.trim_end_matches(['\r', '\n']).len();
     Span::new(start, end.max(span.end as usize))
 }
