@@ -13,6 +13,7 @@ mod box_pins;
 mod chinese;
 mod cli;
 mod cli_run;
+mod cli_test;
 mod cli_translate;
 mod cli_usage;
 mod command_line;

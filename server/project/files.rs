@@ -144,8 +144,8 @@ pub fn is_suite_file(path: &Path) -> bool {
     name.is_some_and(|name| name.ends_with(".test.toml"))
 }
 
-/// The files with scenario tests in `folder` and below, by name; what is hidden is passed over, and a search that has no
-/// end is ended.
+/// The files with scenario tests in `folder` and below, by name; what is hidden is passed over, and a search that has
+/// no end is ended.
 pub fn suite_files(folder: &Path) -> Vec<PathBuf> {
     let mut walk = Walk { files: Vec::new(), nested: true, left: MOST_ENTRIES, wanted: is_suite_file };
     // What was found before a folder that cannot be read stays.

@@ -127,7 +127,8 @@ impl Bench {
             }
             let outcome = match coverage.as_deref_mut() {
                 Some(coverage) => {
-                    let outcome = session.scan_seen(now_ns, &coverage.watched(), |sight| coverage.note(sight));
+                    let outcome =
+                        session.scan_seen(now_ns, &coverage.watched(), |sight| coverage.note(sight));
                     coverage.end_scan();
                     outcome
                 }
@@ -136,7 +137,8 @@ impl Bench {
             trace.note(session.machine());
             let is_stuck = outcome.errors.iter().any(|error| error.kind == ErrorKind::Watchdog);
             if let Some(error) = outcome.errors.first().filter(|_| is_stuck || !scenario.allows_errors) {
-                let message = Message::new("scenario.went-wrong").with_messages("reason", vec![error.kind.message()]);
+                let message =
+                    Message::new("scenario.went-wrong").with_messages("reason", vec![error.kind.message()]);
                 let failure = Failure::at(scan, now_ns, scenario.span, message);
                 failures.push(Failure { place: error.place, ..failure });
                 break;
@@ -236,7 +238,11 @@ impl Names<'_> {
             let near = nearest(&name.name, known.iter().map(String::as_str));
             let message = match near.is_empty() {
                 true => Message::new("cli.run-unknown"),
-                false => Message::new("scenario.near-name").with_words("near", near.iter().map(String::as_str), ", "),
+                false => Message::new("scenario.near-name").with_words(
+                    "near",
+                    near.iter().map(String::as_str),
+                    ", ",
+                ),
             };
             self.flaw(name, message);
             return None;
@@ -279,7 +285,8 @@ impl Plan<'_> {
                 None => failure,
             });
         }
-        let missed = self.checks.iter().filter(|running| running.check.first > self.last && running.until.is_empty());
+        let missed =
+            self.checks.iter().filter(|running| running.check.first > self.last && running.until.is_empty());
         for running in missed {
             let message = Message::new("scenario.ends-before").with("last", running.check.first);
             failures.push(Failure::at(scan, machine.now_ns(), running.check.span, message));

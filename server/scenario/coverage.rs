@@ -1,9 +1,9 @@
 //! What scenarios have shown of a program: the states of its contacts, and which of them decided.
 //!
 //! A contact is covered when it was seen on and off while it was evaluated. It *decides* in a scan if power at some
-//! output of its rung would be otherwise had it alone been otherwise: masking MC/DC, with each contact as a condition of
-//! its own, also where two of them read the same device. A contact that decided while it was on and while it was off has
-//! the pair of scans that MC/DC wants, for such a rung's power rises and falls with each of its contacts.
+//! output of its rung would be otherwise had it alone been otherwise: masking MC/DC, with each contact as a condition
+//! of its own, also where two of them read the same device. A contact that decided while it was on and while it was off
+//! has the pair of scans that MC/DC wants, for such a rung's power rises and falls with each of its contacts.
 
 use crate::document::Document;
 use crate::logic::{Contact, Drive, Expression, Gate, Path};
@@ -129,8 +129,13 @@ impl Coverage {
     /// With what keeps the program from running.
     pub fn new(documents: &[&Document]) -> Result<Coverage, Vec<Problem>> {
         let watched = Arc::new(compile(documents, true)?);
-        let mut coverage =
-            Coverage { watched, rungs: Vec::new(), decisions: Vec::new(), seats: Vec::new(), touched: Vec::new() };
+        let mut coverage = Coverage {
+            watched,
+            rungs: Vec::new(),
+            decisions: Vec::new(),
+            seats: Vec::new(),
+            touched: Vec::new(),
+        };
         let places = coverage.places(documents.len());
         let mut seats: FxHashMap<Place, Seat> = FxHashMap::default();
         for (number, document) in (0..).zip(documents) {

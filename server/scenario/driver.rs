@@ -16,8 +16,8 @@ pub fn driver(documents: &[&Document], name: &str) -> Option<Place> {
     for (number, document) in (0..).zip(documents) {
         let wanted = symbol(document);
         for at in document.chunks() {
-            let own = at.chunk.mentions().iter().filter(|mention| mention.usage.writes());
-            let last = own.filter(|mention| covers(&mention.symbol, mention.count, &wanted)).last();
+            let mut own = at.chunk.mentions().iter().filter(|mention| mention.usage.writes());
+            let last = own.rfind(|mention| covers(&mention.symbol, mention.count, &wanted));
             if let Some(mention) = last {
                 found = Some(Place { document: number, span: mention.span.shifted(at.start) });
             }
@@ -52,7 +52,8 @@ fn is_within(first: Device, count: u16, device: Device) -> bool {
 /// Whether devices of this kind are at the terminals of the PLC.
 pub(super) fn is_output(name: &str) -> bool {
     let mut letters = name.trim().chars();
-    let is_numbered = name.trim().get(1..).is_some_and(|rest| rest.starts_with(|letter: char| letter.is_ascii_digit()));
+    let is_numbered =
+        name.trim().get(1..).is_some_and(|rest| rest.starts_with(|letter: char| letter.is_ascii_digit()));
     let is_device = letters.next().and_then(DeviceKind::of_letter) == Some(DeviceKind::Y) && is_numbered;
     is_device || name.trim().to_ascii_uppercase().starts_with("%Q")
 }

@@ -26,7 +26,8 @@ impl Golden {
         if (scan.trim(), time.trim()) != ("scan", "time_ms") || names.is_empty() {
             return Err(wrong(0));
         }
-        let mut golden = Golden { names: names.iter().map(|name| name.trim().to_string()).collect(), rows: Vec::new() };
+        let mut golden =
+            Golden { names: names.iter().map(|name| name.trim().to_string()).collect(), rows: Vec::new() };
         for (number, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
             let row = fields(line);
             let [scan, _, values @ ..] = &row[..] else { return Err(wrong(number)) };
@@ -89,7 +90,12 @@ impl Golden {
     fn moments(&self, trace: &Trace, tolerance: u64, last: u64) -> Vec<u64> {
         let own = self.rows.iter().map(|(scan, _)| *scan);
         let around = own.flat_map(|scan| {
-            [scan.saturating_sub(tolerance), scan, scan.saturating_add(tolerance), scan.saturating_add(tolerance + 1)]
+            [
+                scan.saturating_sub(tolerance),
+                scan,
+                scan.saturating_add(tolerance),
+                scan.saturating_add(tolerance + 1),
+            ]
         });
         let mut moments: Vec<u64> = around.chain(trace.rows.iter().map(|row| row.scan)).collect();
         moments.retain(|scan| *scan <= last);

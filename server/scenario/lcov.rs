@@ -8,8 +8,8 @@ use std::fmt::Write;
 /// A tracefile of `geninfo` (see its manual page, "TRACEFILE FORMAT"). `files` are the documents of the program with
 /// the paths by which they are found.
 ///
-/// `DA` counts how often what stands in a line was evaluated. The branches of a line are those of its contacts from left
-/// to right, first off, then on.
+/// `DA` counts how often what stands in a line was evaluated. The branches of a line are those of its contacts from
+/// left to right, first off, then on.
 pub fn lcov(coverage: &Coverage, files: &[(String, &Document)]) -> String {
     let mut text = String::new();
     for (number, (path, document)) in (0..).zip(files) {

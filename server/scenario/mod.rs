@@ -4,7 +4,9 @@
 //! on, so their order means nothing and the same file says the same on every machine.
 
 mod suite;
-pub use suite::{Check, CheckKind, Comparison, Expected, Flaw, Input, InputKind, Named, Scenario, Suite, Want};
+pub use suite::{
+    Check, CheckKind, Comparison, Expected, Flaw, Input, InputKind, Named, Scenario, Suite, Want,
+};
 
 mod table;
 

@@ -60,7 +60,9 @@ impl Change {
             Change::Cut(name) => Message::new("mutant.cut").with("name", name),
             Change::Latch(name, true) => Message::new("mutant.set").with("name", name),
             Change::Latch(name, false) => Message::new("mutant.reset").with("name", name),
-            Change::Preset(name, preset) => Message::new("mutant.preset").with("name", name).with("preset", preset),
+            Change::Preset(name, preset) => {
+                Message::new("mutant.preset").with("name", name).with("preset", preset)
+            }
         }
     }
 }
@@ -154,7 +156,9 @@ impl<'d> Mutants<'d> {
             return Fate::Killed;
         }
         match (self.documents.get(mutant.document), documents.get(mutant.document)) {
-            (Some(left), Some(right)) if matches!(prove(left, right), Proof::Equal { .. }) => Fate::Equivalent,
+            (Some(left), Some(right)) if matches!(prove(left, right), Proof::Equal { .. }) => {
+                Fate::Equivalent
+            }
             _ => Fate::Survived,
         }
     }
@@ -221,7 +225,8 @@ impl Faults {
             Expression::Or(parts) => {
                 let mut left = Vec::new();
                 for part in parts {
-                    let first = part.contacts().first().map(|contact| (contact.span, name_of(&contact.terms)));
+                    let first =
+                        part.contacts().first().map(|contact| (contact.span, name_of(&contact.terms)));
                     let is_cut = first.is_some_and(|(span, name)| self.fault(span, Change::Cut(name)));
                     let part = self.condition(part, Beside::Parallel);
                     if !is_cut {
@@ -292,7 +297,9 @@ fn is_relay(terms: &[Term]) -> bool {
 
 /// A counter counts one more. A timer takes twice as long: a unit more or less is seldom anybody's business.
 fn other_preset(counted: &Term, preset: &Term) -> Option<Term> {
-    let Operand::Constant { value: Constant::Decimal(number), index: None } = preset.operand else { return None };
+    let Operand::Constant { value: Constant::Decimal(number), index: None } = preset.operand else {
+        return None;
+    };
     let is_timer = matches!(counted.operand, Operand::Device(Device { kind: DeviceKind::T, .. }));
     let other = match is_timer {
         true => number.checked_mul(2).filter(|twice| *twice <= i64::from(i16::MAX)).unwrap_or(number / 2),

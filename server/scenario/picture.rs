@@ -48,7 +48,8 @@ pub fn around(trace: &Trace, marks: &[Mark]) -> Trace {
         let Some(before) = behind.checked_sub(1).and_then(|at| rows.get(at)).cloned() else { continue };
         if before.scan != scan {
             // Nothing changed in it: its values are those of the row before, its time lies between its neighbours'.
-            let step_ns = trace.rows.iter().find(|row| row.scan > 0).map_or(0, |row| row.time_ns / row.scan as i64);
+            let step_ns =
+                trace.rows.iter().find(|row| row.scan > 0).map_or(0, |row| row.time_ns / row.scan as i64);
             rows.insert(behind, TraceRow { scan, time_ns: scan as i64 * step_ns, ..before });
         }
     }
@@ -107,7 +108,8 @@ impl<'t> Lines<'t> {
         let heads = ["cli.run-scan", "cli.run-time"].map(|key| Message::new(key).render(language));
         let expected = format!("  {}", Message::new("scenario.expected").render(language));
         let names = &trace.names[..];
-        let is_marked: Vec<bool> = names.iter().map(|name| marks.iter().any(|mark| mark.name == *name)).collect();
+        let is_marked: Vec<bool> =
+            names.iter().map(|name| marks.iter().any(|mark| mark.name == *name)).collect();
         let all = heads.iter().chain(names).chain(is_marked.contains(&true).then_some(&expected));
         let margin = all.map(|name| text_width(name)).max().unwrap_or(0);
         Lines { names, heads, expected, margin, is_marked }

@@ -4,7 +4,7 @@ use super::steps::{self, Clock};
 use super::table::{Entry, Reading};
 use super::{Flaw, Named, Scenario, Suite};
 use crate::simulate::duration;
-use crate::text::Message;
+use crate::text::{Language, Message, Span};
 use toml::de::{DeTable, DeValue};
 
 /// The keys of the file.
@@ -29,7 +29,11 @@ impl Suite {
             reading.flaw(span, Message::new("manifest.toml").with("reason", error.message()));
         }
         let suite = suite(&mut reading, table.get_ref());
+        if suite.scenarios.is_empty() && reading.flaws.is_empty() {
+            reading.flaw(Span::default(), Message::new("scenario.none"));
+        }
         reading.flaws.sort_by_key(|flaw| flaw.span.start);
+        reading.flaws.dedup();
         (suite, reading.flaws)
     }
 }
@@ -37,11 +41,8 @@ impl Suite {
 fn suite<'a>(reading: &mut Reading<'_>, table: &'a DeTable<'a>) -> Suite {
     reading.known(table, &SUITE_KEYS);
     let program = word(reading, table, "program");
-    let common = Common {
-        scan_ns: scan_time(reading, table, SCAN_NS),
-        steps: reading.entry(table, "steps"),
-        table,
-    };
+    let common =
+        Common { scan_ns: scan_time(reading, table, SCAN_NS), steps: reading.entry(table, "steps"), table };
     let listed = reading.entry(table, "scenario");
     let entries = listed.map(|entry| reading.list_of(entry)).unwrap_or_default();
     let mut scenarios: Vec<Scenario> = Vec::new();
@@ -73,7 +74,7 @@ fn scenario<'a>(
     reading.known(table, &SCENARIO_KEYS);
     let name = word(reading, table, "name").unwrap_or_else(|| {
         let name = Message::new("scenario.unnamed").with("number", number + 1);
-        Named { name: name.render(crate::text::Language::English), span: header_of(reading, entry) }
+        Named { name: name.render(Language::English), span: header_of(reading, entry) }
     });
     let scan_ns = scan_time(reading, table, common.scan_ns);
     let clock = Clock { scan_ns };
@@ -85,7 +86,8 @@ fn scenario<'a>(
     let (tolerance, deviation) = (setting("tolerance"), setting("deviation"));
     let tolerance = tolerance.and_then(|entry| clock.scans(reading, entry)).unwrap_or(0);
     let deviation = deviation.and_then(|entry| reading.number_of(entry)).unwrap_or(0.0).abs();
-    let time = reading.entry(table, "time").and_then(|entry| Some((clock.moment(reading, entry)?, entry.span)));
+    let time =
+        reading.entry(table, "time").and_then(|entry| Some((clock.moment(reading, entry)?, entry.span)));
     let golden = word(reading, table, "golden");
     let watch = reading.entry(table, "watch").map(|entry| reading.list_of(entry)).unwrap_or_default();
     let watch = watch.into_iter().filter_map(|entry| {
@@ -132,10 +134,10 @@ fn scenario<'a>(
 }
 
 /// The header `[[scenario]]` of a table, or the first line of it.
-fn header_of(reading: &Reading<'_>, entry: Entry<'_>) -> crate::text::Span {
+fn header_of(reading: &Reading<'_>, entry: Entry<'_>) -> Span {
     let text = entry.span.of(reading.text);
     let line = text.lines().next().map_or(0, str::len);
-    crate::text::Span::new(entry.span.start as usize, entry.span.start as usize + line)
+    Span::new(entry.span.start as usize, entry.span.start as usize + line)
 }
 
 fn word<'a>(reading: &mut Reading<'_>, table: &'a DeTable<'a>, key: &str) -> Option<Named> {

@@ -91,7 +91,9 @@ impl Recording {
             let trace = report.trace;
             let mut before: Option<&[Value]> = None;
             for row in &trace.rows {
-                for (number, name) in trace.names.iter().enumerate().filter(|(_, name)| outputs.contains(name)) {
+                for (number, name) in
+                    trace.names.iter().enumerate().filter(|(_, name)| outputs.contains(name))
+                {
                     let value = &row.values[number];
                     if before.is_some_and(|before| before[number] == *value) {
                         continue;
@@ -123,7 +125,8 @@ impl Recording {
 
     /// The variables whose changes are expected: `names`, else the outputs, else all bits that nobody set.
     fn outputs(&self, code: &Code, names: &[String]) -> Vec<String> {
-        let is_touched = |name: &String| self.touches.iter().any(|(_, own, _)| own.eq_ignore_ascii_case(name));
+        let is_touched =
+            |name: &String| self.touches.iter().any(|(_, own, _)| own.eq_ignore_ascii_case(name));
         let named: Vec<String> = names.iter().filter(|name| code.variable(name).is_some()).cloned().collect();
         let all = code.named();
         let is_free = |name: &&String| !is_touched(name);
@@ -149,7 +152,11 @@ impl Step {
         let mut text = String::new();
         let lists = [("set", &self.set), ("force", &self.force), ("expect", &self.expect)];
         for (key, values) in lists.into_iter().filter(|(_, values)| !values.is_empty()) {
-            let _ = write!(text, ", {key} = {{ {} }}", pairs(values.iter().map(|(name, value)| (name, word(value)))));
+            let _ = write!(
+                text,
+                ", {key} = {{ {} }}",
+                pairs(values.iter().map(|(name, value)| (name, word(value))))
+            );
         }
         if !self.release.is_empty() {
             let names: Vec<String> = self.release.iter().map(|name| quoted(name)).collect();
@@ -182,7 +189,8 @@ fn pairs<'n>(values: impl Iterator<Item = (&'n String, String)>) -> String {
 
 /// A name as a key of TOML: quoted where it is no bare word.
 fn key(name: &str) -> String {
-    let is_bare = !name.is_empty() && name.chars().all(|letter| letter.is_ascii_alphanumeric() || "_-".contains(letter));
+    let is_bare = !name.is_empty()
+        && name.chars().all(|letter| letter.is_ascii_alphanumeric() || "_-".contains(letter));
     if is_bare { name.to_string() } else { quoted(name) }
 }
 

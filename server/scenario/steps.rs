@@ -8,8 +8,20 @@ use toml::de::{DeTable, DeValue};
 
 /// The keys of a step.
 const STEP_KEYS: [&str; 14] = [
-    "at", "after", "set", "force", "release", "pulse", "expect", "within", "always", "never", "for", "until",
-    "tolerance", "deviation",
+    "at",
+    "after",
+    "set",
+    "force",
+    "release",
+    "pulse",
+    "expect",
+    "within",
+    "always",
+    "never",
+    "for",
+    "until",
+    "tolerance",
+    "deviation",
 ];
 
 /// More scans a scenario does not have: nearly three hours at 10 ms.
@@ -53,7 +65,9 @@ impl Clock {
     fn written(self, word: &str) -> Option<i64> {
         let scans = word.trim().strip_suffix("scans").or_else(|| word.trim().strip_suffix("scan"));
         match scans {
-            Some(count) => count.trim().parse::<u32>().ok().map(|count| i64::from(count).saturating_mul(self.scan_ns)),
+            Some(count) => {
+                count.trim().parse::<u32>().ok().map(|count| i64::from(count).saturating_mul(self.scan_ns))
+            }
             None => duration(word),
         }
     }
@@ -128,7 +142,8 @@ impl Plan {
                 }
             }
         }
-        let released = reading.entry(table, "release").map(|entry| reading.list_of(entry)).unwrap_or_default();
+        let released =
+            reading.entry(table, "release").map(|entry| reading.list_of(entry)).unwrap_or_default();
         for entry in released {
             if let Some((name, span)) = reading.text_of(entry) {
                 self.inputs.push(Input { scan, name: Named { name, span }, kind: InputKind::Release });
@@ -158,8 +173,7 @@ impl Plan {
         let deviation = reading.entry(table, "deviation").and_then(|entry| reading.number_of(entry));
         let deviation = deviation.map_or(self.deviation, f64::abs);
         let until = self.until(reading, table);
-        let kinds =
-            [("expect", CheckKind::Once), ("always", CheckKind::Always), ("never", CheckKind::Never)];
+        let kinds = [("expect", CheckKind::Once), ("always", CheckKind::Always), ("never", CheckKind::Never)];
         let mut has_range = false;
         for (key, kind) in kinds {
             let wants = wants(reading, table, key);
@@ -190,7 +204,11 @@ impl Plan {
             };
             self.checks.push(check);
         }
-        let belongs = [("within", table.contains_key("expect"), "expect"), ("for", has_range, "always"), ("until", has_range, "always")];
+        let belongs = [
+            ("within", table.contains_key("expect"), "expect"),
+            ("for", has_range, "always"),
+            ("until", has_range, "always"),
+        ];
         for (key, is_used, owner) in belongs {
             if let (Some(entry), false) = (reading.entry(table, key), is_used) {
                 let message = Message::new("scenario.belongs-to").with("key", key).with("owner", owner);
@@ -267,7 +285,9 @@ fn wants<'a>(reading: &mut Reading<'_>, table: &'a DeTable<'a>, key: &str) -> Ve
 fn value_of(reading: &mut Reading<'_>, entry: Entry<'_>) -> Option<Value> {
     let value = match entry.value {
         DeValue::Boolean(on) => Some(Value::Bit(*on)),
-        DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix()).ok().map(Value::Number),
+        DeValue::Integer(number) => {
+            i64::from_str_radix(number.as_str(), number.radix()).ok().map(Value::Number)
+        }
         DeValue::String(word) => Value::read(word),
         DeValue::Float(number) => Value::read(number.as_str()),
         _ => None,

@@ -165,7 +165,8 @@ impl Expected {
     /// What is written as text: `"on"`, `">= 5"`, `"48..52"`.
     pub fn read(word: &str) -> Option<Expected> {
         let word = word.trim();
-        let signed = Comparison::SIGNS.into_iter().find_map(|(sign, how)| Some((how, word.strip_prefix(sign)?)));
+        let signed =
+            Comparison::SIGNS.into_iter().find_map(|(sign, how)| Some((how, word.strip_prefix(sign)?)));
         if let Some((how, number)) = signed {
             return Some(Expected::Compared(how, number_of(&Value::read(number)?)?));
         }
@@ -205,7 +206,8 @@ impl fmt::Display for Expected {
         match self {
             Expected::Is(value) => value.fmt(f),
             Expected::Compared(how, number) => {
-                let sign = Comparison::SIGNS.iter().find(|(_, other)| other == how).map_or("", |(sign, _)| sign);
+                let sign =
+                    Comparison::SIGNS.iter().find(|(_, other)| other == how).map_or("", |(sign, _)| sign);
                 write!(f, "{sign} {number}")
             }
             Expected::Between(least, most) => write!(f, "{least}..{most}"),

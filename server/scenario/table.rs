@@ -45,8 +45,11 @@ impl Reading<'_> {
         let mut entries: Vec<(String, Entry<'a>)> = table
             .iter()
             .map(|(key, value)| {
-                let entry =
-                    Entry { value: value.get_ref(), span: self.span(value.span()), key: self.span(key.span()) };
+                let entry = Entry {
+                    value: value.get_ref(),
+                    span: self.span(value.span()),
+                    key: self.span(key.span()),
+                };
                 (key.get_ref().to_string(), entry)
             })
             .collect();
@@ -111,7 +114,9 @@ impl Reading<'_> {
     /// The number under a key.
     pub fn number_of(&mut self, entry: Entry<'_>) -> Option<f64> {
         let number = match entry.value {
-            DeValue::Integer(number) => i64::from_str_radix(number.as_str(), number.radix()).ok().map(|n| n as f64),
+            DeValue::Integer(number) => {
+                i64::from_str_radix(number.as_str(), number.radix()).ok().map(|n| n as f64)
+            }
             DeValue::Float(number) => number.as_str().parse().ok(),
             _ => None,
         };

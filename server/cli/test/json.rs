@@ -36,7 +36,8 @@ pub(super) fn of(session: &Session, language: Language) -> Value {
     });
     if session.shows_coverage {
         let counts = session.counts();
-        let files = session.subjects.iter().filter_map(|subject| Some(covered(subject, subject.coverage.as_ref()?)));
+        let files =
+            session.subjects.iter().filter_map(|subject| Some(covered(subject, subject.coverage.as_ref()?)));
         all["coverage"] = json!({
             "summary": {
                 "rungs": counts.rungs,

@@ -5,8 +5,8 @@ use crate::scenario::{around, picture};
 use crate::text::{Language, Message};
 use std::fmt::Write;
 
-/// A suite for each file, a test case for each scenario. What cannot be run at all is an error, not a failure. Times are
-/// those of the PLC, so that a report is the same wherever it is made.
+/// A suite for each file, a test case for each scenario. What cannot be run at all is an error, not a failure. Times
+/// are those of the PLC, so that a report is the same wherever it is made.
 pub(super) fn of(session: &Session, language: Language) -> String {
     let total = session.results.iter().map(Vec::len).sum::<usize>();
     let errors = |suite: &super::SuiteFile| suite.flaws.len();
@@ -30,7 +30,13 @@ pub(super) fn of(session: &Session, language: Language) -> String {
         for flaw in &suite.flaws {
             let message = flaw.message.render(language);
             let told = format!("{}: {message}", suite.place(flaw.span));
-            case(&mut xml, &suite.shown, &Message::new("test.reading").render(language), 0.0, Some(("error", &message, &told)));
+            case(
+                &mut xml,
+                &suite.shown,
+                &Message::new("test.reading").render(language),
+                0.0,
+                Some(("error", &message, &told)),
+            );
         }
         for ran in results {
             let Some(scenario) = suite.suite.scenarios.get(ran.number) else { continue };
@@ -49,7 +55,12 @@ pub(super) fn of(session: &Session, language: Language) -> String {
 }
 
 /// What a scenario failed by, in a sentence and at length.
-fn failure(session: &Session, suite: &super::SuiteFile, ran: &Ran, language: Language) -> Option<(String, String)> {
+fn failure(
+    session: &Session,
+    suite: &super::SuiteFile,
+    ran: &Ran,
+    language: Language,
+) -> Option<(String, String)> {
     match &ran.verdict {
         Verdict::Stuck => {
             let subject = suite.subject.and_then(|number| session.subjects.get(number))?;

@@ -131,7 +131,8 @@ impl Session {
 
 pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     let wants_coverage = arguments.coverage || arguments.coverage_file.is_some();
-    let Some((suites, subjects)) = subject::found(&paths_or_here(&arguments.paths), wants_coverage, language) else {
+    let Some((suites, subjects)) = subject::found(&paths_or_here(&arguments.paths), wants_coverage, language)
+    else {
         return Outcome::Unusable;
     };
     let mut session = Session {
@@ -183,7 +184,9 @@ impl Session {
     /// Runs the scenarios; whether golden traces could be written.
     fn run(&mut self, arguments: &Arguments, language: Language) -> bool {
         for (suite, results) in self.suites.iter_mut().zip(&mut self.results) {
-            let Some(subject) = suite.subject.and_then(|number| self.subjects.get_mut(number)) else { continue };
+            let Some(subject) = suite.subject.and_then(|number| self.subjects.get_mut(number)) else {
+                continue;
+            };
             if !suite.flaws.is_empty() {
                 continue;
             }
@@ -271,7 +274,9 @@ impl SuiteFile {
 
     /// The golden trace of a scenario, if it has one; with `is_new` it is about to be written.
     fn golden(&self, scenario: &Scenario, is_new: bool) -> Result<Option<Golden>, Flaw> {
-        let (Some(path), Some(named)) = (self.golden_path(scenario), &scenario.golden) else { return Ok(None) };
+        let (Some(path), Some(named)) = (self.golden_path(scenario), &scenario.golden) else {
+            return Ok(None);
+        };
         if is_new {
             let needs_end = scenario.last.is_none().then(|| Message::new("scenario.golden-time"));
             return needs_end.map_or(Ok(None), |message| Err(Flaw { message, span: named.span }));

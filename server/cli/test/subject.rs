@@ -61,15 +61,20 @@ pub(super) fn found(
     for path in paths {
         let own = match () {
             () if path.is_dir() => suite_files(path),
-            () if path.file_name().is_some_and(|name| name == MANIFEST_NAME) => {
-                suite_files(path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")))
-            }
+            () if path.file_name().is_some_and(|name| name == MANIFEST_NAME) => suite_files(
+                path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")),
+            ),
             () if is_suite_file(path) && path.is_file() => vec![path.clone()],
             () if is_program_file(path) && path.is_file() => about(path),
             () => {
                 let key = if path.exists() { "cli.no-suite-file" } else { "cli.no-such-file" };
                 let reason = Message::new(key).with("path", path.display()).render(language);
-                complain("unreadable-input", &reason, &Message::new("cli.give-suite").render(language), language);
+                complain(
+                    "unreadable-input",
+                    &reason,
+                    &Message::new("cli.give-suite").render(language),
+                    language,
+                );
                 is_usable = false;
                 Vec::new()
             }
@@ -95,7 +100,12 @@ pub(super) fn found(
             }
             Err(reason) => {
                 let reason = format!("{}: {reason}", path.display());
-                complain("unreadable-input", &reason, &Message::new("cli.check-path").render(language), language);
+                complain(
+                    "unreadable-input",
+                    &reason,
+                    &Message::new("cli.check-path").render(language),
+                    language,
+                );
                 is_usable = false;
             }
         }
@@ -136,7 +146,8 @@ impl SuiteFile {
             return Some(if is_manifest { path.parent()?.to_path_buf() } else { path });
         }
         let name = self.path.file_name()?.to_string_lossy().into_owned();
-        let beside = programs_beside(&name).into_iter().map(|name| folder.join(name)).find(|path| path.is_file());
+        let beside =
+            programs_beside(&name).into_iter().map(|name| folder.join(name)).find(|path| path.is_file());
         let root = || {
             let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
             folder_of(folder)
@@ -171,7 +182,8 @@ impl Subjects {
         let Some(programs) = programs else {
             return Err(flaw(Message::new("scenario.unreadable-program").with("path", path.display())));
         };
-        let canonical = |program: &Program| program.path.canonicalize().unwrap_or_else(|_| program.path.clone());
+        let canonical =
+            |program: &Program| program.path.canonicalize().unwrap_or_else(|_| program.path.clone());
         let key: Vec<PathBuf> = programs.iter().map(canonical).collect();
         if let Some(known) = self.known.get(&key) {
             return Ok(Some(*known));

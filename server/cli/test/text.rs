@@ -119,7 +119,7 @@ fn place(subject: &Subject, document: usize, span: Span) -> Option<String> {
 }
 
 fn coverage(text: &mut String, session: &Session, language: Language) {
-    let percent = |part: usize, whole: usize| if whole == 0 { 100 } else { part * 100 / whole };
+    let percent = |part: usize, whole: usize| (part * 100).checked_div(whole).unwrap_or(100);
     let _ = writeln!(text);
     for subject in &session.subjects {
         let Some(coverage) = &subject.coverage else { continue };
