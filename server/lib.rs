@@ -23,6 +23,8 @@ pub mod check;
 
 pub mod simulate;
 
+pub mod scenario;
+
 pub mod project;
 
 pub mod ide;

@@ -13,6 +13,7 @@ const FLOORS: &[(&str, u8)] = &[
     ("translate", 5),
     ("check", 6),
     ("simulate", 6),
+    ("scenario", 7),
     ("project", 7),
     ("ide", 8),
     ("lsp", 9),

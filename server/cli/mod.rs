@@ -17,6 +17,7 @@ mod render;
 mod run;
 mod sarif;
 mod server;
+mod test;
 mod translate;
 mod usage;
 
@@ -65,6 +66,8 @@ enum Verb {
     Prove(prove::Arguments),
     /// Run a program on a simulated PLC.
     Run(run::Arguments),
+    /// Run scenario tests.
+    Test(test::Arguments),
     /// List the devices that programs use: where read, where written, comment.
     Usage(usage::Arguments),
     /// Show the page of a rule, an instruction, a function or a function block.
@@ -120,6 +123,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Verb::Translate(verb) => translate::run(&verb, language).into(),
         Verb::Prove(verb) => prove::run(&verb, language).into(),
         Verb::Run(verb) => run::run(&verb, language).into(),
+        Verb::Test(verb) => test::run(&verb, language).into(),
         Verb::Usage(verb) => usage::run(&verb, language).into(),
         Verb::Explain(arguments) => explain::run(&arguments, language).into(),
         Verb::Import(arguments) => import::run(&arguments, language).into(),

@@ -56,5 +56,8 @@ pub use variable::{Value, Variable};
 mod trace;
 pub use trace::{Row as TraceRow, Trace, milliseconds};
 
+mod duration;
+pub use duration::duration;
+
 mod power_flow;
 pub use power_flow::{Energised, EnergisedKind, power_flow};
