@@ -56,5 +56,11 @@ pub use variable::{Value, Variable};
 mod trace;
 pub use trace::{Row as TraceRow, Trace, milliseconds};
 
+mod recorder;
+pub use recorder::{Change, Recorder, Signal, is_affordable};
+
+mod presets;
+pub use presets::{Counted, CountedPreset};
+
 mod power_flow;
 pub use power_flow::{Energised, EnergisedKind, power_flow};

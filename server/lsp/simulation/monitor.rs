@@ -28,6 +28,8 @@ pub(super) struct Picture {
     pub(super) mode: &'static str,
     pub(super) scan: u64,
     pub(super) time_ms: f64,
+    pub(super) edition: u64,
+    pub(super) branch: u64,
     pub(super) elements: Vec<Json>,
     pub(super) values: Vec<Json>,
     pub(super) errors: Vec<Json>,
@@ -47,6 +49,11 @@ impl Monitor {
     /// Whether nothing is shown.
     pub(super) fn is_empty(&self) -> bool {
         self.ranges.is_empty() && self.names.is_empty()
+    }
+
+    /// Whether lines of the text are shown.
+    pub(super) fn has_text(&self) -> bool {
+        !self.ranges.is_empty()
     }
 
     /// Shows other ranges, or other names; what is not given stays.
