@@ -124,8 +124,10 @@ fn what_is_shown_is_painted_as_power_flowed() {
 
 #[test]
 fn what_is_shown_belongs_to_the_scan_and_the_lines_that_are_shown() {
-    let mut plc = Simulated::open(URI, "plc-il", LIST);
+    let two_rungs = LIST.replace("END\n", "LD X0\nOUT Y5\nEND\n");
+    let mut plc = Simulated::open(URI, "plc-il", &two_rungs);
     plc.tell("start", json!({ "paused": true }));
+    plc.tell("step", json!({ "count": 3 }));
     let lines = |first: u32, last: u32| json!([{ "start": { "line": first, "character": 0 }, "end": { "line": last, "character": 0 } }]);
     plc.tell("watch", json!({ "ranges": lines(0, 4) }));
     plc.tell("set", json!({ "name": "X0", "value": true }));
@@ -138,12 +140,13 @@ fn what_is_shown_belongs_to_the_scan_and_the_lines_that_are_shown() {
         })
     };
     plc.picture(|picture| has(picture, 3, true));
-    plc.tell("stepBack", json!({}));
+    plc.tell("stepBack", json!({ "count": 2 }));
     plc.tell("state", json!({}));
-    plc.picture(|picture| has(picture, 3, false));
+    plc.picture(|picture| picture["scan"] == json!(2) && has(picture, 3, false));
+    plc.tell("set", json!({ "name": "X0", "value": true }));
     plc.tell("step", json!({}));
-    plc.tell("watch", json!({ "ranges": lines(4, 6) }));
-    plc.picture(|picture| has(picture, 4, true) && !has(picture, 3, true));
+    plc.tell("watch", json!({ "ranges": lines(6, 7) }));
+    plc.picture(|picture| has(picture, 6, true));
 }
 
 #[test]
