@@ -19,7 +19,8 @@ function calls(source: string): string[] {
   return found;
 }
 
-const used = new Set(readdirSync('src').flatMap((name) => calls(readFileSync(`src/${name}`, 'utf8'))));
+const sources = readdirSync('src', { recursive: true, encoding: 'utf8' }).filter((name) => name.endsWith('.ts'));
+const used = new Set(sources.flatMap((name) => calls(readFileSync(`src/${name}`, 'utf8'))));
 
 after(() => useTranslations((message) => message));
 
