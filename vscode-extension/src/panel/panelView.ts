@@ -88,7 +88,8 @@ class Panel {
       enableScripts: true,
       localResourceRoots: ['dist', 'styles'].map((folder) => vscode.Uri.joinPath(extension, folder)),
     };
-    view.iconPath = vscode.Uri.joinPath(extension, 'images', 'activity.svg');
+    const image = (name: string) => vscode.Uri.joinPath(extension, 'images', name);
+    view.iconPath = { light: image('panel-light.svg'), dark: image('panel-dark.svg') };
     webview.onDidReceiveMessage((message: FromPage) => void this.take(message));
     view.onDidChangeViewState(() => void this.watch());
     webview.html = pageDocument({

@@ -55,7 +55,8 @@ export class RowView {
     } else if (row.type === 'word') {
       this.bar = row.contact === undefined ? undefined : this.progressBar(label);
       this.slider = this.bar === undefined ? this.makeSlider(label) : undefined;
-      this.field = this.makeField(label);
+      // A time is read, not typed in units.
+      this.field = row.unitMs === undefined ? this.makeField(label) : undefined;
       controls.append(...[this.bar, this.slider, this.field].filter((node) => node !== undefined));
     }
     const hasLamp = row.type === 'bit' || row.contact !== undefined;
