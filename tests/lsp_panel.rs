@@ -72,8 +72,14 @@ fn a_chart_gets_the_past_the_present_and_forgets_what_is_taken_back() {
     let mut plc = Simulated::open(URI, "plc-il", PROGRAM);
     plc.tell("start", json!({ "paused": true }));
     plc.tell("step", json!({ "count": 4 }));
-    plc.tell("set", json!({ "name": "X0", "value": true }));
+    let set = plc.tell("set", json!({ "name": "X0", "value": true }));
+    assert_eq!(set["mode"], json!("paused"));
+    // The program has not seen it yet.
+    let input = plc.tell("state", json!({ "names": ["X0"] }))["values"][0].clone();
+    assert_eq!((&input["value"], &input["wired"]), (&json!(false), &json!(true)), "{input}");
     plc.tell("step", json!({}));
+    let input = plc.tell("state", json!({ "names": ["X0"] }))["values"][0].clone();
+    assert_eq!((&input["value"], input.get("wired")), (&json!(true), None), "{input}");
     plc.tell("set", json!({ "name": "X0", "value": false }));
     plc.tell("step", json!({ "count": 44 }));
     // Nobody has recorded anything so far.

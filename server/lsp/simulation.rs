@@ -25,10 +25,11 @@
 //!
 //! ```text
 //! { uri, mode: "running" | "paused" | "stopped", scan, first_scan, time_ms, scan_ms, speed, edition, branch,
-//!   forced: string[], values: { device, value, forced }[], errors: { range, message }[] }
+//!   forced: string[], values: { device, value, forced, wired? }[], errors: { range, message }[] }
 //! ```
 //!
-//! `values` are those of `names`, or of what is watched. `edition` is another number whenever the program is another,
+//! `values` are those of `names`, or of what is watched; `wired` is what an input will be in the next scan, if that is
+//! something else. `edition` is another number whenever the program is another,
 //! as by an edit, and `branch` whenever scans of before have been taken back.
 //!
 //! `panel` says with `rows` what belongs on a panel of the program, group by group:
@@ -62,7 +63,7 @@
 //! ```text
 //! { uri, version, source: "simulator", mode, scan, time_ms, edition, branch,
 //!   elements: { range, kind: "wire" | "contact" | "output" | "line" | "value", energised, conducts?, value? }[],
-//!   values: { device, value, forced }[], errors: { range, message }[] }
+//!   values: { device, value, forced, wired? }[], errors: { range, message }[] }
 //! ```
 //!
 //! `scan` counts from 0. What an edit made of the program is taken over as soon as it can be run; until then the old

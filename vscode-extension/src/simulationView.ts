@@ -130,7 +130,7 @@ export class SimulationView implements vscode.Disposable {
       return;
     }
     const state = (await this.tell(editor.document.uri, 'state', { names: [name] })) as State;
-    const before = state.values?.[0]?.value;
+    const before = state.values?.[0]?.wired ?? state.values?.[0]?.value;
     if (typeof before === 'boolean') {
       await this.tell(editor.document.uri, 'set', { name, value: !before });
     } else {
@@ -236,7 +236,7 @@ export class SimulationView implements vscode.Disposable {
 }
 
 interface State {
-  readonly values?: readonly { readonly value?: unknown }[];
+  readonly values?: readonly { readonly value?: unknown; readonly wired?: boolean }[];
 }
 
 function editorsOf(uri: vscode.Uri): readonly vscode.TextEditor[] {

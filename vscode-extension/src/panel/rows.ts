@@ -44,6 +44,8 @@ export interface Reading {
   readonly device: string;
   readonly value: Value;
   readonly forced: boolean;
+  /** What an input will be in the next scan, if that is something else. */
+  readonly wired?: boolean;
 }
 
 const GROUPS: readonly Group[] = ['inputs', 'outputs', 'timers', 'counters', 'states', 'relays', 'registers', 'variables'];

@@ -77,14 +77,15 @@ export class RowView {
     if (own === undefined) {
       return;
     }
-    this.value = own.value;
+    this.value = own.forced ? own.value : (own.wired ?? own.value);
     const contact = row.contact === undefined ? undefined : readings.get(row.contact);
     const isOn = row.type === 'bit' ? own.value === true : contact?.value === true;
     this.isForced = own.forced || contact?.forced === true;
     put(this.node, 'data-on', String(isOn));
     put(this.node, 'data-forced', this.isForced ? 'true' : undefined);
     if (this.switch !== undefined) {
-      put(this.switch, 'aria-checked', String(isOn));
+      // A lamp is what the program sees, a switch how it stands.
+      put(this.switch, 'aria-checked', String(this.value === true));
       put(this.switch, 'aria-label', this.isForced ? t('{0}, forced', row.label) : row.label);
     }
     const preset = row.presetOf === undefined ? row.preset : readings.get(row.presetOf)?.value;
