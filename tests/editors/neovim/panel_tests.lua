@@ -18,7 +18,8 @@ end
 --- The first line of the panel with this beginning, blanks and lamp aside, and its number.
 local function line_of(name)
   for at, line in ipairs(panel_lines()) do
-    if line:match('^%s+[●○ ]*%s*' .. name .. '%f[%s]') then
+    -- Patterns are of bytes: a lamp is three of them.
+    if line:match('^%s+[^%w%s]*%s*' .. name .. '%f[%s]') then
       return line, at
     end
   end
@@ -45,7 +46,8 @@ local function press(name, keys)
 end
 
 local function lamp(name)
-  return line_of(name):match('[●○]')
+  local line = line_of(name)
+  return line:find('●', 1, true) and '●' or line:find('○', 1, true) and '○' or nil
 end
 
 --- The highlights of the line of a device.
@@ -98,8 +100,10 @@ check('a push button starts the motor, which holds itself, and the cursor stays'
 end)
 
 check('the chart shows the press and what came of it', function()
+  -- More time, so that the press is still there.
+  press('X0', 'zozozozo')
   until_true('the changes', function()
-    return chart_of('Y0'):find('▁▆') and chart_of('X0'):find('[▁▌]▁') and chart_of('T0'):find('▁.*▄.*█')
+    return chart_of('Y0'):find('▌▆') and chart_of('X0'):find('▌▁') and chart_of('T0'):find('███')
   end)
   press('Y1', 'c')
   until_true('a signal left out', function()
@@ -135,7 +139,11 @@ check('keys pause, step, go back past the press, force and release', function()
     return lamp('X0') == '●' and lamp('Y0') == '●'
   end)
   press('X1', 'f')
-  until_true('a forced input', function()
+  until_true('an input that is held', function()
+    return line_of('X1'):find('[forced]', 1, true) and lamp('X1') == '○'
+  end)
+  press('X1', 'f')
+  until_true('the same at the other value', function()
     return line_of('X1'):find('[forced]', 1, true) and lamp('X1') == '●'
   end)
   assert(vim.list_contains(highlights('X1'), 'RungwiseForced'), vim.inspect(highlights('X1')))
