@@ -7,20 +7,21 @@ const MOTOR: &str = "|  X0        X1     Y0  |\n+--| |---+---|/|----( )-+\n|  Y0
 const LIST: &str = "LD X0\nOR Y0\nANI X1\nOUT Y0\nOUT T0 K100\nEND\n";
 const URI: &str = "file:///simulated/motor.il";
 
-struct Simulated {
-    client: Client,
-    uri: String,
+/// A program that a client has open and simulates.
+pub struct Simulated {
+    pub client: Client,
+    pub uri: String,
 }
 
 impl Simulated {
-    fn open(uri: &str, language: &str, text: &str) -> Simulated {
+    pub fn open(uri: &str, language: &str, text: &str) -> Simulated {
         let mut client = Client::start();
         client.open(uri, language, text);
         client.diagnostics(uri, 1);
         Simulated { client, uri: uri.to_string() }
     }
 
-    fn answer(&mut self, verb: &str, more: Value) -> Value {
+    pub fn answer(&mut self, verb: &str, more: Value) -> Value {
         let mut argument = json!({ "uri": self.uri });
         argument.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
         let params = json!({ "command": format!("rungwise.simulate.{verb}"), "arguments": [argument] });
@@ -28,20 +29,20 @@ impl Simulated {
     }
 
     #[track_caller]
-    fn tell(&mut self, verb: &str, more: Value) -> Value {
+    pub fn tell(&mut self, verb: &str, more: Value) -> Value {
         let answer = self.answer(verb, more);
         assert!(answer["error"].is_null(), "{answer}");
         answer["result"].clone()
     }
 
     /// The values of these names.
-    fn values(&mut self, names: &[&str]) -> Vec<Value> {
+    pub fn values(&mut self, names: &[&str]) -> Vec<Value> {
         let state = self.tell("state", json!({ "names": names }));
         state["values"].as_array().unwrap().iter().map(|value| value["value"].clone()).collect()
     }
 
     /// The next picture that is wanted.
-    fn picture(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
+    pub fn picture(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
         let is_one = |message: &Value| message["method"] == "rungwise/monitor" && wanted(&message["params"]);
         self.client.wait_for("a picture", is_one)["params"].clone()
     }

@@ -47,6 +47,7 @@ mod lsp;
 mod lsp_calls;
 mod lsp_client;
 mod lsp_edit;
+mod lsp_panel;
 mod lsp_project;
 mod lsp_prove;
 mod lsp_refactor;

@@ -27,6 +27,9 @@ pub(super) const COMMANDS: &[&str] = &[
     "rungwise.simulate.release",
     "rungwise.simulate.watch",
     "rungwise.simulate.state",
+    "rungwise.simulate.panel",
+    "rungwise.simulate.trace",
+    "rungwise.simulate.export",
 ];
 
 /// Applies the `WorkspaceEdit` that is its argument: what a code action does where clients know commands alone.

@@ -16,34 +16,71 @@
 //! rungwise.simulate.release   { name? }                           // one, or all
 //! rungwise.simulate.watch     { ranges?: Range[], names?: string[] }   // what the client shows
 //! rungwise.simulate.state     { names?: string[] }
+//! rungwise.simulate.panel     { }
+//! rungwise.simulate.trace     { names: string[], from?: scan, to?: scan, most?: points = 2000 }
+//! rungwise.simulate.export    { format: "vcd" | "csv", names?: string[], from?: scan, to?: scan }
 //! ```
 //!
-//! Each answers the state:
+//! Each answers the state, the last three with more members:
 //!
 //! ```text
-//! { uri, mode: "running" | "paused" | "stopped", scan, first_scan, time_ms, speed, forced: string[],
-//!   values: { device, value, forced }[], errors: { range, message }[] }
+//! { uri, mode: "running" | "paused" | "stopped", scan, first_scan, time_ms, scan_ms, speed, edition, branch,
+//!   forced: string[], values: { device, value, forced, wired? }[], errors: { range, message }[] }
 //! ```
 //!
-//! `values` are those of `names`, or of what is watched. While a simulation runs, the notification `rungwise/monitor`
+//! `values` are those of `names`, or of what is watched; `wired` is what an input will be in the next scan, if that is
+//! something else. `edition` is another number whenever the program is another,
+//! as by an edit, and `branch` whenever scans of before have been taken back.
+//!
+//! `panel` says with `rows` what belongs on a panel of the program, group by group:
+//!
+//! ```text
+//! { name, label, type: "bit" | "word", symbol, comment, reads, writes,
+//!   group: "inputs" | "outputs" | "timers" | "counters" | "states" | "relays" | "registers" | "variables",
+//!   least?, greatest?,                    // of a word
+//!   contact?, preset?, preset_of?, unit_ms? }   // of a timer or counter, whose current value `name` is
+//! ```
+//!
+//! `name`, `contact` and `preset_of`, which is where the preset lies, are names for the other commands; `preset` is the
+//! constant of the program. `unit_ms` is what a timer counts.
+//!
+//! `trace` says what variables were, and records them from then on:
+//!
+//! ```text
+//! { from, to, signals: { name, known_from: scan, points: [scan, value][] }[] }
+//! ```
+//!
+//! The first point has the value at `from`, or at `known_from` if that is later; each other one is a change. Of more
+//! changes than `most` those are kept that show the least and the greatest value in each of equal spans of time. What
+//! was before a variable was recorded is found bit by bit: whoever wants it asks again. A chart that is kept up to date
+//! asks from the last scan that it has, and for everything again when `branch` is another number.
+//!
+//! `export` has the `text` of a file with every change, and `from` and `to`, which scans it tells of.
+//!
+//! While a simulation runs, the notification `rungwise/monitor`
 //! tells what is watched, at most thirty times a second, when something may have changed:
 //!
 //! ```text
-//! { uri, version, source: "simulator", mode, scan, time_ms,
+//! { uri, version, source: "simulator", mode, scan, time_ms, edition, branch,
 //!   elements: { range, kind: "wire" | "contact" | "output" | "line" | "value", energised, conducts?, value? }[],
-//!   values: { device, value, forced }[], errors: { range, message }[] }
+//!   values: { device, value, forced, wired? }[], errors: { range, message }[] }
 //! ```
 //!
 //! `scan` counts from 0. What an edit made of the program is taken over as soon as it can be run; until then the old
 //! program goes on and `elements` is empty.
 
+mod chart;
+
 mod monitor;
+
+mod panel;
 
 mod runner;
 
 use super::answering::{refused, snapshot};
 use super::workspace::Workspace;
 use crate::text::Message;
+use chart::Wanted;
 use runner::{Order, Runner};
 use rustc_hash::FxHashMap;
 use serde::Deserialize;
@@ -70,6 +107,10 @@ struct Asked {
     value: Option<Value>,
     ranges: Option<Vec<Range>>,
     names: Option<Vec<String>>,
+    from: Option<u64>,
+    to: Option<u64>,
+    most: Option<usize>,
+    format: Option<String>,
 }
 
 /// The simulations that run.
@@ -125,6 +166,12 @@ fn order(command: &str, asked: Asked) -> std::result::Result<Order, Message> {
     };
     let name = asked.name.clone().ok_or_else(|| missing("name"));
     let value = asked.value.clone().ok_or_else(|| missing("value"));
+    let wanted = Wanted {
+        names: asked.names.clone().unwrap_or_default(),
+        from: asked.from,
+        to: asked.to,
+        most: asked.most,
+    };
     Ok(match verb {
         "start" => Order::Start { scan_ms: asked.scan_time, speed: asked.speed, is_paused: asked.paused },
         "stop" => Order::Stop,
@@ -137,6 +184,9 @@ fn order(command: &str, asked: Asked) -> std::result::Result<Order, Message> {
         "force" => Order::Set { name: name?, value: value?, is_force: true },
         "release" => Order::Release { name: asked.name },
         "watch" => Order::Watch { ranges: asked.ranges, names: asked.names },
+        "panel" => Order::Panel,
+        "trace" => Order::Trace { wanted },
+        "export" => Order::Export { wanted, format: asked.format.ok_or_else(|| missing("format"))? },
         _ => Order::State { names: asked.names },
     })
 }

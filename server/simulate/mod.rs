@@ -59,5 +59,11 @@ pub use trace::{Row as TraceRow, Trace, milliseconds};
 mod duration;
 pub use duration::duration;
 
+mod recorder;
+pub use recorder::{Change, Recorder, Signal, is_affordable};
+
+mod presets;
+pub use presets::{Counted, CountedPreset};
+
 mod power_flow;
 pub use power_flow::{Energised, EnergisedKind, power_flow};

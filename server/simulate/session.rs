@@ -204,6 +204,21 @@ impl Session {
         self.times.forget(begin);
     }
 
+    /// The last scan up to `scan` whose state is kept, from which others are run again.
+    pub fn moment_of(&self, scan: u64) -> u64 {
+        self.moment_before(scan).map_or_else(|| self.first_scan(), Machine::scans)
+    }
+
+    /// Shows the PLC as it was after each scan from `first` to `last`, until `see` returns false. Gives whether the
+    /// first one is known.
+    pub fn walk(&self, first: u64, last: u64, mut see: impl FnMut(&Machine<u8>) -> bool) -> bool {
+        let Some(mut machine) = self.at(first.min(self.machine.scans())) else { return false };
+        if see(&machine) {
+            self.replay(&mut machine, last, see);
+        }
+        true
+    }
+
     fn touches_before(&self, scan: u64) -> impl Iterator<Item = Touch> {
         let first = self.touches.partition_point(|(before, _)| *before < scan);
         let touches = self.touches.get(first..).unwrap_or_default().iter();

@@ -50,6 +50,11 @@ impl<L: Lanes> Terminals<L> {
         self.inputs.get_mut(usize::from(cell).checked_sub(self.x.start)?)
     }
 
+    /// The same, to look at it.
+    pub(super) fn input(&self, cell: Cell) -> Option<L> {
+        self.inputs.get(usize::from(cell).checked_sub(self.x.start)?).copied()
+    }
+
     /// What is at the terminal of the output in a cell.
     pub(super) fn output(&self, cell: Cell) -> Option<L> {
         self.outputs.get(usize::from(cell).checked_sub(self.y.start)?).copied()

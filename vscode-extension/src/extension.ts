@@ -9,6 +9,7 @@ import { registerExample } from './example';
 import { FormsView } from './formsView';
 import { ProofView } from './proving';
 import { Pages } from './pages';
+import { PanelView } from './panel/panelView';
 import { ServerController } from './server';
 import type { ProgramStatus, ServerState } from './status';
 import { SimulationView } from './simulationView';
@@ -37,6 +38,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<Rungwi
   const output = vscode.window.createOutputChannel('Rungwise', { log: true });
   const statusBar = new StatusBar();
   const controller = new ServerController(context, output, statusBar);
+  const simulation = new SimulationView(controller);
   server = controller;
   context.subscriptions.push(
     output,
@@ -49,7 +51,8 @@ export async function activate(context: vscode.ExtensionContext): Promise<Rungwi
     new DevicesView(controller),
     new FormsView(controller),
     new ProofView(controller),
-    new SimulationView(controller),
+    simulation,
+    new PanelView(context.extensionUri, simulation),
     RungwiseTasks.register(controller),
     registerExample(context),
     registerWalkthrough(),

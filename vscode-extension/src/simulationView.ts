@@ -30,6 +30,12 @@ export class SimulationView implements vscode.Disposable {
   private readonly status = vscode.window.createStatusBarItem('rungwise.simulation', vscode.StatusBarAlignment.Left, 5);
   /** Programs that are simulated, by the server's address. */
   private readonly running = new Map<string, { uri: vscode.Uri; mode: Mode }>();
+  private readonly pictures = new vscode.EventEmitter<{ readonly document: vscode.Uri; readonly params: unknown }>();
+  private readonly changes = new vscode.EventEmitter<vscode.Uri>();
+  /** The server's pictures of a program. */
+  readonly onDidPicture = this.pictures.event;
+  /** A program that is simulated from now on, or no longer. */
+  readonly onDidChange = this.changes.event;
   private scrolled: ReturnType<typeof setTimeout> | undefined;
 
   constructor(private readonly server: ServerController) {
@@ -43,7 +49,9 @@ export class SimulationView implements vscode.Disposable {
       this.value,
       this.error,
       this.status,
-      registerCommand('rungwise.simulation.start', here((editor) => this.start(editor))),
+      this.pictures,
+      this.changes,
+      registerCommand('rungwise.simulation.start', here((editor) => this.start(editor.document.uri))),
       registerCommand('rungwise.simulation.stop', here((editor) => this.stop(editor.document.uri))),
       registerCommand('rungwise.simulation.pause', here((editor) => this.pause(editor))),
       registerCommand('rungwise.simulation.step', tells('step')),
@@ -55,7 +63,7 @@ export class SimulationView implements vscode.Disposable {
       vscode.window.onDidChangeVisibleTextEditors(() => this.scroll()),
       vscode.window.onDidChangeActiveTextEditor(() => this.showContext()),
       vscode.workspace.onDidCloseTextDocument((document) => void this.stop(document.uri)),
-      server.onNotification(MONITOR, (params) => this.paint(parsePicture(params))),
+      server.onNotification(MONITOR, (params) => this.take(params)),
       server.onDidStart(() => this.forgetAll()),
     ];
   }
@@ -79,21 +87,34 @@ export class SimulationView implements vscode.Disposable {
     }
   }
 
-  private async start({ document }: vscode.TextEditor): Promise<void> {
-    const uri = this.server.protocolUri(document.uri);
-    await this.tell(document.uri, 'start');
-    this.running.set(uri, { uri: document.uri, mode: 'running' });
+  isRunning(document: vscode.Uri): boolean {
+    return this.running.has(this.server.protocolUri(document));
+  }
+
+  async start(document: vscode.Uri): Promise<void> {
+    const uri = this.server.protocolUri(document);
+    await this.tell(document, 'start');
+    this.running.set(uri, { uri: document, mode: 'running' });
     this.showContext();
+    this.changes.fire(document);
     await this.watch();
   }
 
-  private async stop(document: vscode.Uri): Promise<void> {
+  /** Lets pictures tell the values of these names. */
+  async watchNames(document: vscode.Uri, names: readonly string[]): Promise<void> {
+    if (this.isRunning(document)) {
+      await this.tell(document, 'watch', { names });
+    }
+  }
+
+  async stop(document: vscode.Uri): Promise<void> {
     const uri = this.server.protocolUri(document);
     if (!this.running.delete(uri)) {
       return;
     }
     this.clear(document);
     this.showContext();
+    this.changes.fire(document);
     await this.tell(document, 'stop');
   }
 
@@ -109,7 +130,7 @@ export class SimulationView implements vscode.Disposable {
       return;
     }
     const state = (await this.tell(editor.document.uri, 'state', { names: [name] })) as State;
-    const before = state.values?.[0]?.value;
+    const before = state.values?.[0]?.wired ?? state.values?.[0]?.value;
     if (typeof before === 'boolean') {
       await this.tell(editor.document.uri, 'set', { name, value: !before });
     } else {
@@ -128,8 +149,8 @@ export class SimulationView implements vscode.Disposable {
     }
   }
 
-  private async tell(document: vscode.Uri, verb: string, more: object = {}): Promise<unknown> {
-    return this.server.executeCommand(simulate(verb), [{ uri: this.server.protocolUri(document), ...more }]);
+  async tell(document: vscode.Uri, verb: string, more: object = {}): Promise<unknown> {
+    return this.server.executeCommand(simulate(verb), [{ ...more, uri: this.server.protocolUri(document) }]);
   }
 
   /** Tells the server what is on the screen, once it stands still. */
@@ -149,11 +170,16 @@ export class SimulationView implements vscode.Disposable {
     await Promise.all(watched);
   }
 
-  private paint(picture: Picture | undefined): void {
+  private take(params: unknown): void {
+    const picture = parsePicture(params);
     const running = picture && this.running.get(picture.uri);
-    if (picture === undefined || running === undefined) {
-      return;
+    if (picture !== undefined && running !== undefined) {
+      this.paint(picture, running);
+      this.pictures.fire({ document: running.uri, params });
     }
+  }
+
+  private paint(picture: Picture, running: { readonly uri: vscode.Uri; mode: Mode }): void {
     if (running.mode !== picture.mode) {
       running.mode = picture.mode;
       this.showContext();
@@ -190,8 +216,12 @@ export class SimulationView implements vscode.Disposable {
 
   /** A server that was started anew simulates nothing. */
   private forgetAll(): void {
-    [...this.running.values()].forEach(({ uri }) => this.clear(uri));
+    const before = [...this.running.values()];
     this.running.clear();
+    before.forEach(({ uri }) => {
+      this.clear(uri);
+      this.changes.fire(uri);
+    });
     this.showContext();
   }
 
@@ -206,7 +236,7 @@ export class SimulationView implements vscode.Disposable {
 }
 
 interface State {
-  readonly values?: readonly { readonly value?: unknown }[];
+  readonly values?: readonly { readonly value?: unknown; readonly wired?: boolean }[];
 }
 
 function editorsOf(uri: vscode.Uri): readonly vscode.TextEditor[] {

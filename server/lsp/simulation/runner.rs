@@ -3,10 +3,12 @@
 use super::super::projects::Around;
 use super::super::to_proto::Place;
 use super::super::workspace::Workspace;
+use super::chart::{self, Wanted};
 use super::monitor::{Monitor, MonitorMethod, Picture};
+use super::panel;
 use crate::check;
 use crate::document::Document;
-use crate::simulate::{Code, Error, Session, Sight, Touch, Value, Variable, compile};
+use crate::simulate::{Code, Error, Recorder, Session, Sight, Touch, Value, Variable, compile};
 use crate::target::Device;
 use crate::text::Message;
 use serde_json::{Value as Json, json};
@@ -31,6 +33,9 @@ pub(super) enum Order {
     Release { name: Option<String> },
     Watch { ranges: Option<Vec<Range>>, names: Option<Vec<String>> },
     State { names: Option<Vec<String>> },
+    Panel,
+    Trace { wanted: Wanted },
+    Export { wanted: Wanted, format: String },
 }
 
 type Reply = Result<Json, Message>;
@@ -93,6 +98,11 @@ struct Running {
     /// A moment of real time and of simulated time that are the same.
     since: (Instant, i64),
     monitor: Monitor,
+    recorder: Recorder,
+    /// How often the program was made into code.
+    edition: u64,
+    /// How often scans were taken back.
+    branch: u64,
     errors: Vec<Error>,
     sights: Vec<Sight<u8>>,
     shown: Instant,
@@ -149,13 +159,19 @@ impl Thread {
             running.is_paused = *is_paused;
             if let Some(before) = self.running.take() {
                 running.monitor = before.monitor;
+                (running.edition, running.branch) = (before.edition + 1, before.branch + 1);
             }
             self.running = Some(running);
         }
         let running = self.running.as_mut().ok_or_else(|| Message::new("simulate.not-running"))?;
+        let more = running.tell(&order, &workspace, &self.uri)?;
         let names = running.obey(order)?;
         running.locate(&workspace, &self.uri);
-        Ok(running.state(&workspace, &self.uri, names))
+        let mut state = running.state(&workspace, &self.uri, names);
+        if let (Some(state), Some(Json::Object(more))) = (state.as_object_mut(), more) {
+            state.extend(more);
+        }
+        Ok(state)
     }
 }
 
@@ -175,6 +191,9 @@ impl Running {
             scan_ns: 10_000_000,
             since: (Instant::now(), 0),
             monitor: Monitor::default(),
+            recorder: Recorder::default(),
+            edition: 0,
+            branch: 0,
             errors: Vec::new(),
             sights: Vec::new(),
             shown: Instant::now(),
@@ -241,7 +260,7 @@ impl Running {
 
     fn scan(&mut self) {
         let next = self.next_ns();
-        let is_picture = !self.is_outdated && !self.monitor.is_empty() && self.shown.elapsed() >= PICTURE;
+        let is_picture = !self.is_outdated && self.monitor.has_text() && self.shown.elapsed() >= PICTURE;
         let outcome = match is_picture {
             true => {
                 let (sights, watched) = (&mut self.sights, &self.watched);
@@ -259,6 +278,7 @@ impl Running {
             }
         };
         self.is_news = true;
+        self.recorder.note(self.session.machine());
         self.note(outcome.errors);
     }
 
@@ -273,8 +293,10 @@ impl Running {
 
     /// Does what it is told; gives the names whose values are wanted.
     fn obey(&mut self, order: Order) -> Result<Option<Vec<String>>, Message> {
-        if let Order::State { names } = order {
-            return Ok(names);
+        match order {
+            Order::State { names } => return Ok(names),
+            Order::Panel | Order::Trace { .. } | Order::Export { .. } => return Ok(None),
+            _ => {}
         }
         // What was seen was of another scan, or of other lines.
         self.sights.clear();
@@ -299,6 +321,8 @@ impl Running {
             Order::Reset => {
                 self.session = Session::new(Arc::clone(self.session.machine().code()));
                 self.errors.clear();
+                self.recorder.clear();
+                self.branch += 1;
                 self.scan();
                 self.resume();
             }
@@ -312,9 +336,25 @@ impl Running {
                 forced.into_iter().for_each(|device| self.session.touch(Touch::Release(device)));
             }
             Order::Watch { ranges, names } => self.monitor.watch(ranges, names),
-            Order::State { .. } => {}
+            Order::State { .. } | Order::Panel | Order::Trace { .. } | Order::Export { .. } => {}
         }
         Ok(None)
+    }
+
+    /// What is told besides the state.
+    fn tell(&mut self, order: &Order, workspace: &Workspace, uri: &Uri) -> Result<Option<Json>, Message> {
+        let around = || around(workspace, uri).ok_or_else(|| Message::new("simulate.not-running"));
+        Ok(match order {
+            Order::Panel => {
+                let rows = panel::rows(&around()?.view(), self.session.machine());
+                Some(json!({ "rows": rows }))
+            }
+            Order::Trace { wanted } => Some(chart::changes(&mut self.recorder, &self.session, wanted)),
+            Order::Export { wanted, format } => {
+                Some(chart::file(&self.session, &around()?.view(), wanted, format)?)
+            }
+            _ => None,
+        })
     }
 
     fn step_back(&mut self, count: u64, change_of: Option<String>) -> Result<(), Message> {
@@ -331,6 +371,8 @@ impl Running {
         };
         // Something of the first scan remains to be seen.
         self.session.back_to(to.max(self.session.first_scan()).max(1));
+        self.recorder.cut(self.session.machine());
+        self.branch += 1;
         self.errors.clear();
         self.resume();
         Ok(())
@@ -373,6 +415,8 @@ impl Running {
         match compiled(&files) {
             Ok((code, watched)) => {
                 self.session.adopt(code);
+                self.recorder.adopt(self.session.machine());
+                self.edition += 1;
                 (self.watched, self.is_outdated) = (watched, false);
                 self.sights.clear();
             }
@@ -399,7 +443,7 @@ impl Running {
         }
         (self.is_news, self.shown) = (false, Instant::now());
         let scans = self.session.machine().scans();
-        if !self.is_outdated && self.sights.is_empty() {
+        if !self.is_outdated && self.sights.is_empty() && self.monitor.has_text() {
             let watched = Arc::clone(&self.watched);
             self.sights = self.session.sights(scans, &watched).unwrap_or_default();
         }
@@ -420,6 +464,8 @@ impl Running {
             mode: self.mode(),
             scan: scans.saturating_sub(1),
             time_ms: self.session.machine().now_ns() as f64 / 1e6,
+            edition: self.edition,
+            branch: self.branch,
             elements,
             values: self.monitor.values(None, self.session.machine()),
             errors: self.errors_of(place, number as u32),
@@ -447,7 +493,10 @@ impl Running {
             "scan": machine.scans().saturating_sub(1),
             "first_scan": self.session.first_scan().saturating_sub(1),
             "time_ms": machine.now_ns() as f64 / 1e6,
+            "scan_ms": self.scan_ns as f64 / 1e6,
             "speed": self.speed,
+            "edition": self.edition,
+            "branch": self.branch,
             "forced": machine.forced().map(|device| device.to_string()).collect::<Vec<_>>(),
             "values": self.monitor.values(names, machine),
             "errors": errors,
