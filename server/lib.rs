@@ -29,4 +29,6 @@ pub mod ide;
 
 pub mod lsp;
 
+pub mod dap;
+
 pub mod cli;

@@ -3,9 +3,9 @@
 use super::Outcome;
 use super::input::{Program, complain, programs, put, say};
 use crate::document::Document;
-use crate::simulate::{Code, Place, Session, Touch, Trace, TraceRow, Value, Variable, compile, milliseconds};
-use crate::target::iec::LiteralValue;
-use crate::target::{Model, Operand};
+use crate::simulate::{
+    Code, Place, Session, Setting, Touch, Trace, TraceRow, Value, Variable, compile, duration, milliseconds,
+};
 use crate::text::{Encoding, Language, Message, text_width};
 use clap::ValueEnum;
 use serde_json::{Map, Value as Json, json};
@@ -27,7 +27,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "TIME", value_parser = duration, default_value = "10ms")]
     scan_time: i64,
     /// Sets a device or variable, from time 0 or from a time on: X0=1, D0=25@100ms.
-    #[arg(long = "set", value_name = "NAME=VALUE[@TIME]", value_parser = setting)]
+    #[arg(long = "set", value_name = "NAME=VALUE[@TIME]", value_parser = Setting::read)]
     settings: Vec<Setting>,
     /// What is shown, parted by commas; all that the program uses if left out.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
@@ -47,38 +47,6 @@ enum RunFormat {
     Text,
     /// One JSON document.
     Json,
-}
-
-/// A setting of the command line.
-#[derive(Clone, Debug)]
-struct Setting {
-    name: String,
-    value: Value,
-    from_ns: i64,
-}
-
-/// A time as people write it, in nanoseconds; a number alone is milliseconds.
-fn duration(word: &str) -> Result<i64, String> {
-    let bare = word.trim();
-    let time = match bare.parse::<f64>() {
-        Ok(_) => format!("T#{bare}ms"),
-        Err(_) if bare.contains('#') => bare.to_string(),
-        Err(_) => format!("T#{bare}"),
-    };
-    match Operand::read(&time, Model::Iec) {
-        Operand::Literal(literal) => match literal.value {
-            LiteralValue::Time(time_ns) if time_ns >= 0 => Ok(time_ns),
-            _ => Err(word.to_string()),
-        },
-        _ => Err(word.to_string()),
-    }
-}
-
-fn setting(word: &str) -> Result<Setting, String> {
-    let (setting, from) = word.rsplit_once('@').map_or((word, None), |(setting, from)| (setting, Some(from)));
-    let (name, value) = setting.split_once('=').ok_or("NAME=VALUE")?;
-    let value = Value::read(value).ok_or_else(|| value.to_string())?;
-    Ok(Setting { name: name.trim().to_string(), value, from_ns: from.map_or(Ok(0), duration)? })
 }
 
 pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
