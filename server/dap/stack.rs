@@ -20,8 +20,7 @@ impl<W: Write> Adapter<W> {
         let scan = scan.with("time", milliseconds(debugged.debuggee.now_ns())).render(language);
         let places =
             debugged.debuggee.here().map(|here| places(debugged, here, language)).unwrap_or_default();
-        let debugged =
-            self.debugged.as_ref().ok_or_else(|| Message::new("debug.not-launched"))?;
+        let debugged = self.debugged.as_ref().ok_or_else(|| Message::new("debug.not-launched"))?;
         let frame = |(number, (place, routine)): (usize, &(Place, String))| {
             let lines = self.lines(&debugged.program.lines(*place));
             json!({
