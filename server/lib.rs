@@ -31,4 +31,6 @@ pub mod ide;
 
 pub mod lsp;
 
+pub mod dap;
+
 pub mod cli;

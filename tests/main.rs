@@ -19,6 +19,8 @@ mod cli_usage;
 mod command_line;
 mod comments;
 mod corpus;
+mod dap;
+mod dap_client;
 mod document;
 mod drawing_redrawn;
 mod extremes;

@@ -56,6 +56,8 @@ enum Verb {
         #[arg(long, value_name = "FILE")]
         replay: Option<PathBuf>,
     },
+    /// Run the debug adapter on standard input and output.
+    Dap,
     /// Check files, folders or projects with every rule.
     Check(check::Arguments),
     /// Write files in canonical form.
@@ -118,6 +120,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Verb::Lsp { stdio: _, mirror, replay } => {
             server::run(mirror.as_deref(), replay.as_deref(), arguments.language)
         }
+        Verb::Dap => server::debug(arguments.language, language),
         Verb::Check(verb) => check::run(&verb, arguments.color, language).into(),
         Verb::Fmt(verb) => fmt::run(&verb, arguments.color, language).into(),
         Verb::Translate(verb) => translate::run(&verb, language).into(),

@@ -4,7 +4,9 @@ use super::Outcome;
 use super::input::{Program, complain, programs, put, say};
 use crate::document::Document;
 use crate::scenario::picture;
-use crate::simulate::{self, Code, Place, Session, Touch, Trace, TraceRow, Value, Variable, compile};
+use crate::simulate::{
+    self, Code, Place, Session, Setting, Touch, Trace, TraceRow, Value, Variable, compile,
+};
 use crate::text::{Encoding, Language, Message};
 use clap::ValueEnum;
 use serde_json::{Map, Value as Json, json};
@@ -25,7 +27,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "TIME", value_parser = duration, default_value = "10ms")]
     scan_time: i64,
     /// Sets a device or variable, from time 0 or from a time on: X0=1, D0=25@100ms.
-    #[arg(long = "set", value_name = "NAME=VALUE[@TIME]", value_parser = setting)]
+    #[arg(long = "set", value_name = "NAME=VALUE[@TIME]", value_parser = Setting::read)]
     settings: Vec<Setting>,
     /// What is shown, parted by commas; all that the program uses if left out.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
@@ -47,24 +49,9 @@ enum RunFormat {
     Json,
 }
 
-/// A setting of the command line.
-#[derive(Clone, Debug)]
-struct Setting {
-    name: String,
-    value: Value,
-    from_ns: i64,
-}
-
 /// A time as people write it, in nanoseconds.
-pub(super) fn duration(word: &str) -> Result<i64, String> {
+fn duration(word: &str) -> Result<i64, String> {
     simulate::duration(word).ok_or_else(|| word.to_string())
-}
-
-fn setting(word: &str) -> Result<Setting, String> {
-    let (setting, from) = word.rsplit_once('@').map_or((word, None), |(setting, from)| (setting, Some(from)));
-    let (name, value) = setting.split_once('=').ok_or("NAME=VALUE")?;
-    let value = Value::read(value).ok_or_else(|| value.to_string())?;
-    Ok(Setting { name: name.trim().to_string(), value, from_ns: from.map_or(Ok(0), duration)? })
 }
 
 pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
