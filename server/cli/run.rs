@@ -4,9 +4,7 @@ use super::Outcome;
 use super::input::{Program, complain, programs, put, say};
 use crate::document::Document;
 use crate::scenario::picture;
-use crate::simulate::{
-    self, Code, Place, Session, Setting, Touch, Trace, TraceRow, Value, Variable, compile,
-};
+use crate::simulate::{self, Code, Place, Session, Setting, Touch, Trace, TraceRow, Variable, compile};
 use crate::text::{Encoding, Language, Message};
 use clap::ValueEnum;
 use serde_json::{Map, Value as Json, json};
