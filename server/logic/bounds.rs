@@ -128,7 +128,31 @@ impl Bounds {
             if is_done {
                 return Ok((values, before));
             }
+            // Who goes back on the way by which values grew and comes round finds what can never come to rest.
+            if let Some(on_circle) = self.on_circle(&before) {
+                return Err((on_circle, before));
+            }
         }
         Err((grown, before))
+    }
+
+    /// A word by whose growth it grew itself.
+    fn on_circle(&self, before: &[Option<usize>]) -> Option<usize> {
+        let mut seen_from = vec![usize::MAX; before.len()];
+        for start in 0..before.len() {
+            let mut at = start;
+            loop {
+                match seen_from[at] {
+                    usize::MAX => seen_from[at] = start,
+                    known if known == start => return Some(at),
+                    _ => break,
+                }
+                match before[at] {
+                    Some(least) => at = self.least[least].right,
+                    None => break,
+                }
+            }
+        }
+        None
     }
 }

@@ -4,7 +4,7 @@
 use super::formula::{Atom, Node};
 use super::{Bounds, Formula, Formulas, Moment};
 use biodivine_lib_bdd::{Bdd, BddPartialValuation, BddVariable, BddVariableSet, op_function};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 
 /// An answer.
@@ -200,19 +200,28 @@ fn joined(
 }
 
 /// The atoms in the order in which the formulas were written down, which is that of the drawing: contacts that belong
-/// together get neighbouring variables.
+/// together get neighbouring variables. So do the numbers that one word is compared with, for each tells of the next.
 fn in_order_of_use(formulas: &Formulas, wanted: &[Formula], parts: &[Formula]) -> Vec<u32> {
     let mut atoms = formulas.atoms_of(wanted.iter().copied());
-    let known: rustc_hash::FxHashSet<u32> = atoms.iter().copied().collect();
+    let known: FxHashSet<u32> = atoms.iter().copied().collect();
     let more = formulas.atoms_of(parts.iter().copied());
     atoms.extend(more.into_iter().filter(|atom| !known.contains(atom)));
-    atoms
+    let mut first: FxHashMap<&Moment, usize> = FxHashMap::default();
+    let place = |(place, atom): (usize, &u32)| match formulas.atom_at(*atom) {
+        Atom::Reaches { word, number } => (*first.entry(word).or_insert(place), *number),
+        _ => (place, 0),
+    };
+    let places: Vec<(usize, i64)> = atoms.iter().enumerate().map(place).collect();
+    let mut order: Vec<usize> = (0..atoms.len()).collect();
+    order.sort_by_key(|number| places[*number]);
+    order.into_iter().map(|number| atoms[number]).collect()
 }
 
 /// What is true of the atoms of `wanted` among each other: a bit that just came on is on, a word that reaches 10
 /// reaches 5, and of two words one is at least as large as the other.
 pub(super) fn axioms(formulas: &mut Formulas, wanted: &[Formula]) -> Vec<Formula> {
     let atoms = formulas.atoms_of(wanted.iter().copied());
+    let asked: FxHashSet<u32> = atoms.iter().copied().collect();
     let mut axioms = Vec::new();
     let mut numbers: BTreeMap<Moment, Vec<i64>> = BTreeMap::new();
     for atom in atoms {
@@ -228,7 +237,10 @@ pub(super) fn axioms(formulas: &mut Formulas, wanted: &[Formula]) -> Vec<Formula
             Atom::AtLeast { word, other } => {
                 let one = formulas.atom(Atom::AtLeast { word: word.clone(), other: other.clone() });
                 let two = formulas.atom(Atom::AtLeast { word: other, other: word });
-                axioms.push(formulas.or([one, two]));
+                // Where nobody asks for the other way round, it may always be so.
+                if one < two && formulas.atoms_of([two]).iter().all(|two| asked.contains(two)) {
+                    axioms.push(formulas.or([one, two]));
+                }
             }
         }
     }
