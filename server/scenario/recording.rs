@@ -209,7 +209,8 @@ pub fn of_counterexample(found: &Counterexample, names: &[String; 2], language: 
         .with("second", &names[1]);
     let held = |value: &Held| match value {
         Held::Bit(value) => u8::from(*value).to_string(),
-        Held::Word(value) => value.to_string(),
+        Held::Time(_) => quoted(&value.to_string()),
+        Held::Word(_) | Held::Real(_) => value.to_string(),
     };
     let scan = u64::from(!found.before.is_empty());
     let at = |scan: u64| if scan == 1 { "1 scan".to_string() } else { format!("{scan} scans") };

@@ -18,6 +18,10 @@ pub use counterexample::{Counterexample, Value};
 
 mod declared;
 
+mod paired;
+
+mod reached;
+
 mod units;
 
 mod types;
