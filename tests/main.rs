@@ -53,6 +53,7 @@ mod lsp_refactor;
 mod lsp_robust;
 mod lsp_simulation;
 mod lsp_streaming;
+mod lsp_test;
 mod lsp_tokens;
 mod lsp_translate;
 mod lsp_within;

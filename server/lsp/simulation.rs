@@ -16,9 +16,11 @@
 //! rungwise.simulate.release   { name? }                           // one, or all
 //! rungwise.simulate.watch     { ranges?: Range[], names?: string[] }   // what the client shows
 //! rungwise.simulate.state     { names?: string[] }
+//! rungwise.simulate.record    { names?: string[] }                // what was done so far as a scenario test
 //! ```
 //!
-//! Each answers the state:
+//! `record` answers `{ uri, name, text }`: what the file could be called, and what stands in it. What is expected in it
+//! are the changes of `names`, of the outputs where they are left out. Each of the others answers the state:
 //!
 //! ```text
 //! { uri, mode: "running" | "paused" | "stopped", scan, first_scan, time_ms, speed, forced: string[],
@@ -136,6 +138,7 @@ fn order(command: &str, asked: Asked) -> std::result::Result<Order, Message> {
         "set" => Order::Set { name: name?, value: value?, is_force: false },
         "force" => Order::Set { name: name?, value: value?, is_force: true },
         "release" => Order::Release { name: asked.name },
+        "record" => Order::Record { names: asked.names },
         "watch" => Order::Watch { ranges: asked.ranges, names: asked.names },
         _ => Order::State { names: asked.names },
     })
