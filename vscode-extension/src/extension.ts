@@ -13,6 +13,7 @@ import { ServerController } from './server';
 import type { ProgramStatus, ServerState } from './status';
 import { SimulationView } from './simulationView';
 import { StatusBar } from './statusBar';
+import { TestExplorer } from './testExplorer';
 import { RungwiseTasks } from './tasks';
 import { registerTranslations } from './translations';
 import { UsageView } from './usageView';
@@ -50,6 +51,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<Rungwi
     new FormsView(controller),
     new ProofView(controller),
     new SimulationView(controller),
+    new TestExplorer(controller),
     RungwiseTasks.register(controller),
     registerExample(context),
     registerWalkthrough(),
