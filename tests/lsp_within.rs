@@ -159,7 +159,8 @@ fn signatures_marks_lenses_and_ranges() {
         .iter()
         .map(|lens| {
             let resolved = client.request("codeLens/resolve", lens.clone())["result"].clone();
-            let does = if resolved["command"]["title"] == "Simulate" { "rungwise.simulate.start" } else { "" };
+            let does =
+                if resolved["command"]["title"] == "Simulate" { "rungwise.simulate.start" } else { "" };
             assert_eq!(resolved["command"]["command"], does, "plain text");
             resolved["command"]["title"].as_str().unwrap().to_string()
         })

@@ -76,6 +76,7 @@ mod rules_proof;
 mod rules_sense;
 mod rules_sense_fixes;
 mod scenario_mutants;
+mod scenario_schema;
 mod simulate;
 mod simulate_devices;
 mod simulate_rungs;
