@@ -19,9 +19,12 @@
 //! rungwise.simulate.panel     { }
 //! rungwise.simulate.trace     { names: string[], from?: scan, to?: scan, most?: points = 2000 }
 //! rungwise.simulate.export    { format: "vcd" | "csv", names?: string[], from?: scan, to?: scan }
+//! rungwise.simulate.record    { names?: string[] }                // what was done so far as a scenario test
 //! ```
 //!
-//! Each answers the state, the last three with more members:
+//! `record` answers `{ uri, name, text }`: what the file could be called, and what stands in it. What is expected in it
+//! are the changes of `names`, of the outputs where they are left out. Each of the others answers the state, `panel`,
+//! `trace` and `export` with more members:
 //!
 //! ```text
 //! { uri, mode: "running" | "paused" | "stopped", scan, first_scan, time_ms, scan_ms, speed, edition, branch,
@@ -183,6 +186,7 @@ fn order(command: &str, asked: Asked) -> std::result::Result<Order, Message> {
         "set" => Order::Set { name: name?, value: value?, is_force: false },
         "force" => Order::Set { name: name?, value: value?, is_force: true },
         "release" => Order::Release { name: asked.name },
+        "record" => Order::Record { names: asked.names },
         "watch" => Order::Watch { ranges: asked.ranges, names: asked.names },
         "panel" => Order::Panel,
         "trace" => Order::Trace { wanted },

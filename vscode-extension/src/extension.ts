@@ -14,6 +14,7 @@ import { ServerController } from './server';
 import type { ProgramStatus, ServerState } from './status';
 import { SimulationView } from './simulationView';
 import { StatusBar } from './statusBar';
+import { TestExplorer } from './testExplorer';
 import { RungwiseTasks } from './tasks';
 import { registerTranslations } from './translations';
 import { UsageView } from './usageView';
@@ -53,6 +54,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<Rungwi
     new ProofView(controller),
     simulation,
     new PanelView(context.extensionUri, simulation),
+    new TestExplorer(controller),
     RungwiseTasks.register(controller),
     registerExample(context),
     registerWalkthrough(),

@@ -440,6 +440,58 @@ check('a program runs, holds itself, shows its power and goes back', function()
   end)
 end)
 
+check('scenario tests fill the quickfix list, and what was done becomes one', function()
+  local folder = vim.fn.tempname()
+  vim.fn.mkdir(folder)
+  vim.fn.writefile({ 'LD X0', 'OR Y0', 'ANI X1', 'OUT Y0', 'END' }, folder .. '/line.il')
+  local function scenarios(expected)
+    return {
+      '[[scenario]]', 'name = "starts"',
+      ('steps = [{ at = 50, set = { X0 = 1 }, expect = { Y0 = %d } }]'):format(expected),
+    }
+  end
+  vim.fn.writefile(scenarios(0), folder .. '/line.test.toml')
+  vim.cmd.edit(folder .. '/line.test.toml')
+  until_true('a server for the file', function()
+    return #vim.lsp.get_clients({ bufnr = 0, name = 'rungwise' }) == 1
+  end)
+  vim.fn.setqflist({}, 'f')
+  vim.cmd('Rungwise test')
+  local list
+  until_true('a failure in the list', function()
+    list = vim.fn.getqflist()
+    return #list > 1
+  end)
+  assert(vim.fn.bufname(list[1].bufnr):find('line.test.toml', 1, true), vim.inspect(list[1]))
+  assert(list[1].lnum == 3 and list[1].col == 52, vim.inspect(list[1]))
+  assert(list[1].text:find('starts: Y0 is 1 where 0 was expected', 1, true), list[1].text)
+  assert(vim.iter(list):any(function(item)
+    return item.text:find('^^^', 1, true)
+  end), vim.inspect(list))
+  -- Mended, from the program: the list is empty again.
+  vim.api.nvim_buf_set_lines(0, 0, -1, false, scenarios(1))
+  vim.cmd.write()
+  vim.cmd.edit(folder .. '/line.il')
+  vim.cmd('Rungwise test starts')
+  until_true('an empty list', function()
+    return #vim.fn.getqflist() == 0
+  end)
+  vim.cmd('Rungwise simulate')
+  local simulation = require('rungwise.simulation')
+  until_true('a simulation', function()
+    return simulation.running[vim.uri_from_bufnr(0)] ~= nil
+  end)
+  vim.cmd('Rungwise simulate set X0 1')
+  vim.cmd('Rungwise simulate step')
+  vim.cmd('Rungwise simulate record')
+  until_true('a scenario test of its own name', function()
+    return vim.api.nvim_buf_get_name(0):find('line-2.test.toml', 1, true) ~= nil
+  end)
+  assert(buffer_text():find('set = { X0 = 1 }, expect = { Y0 = 1 }', 1, true), buffer_text())
+  vim.cmd('bwipeout!')
+  vim.cmd('Rungwise simulate stop')
+end)
+
 check('two programs are compared with the real server', function()
   local other = vim.fn.tempname() .. '.il'
   vim.fn.writefile({ 'LD X0', 'OUT Y7', 'END' }, other)
