@@ -19,6 +19,7 @@ mod sarif;
 mod server;
 mod translate;
 mod usage;
+mod why;
 
 use crate::text::Language;
 use clap::{Parser, Subcommand, ValueEnum};

@@ -62,5 +62,8 @@ pub use setting::{Setting, duration};
 mod trace;
 pub use trace::{Row as TraceRow, Trace, milliseconds};
 
+mod why;
+pub use why::{Condition, Inquiry, Reason};
+
 mod power_flow;
 pub use power_flow::{Energised, EnergisedKind, power_flow};
