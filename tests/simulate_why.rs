@@ -3,7 +3,7 @@
 use crate::binary::{folder, run};
 use crate::simulate::device;
 use rungwise::document::{Document, Notation};
-use rungwise::simulate::{Condition, Inquiry, Session, Touch, compile};
+use rungwise::simulate::{Condition, Drivers, Inquiry, Session, Touch, compile};
 use rungwise::target::{Model, Target};
 use rungwise::text::Language;
 use serde_json::{Value, json};
@@ -118,7 +118,8 @@ impl Plc {
     fn why(&self, name: &str, scan: Option<u64>) -> String {
         let documents: Vec<&Document> = self.documents.iter().collect();
         let watched = Arc::new(compile(&documents, true).unwrap());
-        let reason = Inquiry::new(&self.session, &watched, &documents).why(name, scan);
+        let drivers = Drivers::of(&documents);
+        let reason = Inquiry::new(&self.session, &watched, &documents, &drivers).why(name, scan);
         let place = |place: rungwise::simulate::Place| {
             (documents[0].line_of(place.span.start as usize) + 1).to_string()
         };

@@ -2,7 +2,7 @@
 
 use super::input::{Program, complain};
 use crate::document::Document;
-use crate::simulate::{Inquiry, Place, Reason, Session, compile, duration};
+use crate::simulate::{Drivers, Inquiry, Place, Reason, Session, compile, duration};
 use crate::text::{Encoding, Language, Message};
 use serde_json::{Value as Json, json};
 use std::sync::Arc;
@@ -39,7 +39,8 @@ pub(super) fn answers(
     let documents: Vec<&Document> = programs.iter().map(|program| &program.document).collect();
     // What could be run can be run watched.
     let watched = Arc::new(compile(&documents, true).ok()?);
-    let inquiry = Inquiry::new(session, &watched, &documents);
+    let drivers = Drivers::of(&documents);
+    let inquiry = Inquiry::new(session, &watched, &documents, &drivers);
     let last = session.machine().scans().saturating_sub(1);
     let answer = |question: &Question| {
         let scan = question.at_ns.map_or(last, |at_ns| ((at_ns / scan_ns.max(1)) as u64).min(last));

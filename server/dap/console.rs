@@ -10,7 +10,7 @@ use super::going::Going;
 use super::launch::Debugged;
 use super::variables::value_of;
 use crate::document::Document;
-use crate::simulate::{Inquiry, Touch, Value, duration};
+use crate::simulate::{Drivers, Inquiry, Touch, Value, duration};
 use crate::target::Device;
 use crate::text::Message;
 use serde_json::{Value as Json, json};
@@ -128,7 +128,8 @@ impl<W: Write> Adapter<W> {
         let program = &debugged.program;
         let documents: Vec<&Document> = program.files.iter().map(|file| &file.document).collect();
         let debuggee = &debugged.debuggee;
-        let inquiry = Inquiry::new(debuggee.session(), debuggee.code(), &documents);
+        let drivers = program.drivers.get_or_init(|| Drivers::of(&documents));
+        let inquiry = Inquiry::new(debuggee.session(), debuggee.code(), &documents, drivers);
         let reason = match debuggee.here() {
             Some(_) => inquiry.within(debuggee.machine(), debuggee.sights()).why(name, None),
             None => inquiry.why(name, None),

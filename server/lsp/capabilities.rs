@@ -27,6 +27,7 @@ pub(super) const COMMANDS: &[&str] = &[
     "rungwise.simulate.release",
     "rungwise.simulate.watch",
     "rungwise.simulate.state",
+    "rungwise.simulate.why",
 ];
 
 /// Applies the `WorkspaceEdit` that is its argument: what a code action does where clients know commands alone.

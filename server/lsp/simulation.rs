@@ -16,9 +16,16 @@
 //! rungwise.simulate.release   { name? }                           // one, or all
 //! rungwise.simulate.watch     { ranges?: Range[], names?: string[] }   // what the client shows
 //! rungwise.simulate.state     { names?: string[] }
+//! rungwise.simulate.why       { name | position, scan?: number }  // from 0 on; the last one if left out
 //! ```
 //!
-//! Each answers the state:
+//! `why` answers a tree, the fewest contacts that hold a device on or keep it off, each with the reasons for it:
+//!
+//! ```text
+//! { text, scan, time_ms, uri?, range?, because: … [] }
+//! ```
+//!
+//! Each other command answers the state:
 //!
 //! ```text
 //! { uri, mode: "running" | "paused" | "stopped", scan, first_scan, time_ms, speed, forced: string[],
@@ -41,16 +48,18 @@ mod monitor;
 
 mod runner;
 
+mod why;
+
 use super::answering::{refused, snapshot};
 use super::workspace::Workspace;
 use crate::text::Message;
-use runner::{Order, Runner};
+use runner::{About, Order, Runner};
 use rustc_hash::FxHashMap;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::sync::{Arc, Mutex, PoisonError};
 use tower_lsp::jsonrpc::Result;
-use tower_lsp::ls_types::{LSPAny, Range, Uri};
+use tower_lsp::ls_types::{LSPAny, Position, Range, Uri};
 
 /// What all commands begin with; [`COMMANDS`](super::capabilities::COMMANDS) has them.
 pub(super) const PREFIX: &str = "rungwise.simulate.";
@@ -70,6 +79,8 @@ struct Asked {
     value: Option<Value>,
     ranges: Option<Vec<Range>>,
     names: Option<Vec<String>>,
+    position: Option<Position>,
+    scan: Option<u64>,
 }
 
 /// The simulations that run.
@@ -117,6 +128,15 @@ impl Simulations {
     }
 }
 
+impl Simulations {
+    /// Why what stands at a position is on or off, in Markdown; nothing unless its program is being simulated.
+    pub(super) async fn brief(&self, uri: &Uri, position: Position) -> Option<String> {
+        let runner = self.0.lock().unwrap_or_else(PoisonError::into_inner).get(uri).cloned()?;
+        let order = Order::Why { about: About::At(position), scan: None, is_brief: true };
+        runner.ask(order).await.ok()?.as_str().map(str::to_string)
+    }
+}
+
 fn order(command: &str, asked: Asked) -> std::result::Result<Order, Message> {
     let verb = command.strip_prefix(PREFIX).unwrap_or_default();
     let missing = |member: &'static str| {
@@ -136,6 +156,14 @@ fn order(command: &str, asked: Asked) -> std::result::Result<Order, Message> {
         "set" => Order::Set { name: name?, value: value?, is_force: false },
         "force" => Order::Set { name: name?, value: value?, is_force: true },
         "release" => Order::Release { name: asked.name },
+        "why" => {
+            let about = asked.position.map(About::At);
+            Order::Why {
+                about: about.map_or_else(|| name.map(About::Name), Ok)?,
+                scan: asked.scan,
+                is_brief: false,
+            }
+        }
         "watch" => Order::Watch { ranges: asked.ranges, names: asked.names },
         _ => Order::State { names: asked.names },
     })

@@ -63,7 +63,7 @@ mod trace;
 pub use trace::{Row as TraceRow, Trace, milliseconds};
 
 mod why;
-pub use why::{Condition, Inquiry, Reason};
+pub use why::{Condition, Drivers, Inquiry, Reason};
 
 mod power_flow;
 pub use power_flow::{Energised, EnergisedKind, power_flow};

@@ -8,6 +8,7 @@ mod cut;
 pub use cut::Condition;
 
 mod drivers;
+pub use drivers::Drivers;
 
 mod seen;
 
@@ -17,7 +18,7 @@ use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{Contact, Deed, Expression, Test};
 use crate::target::{Device, DeviceKind, Flow, Operand, Semantics};
 use crate::text::{Language, Message, Span};
-use drivers::{Driver, Drivers, Wire};
+use drivers::{Driver, Wire};
 use seen::Seen;
 use smol_str::{SmolStr, ToSmolStr};
 use std::cell::RefCell;
@@ -67,7 +68,7 @@ pub struct Inquiry<'a> {
     documents: &'a [&'a Document],
     /// The scan that is going on: the PLC as it is there, and what was seen of it.
     open: Option<(&'a Machine<u8>, Rc<Seen>)>,
-    drivers: Drivers,
+    drivers: &'a Drivers,
     known: RefCell<Vec<(u64, Rc<Seen>)>>,
     reasons: RefCell<usize>,
 }
@@ -109,14 +110,20 @@ const MOST_REASONS: usize = 80;
 const MOST_IDLE: usize = 4;
 
 impl<'a> Inquiry<'a> {
-    /// Asks about a session; `watched` is code of `documents`, which are its program, that says what it sees.
-    pub fn new(session: &'a Session, watched: &'a Arc<Code>, documents: &'a [&'a Document]) -> Inquiry<'a> {
+    /// Asks about a session; `watched` is code of `documents`, which are its program, that says what it sees, and
+    /// `drivers` are theirs.
+    pub fn new(
+        session: &'a Session,
+        watched: &'a Arc<Code>,
+        documents: &'a [&'a Document],
+        drivers: &'a Drivers,
+    ) -> Inquiry<'a> {
         Inquiry {
             session,
             watched,
             documents,
             open: None,
-            drivers: Drivers::of(documents),
+            drivers,
             known: RefCell::default(),
             reasons: RefCell::default(),
         }

@@ -4,9 +4,10 @@ use super::super::projects::Around;
 use super::super::to_proto::Place;
 use super::super::workspace::Workspace;
 use super::monitor::{Monitor, MonitorMethod, Picture};
+use super::why;
 use crate::check;
 use crate::document::Document;
-use crate::simulate::{Code, Error, Session, Sight, Touch, Value, Variable, compile};
+use crate::simulate::{Code, Drivers, Error, Inquiry, Session, Sight, Touch, Value, Variable, compile};
 use crate::target::Device;
 use crate::text::Message;
 use serde_json::{Value as Json, json};
@@ -15,7 +16,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
 use tokio::sync::oneshot;
-use tower_lsp::ls_types::{Range, Uri};
+use tower_lsp::ls_types::{Position, Range, Uri};
 
 /// What a simulation is told to do.
 #[derive(Clone, Debug)]
@@ -31,6 +32,14 @@ pub(super) enum Order {
     Release { name: Option<String> },
     Watch { ranges: Option<Vec<Range>>, names: Option<Vec<String>> },
     State { names: Option<Vec<String>> },
+    Why { about: About, scan: Option<u64>, is_brief: bool },
+}
+
+/// What is asked about: a name, or what stands at a position.
+#[derive(Clone, Debug)]
+pub(super) enum About {
+    Name(String),
+    At(Position),
 }
 
 type Reply = Result<Json, Message>;
@@ -95,6 +104,8 @@ struct Running {
     monitor: Monitor,
     errors: Vec<Error>,
     sights: Vec<Sight<u8>>,
+    /// What drives what, once somebody has asked why.
+    drivers: Option<Drivers>,
     shown: Instant,
     is_news: bool,
 }
@@ -153,6 +164,9 @@ impl Thread {
             self.running = Some(running);
         }
         let running = self.running.as_mut().ok_or_else(|| Message::new("simulate.not-running"))?;
+        if let Order::Why { about, scan, is_brief } = order {
+            return running.why(&workspace, &self.uri, about, scan, is_brief);
+        }
         let names = running.obey(order)?;
         running.locate(&workspace, &self.uri);
         Ok(running.state(&workspace, &self.uri, names))
@@ -177,6 +191,7 @@ impl Running {
             monitor: Monitor::default(),
             errors: Vec::new(),
             sights: Vec::new(),
+            drivers: None,
             shown: Instant::now(),
             is_news: true,
         })
@@ -312,7 +327,7 @@ impl Running {
                 forced.into_iter().for_each(|device| self.session.touch(Touch::Release(device)));
             }
             Order::Watch { ranges, names } => self.monitor.watch(ranges, names),
-            Order::State { .. } => {}
+            Order::State { .. } | Order::Why { .. } => {}
         }
         Ok(None)
     }
@@ -378,7 +393,7 @@ impl Running {
             }
             Err(_) => self.is_outdated = true,
         }
-        self.files = files;
+        (self.files, self.drivers) = (files, None);
         self.locate(workspace, uri);
     }
 
@@ -423,6 +438,38 @@ impl Running {
             elements,
             values: self.monitor.values(None, self.session.machine()),
             errors: self.errors_of(place, number as u32),
+        })
+    }
+
+    /// Why a device is on or off after a scan, or now.
+    fn why(
+        &mut self,
+        workspace: &Workspace,
+        uri: &Uri,
+        about: About,
+        scan: Option<u64>,
+        is_brief: bool,
+    ) -> Reply {
+        let gone = || Message::new("simulate.not-running");
+        if self.is_outdated {
+            return Err(Message::new("why.outdated"));
+        }
+        let number = self.files.iter().position(|(file, ..)| file == uri).ok_or_else(gone)?;
+        let here = Place::new(&self.files[number].2, workspace.snapshot().manner);
+        let name = match about {
+            About::Name(name) => name,
+            About::At(position) => {
+                let name = why::name_at(here.document, here.offset(position));
+                name.ok_or_else(|| Message::new("why.no-name"))?
+            }
+        };
+        let documents: Vec<&Document> = self.files.iter().map(|(_, _, document)| document).collect();
+        let drivers = self.drivers.get_or_insert_with(|| Drivers::of(&documents));
+        let reason = Inquiry::new(&self.session, &self.watched, &documents, drivers).why(&name, scan);
+        let reason = reason.ok_or_else(|| Message::new("why.unknown").with("name", &name))?;
+        Ok(match is_brief {
+            true => why::brief(&reason, here.language).into(),
+            false => why::told(&reason, &self.files, here),
         })
     }
 

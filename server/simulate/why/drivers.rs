@@ -9,7 +9,8 @@ use rustc_hash::FxHashMap;
 use smol_str::{SmolStr, ToSmolStr};
 
 /// What drives each device of a program, in the order of execution.
-pub(super) struct Drivers {
+#[derive(Debug)]
+pub struct Drivers {
     by_name: FxHashMap<SmolStr, Vec<Driver>>,
     /// Master controls and steps by their places.
     rails: FxHashMap<Place, Driver>,
@@ -43,7 +44,8 @@ pub(super) enum Wire {
 const MOST_AT_ONCE: u32 = 512;
 
 impl Drivers {
-    pub(super) fn of(documents: &[&Document]) -> Drivers {
+    /// Reads documents that are one program, in the order of execution.
+    pub fn of(documents: &[&Document]) -> Drivers {
         let mut reader = Reader {
             drivers: Drivers { by_name: FxHashMap::default(), rails: FxHashMap::default() },
             sections: Vec::new(),
