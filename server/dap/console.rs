@@ -130,9 +130,12 @@ impl<W: Write> Adapter<W> {
         let debuggee = &debugged.debuggee;
         let drivers = program.drivers.get_or_init(|| Drivers::of(&documents));
         let inquiry = Inquiry::new(debuggee.session(), debuggee.code(), &documents, drivers);
-        let reason = match debuggee.here() {
-            Some(_) => inquiry.within(debuggee.machine(), debuggee.sights()).why(name, None),
-            None => inquiry.why(name, None),
+        let sights = debuggee.sights();
+        // Where a scan begins, the one before it is the answer.
+        let is_inside = sights.len() > 1 || debuggee.scan() == 1;
+        let reason = match is_inside && debuggee.here().is_some() {
+            true => inquiry.within(debuggee.machine(), sights).why(name, None),
+            false => inquiry.why(name, None),
         };
         let told = match reason {
             Some(reason) => reason.told(language, |place| program.shown(place)),
