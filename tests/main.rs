@@ -86,6 +86,7 @@ mod simulate;
 mod simulate_devices;
 mod simulate_rungs;
 mod simulate_session;
+mod simulate_why;
 mod simulate_words;
 mod stack_machine;
 mod target_fx;

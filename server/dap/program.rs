@@ -6,11 +6,12 @@ use crate::project::{
     CommentsFile, MANIFEST_NAME, Manifest, Project, Stamp, is_program_file, open_document, program_files,
     read_text,
 };
-use crate::simulate::{Code, Place, Problem, compile};
+use crate::simulate::{Code, Drivers, Place, Problem, compile};
 use crate::target::{Model, Target};
 use crate::text::{Encoding, LineColumn, Message, Span};
 use rustc_hash::FxHashSet;
 use serde_json::{Value, json};
+use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -21,6 +22,8 @@ pub(super) struct Program {
     /// Code that says what it sees. The same code runs without breakpoints, so that a scan that the watchdog ends is
     /// ended at the same instruction.
     pub(super) code: Arc<Code>,
+    /// What drives what, once somebody has asked why.
+    pub(super) drivers: OnceCell<Drivers>,
     /// Instructions at which it can stop, in the order of the text.
     stops: Vec<(Place, u32)>,
     /// Where rungs begin, in the order of the text.
@@ -75,7 +78,7 @@ impl Program {
         stops.sort_unstable_by_key(|(place, _)| {
             (place.document, place.span.start, std::cmp::Reverse(place.span.end))
         });
-        Ok(Program { files, code: Arc::new(code), stops, rungs })
+        Ok(Program { files, code: Arc::new(code), drivers: OnceCell::new(), stops, rungs })
     }
 
     /// The number of the file at `path`.

@@ -79,12 +79,20 @@ impl LanguageServer for Backend {
         if let Some(manifest) = manifest_help::asked(&at) {
             return Ok(manifest_help::hover(&manifest, at.position));
         }
-        Ok(with_around(&at.text_document.uri, |around, place| {
+        let hover = with_around(&at.text_document.uri, |around, place| {
             let link =
                 |file, line| features::link(around, file, line).filter(|_| place.abilities.markdown_hover);
             let hover = ide::hover_in(&around.view(), place.offset(at.position), place.language, &link)?;
             Some(to_proto::hover(place, hover))
-        }))
+        });
+        let Some(mut hover) = hover else { return Ok(None) };
+        // While the program runs beside its text, what it does comes first.
+        if let Some(why) = self.simulations.brief(&at.text_document.uri, at.position).await
+            && let HoverContents::Markup(content) = &mut hover.contents
+        {
+            content.value = format!("{why}\n\n---\n\n{}", content.value);
+        }
+        Ok(Some(hover))
     }
 
     async fn completion(&self, params: CompletionParams) -> Result<Option<CompletionResponse>> {

@@ -33,6 +33,7 @@ pub(super) const COMMANDS: &[&str] = &[
     "rungwise.simulate.record",
     testing::LIST,
     testing::RUN,
+    "rungwise.simulate.why",
 ];
 
 /// Applies the `WorkspaceEdit` that is its argument: what a code action does where clients know commands alone.

@@ -70,6 +70,8 @@ pub use recorder::{Change, Recorder, Signal, is_affordable};
 
 mod presets;
 pub use presets::{Counted, CountedPreset};
+mod why;
+pub use why::{Condition, Drivers, Inquiry, Reason};
 
 mod power_flow;
 pub use power_flow::{Energised, EnergisedKind, power_flow};

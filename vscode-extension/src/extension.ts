@@ -3,6 +3,7 @@
 import * as vscode from 'vscode';
 import { registerCommands } from './commands';
 import { currentSettings } from './configuration';
+import { Debuggers } from './debuggers';
 import { DevicesView } from './devicesView';
 import { DrawingEditor } from './drawing';
 import { registerExample } from './example';
@@ -55,6 +56,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<Rungwi
     simulation,
     new PanelView(context.extensionUri, simulation),
     new TestExplorer(controller),
+    new Debuggers(controller),
     RungwiseTasks.register(controller),
     registerExample(context),
     registerWalkthrough(),

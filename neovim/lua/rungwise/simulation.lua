@@ -206,6 +206,16 @@ M.verbs = {
   release = function(buffer, words)
     M.tell(buffer, 'release', { name = words[1] })
   end,
+  why = function(buffer, words)
+    local server = client.expect(buffer)
+    if server then
+      local encoding = server.offset_encoding
+      local here = vim.lsp.util.make_position_params(0, encoding).position
+      tell(buffer, 'why', words[1] and { name = words[1] } or { position = here }, function(reason)
+        require('rungwise.why').show(reason, encoding)
+      end)
+    end
+  end,
 }
 
 --- The verbs, sorted.

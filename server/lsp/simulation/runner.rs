@@ -6,10 +6,13 @@ use super::super::workspace::Workspace;
 use super::chart::{self, Wanted};
 use super::monitor::{Monitor, MonitorMethod, Picture};
 use super::panel;
+use super::why;
 use crate::check;
 use crate::document::Document;
 use crate::scenario::{Bench, InputKind, Recording};
-use crate::simulate::{Code, Error, Recorder, Session, Sight, Touch, Value, Variable, compile};
+use crate::simulate::{
+    Code, Drivers, Error, Inquiry, Recorder, Session, Sight, Touch, Value, Variable, compile,
+};
 use crate::target::Device;
 use crate::text::{Language, Message};
 use serde_json::{Value as Json, json};
@@ -18,7 +21,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
 use tokio::sync::oneshot;
-use tower_lsp::ls_types::{Range, Uri};
+use tower_lsp::ls_types::{Position, Range, Uri};
 
 /// What a simulation is told to do.
 #[derive(Clone, Debug)]
@@ -38,6 +41,14 @@ pub(super) enum Order {
     Trace { wanted: Wanted },
     Export { wanted: Wanted, format: String },
     Record { names: Option<Vec<String>> },
+    Why { about: About, scan: Option<u64>, is_brief: bool },
+}
+
+/// What is asked about: a name, or what stands at a position.
+#[derive(Clone, Debug)]
+pub(super) enum About {
+    Name(String),
+    At(Position),
 }
 
 type Reply = Result<Json, Message>;
@@ -109,6 +120,8 @@ struct Running {
     branch: u64,
     errors: Vec<Error>,
     sights: Vec<Sight<u8>>,
+    /// What drives what, once somebody has asked why.
+    drivers: Option<Drivers>,
     shown: Instant,
     is_news: bool,
 }
@@ -168,9 +181,15 @@ impl Thread {
             self.running = Some(running);
         }
         let running = self.running.as_mut().ok_or_else(|| Message::new("simulate.not-running"))?;
-        if let Order::Record { names } = order {
-            let language = workspace.snapshot().manner.language;
-            return running.record(&self.uri, &names.unwrap_or_default(), language);
+        match order {
+            Order::Record { names } => {
+                let language = workspace.snapshot().manner.language;
+                return running.record(&self.uri, &names.unwrap_or_default(), language);
+            }
+            Order::Why { about, scan, is_brief } => {
+                return running.why(&workspace, &self.uri, about, scan, is_brief);
+            }
+            _ => {}
         }
         let more = running.tell(&order, &workspace, &self.uri)?;
         let names = running.obey(order)?;
@@ -205,6 +224,7 @@ impl Running {
             branch: 0,
             errors: Vec::new(),
             sights: Vec::new(),
+            drivers: None,
             shown: Instant::now(),
             is_news: true,
         })
@@ -352,7 +372,8 @@ impl Running {
             | Order::Panel
             | Order::Trace { .. }
             | Order::Export { .. }
-            | Order::Record { .. } => {}
+            | Order::Record { .. }
+            | Order::Why { .. } => {}
         }
         Ok(None)
     }
@@ -459,7 +480,7 @@ impl Running {
             }
             Err(_) => self.is_outdated = true,
         }
-        self.files = files;
+        (self.files, self.drivers) = (files, None);
         self.locate(workspace, uri);
     }
 
@@ -506,6 +527,38 @@ impl Running {
             elements,
             values: self.monitor.values(None, self.session.machine()),
             errors: self.errors_of(place, number as u32),
+        })
+    }
+
+    /// Why a device is on or off after a scan, or now.
+    fn why(
+        &mut self,
+        workspace: &Workspace,
+        uri: &Uri,
+        about: About,
+        scan: Option<u64>,
+        is_brief: bool,
+    ) -> Reply {
+        let gone = || Message::new("simulate.not-running");
+        if self.is_outdated {
+            return Err(Message::new("why.outdated"));
+        }
+        let number = self.files.iter().position(|(file, ..)| file == uri).ok_or_else(gone)?;
+        let here = Place::new(&self.files[number].2, workspace.snapshot().manner);
+        let name = match about {
+            About::Name(name) => name,
+            About::At(position) => {
+                let name = why::name_at(here.document, here.offset(position));
+                name.ok_or_else(|| Message::new("why.no-name"))?
+            }
+        };
+        let documents: Vec<&Document> = self.files.iter().map(|(_, _, document)| document).collect();
+        let drivers = self.drivers.get_or_insert_with(|| Drivers::of(&documents));
+        let reason = Inquiry::new(&self.session, &self.watched, &documents, drivers).why(&name, scan);
+        let reason = reason.ok_or_else(|| Message::new("why.unknown").with("name", &name))?;
+        Ok(match is_brief {
+            true => why::brief(&reason, here.language).into(),
+            false => why::told(&reason, &self.files, here),
         })
     }
 
