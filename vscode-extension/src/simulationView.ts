@@ -21,7 +21,7 @@ export class SimulationView implements vscode.Disposable {
     textDecoration: 'underline dotted',
   });
   private readonly value = vscode.window.createTextEditorDecorationType({
-    after: { color: new vscode.ThemeColor('editorInlayHint.foreground'), margin: '0 0 0 0.3em' },
+    after: { color: new vscode.ThemeColor('editorInlayHint.foreground'), margin: '0 0.4em 0 0.3em' },
   });
   private readonly error = vscode.window.createTextEditorDecorationType({
     textDecoration: 'underline wavy',
@@ -36,12 +36,18 @@ export class SimulationView implements vscode.Disposable {
   readonly onDidPicture = this.pictures.event;
   /** A program that is simulated from now on, or no longer. */
   readonly onDidChange = this.changes.event;
+  private operated: vscode.Uri | undefined;
   private scrolled: ReturnType<typeof setTimeout> | undefined;
 
   constructor(private readonly server: ServerController) {
     const { registerCommand } = vscode.commands;
-    const here = (run: (editor: vscode.TextEditor) => Promise<unknown>) => () => this.run(run);
-    const tells = (verb: string) => here(({ document }) => this.tell(document.uri, verb));
+    const here = (run: (program: vscode.Uri) => Promise<unknown>) => () => this.run(run);
+    const tells = (verb: string) => here((program) => this.tell(program, verb));
+    const atCursor = (run: (editor: vscode.TextEditor) => Promise<void>) =>
+      here(async () => {
+        const editor = vscode.window.activeTextEditor;
+        await (editor && run(editor));
+      });
     this.status.name = 'Rungwise';
     this.subscriptions = [
       this.energised,
@@ -51,14 +57,14 @@ export class SimulationView implements vscode.Disposable {
       this.status,
       this.pictures,
       this.changes,
-      registerCommand('rungwise.simulation.start', here((editor) => this.start(editor.document.uri))),
-      registerCommand('rungwise.simulation.stop', here((editor) => this.stop(editor.document.uri))),
-      registerCommand('rungwise.simulation.pause', here((editor) => this.pause(editor))),
+      registerCommand('rungwise.simulation.start', here((program) => this.start(program))),
+      registerCommand('rungwise.simulation.stop', here((program) => this.stop(program))),
+      registerCommand('rungwise.simulation.pause', here((program) => this.pause(program))),
       registerCommand('rungwise.simulation.step', tells('step')),
       registerCommand('rungwise.simulation.stepBack', tells('stepBack')),
       registerCommand('rungwise.simulation.reset', tells('reset')),
-      registerCommand('rungwise.simulation.toggle', here((editor) => this.toggle(editor))),
-      registerCommand('rungwise.simulation.setValue', here((editor) => this.setValue(editor))),
+      registerCommand('rungwise.simulation.toggle', atCursor((editor) => this.toggle(editor))),
+      registerCommand('rungwise.simulation.setValue', atCursor((editor) => this.setValue(editor))),
       vscode.window.onDidChangeTextEditorVisibleRanges(() => this.scroll()),
       vscode.window.onDidChangeVisibleTextEditors(() => this.scroll()),
       vscode.window.onDidChangeActiveTextEditor(() => this.showContext()),
@@ -73,14 +79,25 @@ export class SimulationView implements vscode.Disposable {
     vscode.Disposable.from(...this.subscriptions).dispose();
   }
 
-  private async run(run: (editor: vscode.TextEditor) => Promise<unknown>): Promise<void> {
-    const editor = vscode.window.activeTextEditor;
-    if (editor === undefined || !LANGUAGES.includes(editor.document.languageId)) {
+  /** A panel that has the keyboard is about this program; without one the program is that of the editor. */
+  operate(program: vscode.Uri | undefined): void {
+    this.operated = program;
+    this.showContext();
+  }
+
+  private get program(): vscode.Uri | undefined {
+    const document = vscode.window.activeTextEditor?.document;
+    return this.operated ?? (document && LANGUAGES.includes(document.languageId) ? document.uri : undefined);
+  }
+
+  private async run(run: (program: vscode.Uri) => Promise<unknown>): Promise<void> {
+    const { program } = this;
+    if (program === undefined) {
       void vscode.window.showInformationMessage(vscode.l10n.t('Rungwise: open a .lad or .il file to simulate it.'));
       return;
     }
     try {
-      await run(editor);
+      await run(program);
     } catch (error) {
       const reason = error instanceof Error ? error.message : String(error);
       void vscode.window.showErrorMessage(`Rungwise: ${reason}`);
@@ -118,9 +135,9 @@ export class SimulationView implements vscode.Disposable {
     await this.tell(document, 'stop');
   }
 
-  private async pause({ document }: vscode.TextEditor): Promise<void> {
-    const running = this.running.get(this.server.protocolUri(document.uri));
-    await this.tell(document.uri, running?.mode === 'paused' ? 'run' : 'pause');
+  private async pause(program: vscode.Uri): Promise<void> {
+    const running = this.running.get(this.server.protocolUri(program));
+    await this.tell(program, running?.mode === 'paused' ? 'run' : 'pause');
   }
 
   /** Turns the relay or input at the cursor over. */
@@ -226,8 +243,8 @@ export class SimulationView implements vscode.Disposable {
   }
 
   private showContext(): void {
-    const document = vscode.window.activeTextEditor?.document;
-    const mode = document && this.running.get(this.server.protocolUri(document.uri))?.mode;
+    const { program } = this;
+    const mode = program && this.running.get(this.server.protocolUri(program))?.mode;
     void vscode.commands.executeCommand('setContext', 'rungwise.simulation', mode ?? 'stopped');
     if (this.running.size === 0) {
       this.status.hide();

@@ -31,7 +31,7 @@ export interface SceneWish {
   readonly cursor: number | undefined;
 }
 
-export const LABEL_WIDTH = 132;
+export const LABEL_WIDTH = 148;
 const AXIS_HEIGHT = 22;
 const BIT_HEIGHT = 28;
 const WORD_HEIGHT = 48;
@@ -86,12 +86,12 @@ export function scene({ width, rows, traces, view, scanMs, cursor }: SceneWish):
     const columns = pixels(traces.points(row.name, Math.floor(view.from), Math.ceil(view.to)), x, x(Math.min(newest, view.to)));
     const value = shown < 0 ? undefined : traces.value(row.name, Math.floor(shown));
     const middle = top + laneHeight(row) / 2 + 4;
-    shapes.push({ kind: 'text', look: 'label', x: 10, y: middle, text: cut(row.label, 11), anchor: 'start' });
+    shapes.push({ kind: 'text', look: 'label', x: 10, y: middle, text: cut(`${row.label} ${row.symbol}`.trim(), 14), anchor: 'start' });
     if (value !== undefined) {
       const words = typeof value === 'boolean' ? (value ? '1' : '0') : reading(value, row.unitMs);
       shapes.push({ kind: 'text', look: 'value', x: LABEL_WIDTH - 10, y: middle, text: cut(words, 8), anchor: 'end' });
     }
-    shapes.push(...(row.type === 'bit' ? bitShapes(columns, lane) : wordShapes(columns, lane)));
+    shapes.push(...(row.type === 'bit' ? bitShapes(columns, lane) : wordShapes(columns, lane, row.preset ?? 0)));
     top += laneHeight(row);
   }
   if (newest >= view.from && newest < view.to) {
@@ -172,13 +172,13 @@ function bitShapes(columns: readonly Column[], lane: Lane): Shape[] {
   return shapes;
 }
 
-/** Steps between the least and the greatest value that is shown, which stand beside. */
-function wordShapes(columns: readonly Column[], lane: Lane): Shape[] {
+/** Steps between the least and the greatest value that is shown, with 0 and the preset among them. */
+function wordShapes(columns: readonly Column[], lane: Lane, preset: number): Shape[] {
   if (columns.length === 0) {
     return [];
   }
-  const least = Math.min(...columns.map((column) => column.least));
-  const greatest = Math.max(...columns.map((column) => column.greatest));
+  const least = columns.reduce((found, column) => Math.min(found, column.least), 0);
+  const greatest = columns.reduce((found, column) => Math.max(found, column.greatest), Math.max(preset, 0));
   const y = (value: number) =>
     greatest === least ? lane.bottom - 1 : lane.bottom - ((value - least) / (greatest - least)) * (lane.bottom - lane.top);
   const path: [number, number][] = [];
