@@ -36,6 +36,7 @@ export class SimulationView implements vscode.Disposable {
   readonly onDidPicture = this.pictures.event;
   /** A program that is simulated from now on, or no longer. */
   readonly onDidChange = this.changes.event;
+  private readonly painted = new WeakMap<vscode.TextEditor, Map<vscode.TextEditorDecorationType, string>>();
   private operated: vscode.Uri | undefined;
   private scrolled: ReturnType<typeof setTimeout> | undefined;
 
@@ -204,19 +205,10 @@ export class SimulationView implements vscode.Disposable {
     for (const editor of editorsOf(running.uri)) {
       // What was painted of another version stands in other places.
       if (editor.document.version === picture.version) {
-        editor.setDecorations(this.energised, picture.energised.map(toRange));
-        editor.setDecorations(this.ready, picture.ready.map(toRange));
-        editor.setDecorations(
-          this.value,
-          placedValues(editor.document, picture.values).map(({ range, text }) => ({
-            range,
-            renderOptions: { after: { contentText: text } },
-          })),
-        );
-        editor.setDecorations(
-          this.error,
-          picture.errors.map(({ range, message }) => ({ range: toRange(range), hoverMessage: message })),
-        );
+        this.decorate(editor, this.energised, picture.energised);
+        this.decorate(editor, this.ready, picture.ready);
+        this.decorate(editor, this.value, placedValues(editor.document, picture.values));
+        this.decorate(editor, this.error, picture.errors);
       }
     }
     const icon = picture.mode === 'paused' ? '$(debug-pause)' : '$(play)';
@@ -225,8 +217,20 @@ export class SimulationView implements vscode.Disposable {
     this.status.show();
   }
 
+  /** Paints what is another than before: most of a screen stays as it is from picture to picture. */
+  private decorate(editor: vscode.TextEditor, type: vscode.TextEditorDecorationType, painted: readonly Painted[]): void {
+    const before = this.painted.get(editor) ?? new Map<vscode.TextEditorDecorationType, string>();
+    this.painted.set(editor, before);
+    const now = `${editor.document.version} ${JSON.stringify(painted)}`;
+    if (before.get(type) !== now) {
+      before.set(type, now);
+      editor.setDecorations(type, painted.map(toDecoration));
+    }
+  }
+
   private clear(document: vscode.Uri): void {
     for (const editor of editorsOf(document)) {
+      this.painted.delete(editor);
       [this.energised, this.ready, this.value, this.error].forEach((type) => editor.setDecorations(type, []));
     }
   }
@@ -260,20 +264,31 @@ function editorsOf(uri: vscode.Uri): readonly vscode.TextEditor[] {
   return vscode.window.visibleTextEditors.filter(({ document }) => document.uri.toString() === uri.toString());
 }
 
+/** A piece of text that is painted, or one with words of its own. */
+type Painted = PlainRange | { readonly range: PlainRange; readonly text: string } | Picture['errors'][number];
+
+function toDecoration(painted: Painted): vscode.DecorationOptions {
+  if (!('range' in painted)) {
+    return { range: toRange(painted) };
+  }
+  const range = toRange(painted.range);
+  return 'text' in painted ? { range, renderOptions: { after: { contentText: painted.text } } } : { range, hoverMessage: painted.message };
+}
+
 /** Beside the words of a list; in a drawing at the end of the row, lest its columns move. */
-function placedValues(
-  document: vscode.TextDocument,
-  values: Picture['values'],
-): { range: vscode.Range; text: string }[] {
+function placedValues(document: vscode.TextDocument, values: Picture['values']): { range: PlainRange; text: string }[] {
   if (document.languageId !== 'ladder') {
-    return values.map(({ range, value }) => ({ range: toRange(range), text: `= ${value}` }));
+    return values.map(({ range, value }) => ({ range, text: `= ${value}` }));
   }
   const rows = new Map<number, string[]>();
   for (const { range, value } of values) {
     const row = rows.get(range.start.line) ?? [];
     rows.set(range.start.line, [...row, `${document.getText(toRange(range))} = ${value}`]);
   }
-  return [...rows].map(([line, words]) => ({ range: document.lineAt(line).range, text: `  ${words.join(', ')}  ` }));
+  return [...rows].map(([line, words]) => {
+    const { start, end } = document.lineAt(line).range;
+    return { range: { start, end }, text: `  ${words.join(', ')}  ` };
+  });
 }
 
 function nameAt({ document, selection }: vscode.TextEditor): string | undefined {

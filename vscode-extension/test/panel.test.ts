@@ -94,6 +94,21 @@ test('a past of which changes were left out is looked at closely where it is sho
   assert.equal(traces.closer(['X0'], 1_000, 1_100), undefined);
 });
 
+test('of a long run the newest scans are known one by one', () => {
+  const traces = new Traces();
+  const overview = traces.question(['X0'], 0);
+  const end = 1_000_000;
+  const many = Array.from({ length: overview.most }, (_, at): [number, boolean] => [at * (end / overview.most), at % 2 === 0]);
+  traces.take(overview, answer(0, end, many));
+  const tail = traces.question(['X0'], 0);
+  assert.deepEqual([tail.from, tail.to], [end - overview.most / 2, undefined]);
+  // No scan can have more changes than are asked for.
+  assert.ok(end - tail.from < tail.most);
+  traces.take(tail, answer(tail.from, end, [[tail.from, false], [end - 3, true], [end - 1, false]]));
+  assert.deepEqual([traces.lastScan, traces.value('X0', end - 2), traces.value('X0', end)], [end, true, false]);
+  assert.equal(traces.closer(['X0'], end - 300, end), undefined);
+});
+
 test('a chart follows the newest scan until it is moved away, and again from the right edge on', () => {
   const view = follow(FIRST_VIEW, 1_000);
   assert.deepEqual(view, { from: 700, to: 1_000, follows: true });

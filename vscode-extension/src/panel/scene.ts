@@ -70,10 +70,12 @@ export function scene({ width, rows, traces, view, scanMs, cursor }: SceneWish):
   const plot = plotWidth(width);
   const x = (scan: number) => LABEL_WIDTH + ((scan - view.from) / (view.to - view.from)) * plot;
   const times = ticks(view, scanMs, plot / 84);
+  const hasCursor = cursor !== undefined && cursor >= view.from && cursor <= view.to;
   for (const { scan, label } of times) {
     shapes.push({ kind: 'path', look: 'grid', points: [[x(scan), AXIS_HEIGHT], [x(scan), height]] });
-    // What would stand out at an edge is left out.
-    if (x(scan) > LABEL_WIDTH + 18 && x(scan) < width - 18) {
+    // What would stand out at an edge, or under the time of the cursor, is left out.
+    const isCovered = hasCursor && Math.abs(x(scan) - x(cursor)) < 84;
+    if (x(scan) > LABEL_WIDTH + 18 && x(scan) < width - 18 && !isCovered) {
       shapes.push({ kind: 'text', look: 'axis', x: x(scan), y: 14, text: label, anchor: 'middle' });
     }
   }
@@ -97,7 +99,7 @@ export function scene({ width, rows, traces, view, scanMs, cursor }: SceneWish):
   if (newest >= view.from && newest < view.to) {
     shapes.push({ kind: 'path', look: 'now', points: [[x(newest), AXIS_HEIGHT], [x(newest), height]], dashed: true });
   }
-  if (cursor !== undefined && cursor >= view.from && cursor <= view.to) {
+  if (hasCursor) {
     const at = x(cursor);
     const label = `${Math.round(cursor)} · ${duration(Math.round(cursor) * scanMs, 1)}`;
     const anchor = at > width - 70 ? 'end' : at < LABEL_WIDTH + 70 ? 'start' : 'middle';
