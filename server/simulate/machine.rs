@@ -7,7 +7,7 @@ use super::layout::{NS_BEYOND, RESET};
 use super::row::{self, Cell, Row};
 use super::terminals::Terminals;
 use super::timing::{self, Moment};
-use super::{Lanes, Memory, Slot, Variable, annunciators, clock};
+use super::{Glimpse, Lanes, Memory, Slot, Variable, annunciators, clock};
 use crate::target::{Device, DeviceKind, Execution, Fault, Outside};
 use crate::text::Message;
 use std::sync::Arc;
@@ -318,6 +318,11 @@ impl<L: Lanes> Machine<L> {
 
     /// The same; `watch` is told what each instruction sees, if the code says it, and ends the scan there with false.
     pub fn scan_watched(&mut self, now_ns: i64, watch: &mut impl FnMut(Sight<L>) -> bool) -> Outcome {
+        self.scan_inside(now_ns, &mut |glimpse| watch(glimpse.sight))
+    }
+
+    /// The same, and `watch` may look at the PLC as it is there.
+    pub fn scan_inside(&mut self, now_ns: i64, watch: &mut impl FnMut(Glimpse<'_, L>) -> bool) -> Outcome {
         self.scan_ns = if self.scans == 0 { 0 } else { now_ns - self.now_ns };
         self.now_ns = now_ns;
         self.scans += 1;
@@ -389,7 +394,13 @@ impl<L: Lanes> Machine<L> {
         }
     }
 
-    fn run(&mut self, code: &Code, rows: &[Row], run: &mut Run, watch: &mut impl FnMut(Sight<L>) -> bool) {
+    fn run(
+        &mut self,
+        code: &Code,
+        rows: &[Row],
+        run: &mut Run,
+        watch: &mut impl FnMut(Glimpse<'_, L>) -> bool,
+    ) {
         let mut at = 0;
         while let Some(op) = code.ops.get(at) {
             let mut next = at + 1;
@@ -408,7 +419,7 @@ impl<L: Lanes> Machine<L> {
                 }
                 Op::Seen { place, power } => {
                     let sight = Sight { instruction: place, conducts: None, power: self.memory.cell(power) };
-                    if !watch(sight) {
+                    if !watch(run.glimpse(self, sight)) {
                         run.outcome.is_broken_off = true;
                         return;
                     }
@@ -418,7 +429,8 @@ impl<L: Lanes> Machine<L> {
                 Op::SeenContact { place, src, invert, power } => {
                     let conducts = self.memory.cell(src) ^ L::all(invert);
                     let power = self.memory.cell(power);
-                    if !watch(Sight { instruction: place, conducts: Some(conducts), power }) {
+                    let sight = Sight { instruction: place, conducts: Some(conducts), power };
+                    if !watch(run.glimpse(self, sight)) {
                         run.outcome.is_broken_off = true;
                         return;
                     }
@@ -678,6 +690,10 @@ impl Run {
             self.ops = 0;
         }
         is_renewed
+    }
+
+    fn glimpse<'m, L>(&'m self, machine: &'m Machine<L>, sight: Sight<L>) -> Glimpse<'m, L> {
+        Glimpse { machine, sight, calls: &self.calls, routines: &self.routines }
     }
 
     fn error(&mut self, code: &Code, at: usize, kind: ErrorKind, lane: usize) {

@@ -47,14 +47,23 @@ mod interrupts;
 mod machine;
 pub use machine::{Error, ErrorKind, Machine, Outcome, Sight};
 
+mod glimpse;
+pub use glimpse::{Caller, Glimpse};
+
 mod session;
 pub use session::{Session, Touch};
 
 mod variable;
 pub use variable::{Value, Variable};
 
+mod setting;
+pub use setting::Setting;
+
 mod trace;
 pub use trace::{Row as TraceRow, Trace, milliseconds};
+
+mod duration;
+pub use duration::duration;
 
 mod recorder;
 pub use recorder::{Change, Recorder, Signal, is_affordable};

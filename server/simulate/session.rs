@@ -30,7 +30,8 @@ pub enum Touch {
 }
 
 impl Touch {
-    fn apply(self, machine: &mut Machine<u8>) {
+    /// Does it.
+    pub fn apply(self, machine: &mut Machine<u8>) {
         match self {
             Touch::Set(device, on) => machine.set(device, if on { 0xFF } else { 0 }),
             Touch::SetWord(device, value) => machine.set_word(device, value),
