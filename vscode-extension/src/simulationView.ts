@@ -22,7 +22,7 @@ export class SimulationView implements vscode.Disposable {
     textDecoration: 'underline dotted',
   });
   private readonly value = vscode.window.createTextEditorDecorationType({
-    after: { color: new vscode.ThemeColor('editorInlayHint.foreground'), margin: '0 0 0 0.3em' },
+    after: { color: new vscode.ThemeColor('editorInlayHint.foreground'), margin: '0 0.4em 0 0.3em' },
   });
   private readonly error = vscode.window.createTextEditorDecorationType({
     textDecoration: 'underline wavy',
@@ -37,12 +37,19 @@ export class SimulationView implements vscode.Disposable {
   readonly onDidPicture = this.pictures.event;
   /** A program that is simulated from now on, or no longer. */
   readonly onDidChange = this.changes.event;
+  private readonly painted = new WeakMap<vscode.TextEditor, Map<vscode.TextEditorDecorationType, string>>();
+  private operated: vscode.Uri | undefined;
   private scrolled: ReturnType<typeof setTimeout> | undefined;
 
   constructor(private readonly server: ServerController) {
     const { registerCommand } = vscode.commands;
-    const here = (run: (editor: vscode.TextEditor) => Promise<unknown>) => () => this.run(run);
-    const tells = (verb: string) => here(({ document }) => this.tell(document.uri, verb));
+    const here = (run: (program: vscode.Uri) => Promise<unknown>) => () => this.run(run);
+    const tells = (verb: string) => here((program) => this.tell(program, verb));
+    const atCursor = (run: (editor: vscode.TextEditor) => Promise<void>) =>
+      here(async () => {
+        const editor = vscode.window.activeTextEditor;
+        await (editor && run(editor));
+      });
     this.status.name = 'Rungwise';
     this.subscriptions = [
       this.energised,
@@ -52,15 +59,15 @@ export class SimulationView implements vscode.Disposable {
       this.status,
       this.pictures,
       this.changes,
-      registerCommand('rungwise.simulation.start', here((editor) => this.start(editor.document.uri))),
-      registerCommand('rungwise.simulation.stop', here((editor) => this.stop(editor.document.uri))),
-      registerCommand('rungwise.simulation.pause', here((editor) => this.pause(editor))),
+      registerCommand('rungwise.simulation.start', here((program) => this.start(program))),
+      registerCommand('rungwise.simulation.stop', here((program) => this.stop(program))),
+      registerCommand('rungwise.simulation.pause', here((program) => this.pause(program))),
       registerCommand('rungwise.simulation.step', tells('step')),
       registerCommand('rungwise.simulation.stepBack', tells('stepBack')),
       registerCommand('rungwise.simulation.reset', tells('reset')),
-      registerCommand('rungwise.simulation.toggle', here((editor) => this.toggle(editor))),
-      registerCommand('rungwise.simulation.record', here((editor) => this.record(editor))),
-      registerCommand('rungwise.simulation.setValue', here((editor) => this.setValue(editor))),
+      registerCommand('rungwise.simulation.toggle', atCursor((editor) => this.toggle(editor))),
+      registerCommand('rungwise.simulation.record', atCursor((editor) => this.record(editor))),
+      registerCommand('rungwise.simulation.setValue', atCursor((editor) => this.setValue(editor))),
       vscode.window.onDidChangeTextEditorVisibleRanges(() => this.scroll()),
       vscode.window.onDidChangeVisibleTextEditors(() => this.scroll()),
       vscode.window.onDidChangeActiveTextEditor(() => this.showContext()),
@@ -75,14 +82,25 @@ export class SimulationView implements vscode.Disposable {
     vscode.Disposable.from(...this.subscriptions).dispose();
   }
 
-  private async run(run: (editor: vscode.TextEditor) => Promise<unknown>): Promise<void> {
-    const editor = vscode.window.activeTextEditor;
-    if (editor === undefined || !LANGUAGES.includes(editor.document.languageId)) {
+  /** A panel that has the keyboard is about this program; without one the program is that of the editor. */
+  operate(program: vscode.Uri | undefined): void {
+    this.operated = program;
+    this.showContext();
+  }
+
+  private get program(): vscode.Uri | undefined {
+    const document = vscode.window.activeTextEditor?.document;
+    return this.operated ?? (document && LANGUAGES.includes(document.languageId) ? document.uri : undefined);
+  }
+
+  private async run(run: (program: vscode.Uri) => Promise<unknown>): Promise<void> {
+    const { program } = this;
+    if (program === undefined) {
       void vscode.window.showInformationMessage(vscode.l10n.t('Rungwise: open a .lad or .il file to simulate it.'));
       return;
     }
     try {
-      await run(editor);
+      await run(program);
     } catch (error) {
       const reason = error instanceof Error ? error.message : String(error);
       void vscode.window.showErrorMessage(`Rungwise: ${reason}`);
@@ -120,9 +138,9 @@ export class SimulationView implements vscode.Disposable {
     await this.tell(document, 'stop');
   }
 
-  private async pause({ document }: vscode.TextEditor): Promise<void> {
-    const running = this.running.get(this.server.protocolUri(document.uri));
-    await this.tell(document.uri, running?.mode === 'paused' ? 'run' : 'pause');
+  private async pause(program: vscode.Uri): Promise<void> {
+    const running = this.running.get(this.server.protocolUri(program));
+    await this.tell(program, running?.mode === 'paused' ? 'run' : 'pause');
   }
 
   /** Turns the relay or input at the cursor over. */
@@ -206,19 +224,10 @@ export class SimulationView implements vscode.Disposable {
     for (const editor of editorsOf(running.uri)) {
       // What was painted of another version stands in other places.
       if (editor.document.version === picture.version) {
-        editor.setDecorations(this.energised, picture.energised.map(toRange));
-        editor.setDecorations(this.ready, picture.ready.map(toRange));
-        editor.setDecorations(
-          this.value,
-          placedValues(editor.document, picture.values).map(({ range, text }) => ({
-            range,
-            renderOptions: { after: { contentText: text } },
-          })),
-        );
-        editor.setDecorations(
-          this.error,
-          picture.errors.map(({ range, message }) => ({ range: toRange(range), hoverMessage: message })),
-        );
+        this.decorate(editor, this.energised, picture.energised);
+        this.decorate(editor, this.ready, picture.ready);
+        this.decorate(editor, this.value, placedValues(editor.document, picture.values));
+        this.decorate(editor, this.error, picture.errors);
       }
     }
     const icon = picture.mode === 'paused' ? '$(debug-pause)' : '$(play)';
@@ -227,8 +236,20 @@ export class SimulationView implements vscode.Disposable {
     this.status.show();
   }
 
+  /** Paints what is another than before: most of a screen stays as it is from picture to picture. */
+  private decorate(editor: vscode.TextEditor, type: vscode.TextEditorDecorationType, painted: readonly Painted[]): void {
+    const before = this.painted.get(editor) ?? new Map<vscode.TextEditorDecorationType, string>();
+    this.painted.set(editor, before);
+    const now = `${editor.document.version} ${JSON.stringify(painted)}`;
+    if (before.get(type) !== now) {
+      before.set(type, now);
+      editor.setDecorations(type, painted.map(toDecoration));
+    }
+  }
+
   private clear(document: vscode.Uri): void {
     for (const editor of editorsOf(document)) {
+      this.painted.delete(editor);
       [this.energised, this.ready, this.value, this.error].forEach((type) => editor.setDecorations(type, []));
     }
   }
@@ -245,8 +266,8 @@ export class SimulationView implements vscode.Disposable {
   }
 
   private showContext(): void {
-    const document = vscode.window.activeTextEditor?.document;
-    const mode = document && this.running.get(this.server.protocolUri(document.uri))?.mode;
+    const { program } = this;
+    const mode = program && this.running.get(this.server.protocolUri(program))?.mode;
     void vscode.commands.executeCommand('setContext', 'rungwise.simulation', mode ?? 'stopped');
     if (this.running.size === 0) {
       this.status.hide();
@@ -262,20 +283,31 @@ function editorsOf(uri: vscode.Uri): readonly vscode.TextEditor[] {
   return vscode.window.visibleTextEditors.filter(({ document }) => document.uri.toString() === uri.toString());
 }
 
+/** A piece of text that is painted, or one with words of its own. */
+type Painted = PlainRange | { readonly range: PlainRange; readonly text: string } | Picture['errors'][number];
+
+function toDecoration(painted: Painted): vscode.DecorationOptions {
+  if (!('range' in painted)) {
+    return { range: toRange(painted) };
+  }
+  const range = toRange(painted.range);
+  return 'text' in painted ? { range, renderOptions: { after: { contentText: painted.text } } } : { range, hoverMessage: painted.message };
+}
+
 /** Beside the words of a list; in a drawing at the end of the row, lest its columns move. */
-function placedValues(
-  document: vscode.TextDocument,
-  values: Picture['values'],
-): { range: vscode.Range; text: string }[] {
+function placedValues(document: vscode.TextDocument, values: Picture['values']): { range: PlainRange; text: string }[] {
   if (document.languageId !== 'ladder') {
-    return values.map(({ range, value }) => ({ range: toRange(range), text: `= ${value}` }));
+    return values.map(({ range, value }) => ({ range, text: `= ${value}` }));
   }
   const rows = new Map<number, string[]>();
   for (const { range, value } of values) {
     const row = rows.get(range.start.line) ?? [];
     rows.set(range.start.line, [...row, `${document.getText(toRange(range))} = ${value}`]);
   }
-  return [...rows].map(([line, words]) => ({ range: document.lineAt(line).range, text: `  ${words.join(', ')}  ` }));
+  return [...rows].map(([line, words]) => {
+    const { start, end } = document.lineAt(line).range;
+    return { range: { start, end }, text: `  ${words.join(', ')}  ` };
+  });
 }
 
 function nameAt({ document, selection }: vscode.TextEditor): string | undefined {

@@ -4,7 +4,7 @@ import { pageDocument } from '../src/panel/document';
 import {
   firstSignals, grouped, isSwitch, namesOf, parseMoment, parseRows, progress, reading, sliderEnds, typedNumber, type Row,
 } from '../src/panel/rows';
-import { rowAt, scanAt, scene, sceneHeight, type Shape } from '../src/panel/scene';
+import { LABEL_WIDTH, rowAt, scanAt, scene, sceneHeight, type Shape } from '../src/panel/scene';
 import { svg } from '../src/panel/svg';
 import { Traces, type TraceAnswer } from '../src/panel/traces';
 import { FIRST_VIEW, duration, fit, follow, pan, ticks, zoom } from '../src/panel/viewport';
@@ -94,6 +94,21 @@ test('a past of which changes were left out is looked at closely where it is sho
   assert.equal(traces.closer(['X0'], 1_000, 1_100), undefined);
 });
 
+test('of a long run the newest scans are known one by one', () => {
+  const traces = new Traces();
+  const overview = traces.question(['X0'], 0);
+  const end = 1_000_000;
+  const many = Array.from({ length: overview.most }, (_, at): [number, boolean] => [at * (end / overview.most), at % 2 === 0]);
+  traces.take(overview, answer(0, end, many));
+  const tail = traces.question(['X0'], 0);
+  assert.deepEqual([tail.from, tail.to], [end - overview.most / 2, undefined]);
+  // No scan can have more changes than are asked for.
+  assert.ok(end - tail.from < tail.most);
+  traces.take(tail, answer(tail.from, end, [[tail.from, false], [end - 3, true], [end - 1, false]]));
+  assert.deepEqual([traces.lastScan, traces.value('X0', end - 2), traces.value('X0', end)], [end, true, false]);
+  assert.equal(traces.closer(['X0'], end - 300, end), undefined);
+});
+
 test('a chart follows the newest scan until it is moved away, and again from the right edge on', () => {
   const view = follow(FIRST_VIEW, 1_000);
   assert.deepEqual(view, { from: 700, to: 1_000, follows: true });
@@ -115,7 +130,7 @@ test('lines of time stand at round times', () => {
   assert.deepEqual([duration(125_000, 60_000), duration(3_725_000, 60_000), duration(12, 1), duration(59_000, 10_000)], ['2:05', '1:02:05', '12 ms', '59 s']);
 });
 
-const wish = { width: 642, rows: [row('X0'), row('T0')], view: { from: 0, to: 100, follows: false }, scanMs: 10, cursor: 50 };
+const wish = { width: LABEL_WIDTH + 510, rows: [row('X0'), row('T0')], view: { from: 0, to: 100, follows: false }, scanMs: 10, cursor: 50 };
 
 test('a chart has a high line with an area where a bit is on, steps for numbers, and values at the cursor', () => {
   const traces = new Traces();
@@ -130,12 +145,12 @@ test('a chart has a high line with an area where a bit is on, steps for numbers,
   assert.equal(height, sceneHeight(wish.rows));
   const areas = shapes.filter((shape) => shape.kind === 'area');
   // 500 pixels for 100 scans.
-  assert.deepEqual(areas.map(({ x, width }) => [x, width]), [[132 + 200, 100]]);
+  assert.deepEqual(areas.map(({ x, width }) => [x, width]), [[LABEL_WIDTH + 200, 100]]);
   const texts = shapes.flatMap((shape) => (shape.kind === 'text' ? [shape.text] : []));
   for (const text of ['X0', '1', 'T0', '0.7 s', '50 · 500 ms']) {
     assert.ok(texts.includes(text), `${text} in ${texts}`);
   }
-  assert.equal(Math.round(scanAt(132 + 250, 642, wish.view)), 50);
+  assert.equal(Math.round(scanAt(LABEL_WIDTH + 250, wish.width, wish.view)), 50);
   assert.deepEqual([rowAt(10, wish.rows), rowAt(30, wish.rows)?.name, rowAt(60, wish.rows)?.name], [undefined, 'X0', 'T0']);
 });
 

@@ -66,6 +66,7 @@ export class PanelView implements vscode.WebviewPanelSerializer, vscode.Disposab
     this.panels.set(key, new Panel(program, view, this.extension, this.simulation));
     view.onDidDispose(() => {
       this.panels.delete(key);
+      this.simulation.operate(undefined);
       void this.simulation.watchNames(program, []);
     });
   }
@@ -91,7 +92,7 @@ class Panel {
     const image = (name: string) => vscode.Uri.joinPath(extension, 'images', name);
     view.iconPath = { light: image('panel-light.svg'), dark: image('panel-dark.svg') };
     webview.onDidReceiveMessage((message: FromPage) => void this.take(message));
-    view.onDidChangeViewState(() => void this.watch());
+    view.onDidChangeViewState(() => this.viewChanged());
     webview.html = pageDocument({
       source: webview.cspSource,
       script: file('dist', 'panel.js'),
@@ -122,6 +123,11 @@ class Panel {
       this.edition = undefined;
       this.tellPage({ type: 'moment', moment: STOPPED });
     }
+  }
+
+  private viewChanged(): void {
+    this.simulation.operate(this.view.active ? this.program : undefined);
+    void this.watch();
   }
 
   private tellPage(message: ToPage): void {

@@ -31,7 +31,7 @@ export interface SceneWish {
   readonly cursor: number | undefined;
 }
 
-export const LABEL_WIDTH = 132;
+export const LABEL_WIDTH = 148;
 const AXIS_HEIGHT = 22;
 const BIT_HEIGHT = 28;
 const WORD_HEIGHT = 48;
@@ -70,10 +70,12 @@ export function scene({ width, rows, traces, view, scanMs, cursor }: SceneWish):
   const plot = plotWidth(width);
   const x = (scan: number) => LABEL_WIDTH + ((scan - view.from) / (view.to - view.from)) * plot;
   const times = ticks(view, scanMs, plot / 84);
+  const hasCursor = cursor !== undefined && cursor >= view.from && cursor <= view.to;
   for (const { scan, label } of times) {
     shapes.push({ kind: 'path', look: 'grid', points: [[x(scan), AXIS_HEIGHT], [x(scan), height]] });
-    // What would stand out at an edge is left out.
-    if (x(scan) > LABEL_WIDTH + 18 && x(scan) < width - 18) {
+    // What would stand out at an edge, or under the time of the cursor, is left out.
+    const isCovered = hasCursor && Math.abs(x(scan) - x(cursor)) < 84;
+    if (x(scan) > LABEL_WIDTH + 18 && x(scan) < width - 18 && !isCovered) {
       shapes.push({ kind: 'text', look: 'axis', x: x(scan), y: 14, text: label, anchor: 'middle' });
     }
   }
@@ -86,18 +88,18 @@ export function scene({ width, rows, traces, view, scanMs, cursor }: SceneWish):
     const columns = pixels(traces.points(row.name, Math.floor(view.from), Math.ceil(view.to)), x, x(Math.min(newest, view.to)));
     const value = shown < 0 ? undefined : traces.value(row.name, Math.floor(shown));
     const middle = top + laneHeight(row) / 2 + 4;
-    shapes.push({ kind: 'text', look: 'label', x: 10, y: middle, text: cut(row.label, 11), anchor: 'start' });
+    shapes.push({ kind: 'text', look: 'label', x: 10, y: middle, text: cut(`${row.label} ${row.symbol}`.trim(), 14), anchor: 'start' });
     if (value !== undefined) {
       const words = typeof value === 'boolean' ? (value ? '1' : '0') : reading(value, row.unitMs);
       shapes.push({ kind: 'text', look: 'value', x: LABEL_WIDTH - 10, y: middle, text: cut(words, 8), anchor: 'end' });
     }
-    shapes.push(...(row.type === 'bit' ? bitShapes(columns, lane) : wordShapes(columns, lane)));
+    shapes.push(...(row.type === 'bit' ? bitShapes(columns, lane) : wordShapes(columns, lane, row.preset ?? 0)));
     top += laneHeight(row);
   }
   if (newest >= view.from && newest < view.to) {
     shapes.push({ kind: 'path', look: 'now', points: [[x(newest), AXIS_HEIGHT], [x(newest), height]], dashed: true });
   }
-  if (cursor !== undefined && cursor >= view.from && cursor <= view.to) {
+  if (hasCursor) {
     const at = x(cursor);
     const label = `${Math.round(cursor)} · ${duration(Math.round(cursor) * scanMs, 1)}`;
     const anchor = at > width - 70 ? 'end' : at < LABEL_WIDTH + 70 ? 'start' : 'middle';
@@ -172,13 +174,13 @@ function bitShapes(columns: readonly Column[], lane: Lane): Shape[] {
   return shapes;
 }
 
-/** Steps between the least and the greatest value that is shown, which stand beside. */
-function wordShapes(columns: readonly Column[], lane: Lane): Shape[] {
+/** Steps between the least and the greatest value that is shown, with 0 and the preset among them. */
+function wordShapes(columns: readonly Column[], lane: Lane, preset: number): Shape[] {
   if (columns.length === 0) {
     return [];
   }
-  const least = Math.min(...columns.map((column) => column.least));
-  const greatest = Math.max(...columns.map((column) => column.greatest));
+  const least = columns.reduce((found, column) => Math.min(found, column.least), 0);
+  const greatest = columns.reduce((found, column) => Math.max(found, column.greatest), Math.max(preset, 0));
   const y = (value: number) =>
     greatest === least ? lane.bottom - 1 : lane.bottom - ((value - least) / (greatest - least)) * (lane.bottom - lane.top);
   const path: [number, number][] = [];

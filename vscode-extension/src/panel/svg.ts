@@ -25,8 +25,9 @@ export function styleOf(look: Look, colours: Palette): Style {
   const plain = { width: 1, opacity: 1, bold: false };
   switch (look) {
     case 'grid':
+      return { ...plain, stroke: colours.line, opacity: 0.55 };
     case 'lane':
-      return { ...plain, stroke: colours.line };
+      return { ...plain, stroke: colours.line, opacity: 0.8 };
     case 'off':
       return { ...plain, stroke: colours.dim, opacity: 0.5 };
     case 'on':

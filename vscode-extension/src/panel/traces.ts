@@ -29,6 +29,8 @@ interface Signal {
 const MOST_KEPT = 16_000;
 /** So many points show more than a screen has pixels. */
 export const MOST_ASKED = 4_000;
+/** The newest scans are known one by one, whatever was left out before them. */
+const TAIL = MOST_ASKED / 2;
 
 export class Traces {
   private signals = new Map<string, Signal>();
@@ -74,15 +76,23 @@ export class Traces {
       this.close = answer.branch === this.branch ? { from: answer.from, to: answer.to, signals } : undefined;
       return;
     }
+    // A thinned answer has a quarter of the points at least, and one that is not thinned says so with fewer scans.
+    const isThinned =
+      answer.to - answer.from >= question.most && answer.signals.some(({ points }) => points.length > question.most / 4);
+    this.last = answer.to;
     if (question.from === 0) {
-      const isThinned = answer.signals.some(({ points }) => points.length > question.most / 4);
-      this.thinnedTo = isThinned ? answer.to : -1;
       const known = Math.max(0, ...[...signals.values()].map(({ knownFrom }) => knownFrom));
       const before = Math.max(0, ...[...this.signals.values()].map(({ knownFrom }) => knownFrom));
       // Whoever finds no more in two questions has found all.
       this.isSearching = known > 0 && (this.branch !== answer.branch || known !== before);
       [this.signals, this.branch, this.close] = [signals, answer.branch, undefined];
+      this.thinnedTo = isThinned ? answer.to - TAIL : -1;
+      if (isThinned) {
+        this.last = answer.to - TAIL;
+        signals.forEach(({ points }) => points.splice(Math.max(behind(points, this.last), 1)));
+      }
     } else {
+      this.thinnedTo = isThinned ? answer.to : this.thinnedTo;
       for (const [name, { points }] of signals) {
         const known = this.signals.get(name);
         if (known !== undefined) {
@@ -90,7 +100,6 @@ export class Traces {
         }
       }
     }
-    this.last = answer.to;
   }
 
   /** Forgets everything. */

@@ -113,8 +113,10 @@ export class ChartView {
       this.traces.take(asked.question, answer);
       this.view = follow(this.view, this.last);
       this.draw();
-      if (answer.branch !== this.plc.moment?.branch || answer.to < (this.plc.moment?.scan ?? 0)) {
+      if (answer.branch !== this.plc.moment?.branch || this.traces.lastScan < (this.plc.moment?.scan ?? 0)) {
         this.ask();
+      } else if (this.plc.moment.mode === 'paused') {
+        this.lookClosely();
       }
     }
   }
@@ -133,6 +135,11 @@ export class ChartView {
     this.view = follow(view, this.last);
     this.changed(this.view);
     this.draw();
+    this.lookClosely();
+  }
+
+  /** Asks for what was left out of the scans that are shown, once they stand still. */
+  private lookClosely(): void {
     clearTimeout(this.still);
     this.still = setTimeout(() => {
       const question = this.traces.closer(this.names(), Math.floor(this.view.from), Math.ceil(this.view.to));

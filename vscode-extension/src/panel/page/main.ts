@@ -70,12 +70,13 @@ class Page {
 
   takeMoment(moment: Moment | undefined, id?: number): void {
     moment?.values.forEach((reading) => this.readings.set(reading.device, reading));
+    const wasStopped = this.plc.isStopped;
     this.plc.take(moment, id);
-    if (moment?.mode === 'stopped') {
+    // What was stopped can still be looked at; what begins anew has no past.
+    if (wasStopped && !this.plc.isStopped) {
       this.chart.forget();
-    } else {
-      this.chart.ask();
     }
+    this.chart.ask();
     this.frame ||= requestAnimationFrame(() => {
       this.frame = 0;
       this.show();
