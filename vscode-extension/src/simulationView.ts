@@ -66,7 +66,7 @@ export class SimulationView implements vscode.Disposable {
       registerCommand('rungwise.simulation.stepBack', tells('stepBack')),
       registerCommand('rungwise.simulation.reset', tells('reset')),
       registerCommand('rungwise.simulation.toggle', atCursor((editor) => this.toggle(editor))),
-      registerCommand('rungwise.simulation.record', atCursor((editor) => this.record(editor))),
+      registerCommand('rungwise.simulation.record', here((program) => this.record(program))),
       registerCommand('rungwise.simulation.setValue', atCursor((editor) => this.setValue(editor))),
       vscode.window.onDidChangeTextEditorVisibleRanges(() => this.scroll()),
       vscode.window.onDidChangeVisibleTextEditors(() => this.scroll()),
@@ -170,9 +170,9 @@ export class SimulationView implements vscode.Disposable {
   }
 
   /** Opens what was done so far as a scenario test in a file that is not saved yet. */
-  private async record({ document }: vscode.TextEditor): Promise<void> {
-    const { name, text } = (await this.tell(document.uri, 'record')) as { name: string; text: string };
-    const at = (file: string) => vscode.Uri.joinPath(document.uri, '..', file);
+  private async record(program: vscode.Uri): Promise<void> {
+    const { name, text } = (await this.tell(program, 'record')) as { name: string; text: string };
+    const at = (file: string) => vscode.Uri.joinPath(program, '..', file);
     const exists = async (file: string) => {
       const isOpen = vscode.workspace.textDocuments.some(({ uri }) => uri.path === at(file).path);
       return isOpen || vscode.workspace.fs.stat(at(file)).then(() => true, () => false);
