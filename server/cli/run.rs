@@ -6,7 +6,7 @@ use super::why;
 use crate::document::Document;
 use crate::scenario::picture;
 use crate::simulate::{
-    self, Code, Place, Reason, Session, Setting, Touch, Trace, TraceRow, Variable, compile, milliseconds,
+    self, Code, Place, Reason, Session, Setting, Touch, Trace, TraceRow, Variable, compile,
 };
 use crate::text::{Encoding, Language, Message};
 use clap::ValueEnum;
@@ -54,7 +54,7 @@ enum RunFormat {
 }
 
 /// A time as people write it, in nanoseconds.
-fn duration(word: &str) -> Result<i64, String> {
+pub(super) fn duration(word: &str) -> Result<i64, String> {
     simulate::duration(word).ok_or_else(|| word.to_string())
 }
 

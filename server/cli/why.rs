@@ -1,8 +1,9 @@
 //! `rungwise run --why`: which contacts held a device on or off.
 
 use super::input::{Program, complain};
+use super::run::duration;
 use crate::document::Document;
-use crate::simulate::{Drivers, Inquiry, Place, Reason, Session, compile, duration};
+use crate::simulate::{Drivers, Inquiry, Place, Reason, Session, compile};
 use crate::text::{Encoding, Language, Message};
 use serde_json::{Value as Json, json};
 use std::sync::Arc;
