@@ -161,3 +161,33 @@ fn a_helper_that_keeps_power_is_nothing_to_compare() {
     let [left, right] = ["a", "b"].map(|bit| format!("LD {bit};ST Held1;CAL e(CLK := Held1);LD e.Q;ST y"));
     assert_eq!(word(&iec(&edge, &left), &iec(&edge, &right)), "different");
 }
+
+#[test]
+fn an_input_operator_is_a_call_with_that_input() {
+    let variables = "t : TON; c : CTU; a : BOOL;";
+    for (left, right, expected) in [
+        ("LD a;IN t;LD t.Q;ST y", "CAL t(IN := a);LD t.Q;ST y", "equal"),
+        ("LD a;CU c;LD c.Q;ST y", "CAL c(CU := a);LD c.Q;ST y", "equal"),
+        ("LD T#1s;PT t;LD a;IN t;LD t.Q;ST y", "CAL t(PT := T#1000ms);CAL t(IN := a);LD t.Q;ST y", "equal"),
+        ("LD 5;PV c;LD a;CU c", "CAL c(PV := 5);CAL c(CU := a)", "equal"),
+        ("LD 5;PV c;LD a;CU c", "CAL c(PV := 6);CAL c(CU := a)", "undecided"),
+        // Both inputs in one call are another thing.
+        ("LD T#1s;PT t;LD a;IN t;LD t.Q;ST y", "CAL t(IN := a, PT := T#1s);LD t.Q;ST y", "undecided"),
+        ("LD a;IN t;LD t.Q;ST y", "LD a;CALC t(IN := a);LD t.Q;ST y", "undecided"),
+    ] {
+        assert_eq!(word(&iec(variables, left), &iec(variables, right)), expected, "{left} | {right}");
+    }
+}
+
+/// Behind a jump the outcome of the whole scan tells.
+#[test]
+fn a_jump_makes_no_difference_where_the_scan_ends_alike() {
+    for (left, right, expected) in [
+        ("LD X0;CJ P1;LDI X0;OUT Y0;P1", "LDI X0;CJ P1;LDI X0;OUT Y0;P1", "different"),
+        ("LD Y0;CJ P1;LD X1;SET Y0;P1", "LDI X1;CJ P1;LD X1;SET Y0;P1", "undecided"),
+        ("LD X1;CJ P1;LD X0;OUT Y0;P1;LD X0;OUT Y1", "LD X1;CJ P1;LD X0;OUT Y0;P1;LD Y0;OUT Y1", "different"),
+        ("LD X0;OUT Y0;P1;LD X1;OUT Y0", "LDI X0;OUT Y0;P1;LD X1;OUT Y0", "undecided"),
+    ] {
+        assert_eq!(word(&fx(left), &fx(right)), expected, "{left} | {right}");
+    }
+}

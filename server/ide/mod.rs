@@ -90,7 +90,7 @@ mod typing;
 mod linked_editing;
 
 mod forms;
-pub use forms::{ProgramPart, TranslatedForm, form_of, form_steps, forms, part_at};
+pub use forms::{ProgramPart, TranslatedForm, form_of, form_steps, forms, forms_at_once, part_at};
 
 mod refactor;
 pub use refactor::Refactoring;

@@ -292,7 +292,9 @@ impl<'s> Scan<'s> {
         self.events.push(power);
         let is_straight = |form: &Form| form.instruction.flow() == Flow::Straight;
         let is_known = matches!(&action.deed, Deed::Instruction(form) if !is_straight(form));
-        self.is_vague |= is_guessed && moved.is_none() && !is_known;
+        let remembers =
+            matches!(action.deed, Deed::Call(_) | Deed::Coil(CoilKind::Rising | CoilKind::Falling));
+        self.is_vague |= is_guessed && moved.is_none() && !is_known || remembers;
         let nothing = LeftBehind::default();
         let left = self.left_behind().filter(|_| copied.is_none()).unwrap_or(&nothing);
         let words: Vec<_> = left.words.iter().filter(|(key, _)| may_write_word(action, key)).collect();

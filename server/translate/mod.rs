@@ -173,6 +173,11 @@ impl<'d> Original<'d> {
         Original { document, is_whole: part.is_none(), program: source::program(document, part) }
     }
 
+    /// How many bytes its rungs have. Those of a part may reach far beyond it.
+    pub fn length(&self) -> usize {
+        self.program.rungs.iter().map(|source| source.text().len()).sum()
+    }
+
     /// In another form; nothing if `is_cancelled` says on the way that nobody waits for it any more.
     pub fn translated(
         &self,

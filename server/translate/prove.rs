@@ -405,10 +405,12 @@ impl<'s> Prover<'s> {
             }
             Comparison::Unlike => undecided("prove.unlike"),
             Comparison::Different { place: Place::Bit(key), .. } if self.is_driven_behind(sides, &key) => {
-                self.beyond(sides).map_or_else(|| undecided("prove.driven-again"), Err)
+                let found = self.beyond(sides).or_else(|| self.by_running(state, [&left, &right], sides));
+                found.map_or_else(|| undecided("prove.driven-again"), Err)
             }
             Comparison::Different { what, place, .. } => {
-                let found = self.different((what, place), state, [&left, &right], sides);
+                let found = self.different((what, place), state.clone(), [&left, &right], sides);
+                let found = found.or_else(|| self.by_running(state, [&left, &right], sides));
                 found.map_or_else(|| undecided("prove.unconfirmed"), Err)
             }
         }
@@ -493,9 +495,42 @@ impl Prover<'_> {
         if matches!(place, Place::Event(_)) && !self.lasts(&what) {
             return None;
         }
+        // Whether a jump is taken is nothing that lasts.
+        let jumps = |(_, path): &(&Source, &Path)| path.actions().into_iter().any(reached::leaves);
+        if matches!(place, Place::Event(_)) && sides.iter().any(|side| side.iter().any(jumps)) {
+            return None;
+        }
         let (state, values) = counterexample::confirmed_near(state, paths, &place)?;
         let units = [0, 1].map(|side| self.unit_around(side, sides[side]));
-        reached::is_reached(units, &state, &place).then_some(())?;
+        reached::is_reached(&units, &state, &place).then_some(())?;
+        let at = sides.map(|side| rung_of(side, &what));
+        let (inputs, before) = counterexample::inputs(&state, paths, &type_of);
+        Some(Proof::Different(Box::new(Counterexample { inputs, before, what, sides: values, at })))
+    }
+
+    /// The difference that is there at the end of a scan when both programs are run from a state in which something
+    /// else differs on the way.
+    fn by_running(
+        &self,
+        state: Option<State>,
+        paths: [&[&Path]; 2],
+        sides: [Rungs<'_, '_>; 2],
+    ) -> Option<Proof> {
+        let types = self.types(sides);
+        let type_of = |key: &str| types.get(key).copied();
+        let state = state.filter(|state| counterexample::is_possible(state, &type_of))?;
+        let units = [0, 1].map(|side| self.unit_around(side, sides[side]));
+        let (bit, state, values) = reached::found(&units, &state)?;
+        let key = bit.key();
+        let is_again = (0..2).any(|side| {
+            let (all, own) = (self.all[side], &units[side].numbers);
+            let others = all[..own.start].iter().chain(&all[own.end..]).filter_map(Source::path);
+            others.flat_map(Path::actions).any(|action| may_drive(action, &key))
+        });
+        if is_again {
+            return None;
+        }
+        let what = bit.text.to_string();
         let at = sides.map(|side| rung_of(side, &what));
         let (inputs, before) = counterexample::inputs(&state, paths, &type_of);
         Some(Proof::Different(Box::new(Counterexample { inputs, before, what, sides: values, at })))

@@ -2,12 +2,13 @@
 
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{
-    Action, Comparison, Contact, Conversion, Deed, Drive, Expression, Formulas, Gate, Path, Term, Test,
-    compare,
+    Action, Comparison, Contact, Conversion, Deed, Drive, Expression, Formulas, Gate, Path, Storage, Term,
+    Test, compare,
 };
+use crate::target::{DeviceKind, Operand};
 use crate::text::Message;
-use smol_str::format_smolstr;
-use std::borrow::Cow;
+use rustc_hash::FxHashSet;
+use smol_str::{SmolStr, format_smolstr};
 
 /// How equations are written.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -38,7 +39,7 @@ type Parts = Vec<(Option<Expression>, Action)>;
 /// `Y1 = Y0`.
 fn parted(path: &Path) -> Result<Parts, Message> {
     let part = |goes_on: bool| {
-        let mut parts = Parter { goes_on, changed: Vec::new(), parts: Vec::new() };
+        let mut parts = Parter { goes_on, changed: Changed::default(), parts: Vec::new() };
         parts.path(path, None).map(|()| parts)
     };
     let plain = part(false)?;
@@ -63,8 +64,42 @@ struct Parter {
     /// Whether conditions that have changed are taken from an output that they drove.
     goes_on: bool,
     /// What was driven so far.
-    changed: Vec<Term>,
+    changed: Changed,
     parts: Parts,
+}
+
+/// What outputs may have changed.
+#[derive(Default)]
+struct Changed {
+    keys: FxHashSet<SmolStr>,
+    kinds: FxHashSet<DeviceKind>,
+    /// Whether something lies where other names may lead, too.
+    is_shared: bool,
+}
+
+impl Changed {
+    fn add(&mut self, term: &Term) {
+        self.kinds.extend(term.operand.device().map(|device| device.kind));
+        self.is_shared |= is_shared(term);
+        self.keys.insert(term.key());
+    }
+
+    /// Whether a condition may read something of it.
+    fn is_read_by(&self, condition: &Expression) -> bool {
+        let is_of_kind =
+            |term: &Term| term.operand.device().is_some_and(|device| self.kinds.contains(&device.kind));
+        condition.contacts().into_iter().flat_map(|contact| &contact.terms).any(|term| {
+            self.keys.contains(&term.key())
+                || !term.is_lone() && is_of_kind(term)
+                || self.is_shared && is_shared(term)
+        })
+    }
+}
+
+/// Whether a variable lies, or may lie, in a place that has other names.
+fn is_shared(term: &Term) -> bool {
+    !matches!((term.operand, term.storage), (Operand::Variable, Storage::Own | Storage::Local))
+        && matches!(term.operand, Operand::Variable | Operand::Direct(_))
 }
 
 impl Parter {
@@ -77,14 +112,13 @@ impl Parter {
         // The output that is what the power was.
         let mut holder: Option<Contact> = None;
         for drive in &path.drives {
-            let is_other = |power: &Expression| self.goes_on && self.has_changed(power, self.changed.len());
+            let is_other = |power: &Expression| self.goes_on && self.changed.is_read_by(power);
             let now = match &holder {
                 Some(contact) if power.as_ref().is_some_and(is_other) => {
                     Some(Expression::Contact(contact.clone()))
                 }
                 _ => power.clone(),
             };
-            let before = self.changed.len();
             let mut held = None;
             match drive {
                 Drive::Path(path) => self.path(path, now.as_ref())?,
@@ -95,32 +129,28 @@ impl Parter {
                 }
                 Drive::Action(action) => {
                     self.parts.push((now, action.clone()));
-                    self.changed.extend(action.changes().into_iter().map(Cow::into_owned));
+                    action.changes().iter().for_each(|term| self.changed.add(term));
                     held = holding(action);
                 }
             }
-            let is_gone = |contact: &Contact| self.changed[before..].contains(&contact.terms[0]);
+            let is_gone = |contact: &Contact| drives(drive, &contact.terms);
             holder = held.or(holder.filter(|contact| !is_gone(contact)));
         }
         Ok(())
     }
 
-    /// Whether a condition reads what was changed by then.
-    fn has_changed(&self, condition: &Expression, by_then: usize) -> bool {
-        let changed = &self.changed[..by_then.min(self.changed.len())];
-        let reads = |term: &Term| {
-            changed.iter().any(|own| {
-                let kind = |term: &Term| term.operand.device().map(|device| device.kind);
-                own == term || own.may_cover(term) || !term.is_lone() && kind(own) == kind(term)
-            })
-        };
-        condition.contacts().into_iter().any(|contact| contact.terms.iter().any(reads))
-    }
-
     /// Whether some condition reads what any output changes.
     fn reads_changed(&self) -> bool {
         let conditions = self.parts.iter().skip(1).filter_map(|(power, _)| power.as_ref());
-        conditions.into_iter().any(|power| self.has_changed(power, self.changed.len()))
+        conditions.into_iter().any(|power| self.changed.is_read_by(power))
+    }
+}
+
+/// Whether one of `terms` is driven.
+fn drives(drive: &Drive, terms: &[Term]) -> bool {
+    match drive {
+        Drive::Action(action) => action.changes().iter().any(|own| terms.contains(own)),
+        Drive::Path(path) => path.drives.iter().any(|drive| drives(drive, terms)),
     }
 }
 
