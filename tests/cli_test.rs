@@ -155,6 +155,8 @@ fn steps_of_the_file_begin_every_scenario() {
     let (code, out, _) = run(&tested(MOTOR, suite), &["test"]);
     assert!(code == 1 && out.contains("ok     a\n") && out.contains("FAILED b\n"), "{out}");
     assert_eq!(run(&tested(MOTOR, suite), &["test", "--only", "A"]).0, 0);
+    let (code, _, err) = run(&tested(MOTOR, suite), &["test", "--only", "c"]);
+    assert!(code == 2 && err.contains("no scenario has `c` in its name"), "{err}");
 }
 
 #[test]
@@ -347,6 +349,12 @@ fn mistakes_are_told_with_line_and_column_in_both_languages() {
             "3:10",
             "needs a `time`",
             "需要 `time`",
+        ),
+        (
+            suite("steps = [{ always = { X0 = 1 }, for = 5, until = 5 }]"),
+            "3:33",
+            "`until` says how long already",
+            "`until` 已经",
         ),
         (suite("scan-time = \"1h\""), "3:13", "from 1us to 60s", "1us 到 60s"),
         (suite("steps = 5"), "3:9", "a list in brackets", "方括号"),
