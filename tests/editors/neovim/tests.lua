@@ -463,7 +463,7 @@ check('scenario tests fill the quickfix list, and what was done becomes one', fu
     return #list > 1
   end)
   assert(vim.fn.bufname(list[1].bufnr):find('line.test.toml', 1, true), vim.inspect(list[1]))
-  assert(list[1].lnum == 3 and list[1].col == 52, vim.inspect(list[1]))
+  assert(list[1].lnum == 3 and list[1].col == 50, vim.inspect(list[1]))
   assert(list[1].text:find('starts: Y0 is 1 where 0 was expected', 1, true), list[1].text)
   assert(vim.iter(list):any(function(item)
     return item.text:find('^^^', 1, true)
