@@ -267,6 +267,24 @@ fn coverage_tells_states_and_who_decided() {
 }
 
 #[test]
+fn a_contact_that_is_on_and_off_need_not_decide() {
+    // X1 goes on and off while X0 is off: whatever it does, Y0 stays off. X2 beside it lets power past it for a while.
+    let program = "LD X1\nOR X2\nAND X0\nOUT Y0\nEND\n";
+    let suite = "[[scenario]]\nname = \"a\"\nsteps = [{ at = 20, pulse = { X1 = 20 } }, { at = 60, expect = { Y0 = 0 } }";
+    let told = |more: &str| {
+        let files = tested(program, &format!("{suite}{more}]\n"));
+        run(&files, &["test", "--coverage"]).1
+    };
+    let out = told("");
+    assert!(out.contains("1 of 3 contacts") && out.contains("0 deciding both ways"), "{out}");
+    assert!(out.contains("motor.il:1:1: X1 was on and off, and decided nothing\n"), "{out}");
+    // With X0 on it decides while it is off, not while it is on, for X2 is on then.
+    let more = ", { at = 80, set = { X0 = 1 } }, { at = 100, set = { X1 = 1, X2 = 1 }, expect = { Y0 = 1 } }";
+    let out = told(more);
+    assert!(out.contains("motor.il:1:1: X1 decided nothing while it was on\n"), "{out}");
+}
+
+#[test]
 fn code_that_no_scan_comes_to_is_not_covered() {
     let program = "LD M8000\nCJ P1\nLD X0\nOUT Y0\nP1\nLD X1\nOUT Y1\nEND\n";
     let files = tested(
