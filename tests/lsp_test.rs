@@ -112,11 +112,11 @@ fn the_text_of_the_editor_is_run_saved_or_not() {
     let (program, suite) = (tested.open("motor.il"), tested.open("motor.test.toml"));
     let run = json!({ "uri": suite, "names": ["stops"] });
     assert_eq!(tested.tell("rungwise.test.run", run.clone())["failed"], json!(1));
-    tested.write(&program, 2, &MOTOR.replace("ANI X1\n", "").to_string());
+    tested.write(&program, 2, &MOTOR.replace("ANI X1\n", ""));
     assert_eq!(tested.tell("rungwise.test.run", run.clone())["failed"], json!(0));
-    tested.write(&suite, 2, &SUITE.replace("{ expect = { Y0 = 1 } }", "{ expect = { Y0 = 0 } }").to_string());
+    tested.write(&suite, 2, &SUITE.replace("{ expect = { Y0 = 1 } }", "{ expect = { Y0 = 0 } }"));
     assert_eq!(tested.tell("rungwise.test.run", run.clone())["failed"], json!(1));
-    tested.write(&program, 3, &"LD X0\nCJ P1\nEND\n".to_string());
+    tested.write(&program, 3, "LD X0\nCJ P1\nEND\n");
     let stuck = tested.tell("rungwise.test.run", run);
     assert_eq!(
         (&stuck["failed"], &stuck["files"][0]["problems"][0]["uri"]),
@@ -130,12 +130,12 @@ fn the_text_of_the_editor_is_run_saved_or_not() {
 fn mistakes_are_shown_while_a_file_is_typed() {
     let mut tested = Tested::start(&[("motor.il", MOTOR), ("motor.test.toml", SUITE)]);
     let suite = tested.open("motor.test.toml");
-    tested.write(&suite, 2, &SUITE.replace("at = 50", "att = 50").to_string());
+    tested.write(&suite, 2, &SUITE.replace("at = 50", "att = 50"));
     let found = tested.client.diagnostics(&suite, 2);
     assert_eq!(found.len(), 2, "{found:?}");
     assert_eq!(found[0]["range"]["start"], json!({"line": 3, "character": 4}));
     assert!(found[0]["message"].as_str().unwrap().contains("did you mean `at`"), "{found:?}");
-    tested.write(&suite, 3, &SUITE.to_string());
+    tested.write(&suite, 3, SUITE);
     assert_eq!(tested.client.diagnostics(&suite, 3), Vec::<Value>::new());
     // It is no program: nothing else is said of it.
     for method in ["documentSymbol", "formatting", "semanticTokens/full"] {

@@ -496,10 +496,13 @@ check('scenario tests fill the quickfix list, and what was done becomes one', fu
     }
   end
   vim.fn.writefile(scenarios(0), folder .. '/line.test.toml')
-  vim.cmd.edit(folder .. '/line.test.toml')
-  until_true('a server for the file', function()
-    return #vim.lsp.get_clients({ bufnr = 0, name = 'rungwise' }) == 1
-  end)
+  local function edit(name)
+    vim.cmd.edit(folder .. '/' .. name)
+    until_true('a server for the file', function()
+      return #vim.lsp.get_clients({ bufnr = 0, name = 'rungwise' }) == 1
+    end)
+  end
+  edit('line.test.toml')
   vim.fn.setqflist({}, 'f')
   vim.cmd('Rungwise test')
   local list
@@ -508,7 +511,7 @@ check('scenario tests fill the quickfix list, and what was done becomes one', fu
     return #list > 1
   end)
   assert(vim.fn.bufname(list[1].bufnr):find('line.test.toml', 1, true), vim.inspect(list[1]))
-  assert(list[1].lnum == 3 and list[1].col == 52, vim.inspect(list[1]))
+  assert(list[1].lnum == 3 and list[1].col == 50, vim.inspect(list[1]))
   assert(list[1].text:find('starts: Y0 is 1 where 0 was expected', 1, true), list[1].text)
   assert(vim.iter(list):any(function(item)
     return item.text:find('^^^', 1, true)
@@ -516,7 +519,7 @@ check('scenario tests fill the quickfix list, and what was done becomes one', fu
   -- Mended, from the program: the list is empty again.
   vim.api.nvim_buf_set_lines(0, 0, -1, false, scenarios(1))
   vim.cmd.write()
-  vim.cmd.edit(folder .. '/line.il')
+  edit('line.il')
   vim.cmd('Rungwise test starts')
   until_true('an empty list', function()
     return #vim.fn.getqflist() == 0
