@@ -194,7 +194,7 @@ fn reasons(reason: &Value) -> String {
 #[test]
 fn why_is_answered_for_names_and_places_and_scans_and_in_the_hover() {
     let uri = "file:///simulated/why.lad";
-    let mut plc = Simulated::open(uri, "ladder", MOTOR);
+    let mut plc = Simulated::open(uri, "ladder", &MOTOR.replace("T0  K100", " T0 K100"));
     let refused = plc.answer("why", json!({ "name": "Y0" }));
     assert!(refused["error"]["message"].as_str().unwrap().contains("not being simulated"), "{refused}");
     let hover = |plc: &mut Simulated| {
