@@ -62,6 +62,9 @@ pub use setting::{Setting, duration};
 mod trace;
 pub use trace::{Row as TraceRow, Trace, milliseconds};
 
+mod words;
+pub use words::instruction_words;
+
 mod why;
 pub use why::{Condition, Drivers, Inquiry, Reason};
 
