@@ -206,6 +206,7 @@ fn a_change_of_data_stops_behind_what_changed_it() {
 fn a_drawing_has_breakpoints_at_rungs_and_at_elements() {
     let drawn = program("motor.lad", DRAWN);
     let mut plc = entered(&drawn);
+    assert_eq!(plc.stack()[0], "motor.lad · rung 1 @1:1");
     let locations = plc.ask("breakpointLocations", json!({ "source": { "path": drawn.path }, "line": 2 }));
     let columns = locations["breakpoints"].as_array().unwrap().iter().map(|place| place["column"].clone());
     let columns: Vec<Value> = columns.collect();

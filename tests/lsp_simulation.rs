@@ -198,7 +198,7 @@ fn reasons(reason: &Value) -> String {
 #[test]
 fn why_is_answered_for_names_and_places_and_scans_and_in_the_hover() {
     let uri = "file:///simulated/why.lad";
-    let mut plc = Simulated::open(uri, "ladder", MOTOR);
+    let mut plc = Simulated::open(uri, "ladder", &MOTOR.replace("T0  K100", " T0 K100"));
     let refused = plc.answer("why", json!({ "name": "Y0" }));
     assert!(refused["error"]["message"].as_str().unwrap().contains("not being simulated"), "{refused}");
     let hover = |plc: &mut Simulated| {
@@ -214,18 +214,18 @@ fn why_is_answered_for_names_and_places_and_scans_and_in_the_hover() {
     assert_eq!(
         reasons(&why),
         concat!(
-            "Y0 is on: ( ) has power @1\n",
+            "Y0 is on: ( ) Y0 has power @1\n",
             " X0 is on: an input, since scan 1 (10 ms) @1\n",
             " X1 is off: an input @1\n"
         )
     );
     assert_eq!((&why["scan"], &why["time_ms"], &why["uri"]), (&json!(5), &json!(50.0), &json!(uri)), "{why}");
     let before = plc.tell("why", json!({ "name": "y0", "scan": 0 }));
-    assert!(reasons(&before).starts_with("Y0 is off: ( ) has no power"), "{before}");
+    assert!(reasons(&before).starts_with("Y0 is off: ( ) Y0 has no power"), "{before}");
     let timer = plc.tell("why", json!({ "name": "T0" }));
     assert!(reasons(&timer).starts_with("T0 is off: 0 s of 10 s have passed"), "{timer}");
     let shown = hover(&mut plc);
-    assert!(shown.starts_with("\"Y0 is on: ( ) has power\\n- X0 is on"), "{shown}");
+    assert!(shown.starts_with("\"Y0 is on: ( ) Y0 has power\\n- X0 is on"), "{shown}");
     for wrong in [
         json!({ "name": "Q7" }),
         json!({ "name": "Y0", "scan": 99 }),

@@ -307,7 +307,7 @@ fn a_drawing_is_explained_by_its_contacts() {
     plc.run("X0 Y0", 2).check(
         "Y0",
         "\
-Y0 is on: ( ) has power  [2]
+Y0 is on: ( ) Y0 has power  [2]
   X0 is on: an input, since scan 0 (0 ms)  [2]
   X1 is off: an input  [2]",
     );

@@ -26,7 +26,7 @@ pub(super) fn question(word: &str) -> Result<Question, String> {
     })
 }
 
-/// The answers after a run with scans that are `scan_ns` apart; nothing after complaints about names that there are not.
+/// The answers after a run with scans that are `scan_ns` apart; nothing after complaints about unknown names.
 pub(super) fn answers(
     questions: &[Question],
     session: &Session,

@@ -70,6 +70,10 @@ pub use recorder::{Change, Recorder, Signal, is_affordable};
 
 mod presets;
 pub use presets::{Counted, CountedPreset};
+
+mod words;
+pub use words::instruction_words;
+
 mod why;
 pub use why::{Condition, Drivers, Inquiry, Reason};
 

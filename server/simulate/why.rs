@@ -12,7 +12,7 @@ pub use drivers::Drivers;
 
 mod seen;
 
-use super::{Code, Machine, Place, Session, Sight, Value, Variable};
+use super::{Code, Machine, Place, Session, Sight, Value, Variable, instruction_words};
 use crate::document::Document;
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{Contact, Deed, Expression, Test};
@@ -225,9 +225,7 @@ impl<'a> Inquiry<'a> {
 
     fn words(&self, place: Place) -> String {
         let document = self.documents.get(place.document as usize);
-        let text = document.map(|document| document.slice(place.span)).unwrap_or_default();
-        let line = text.lines().next().unwrap_or_default();
-        line.split_whitespace().collect::<Vec<_>>().join(" ")
+        document.map(|document| instruction_words(document, place.span)).unwrap_or_default()
     }
 
     /// What a subject is: `Y0 is on`.

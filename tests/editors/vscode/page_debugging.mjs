@@ -9,17 +9,19 @@ export const DEBUGGING_TESTS = {
 
 /** The number of the line at which the program stands. */
 async function stoppedAt(workbench) {
-  const shown = workbench.page.locator('.editor-instance .margin-view-overlays > div', {
-    has: workbench.page.locator('.codicon-debug-stackframe'),
+  return workbench.page.locator('.editor-instance').first().evaluate((editor) => {
+    const top = (node) => node.closest('[style*="top"]')?.getBoundingClientRect().top;
+    const frame = editor.querySelector('.view-overlays .debug-top-stack-frame-line');
+    const numbers = [...editor.querySelectorAll('.margin-view-overlays .line-numbers')];
+    return frame === null ? undefined : Number(numbers.find((node) => top(node) === top(frame))?.textContent);
   });
-  return (await shown.count()) > 0 ? Number((await shown.first().innerText()).trim()) : undefined;
 }
 
 const untilLine = (workbench, line) =>
   workbench.until(`line ${line} reached`, async () => (await stoppedAt(workbench)) === line);
 
 const variable = (workbench, name) =>
-  workbench.page.locator('.debug-view-content .monaco-list-row', { hasText: name }).first();
+  workbench.page.locator('.debug-variables .monaco-list-row', { hasText: name }).first();
 
 async function debugging(workbench) {
   const { page } = workbench;
@@ -28,12 +30,19 @@ async function debugging(workbench) {
   await workbench.focusEditor();
   await page.keyboard.press('F5');
   await page.locator('.debug-toolbar').waitFor({ timeout: 90_000 });
-  await untilLine(workbench, 2);
   try {
+    await untilLine(workbench, 2);
+    await workbench.command('View: Show Run and Debug');
     // The outputs, and the breakpoint of one of them in the menu.
     await variable(workbench, 'Outputs').click();
     await variable(workbench, 'Y0').click({ button: 'right' });
-    await page.locator('.context-view .action-label', { hasText: 'Break on Value Change' }).first().click();
+    const entry = page.locator('.context-view .action-label', { hasText: 'Break on Value Change' }).first();
+    await entry.waitFor();
+    // A menu that has just opened takes the end of the click that opened it for none.
+    await workbench.until('the entry chosen', async () => {
+      await entry.click({ timeout: 1_000 }).catch(() => undefined);
+      return !(await entry.isVisible());
+    });
     await variable(workbench, 'Inputs').click();
     // The console switches the input on.
     await workbench.command('Debug Console: Focus on Debug Console View');
@@ -45,17 +54,22 @@ async function debugging(workbench) {
     // Behind the rung that switched the output.
     await untilLine(workbench, 7);
     await workbench.until('the output on', async () => /Y0\s*=?\s*1/.test(await variable(workbench, 'Y0').innerText()));
+    // The editor has the keyboard where the program stops.
+    await workbench.command('Debug Console: Focus on Debug Console View');
     await page.keyboard.type('why Y0');
     await page.keyboard.press('Escape');
     await page.keyboard.press('Enter');
     await workbench.until('the reasons', async () =>
-      /X0 is on: an input/.test((await page.locator('.repl .monaco-list').innerText()).replaceAll('\u00a0', ' ')));
+      /X0 is on: an input/.test((await page.locator('.monaco-list[aria-label="Debug Console"]').innerText()).replaceAll('\u00a0', ' ')));
     await workbench.screenshot('35-debugger');
     // Back to before the coil was driven, where it is off.
-    await workbench.command('Debug: Step Back');
+    await page.locator('.debug-toolbar .codicon-debug-step-back').click();
     await untilLine(workbench, 3);
     await workbench.until('the output off', async () => /Y0\s*=?\s*0/.test(await variable(workbench, 'Y0').innerText()));
     await workbench.screenshot('36-debugger-back');
+  } catch (error) {
+    await workbench.screenshot('failed-debugger');
+    throw error;
   } finally {
     await workbench.calm();
     await page.keyboard.press('Shift+F5');
