@@ -80,6 +80,7 @@ mod rules_sense_fixes;
 mod scenario_mutants;
 mod simulate;
 mod simulate_devices;
+mod simulate_recorder;
 mod simulate_rungs;
 mod simulate_session;
 mod simulate_words;
