@@ -214,14 +214,6 @@ impl<L: Lanes> Machine<L> {
         self.terminals.output(cell).unwrap_or_else(|| self.memory.cell(cell))
     }
 
-    /// What is wired to an input, which the next scan will see; nothing for what is none.
-    pub fn wired(&self, variable: Variable) -> Option<L> {
-        match variable {
-            Variable::Relay(cell) => self.terminals.input(cell),
-            _ => None,
-        }
-    }
-
     /// The register, or the current value of the timer or counter, in a scenario.
     pub fn word(&self, device: Device, lane: usize) -> i64 {
         self.code.layout.slot(device).map_or(0, |slot| self.memory.word(slot, lane))

@@ -173,6 +173,10 @@ impl Session {
 
     /// Goes back to the PLC as it was after a scan; what came later is forgotten. Gives whether that was known.
     pub fn back_to(&mut self, scan: u64) -> bool {
+        if scan == self.machine.scans() {
+            // What is to be done before the next scan stays.
+            return true;
+        }
         let Some(machine) = self.at(scan) else { return false };
         self.machine = machine;
         self.moments.retain(|moment| moment.scans() <= scan);

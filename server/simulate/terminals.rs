@@ -1,7 +1,7 @@
 //! The terminals of the simulated PLC: what inputs are wired to, and what outputs give.
 
 use super::row::Cell;
-use super::{Lanes, Layout, Memory};
+use super::{Lanes, Layout, Machine, Memory, Variable};
 use crate::target::{DeviceKind, Outside};
 use std::ops::Range;
 
@@ -70,6 +70,16 @@ impl<L: Lanes> Terminals<L> {
         } else if self.y.contains(&at) {
             let output = &mut self.outputs[at - self.y.start];
             *output = output.with(lane, memory.bit(cell, lane));
+        }
+    }
+}
+
+impl<L: Lanes> Machine<L> {
+    /// What is wired to an input, which the next scan will see; nothing for what is none.
+    pub fn wired(&self, variable: Variable) -> Option<L> {
+        match variable {
+            Variable::Relay(cell) => self.terminals.input(cell),
+            _ => None,
         }
     }
 }

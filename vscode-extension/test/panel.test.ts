@@ -146,6 +146,9 @@ test('a chart has a high line with an area where a bit is on, steps for numbers,
   const areas = shapes.filter((shape) => shape.kind === 'area');
   // 500 pixels for 100 scans.
   assert.deepEqual(areas.map(({ x, width }) => [x, width]), [[LABEL_WIDTH + 200, 100]]);
+  const line = shapes.find((shape): shape is Extract<Shape, { kind: 'path' }> => shape.look === 'on') ?? assert.fail('no line');
+  const [low] = line.points[0]?.slice(1) ?? [];
+  assert.deepEqual(line.points.filter(([, y]) => y < Number(low)).map(([x]) => x), [LABEL_WIDTH + 200, LABEL_WIDTH + 300]);
   const texts = shapes.flatMap((shape) => (shape.kind === 'text' ? [shape.text] : []));
   for (const text of ['X0', '1', 'T0', '0.7 s', '50 · 500 ms']) {
     assert.ok(texts.includes(text), `${text} in ${texts}`);

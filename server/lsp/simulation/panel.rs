@@ -2,6 +2,7 @@
 
 use crate::document::ProjectView;
 use crate::ide::{self, UsageKey, UsageOf, UsageRow, UsageWish};
+use crate::il::iec::SectionKind;
 use crate::simulate::{Code, CountedPreset, Machine, Value, Variable};
 use crate::target::{Device, DeviceKind, Location};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -37,6 +38,14 @@ pub(super) fn rows(view: &ProjectView<'_>, machine: &Machine<u8>) -> Vec<Json> {
 /// In the order in which a panel shows them.
 const GROUPS: [&str; 8] =
     ["inputs", "outputs", "timers", "counters", "states", "relays", "registers", "variables"];
+
+fn group_of(location: Location) -> &'static str {
+    match location {
+        Location::Input => "inputs",
+        Location::Output => "outputs",
+        Location::Memory => "variables",
+    }
+}
 
 struct Panel<'a> {
     view: &'a ProjectView<'a>,
@@ -79,15 +88,11 @@ impl Panel<'_> {
                 }
             }
             UsageKey::Device(_) => {}
-            UsageKey::Direct(address) => {
-                let group = match address.location {
-                    Location::Input => "inputs",
-                    Location::Output => "outputs",
-                    Location::Memory => "variables",
-                };
-                self.variable(&row.name, group, said);
+            UsageKey::Direct(address) => self.variable(&row.name, group_of(address.location), said),
+            UsageKey::Variable(unit, name) => {
+                let group = self.declared_group(unit, name);
+                self.variable(&row.full_name(), group, said);
             }
-            UsageKey::Variable(..) => self.variable(&row.full_name(), "variables", said),
         }
     }
 
@@ -126,6 +131,24 @@ impl Panel<'_> {
             }
         }
         self.rows.push((group, row));
+    }
+
+    /// Where a variable lies, or what of a program it is.
+    fn declared_group(&self, unit: &str, name: &str) -> &'static str {
+        let declared = self.view.members().iter().find_map(|member| {
+            let scopes = member.document.scopes();
+            match unit.is_empty() {
+                true => scopes.globals.get(name),
+                false => scopes.pou_named(unit).and_then(|pou| pou.variable(name)),
+            }
+        });
+        let Some(declared) = declared else { return "variables" };
+        match (declared.address, declared.section) {
+            (Some(address), _) => group_of(address.location),
+            (None, SectionKind::Input) => "inputs",
+            (None, SectionKind::Output) => "outputs",
+            _ => "variables",
+        }
     }
 
     /// A variable of IEC 61131-3, or an instance of a block that has a current value, a preset and an output.

@@ -25,7 +25,7 @@ export class PanelView implements vscode.WebviewPanelSerializer, vscode.Disposab
       vscode.commands.registerCommand('rungwise.simulation.panel', (uri?: unknown) => this.show(uri)),
       vscode.window.registerWebviewPanelSerializer(TYPE, this),
       simulation.onDidPicture(({ document, params }) => this.panels.get(document.toString())?.takePicture(params)),
-      simulation.onDidChange((document) => void this.panels.get(document.toString())?.simulationChanged()),
+      simulation.onDidChange((document) => unlessGone(this.panels.get(document.toString())?.simulationChanged())),
     ];
   }
 
@@ -67,7 +67,7 @@ export class PanelView implements vscode.WebviewPanelSerializer, vscode.Disposab
     view.onDidDispose(() => {
       this.panels.delete(key);
       this.simulation.operate(undefined);
-      void this.simulation.watchNames(program, []);
+      unlessGone(this.simulation.watchNames(program, []));
     });
   }
 }
@@ -110,7 +110,9 @@ class Panel {
     }
     this.tellPage({ type: 'moment', moment });
     if (moment.edition !== this.edition) {
-      void this.readRows();
+      // It is read once for each edition, whatever pictures come meanwhile.
+      this.edition = moment.edition;
+      unlessGone(this.readRows());
     }
   }
 
@@ -127,7 +129,7 @@ class Panel {
 
   private viewChanged(): void {
     this.simulation.operate(this.view.active ? this.program : undefined);
-    void this.watch();
+    unlessGone(this.watch());
   }
 
   private tellPage(message: ToPage): void {
@@ -177,6 +179,7 @@ class Panel {
       return;
     }
     if (verb === 'start') {
+      await vscode.workspace.openTextDocument(this.program);
       await this.simulation.start(this.program);
     } else if (verb === 'stop') {
       await this.simulation.stop(this.program);
@@ -212,6 +215,11 @@ class Panel {
       await vscode.workspace.fs.writeFile(chosen, bytes);
     }
   }
+}
+
+/** A simulation that ends meanwhile answers nothing, and nobody waits for it. */
+function unlessGone(work: Promise<void> | undefined): void {
+  work?.catch(() => undefined);
 }
 
 /** The sentences of the display language; none where it is that of the sources. */

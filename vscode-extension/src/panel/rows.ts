@@ -176,9 +176,12 @@ export function isSwitch({ type, group }: Row): boolean {
   return type === 'bit' && group !== 'outputs';
 }
 
-/** The number that was typed, within what the row takes; `undefined` for what is none. */
-export function typedNumber(text: string, { least = -Infinity, greatest = Infinity }: Pick<Row, 'least' | 'greatest'>): number | undefined {
+/** The number that was typed, within what the row takes; `undefined` for what is none. Words of the PLC are whole. */
+export function typedNumber(text: string, { least, greatest }: Pick<Row, 'least' | 'greatest'>): number | undefined {
   const word = text.trim();
   const value = /^(H|16#|0x)[0-9a-f]+$/i.test(word) ? Number.parseInt(word.replace(/^(H|16#|0x)/i, ''), 16) : Number(word);
-  return word !== '' && Number.isInteger(value) && least <= value && value <= greatest ? value : undefined;
+  if (word === '' || !Number.isFinite(value)) {
+    return undefined;
+  }
+  return least === undefined || greatest === undefined || (Number.isInteger(value) && least <= value && value <= greatest) ? value : undefined;
 }
