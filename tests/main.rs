@@ -78,6 +78,7 @@ mod rules_sense_fixes;
 mod scenario_mutants;
 mod simulate;
 mod simulate_devices;
+mod simulate_faults;
 mod simulate_rungs;
 mod simulate_session;
 mod simulate_words;
