@@ -167,6 +167,8 @@ impl Thread {
                         self.end_task();
                     }
                     let answer = self.obey(order);
+                    // The last picture comes before the answer, behind which another simulation may begin.
+                    self.show();
                     let has_task = self.running.as_ref().is_some_and(|running| running.task.is_some());
                     if has_task && self.waiting.is_none() && answer.is_ok() {
                         self.waiting = Some(reply);
@@ -185,18 +187,28 @@ impl Thread {
             if let Some(running) = &mut self.running {
                 running.follow(&workspace, &self.uri);
                 running.advance();
-                let is_over = running.is_over;
-                if let Some(picture) = running.picture(&workspace, &self.uri) {
-                    let client = workspace.client.clone();
-                    self.tokio.spawn(async move { client.send_notification::<MonitorMethod>(picture).await });
-                }
                 if running.task.is_none() {
                     self.end_task();
                 }
-                if is_over {
-                    return;
-                }
             }
+            self.show();
+            if self.running.as_ref().is_some_and(|running| running.is_over) {
+                return;
+            }
+        }
+    }
+
+    /// Tells the client what it shows, if it is time for that.
+    fn show(&mut self) {
+        let (Some(running), Some(workspace)) = (&mut self.running, self.workspace.upgrade()) else { return };
+        let Some(picture) = running.picture(&workspace, &self.uri) else { return };
+        let client = workspace.client.clone();
+        let is_last = running.is_over;
+        let sent = async move { client.send_notification::<MonitorMethod>(picture).await };
+        if is_last {
+            self.tokio.block_on(sent);
+        } else {
+            self.tokio.spawn(sent);
         }
     }
 
@@ -511,7 +523,9 @@ impl Running {
     /// Takes over what edits made of the program, if that can be run.
     fn follow(&mut self, workspace: &Workspace, uri: &Uri) {
         // Nobody sees any more what a program does whose document is closed.
-        self.is_over |= self.is_open && workspace.snapshot().open(uri).is_none();
+        if self.is_open && workspace.snapshot().open(uri).is_none() {
+            (self.is_over, self.is_news) = (true, true);
+        }
         let Some(around) = around(workspace, uri) else { return };
         let is_same = |(uri, version, document): &(Uri, i32, Document)| {
             around.files().iter().any(|open| {
@@ -556,8 +570,8 @@ impl Running {
 
     /// What the client is to show, if it is time for that.
     fn picture(&mut self, workspace: &Workspace, uri: &Uri) -> Option<Picture> {
-        let is_time = self.is_over || self.is_news && self.shown.elapsed() >= PICTURE;
-        if !is_time || self.monitor.is_empty() {
+        let is_time = self.is_over || self.shown.elapsed() >= PICTURE;
+        if !self.is_news || !is_time || self.monitor.is_empty() {
             return None;
         }
         (self.is_news, self.shown) = (false, Instant::now());
