@@ -331,7 +331,8 @@ fn one_signal_takes_a_sequence_on_by_one_step() {
     let text = "LD X0;OUT M2800;LDP M2800;INC D0;LDP M2800;INC D1;LDP X0;INC D2;LDP X0;INC D3;END";
     let counts = last(text, &["X0=1@10", "X0=0@50", "X0=1@90"], "D0,D1,D2,D3");
     assert_eq!(counts, json!({"D0": 2, "D1": 0, "D2": 2, "D3": 2}));
-    let text = "LD M8002;SET S0;LD X0;OUT M2800;STL S0;LDP M2800;SET S20;STL S20;LDP M2800;SET S22;STL S22;OUT Y0;RET;END";
+    let text = "LD M8002;SET S0;LD X0;OUT M2800;STL S0;LDP M2800;SET S20;STL S20;LDP M2800;\
+                SET S22;STL S22;OUT Y0;RET;END";
     assert_eq!(last(text, &["X0=1@20"], "S20,S22"), json!({"S20": true, "S22": false}));
     assert_eq!(last(text, &["X0=1@20", "X0=0@40", "X0=1@60"], "S20,S22"), json!({"S20": false, "S22": true}));
 }
@@ -420,7 +421,8 @@ fn a_jump_out_of_an_inner_loop_leaves_the_outer_one_to_go_on() {
     let text = "FOR K3;LD M8000;INC D0;FOR K5;LD M8000;INC D1;LD M8000;CJ P1;NEXT;P1;NEXT;END";
     assert_eq!(last(text, &["--scans", "1"], "D0,D1"), json!({"D0": 3, "D1": 3}));
     // Out of a loop, and into it again from its start.
-    let text = "LD M8000;MOV K0 D9;P2;FOR K2;LD M8000;INC D0;LD= D9 K0;CJ P3;NEXT;LD M8000;CJ P4;P3;LD M8000;INC D9;CJ P2;P4;END";
+    let text = "LD M8000;MOV K0 D9;P2;FOR K2;LD M8000;INC D0;LD= D9 K0;CJ P3;NEXT;\
+                LD M8000;CJ P4;P3;LD M8000;INC D9;CJ P2;P4;END";
     assert_eq!(last(text, &["--scans", "1"], "D0"), json!({"D0": 3}));
 }
 

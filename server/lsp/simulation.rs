@@ -70,8 +70,8 @@
 //! Values that a variable cannot have are refused, and scan times other than 0.001 to 60000 ms and speeds below 0.
 //!
 //! A step of many scans and a search for the last change end where they are as soon as another order comes; `state`,
-//! `watch`, `panel`, `trace` and `export` are answered meanwhile. A simulation stops when its document is closed; the last
-//! `rungwise/monitor` then has `mode: "stopped"`, as after `stop`.
+//! `watch`, `panel`, `trace` and `export` are answered meanwhile. A simulation stops when its document is closed; the
+//! last `rungwise/monitor` then has `mode: "stopped"`, as after `stop`.
 //!
 //! `scan` counts from 0. What an edit made of the program is taken over as soon as it can be run; until then the old
 //! program goes on and `elements` is empty. An edit after which the program does the same leaves its history; any other

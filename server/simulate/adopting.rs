@@ -1,8 +1,8 @@
 //! What a PLC keeps when its program is edited while it runs.
 //!
-//! Code that does the same goes on as if nothing had happened. Otherwise devices keep their values, and instructions that
-//! stand before and behind the edit what they remember: edges, steps, notes. What is new remembers what it finds now, so
-//! that nothing happens merely because of an edit.
+//! Code that does the same goes on as if nothing had happened. Otherwise devices keep their values, and instructions
+//! that stand before and behind the edit what they remember: edges, steps, notes. What is new remembers what it finds
+//! now, so that nothing happens merely because of an edit.
 
 use super::code::{Call, Code, Op};
 use super::row::Cell;

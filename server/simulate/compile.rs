@@ -41,8 +41,8 @@ const ROUTINE_TIMERS: [RangeInclusive<u32>; 2] = [192..=199, 246..=249];
 /// Timers of the FX1S that M8028 makes count in 10 ms.
 const FINER_TIMERS: RangeInclusive<u32> = 32..=62;
 const FINER: u32 = 8028;
-/// Special relays with which a program tells the CPU something that the simulator does not do: running and stopping from
-/// outside, parameters of communication, checks of the bus, the parallel link, sampling traces, the ring counter, and
+/// Special relays with which a program tells the CPU something that the simulator does not do: running and stopping
+/// from outside, parameters of communication, checks of the bus, the parallel link, sampling traces, the ring counter,
 /// caught pulses.
 const IGNORED: [RangeInclusive<u32>; 8] =
     [8035..=8036, 8038..=8038, 8069..=8071, 8075..=8076, 8099..=8099, 8162..=8162, 8170..=8177, 8198..=8199];

@@ -1,8 +1,8 @@
 //! What a program tells the CPU by special relays and registers, and what the CPU does at the end of a scan.
 //!
-//! Sources: the tables of special devices in the FX programming manuals; what a CPU says of itself is from recordings of
-//! the programming port. Where these are silent: M8037 stops the CPU at the end of the scan that switches it on, and it
-//! goes on where it stopped when M8037 is switched off from outside; registers of M8047 without a state are 0.
+//! Sources: the tables of special devices in the FX programming manuals; what a CPU says of itself is from recordings
+//! of the programming port. Where these are silent: M8037 stops the CPU at the end of the scan that switches it on, and
+//! it goes on where it stopped when M8037 is switched off from outside; registers of M8047 without a state are 0.
 
 use super::code::Code;
 use super::layout::{NS_BEYOND, WRITTEN};

@@ -2,8 +2,8 @@
 //!
 //! A timer counts only while its coil has power in one scan after the other. Its current value is time in its units;
 //! what is beyond a whole unit is kept beside it. A contact closes in the scan in which its coil is executed, not
-//! between; only timers for routines go on without it. Sources: the FX programming manuals on timers and counters; that a preset of 0 works as 1, and that a
-//! counter whose RST is driven does not count, is theirs as well.
+//! between; only timers for routines go on without it. Sources: the FX programming manuals on timers and counters; that
+//! a preset of 0 works as 1, and that a counter whose RST is driven does not count, is theirs as well.
 
 use super::code::{Counter, Timer};
 use super::layout::{NS_BEYOND, PRESET, RESET, SCAN_SEEN, WRITTEN};
