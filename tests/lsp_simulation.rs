@@ -75,7 +75,7 @@ fn a_program_is_stepped_set_forced_and_looked_back_into() {
     plc.tell("set", json!({ "name": "X1", "value": true }));
     plc.tell("step", json!({}));
     assert_eq!(plc.values(&["Y0"]), [json!(false)]);
-    assert_eq!(plc.tell("stop", json!({}))["mode"], json!("paused"));
+    assert_eq!(plc.tell("stop", json!({}))["mode"], json!("stopped"));
     assert_eq!(plc.tell("state", json!({}))["mode"], json!("stopped"));
     let answer = plc.answer("step", json!({}));
     assert!(

@@ -84,6 +84,7 @@ mod scenario_mutants;
 mod scenario_schema;
 mod simulate;
 mod simulate_devices;
+mod simulate_faults;
 mod simulate_recorder;
 mod simulate_rungs;
 mod simulate_session;

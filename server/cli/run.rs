@@ -1,17 +1,18 @@
 //! `rungwise run`
 
 use super::Outcome;
-use super::input::{Program, complain, programs, put, say};
+use super::across::checked;
+use super::input::{Program, caution, complain, programs, put, say};
 use super::why;
 use crate::document::Document;
 use crate::scenario::picture;
 use crate::simulate::{
     self, Code, Place, Reason, Session, Setting, Touch, Trace, TraceRow, Variable, compile,
 };
-use crate::text::{Encoding, Language, Message};
+use crate::text::{Diagnostic, Encoding, Language, Message, Severity, Span};
 use clap::ValueEnum;
 use serde_json::{Map, Value as Json, json};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 #[derive(clap::Args)]
@@ -19,17 +20,23 @@ pub(super) struct Arguments {
     /// A program, or a project.
     file: PathBuf,
     /// So many scans; the first is scan 0.
-    #[arg(long, value_name = "N", conflicts_with = "time")]
+    #[arg(
+        long,
+        value_name = "N",
+        conflicts_with = "time",
+        allow_negative_numbers = true,
+        value_parser = clap::value_parser!(u64).range(1..)
+    )]
     scans: Option<u64>,
     /// Every scan from time 0 up to this time: 500ms, 1.5s, T#2m.
     #[arg(long, value_name = "TIME", value_parser = duration, default_value = "1s")]
     time: i64,
     /// Time from one scan to the next.
-    #[arg(long, value_name = "TIME", value_parser = duration, default_value = "10ms")]
+    #[arg(long, value_name = "TIME", value_parser = distance, default_value = "10ms")]
     scan_time: i64,
     /// Sets a device or variable, from time 0 or from a time on: X0=1, D0=25@100ms.
-    #[arg(long = "set", value_name = "NAME=VALUE[@TIME]", value_parser = Setting::read)]
-    settings: Vec<Setting>,
+    #[arg(long = "set", value_name = "NAME=VALUE[@TIME]")]
+    settings: Vec<String>,
     /// What is shown, parted by commas; all that the program uses if left out.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     watch: Vec<String>,
@@ -53,12 +60,39 @@ enum RunFormat {
     Json,
 }
 
+/// The shape of a trace, by the end of its file's name.
+enum TraceFormat {
+    Vcd,
+    Csv,
+}
+
+impl TraceFormat {
+    fn of(path: &Path) -> Option<TraceFormat> {
+        match path.extension()?.to_ascii_lowercase().to_str()? {
+            "vcd" => Some(TraceFormat::Vcd),
+            "csv" => Some(TraceFormat::Csv),
+            _ => None,
+        }
+    }
+}
+
 /// A time as people write it, in nanoseconds.
 pub(super) fn duration(word: &str) -> Result<i64, String> {
     simulate::duration(word).ok_or_else(|| word.to_string())
 }
 
+/// A time from one scan to the next, in nanoseconds.
+fn distance(word: &str) -> Result<i64, String> {
+    duration(word).and_then(|time_ns| if time_ns > 0 { Ok(time_ns) } else { Err(word.to_string()) })
+}
+
 pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
+    if let Some(path) = arguments.trace.as_ref().filter(|path| TraceFormat::of(path).is_none()) {
+        let reason = Message::new("cli.run-trace").with("path", path.display()).render(language);
+        let help = Message::new("cli.run-traces").render(language);
+        complain("unknown-format", &reason, &help, language);
+        return Outcome::Unusable;
+    }
     let Some(programs) = programs(std::slice::from_ref(&arguments.file), None, language) else {
         return Outcome::Unusable;
     };
@@ -73,6 +107,7 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         }
     };
     let Some((touches, watched)) = named(arguments, &code, language) else { return Outcome::Unusable };
+    let programs = cautioned(programs, language);
     let mut simulation = Simulation { session: Session::new(code), trace: Trace::new(watched), touches };
     let is_clean = simulation.run(arguments, &programs, language);
     let session = &simulation.session;
@@ -86,6 +121,25 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     if is_clean { Outcome::Clean } else { Outcome::Findings }
 }
 
+/// Says that a program runs in which `rungwise check` finds errors.
+fn cautioned(programs: Vec<Program>, language: Language) -> Vec<Program> {
+    let checked = checked(programs, None);
+    let is_told = |found: &&Diagnostic| found.severity == Severity::Error;
+    let count = checked.iter().flat_map(|(_, found)| found).filter(is_told).count();
+    let first = checked
+        .iter()
+        .find_map(|(program, found)| found.iter().find(is_told).map(|diagnostic| (program, diagnostic)));
+    if let Some((program, found)) = first {
+        let reason = Message::new("cli.run-findings")
+            .with("count", count)
+            .with("place", at(program, found.span))
+            .with_messages("first", vec![found.message.clone()]);
+        let help = Message::new("cli.run-check").render(language);
+        caution("check", &reason.render(language), &help, language);
+    }
+    checked.into_iter().map(|(program, _)| program).collect()
+}
+
 /// What is set from which time on, and what is watched; nothing after complaints about names that there are not.
 #[allow(clippy::type_complexity, reason = "two lists that are made together")]
 fn named(
@@ -94,30 +148,40 @@ fn named(
     language: Language,
 ) -> Option<(Vec<(i64, Touch)>, Vec<(String, Variable)>)> {
     let mut is_known = true;
-    let mut complaint = |key: &'static str, name: &str| {
+    let mut complaint = |problem: &str, reason: Message| {
         let help = Message::new("cli.run-names").render(language);
-        complain("unknown-name", &Message::new(key).with("name", name).render(language), &help, language);
+        complain(problem, &reason.render(language), &help, language);
         is_known = false;
     };
+    let unknown = |name: &str| Message::new("cli.run-unknown").with("name", name);
     let mut touches = Vec::new();
-    for setting in &arguments.settings {
+    for word in &arguments.settings {
+        let setting = match Setting::read(word) {
+            Ok(setting) => setting,
+            Err(reason) => {
+                complaint("bad-value", reason);
+                continue;
+            }
+        };
         let Some(variable) = code.variable(&setting.name) else {
-            complaint("cli.run-unknown", &setting.name);
+            complaint("unknown-name", unknown(&setting.name));
             continue;
         };
         match variable.set(code, &setting.value) {
             Some(touch) => touches.push((setting.from_ns, touch)),
-            None => complaint("cli.run-no-value", &setting.name),
+            None => complaint("bad-value", variable.refusal(code, &setting.name, &setting.value)),
         }
     }
     // Of several settings for one time the last one counts.
     touches.sort_by_key(|(from_ns, _)| *from_ns);
     let names = if arguments.watch.is_empty() { code.named() } else { arguments.watch.clone() };
-    let mut watched = Vec::new();
+    let mut watched: Vec<(String, Variable)> = Vec::new();
     for name in names {
         match code.variable(&name) {
+            // What is named twice is shown once.
+            Some(variable) if watched.iter().any(|(_, known)| *known == variable) => {}
             Some(variable) => watched.push((name.trim().to_string(), variable)),
-            None => complaint("cli.run-unknown", &name),
+            None => complaint("unknown-name", unknown(&name)),
         }
     }
     is_known.then_some((touches, watched))
@@ -132,12 +196,17 @@ struct Simulation {
 impl Simulation {
     /// Runs all scans; whether nothing went wrong.
     fn run(&mut self, arguments: &Arguments, programs: &[Program], language: Language) -> bool {
-        let step = arguments.scan_time.max(1);
-        let scans = arguments.scans.unwrap_or((arguments.time / step) as u64 + 1);
         let mut touches = std::mem::take(&mut self.touches).into_iter().peekable();
         let mut told: Vec<(Option<Place>, Message)> = Vec::new();
-        for scan in 0..scans {
-            let now_ns = scan as i64 * step;
+        let mut now_ns = 0i64;
+        for scan in 0.. {
+            let is_over = match arguments.scans {
+                Some(scans) => scan >= scans,
+                None => now_ns > arguments.time,
+            };
+            if is_over {
+                break;
+            }
             while let Some((_, touch)) = touches.next_if(|(from_ns, _)| *from_ns <= now_ns) {
                 self.session.touch(touch);
             }
@@ -150,6 +219,9 @@ impl Simulation {
                 }
             }
             self.trace.note(self.session.machine());
+            // The program may ask for a scan that is longer.
+            let least = self.session.machine().least_scan_ns();
+            now_ns = now_ns.saturating_add(arguments.scan_time.max(least));
         }
         self.trace.end();
         told.is_empty()
@@ -164,10 +236,11 @@ impl Simulation {
         language: Language,
     ) -> bool {
         if let Some(path) = &arguments.trace {
-            let is_vcd = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vcd"));
-            let text = match is_vcd {
-                true => self.trace.vcd().map(|bytes| String::from_utf8_lossy(&bytes).into_owned()),
-                false => Ok(self.trace.csv()),
+            let text = match TraceFormat::of(path) {
+                Some(TraceFormat::Vcd) => {
+                    self.trace.vcd().map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
+                }
+                _ => Ok(self.trace.csv()),
             };
             if !text.is_ok_and(|text| put(&text, Some(path), language)) {
                 return false;
@@ -209,13 +282,16 @@ fn as_ms(time_ns: i64) -> Json {
     }
 }
 
+/// Where something stands in a program.
+fn at(program: &Program, span: Span) -> String {
+    let position = program.document.position(span.start as usize, Encoding::Utf32);
+    format!("{}:{}:{}", program.path.display(), position.line + 1, position.column + 1)
+}
+
 /// A complaint about a place in one of the programs.
 fn complain_at(programs: &[Program], place: Option<Place>, message: Message, language: Language) {
-    let at = place.and_then(|place| {
-        let program = programs.get(place.document as usize)?;
-        let position = program.document.position(place.span.start as usize, Encoding::Utf32);
-        Some(format!("{}:{}:{}: ", program.path.display(), position.line + 1, position.column + 1))
-    });
+    let at =
+        place.and_then(|place| Some(format!("{}: ", at(programs.get(place.document as usize)?, place.span))));
     let reason = format!("{}{}", at.unwrap_or_default(), message.render(language));
     complain("simulation", &reason, &Message::new("cli.run-check").render(language), language);
 }

@@ -107,10 +107,7 @@ impl<W: Write> Adapter<W> {
     fn release(&mut self, name: &str) -> Answer {
         let debugged = self.debugged()?;
         let touches: Vec<Touch> = match name {
-            "" => {
-                let forced: Vec<Device> = debugged.debuggee.machine().forced().collect();
-                forced.into_iter().map(Touch::Release).collect()
-            }
+            "" => vec![Touch::LetAllGo],
             name => {
                 let variable = debugged.variable(name)?;
                 variable.release(debugged.debuggee.code()).into_iter().collect()

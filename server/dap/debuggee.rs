@@ -115,9 +115,9 @@ impl Debuggee {
     }
 
     /// What was done that arrives before the next scan.
-    pub(super) fn arriving(&self) -> impl Iterator<Item = Touch> {
+    pub(super) fn arriving(&self) -> impl Iterator<Item = &Touch> {
         let next = if self.seen == 0 { self.scan } else { self.scan + 1 };
-        self.done.iter().filter(move |(before, _)| *before == next).map(|(_, touch)| *touch)
+        self.done.iter().filter(move |(before, _)| *before == next).map(|(_, touch)| touch)
     }
 
     /// The PLC where this scan begins.
@@ -127,9 +127,9 @@ impl Debuggee {
         machine
     }
 
-    fn touches(&self, scan: u64) -> impl Iterator<Item = Touch> {
+    fn touches(&self, scan: u64) -> impl Iterator<Item = &Touch> {
         let all = self.settings.iter().chain(&self.done);
-        all.filter(move |(before, _)| *before == scan).map(|(_, touch)| *touch)
+        all.filter(move |(before, _)| *before == scan).map(|(_, touch)| touch)
     }
 
     /// Goes to the moment of this scan with this number, from 1 on; whether there is one.

@@ -164,16 +164,12 @@ pub(super) fn value_of(variable: Variable, debuggee: &Debuggee, language: Langua
     if machine.is_forced(variable) {
         return Message::new("debug.forced").with("value", value).render(language);
     }
-    let device = variable.release(debuggee.code());
     let arriving = debuggee.arriving().filter_map(|touch| match touch {
-        Touch::Set(own, on) | Touch::Force(own, on) => Some((own, Value::Bit(on))),
-        Touch::SetWord(own, number) | Touch::ForceWord(own, number) => Some((own, Value::Number(number))),
+        Touch::Write(own, next) | Touch::Hold(own, next) if *own == variable => Some(next),
         _ => None,
     });
-    match arriving.filter(|(own, _)| Some(Touch::Release(*own)) == device).last() {
-        Some((_, next)) => {
-            Message::new("debug.arriving").with("value", value).with("next", next).render(language)
-        }
+    match arriving.last() {
+        Some(next) => Message::new("debug.arriving").with("value", value).with("next", next).render(language),
         None => value.to_string(),
     }
 }

@@ -175,6 +175,11 @@ impl Document {
         self.rope.to_string()
     }
 
+    /// Whether it is the same text of the same document, unchanged since one of the two was cloned.
+    pub fn is_instance(&self, other: &Document) -> bool {
+        self.rope.is_instance(&other.rope)
+    }
+
     /// Length in bytes.
     pub fn len(&self) -> usize {
         self.rope.len_bytes()

@@ -10,7 +10,8 @@
 //! rungwise.simulate.run       { speed?: number }                  // goes on
 //! rungwise.simulate.step      { count?: scans = 1 }               // and pauses
 //! rungwise.simulate.stepBack  { count?: scans = 1, changeOf?: name }   // or back to the last change of a device
-//! rungwise.simulate.reset     { }                                 // as if just switched on, paused or not as before
+//! rungwise.simulate.reset     { }                                 // as if just switched on, paused or not as before;
+//!                                                                 // inputs and what is forced stay, also at start
 //! rungwise.simulate.set       { name, value }                     // "X0", true or 1; "D0", 25
 //! rungwise.simulate.force     { name, value }                     // holds it
 //! rungwise.simulate.release   { name? }                           // one, or all
@@ -76,8 +77,15 @@
 //!   values: { device, value, forced, wired? }[], errors: { range, message }[] }
 //! ```
 //!
+//! Values that a variable cannot have are refused, and scan times other than 0.001 to 60000 ms and speeds below 0.
+//!
+//! A step of many scans and a search for the last change end where they are as soon as another order comes; `state`,
+//! `watch`, `panel`, `trace` and `export` are answered meanwhile. A simulation stops when its document is closed; the
+//! last `rungwise/monitor` then has `mode: "stopped"`, as after `stop`.
+//!
 //! `scan` counts from 0. What an edit made of the program is taken over as soon as it can be run; until then the old
-//! program goes on and `elements` is empty.
+//! program goes on and `elements` is empty. An edit after which the program does the same leaves its history; any other
+//! begins a new one, and devices and instructions around the edit keep what they remember.
 
 mod chart;
 
@@ -150,7 +158,8 @@ impl Simulations {
         if matches!(order, Order::Start { .. }) && snapshot().program(&uri).is_none() {
             return Err(refused(Message::new("request.no-document").with("command", command)));
         }
-        let is_stop = matches!(order, Order::Stop);
+        let is_state = matches!(order, Order::Stop | Order::State { .. });
+        let stopped = || json!({ "uri": uri, "mode": "stopped" });
         let runner = {
             let mut running = self.0.lock().unwrap_or_else(PoisonError::into_inner);
             running.retain(|_, runner| runner.is_alive());
@@ -163,10 +172,12 @@ impl Simulations {
             }
         };
         match runner {
-            Some(runner) => runner.ask(order).await.map(Some).map_err(refused),
-            None if is_stop || matches!(order, Order::State { .. }) => {
-                Ok(Some(json!({ "uri": uri, "mode": "stopped" })))
-            }
+            Some(runner) => match runner.ask(order).await {
+                // It ended meanwhile.
+                Err(_) if is_state && !runner.is_alive() => Ok(Some(stopped())),
+                answer => answer.map(Some).map_err(refused),
+            },
+            None if is_state => Ok(Some(stopped())),
             None => Err(refused(Message::new("simulate.not-running"))),
         }
     }

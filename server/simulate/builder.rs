@@ -1,16 +1,21 @@
 //! Builds code: contacts and blocks become rows of the contact table, whatever they were written in.
 
+use super::adopting::{Keepers, print_of};
 use super::code::{Call, CallCode, Code, Op, Place};
 use super::row::{CELLS, Cell, Row};
 use super::{Layout, Obstacle, Slot};
 use crate::ladder::ContactKind;
 use crate::logic::{Term, Test};
 use crate::target::semantics::NOTES;
-use crate::target::{Device, DeviceKind, Form, Operand, Role, Semantics, Target};
+use crate::target::{Device, DeviceKind, Form, Model, Operand, Role, Semantics, Target};
 use crate::text::Span;
+use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 use std::collections::BTreeSet;
 use std::sync::Arc;
+
+/// Relays whose edge only the contact sees that is executed first.
+const SINGLE_EDGES: std::ops::RangeInclusive<u32> = 2800..=3071;
 
 /// Where a contact stands.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -50,6 +55,9 @@ pub(super) struct Builder {
     instructions: usize,
     devices: BTreeSet<Device>,
     slots: usize,
+    keepers: Keepers,
+    /// What edges of a relay from M2800 on share, by the relay.
+    shared: FxHashMap<Cell, Cell>,
     power: Power,
     /// Whether the current result has passed the rail.
     is_from_rail: bool,
@@ -79,6 +87,8 @@ impl Builder {
             instructions: 0,
             devices: BTreeSet::new(),
             slots,
+            keepers: Keepers::default(),
+            shared: FxHashMap::default(),
             power: Power::Nothing,
             is_from_rail: false,
             rail: Row::RAIL,
@@ -92,14 +102,21 @@ impl Builder {
     /// Says where in the text the next instruction stands, and how many of them it counts for.
     pub(super) fn at(&mut self, place: Place, instructions: usize) {
         self.places.push(place);
+        self.keepers.begin(self.kept, self.slots);
         self.instructions += instructions;
     }
 
     /// Notes that the program names what stands in an operand.
     pub(super) fn names(&mut self, terms: &[Term]) {
+        terms.iter().for_each(|term| self.is_like(print_of(&term.text)));
         let devices = terms.iter().filter_map(|term| term.operand.device());
         let own = devices.filter(|device| !device.is_special() && self.layout.has(*device));
         self.devices.extend(own);
+    }
+
+    /// Notes of the present instruction what tells it from others.
+    pub(super) fn is_like(&mut self, print: u64) {
+        self.keepers.mix(print);
     }
 
     /// Whether each instruction says what it saw.
@@ -135,6 +152,7 @@ impl Builder {
         if self.kept <= self.scratch.1 {
             return Err(Obstacle::TooLarge);
         }
+        self.keepers.end(self.kept, self.slots);
         let counts_pulses = self.ops.iter().any(|op| matches!(op, Op::HighSpeed { .. }));
         Ok(Code {
             target: self.target,
@@ -148,6 +166,8 @@ impl Builder {
             states: Vec::new(),
             interrupts: Vec::new(),
             counts_pulses,
+            routine_timers: Vec::new(),
+            keepers: self.keepers,
             instructions: self.instructions,
             devices: self.devices,
             is_straight: self.is_straight,
@@ -278,6 +298,7 @@ impl Builder {
 
     /// Puts a contact into the circuit.
     pub(super) fn contact(&mut self, position: Position, test: Test, terms: &[Term]) -> Result<(), Obstacle> {
+        self.is_like(print_of(&test));
         self.names(terms);
         let (cell, is_inverse) = match test {
             Test::Bit(kind) => {
@@ -285,8 +306,8 @@ impl Builder {
                 match kind {
                     ContactKind::NormallyOpen => (cell, false),
                     ContactKind::NormallyClosed => (cell, true),
-                    ContactKind::Rising => (self.edge(cell, true), false),
-                    ContactKind::Falling => (self.edge(cell, false), false),
+                    ContactKind::Rising => (self.contact_edge(cell, true), false),
+                    ContactKind::Falling => (self.contact_edge(cell, false), false),
                 }
             }
             Test::Compare(_) => {
@@ -327,11 +348,36 @@ impl Builder {
         Ok(to)
     }
 
+    /// The edge that a contact sees: of M2800 to M3071 on an FX2N and later the first one that is executed after the
+    /// change, so that one signal takes a sequence on by one step. Source: the FX programming manuals on these relays.
+    fn contact_edge(&mut self, cell: Cell, is_rising: bool) -> Cell {
+        let is_single = matches!(self.target.model, Model::Fx2n | Model::Fx3u)
+            && self
+                .layout
+                .device_of_cell(cell)
+                .is_some_and(|device| device.kind == DeviceKind::M && SINGLE_EDGES.contains(&device.number));
+        if !is_single {
+            return self.edge(cell, is_rising);
+        }
+        let before = match self.shared.get(&cell) {
+            Some(before) => *before,
+            None => self.kept(),
+        };
+        self.shared.insert(cell, before);
+        self.edge_since(before, cell, is_rising)
+    }
+
     /// A cell that is on for the scan in which a relay changes.
     pub(super) fn edge(&mut self, cell: Cell, is_rising: bool) -> Cell {
+        let before = self.kept();
+        self.edge_since(before, cell, is_rising)
+    }
+
+    /// The same with the cell that keeps what the relay was.
+    fn edge_since(&mut self, before: Cell, cell: Cell, is_rising: bool) -> Cell {
         let power = self.power;
         let saved = (power != Power::Nothing).then(|| self.power());
-        let (before, edge) = (self.kept(), self.scratch());
+        let edge = self.scratch();
         self.row(Row::load(cell, !is_rising));
         self.row(Row::and(before, is_rising).to(edge));
         self.row(Row::load(cell, false).to(before));

@@ -8,6 +8,13 @@
 use super::{Lanes, Layout, Memory, Slot};
 use crate::target::{Device, DeviceKind};
 
+/// Whether a clock relay with this period, such as M8012 with 100 ms, is in its second half, in which it is on. One
+/// whose half is shorter than a scan changes with every scan: a scan as long as its period would see it stand still.
+pub(super) fn is_second_half(period_ms: i64, now_ns: i64, scan_ns: i64, scan: u64) -> bool {
+    let half_ns = period_ms * 1_000_000 / 2;
+    if scan_ns > half_ns { scan.is_multiple_of(2) } else { now_ns / half_ns % 2 == 1 }
+}
+
 /// Words of the clock, in the order of D8013 to D8019: second, minute, hour, day, month, year in four digits, day of
 /// the week. Then come those below.
 const FIELDS: usize = 7;

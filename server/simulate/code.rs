@@ -1,5 +1,6 @@
 //! What a program becomes before it runs: the contact table, and the steps between its pieces.
 
+use super::adopting::Keepers;
 use super::row::{Cell, Row};
 use super::{Lanes, Layout, Memory, Slot};
 use crate::target::semantics::Deed;
@@ -36,6 +37,10 @@ pub struct Code {
     pub(super) interrupts: Vec<(u32, u32)>,
     /// Whether it has high-speed counters.
     pub(super) counts_pulses: bool,
+    /// Timers that go on when the scan ends without their coils, see [`super::timing::routine_timer`].
+    pub(super) routine_timers: Vec<Timer>,
+    /// The instructions, as far as they keep something from scan to scan.
+    pub(super) keepers: Keepers,
     /// Whether the order of execution is that of the text in every scan.
     pub(super) is_straight: bool,
 }
@@ -98,8 +103,11 @@ pub(super) struct Timer {
     /// The current value, in units; then nanoseconds beyond; then the scan in which it ran last.
     pub(super) current: Slot,
     pub(super) preset: Preset,
-    pub(super) unit_ms: u32,
+    /// What it counts, in milliseconds, at most 100.
+    pub(super) unit_ms: u16,
     pub(super) is_retentive: bool,
+    /// The relay that makes it count in 10 ms instead.
+    pub(super) finer: Option<Cell>,
 }
 
 /// The coil of a counter.

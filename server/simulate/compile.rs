@@ -1,5 +1,6 @@
 //! Makes code of documents: every instruction in its turn, then labels find their places.
 
+use super::adopting::{print_of, print_of_form};
 use super::builder::Builder;
 use super::code::{CallCode, Code, Counter, Op, Place, Preset, Timer};
 use super::row::{Cell, Row};
@@ -8,9 +9,12 @@ use crate::document::{Document, Tree, coil_form};
 use crate::ladder::CoilKind;
 use crate::logic::{Deed, Term};
 use crate::target::outside::FIRST_HIGH_SPEED;
-use crate::target::{Constant, Device, DeviceKind, Flow, Form, Operand, Role, Semantics, Target};
+use crate::target::{
+    Constant, Device, DeviceKind, Fault, Flow, Form, Model, Operand, Role, Semantics, Target,
+};
 use crate::text::Span;
 use rustc_hash::FxHashMap;
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 /// Compiles documents that are one program for an FX, in the order of execution.
@@ -32,6 +36,17 @@ pub fn compile(documents: &[&Document], is_watched: bool) -> Result<Code, Vec<Pr
     compiler.finish()
 }
 
+/// Timers that go on when the scan ends, if it did not come to their coils.
+const ROUTINE_TIMERS: [RangeInclusive<u32>; 2] = [192..=199, 246..=249];
+/// Timers of the FX1S that M8028 makes count in 10 ms.
+const FINER_TIMERS: RangeInclusive<u32> = 32..=62;
+const FINER: u32 = 8028;
+/// Special relays with which a program tells the CPU something that the simulator does not do: running and stopping
+/// from outside, parameters of communication, checks of the bus, the parallel link, sampling traces, the ring counter,
+/// caught pulses.
+const IGNORED: [RangeInclusive<u32>; 8] =
+    [8035..=8036, 8038..=8038, 8069..=8071, 8075..=8076, 8099..=8099, 8162..=8162, 8170..=8177, 8198..=8199];
+
 /// A program that is being compiled.
 pub(super) struct Compiler {
     pub(super) builder: Builder,
@@ -49,6 +64,8 @@ pub(super) struct Compiler {
     loops: Vec<u32>,
     /// Lists of states, for transfers.
     states: Vec<Vec<Cell>>,
+    /// Timers that go on without their coils.
+    routine_timers: Vec<Timer>,
 }
 
 /// The step in which instructions stand.
@@ -78,6 +95,7 @@ impl Compiler {
             steps: Steps::default(),
             loops: Vec::new(),
             states: Vec::new(),
+            routine_timers: Vec::new(),
         }
     }
 
@@ -116,6 +134,7 @@ impl Compiler {
 
     /// A label stands here.
     pub(super) fn label(&mut self, label: Device) {
+        self.builder.is_like(print_of(&label));
         self.builder.rung();
         let here = self.builder.here();
         self.labels.entry(label).or_insert(here);
@@ -150,11 +169,16 @@ impl Compiler {
         let routines = self.labels.iter().filter(|(label, _)| label.kind == DeviceKind::I);
         let mut interrupts: Vec<(u32, u32)> = routines.map(|(label, op)| (label.number, *op)).collect();
         interrupts.sort_unstable();
-        Ok(Code { states, interrupts, ..code })
+        Ok(Code { states, interrupts, routine_timers: self.routine_timers, ..code })
     }
 
     /// What power drives here.
     pub(super) fn action(&mut self, deed: &Deed, terms: &[Term]) -> Result<(), Obstacle> {
+        match deed {
+            Deed::Coil(kind) => self.builder.is_like(print_of(kind)),
+            Deed::Instruction(form) => self.builder.is_like(print_of_form(*form)),
+            _ => {}
+        }
         self.builder.names(terms);
         match deed {
             Deed::Coil(kind) => self.coil(*kind, terms),
@@ -201,6 +225,22 @@ impl Compiler {
             CoilKind::Falling => self.builder.pulse(cell, false),
             CoilKind::Toggle => return Err(Obstacle::Unreadable),
         }
+        if device.kind == DeviceKind::M && IGNORED.iter().any(|numbers| numbers.contains(&device.number)) {
+            return self.ignored(kind, terms);
+        }
+        Ok(())
+    }
+
+    /// A coil of a special relay that tells the CPU something which it does not do here: that is said.
+    fn ignored(&mut self, kind: CoilKind, terms: &[Term]) -> Result<(), Obstacle> {
+        let form = coil_form(kind).ok_or(Obstacle::Unreadable)?;
+        let code = CallCode::Deed(|execution| match execution.power() {
+            true => Err(Fault::NotSimulated(0)),
+            false => Ok(()),
+        });
+        let power = self.builder.settle();
+        let call = self.builder.call(form, terms, code)?;
+        self.builder.op(Op::Execute { power, call });
         Ok(())
     }
 
@@ -240,8 +280,13 @@ impl Compiler {
         let is_wide = layout.is_wide(device);
         let preset = self.preset(preset, is_wide)?;
         if device.kind == DeviceKind::T {
-            let unit_ms = range.timer_unit_ms;
-            let timer = Timer { contact, coil, current, preset, unit_ms, is_retentive: range.latched };
+            let unit_ms = range.timer_unit_ms.min(100) as u16;
+            let is_retentive = range.latched;
+            let finer = self.finer(device);
+            let timer = Timer { contact, coil, current, preset, unit_ms, is_retentive, finer };
+            if ROUTINE_TIMERS.iter().any(|numbers| numbers.contains(&device.number)) {
+                self.routine_timers.push(timer);
+            }
             return Ok(Op::Timer { power, timer });
         }
         // M8200 to M8234 are on while C200 to C234 count down.
@@ -251,6 +296,13 @@ impl Compiler {
             FIRST_HIGH_SPEED.. => Ok(Op::HighSpeed { power, counter }),
             _ => Ok(Op::Counter { power, counter }),
         }
+    }
+
+    /// The relay that makes a timer of the FX1S count in 10 ms.
+    fn finer(&self, timer: Device) -> Option<Cell> {
+        let is_switched = self.builder.target.model == Model::Fx1s && FINER_TIMERS.contains(&timer.number);
+        let relay = Device::new(DeviceKind::M, FINER);
+        is_switched.then(|| self.builder.layout.cell(relay)).flatten()
     }
 
     fn preset(&mut self, terms: &[Term], is_wide: bool) -> Result<Preset, Obstacle> {
@@ -302,6 +354,7 @@ impl Compiler {
             }
             Flow::Jump | Flow::Call => self.jump(form, terms),
             Flow::SubroutineEnd | Flow::InterruptEnd => {
+                self.close_controls();
                 self.builder.op(Op::Return);
                 Ok(())
             }
@@ -328,6 +381,7 @@ impl Compiler {
             }
             Flow::MainEnd | Flow::ProgramEnd => {
                 self.close_steps();
+                self.close_controls();
                 self.builder.op(Op::End);
                 Ok(())
             }
@@ -406,6 +460,13 @@ impl Compiler {
         Ok(())
     }
 
+    /// A master control that nothing has closed does not reach beyond the main program or its routine.
+    fn close_controls(&mut self) {
+        if let Some((_, outside)) = self.controls.drain(..).next() {
+            self.builder.set_rail(outside);
+        }
+    }
+
     /// STL: what follows belongs to the step. Right behind another one it is the joining of both.
     fn step(&mut self, terms: &[Term]) -> Result<(), Obstacle> {
         let Some(Operand::Device(device)) = terms.first().map(|term| term.operand) else {
@@ -444,6 +505,7 @@ impl Compiler {
 
     /// Changes the current result by itself: INV, MEP, MEF.
     pub(super) fn modify(&mut self, form: Form) {
+        self.builder.is_like(print_of_form(form));
         if Form::named("INV") == Some(form) {
             self.builder.invert();
         } else {

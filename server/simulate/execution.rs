@@ -3,8 +3,9 @@
 use super::clock;
 use super::code::Call;
 use super::interrupts::Interrupts;
-use super::layout::{NS_BEYOND, index_register};
+use super::layout::index_register;
 use super::terminals::Terminals;
+use super::timing;
 use super::{Cell, Lanes, Layout, Memory, Slot};
 use crate::target::semantics::NOTES;
 use crate::target::{Constant, Device, DeviceKind, Execution, Fault, Model, Operand, Outside};
@@ -150,12 +151,8 @@ impl<L: Lanes> Executing<'_, L> {
         self.layout.slot(upper).ok_or(Fault::NoDevice(place as u8))
     }
 
-    fn store(&mut self, slot: Slot, kind: DeviceKind, value: i64) {
-        self.memory.set_word(slot, self.lane, value);
-        // What is written to a timer is whole units.
-        if kind == DeviceKind::T {
-            self.memory.set_word(slot + NS_BEYOND, self.lane, 0);
-        }
+    fn store(&mut self, slot: Slot, device: Device, value: i64) {
+        timing::store(self.memory, self.layout, (slot, device), self.lane, value);
     }
 
     fn relay_cell(&self, number: u32) -> Option<Cell> {
@@ -223,7 +220,7 @@ impl<L: Lanes> Execution for Executing<'_, L> {
         match self.find(place, offset, false)? {
             Where::Number(_) => Err(Fault::NoDevice(place as u8)),
             Where::Slot { slot, device } => {
-                self.store(slot, device.kind, i64::from(value as i16));
+                self.store(slot, device, i64::from(value as i16));
                 Ok(())
             }
             Where::Bits { first, count } => self.write_bits(first, count, place, i64::from(value as u16)),
@@ -234,13 +231,14 @@ impl<L: Lanes> Execution for Executing<'_, L> {
         match self.find(place, offset, true)? {
             Where::Number(_) => Err(Fault::NoDevice(place as u8)),
             Where::Slot { slot, device } if self.layout.is_wide(device) => {
-                self.store(slot, device.kind, i64::from(value as i32));
+                self.store(slot, device, i64::from(value as i32));
                 Ok(())
             }
             Where::Slot { slot, device } => {
                 let upper = self.upper(device, place)?;
-                self.store(slot, device.kind, i64::from(value as i16));
-                self.store(upper, device.kind, i64::from((value >> 16) as i16));
+                self.store(slot, device, i64::from(value as i16));
+                let behind = self.layout.device_of_slot(upper).unwrap_or(device);
+                self.store(upper, behind, i64::from((value >> 16) as i16));
                 Ok(())
             }
             Where::Bits { first, count } => self.write_bits(first, count, place, i64::from(value as u32)),
@@ -343,7 +341,7 @@ impl<L: Lanes> Execution for Executing<'_, L> {
             self.memory.set_bit(cell, self.lane, false);
         }
         if let Some(slot) = slot {
-            self.store(slot, device.kind, 0);
+            self.store(slot, device, 0);
         }
         Ok(())
     }

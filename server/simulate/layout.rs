@@ -30,10 +30,13 @@ struct Run {
     bits: u8,
 }
 
-/// Behind the contact of a timer or counter lie its coil and its reset, which is on while RST drives it.
-const CELLS_OF_COUNTER: usize = 3;
+/// Behind the contact of a timer or counter lie its coil, its reset, which is on while RST drives it, and whether
+/// something else than the coil has written the current value.
+const CELLS_OF_COUNTER: usize = 4;
 /// See [`CELLS_OF_COUNTER`].
 pub(super) const RESET: Cell = 2;
+/// See [`CELLS_OF_COUNTER`].
+pub(super) const WRITTEN: Cell = 3;
 /// Behind the current value of a timer lie the nanoseconds that are no whole unit yet, and the scan in which its coil
 /// had power last.
 const SLOTS_OF_TIMER: usize = 3;
@@ -138,6 +141,11 @@ impl Layout {
         self.run(device).is_some_and(|run| run.bits == 32)
     }
 
+    /// What the register, or the current value of the timer or counter, holds of a number.
+    pub(super) fn held(&self, device: Device, value: i64) -> i64 {
+        if self.is_wide(device) { i64::from(value as i32) } else { i64::from(value as i16) }
+    }
+
     /// The cells of inputs, or of outputs, one behind the other in the order of their numbers.
     pub fn terminals(&self, kind: DeviceKind) -> std::ops::Range<usize> {
         match self.kinds[kind as usize].first() {
@@ -172,6 +180,11 @@ impl Layout {
     /// The devices that forget their values when the CPU leaves RUN.
     pub fn forgetful(&self) -> impl Iterator<Item = Device> {
         self.all(|run| !run.latched)
+    }
+
+    /// The devices that keep them.
+    pub(super) fn latched(&self) -> impl Iterator<Item = Device> {
+        self.all(|run| run.latched)
     }
 
     /// All devices with a value.

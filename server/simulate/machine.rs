@@ -2,12 +2,13 @@
 
 use super::code::{Call, CallCode, Code, Op, Place};
 use super::execution::Executing;
+use super::forces::Force;
 use super::interrupts::{self, Interrupts};
 use super::layout::{NS_BEYOND, RESET};
 use super::row::{self, Cell, Row};
 use super::terminals::Terminals;
-use super::timing::{self, Moment};
-use super::{Glimpse, Lanes, Memory, Slot, Variable, annunciators, clock};
+use super::timing;
+use super::{Glimpse, Lanes, Memory, annunciators, clock};
 use crate::target::{Device, DeviceKind, Execution, Fault, Outside};
 use crate::text::Message;
 use std::sync::Arc;
@@ -23,22 +24,13 @@ pub struct Machine<L> {
     pub(super) interrupts: Interrupts,
     /// What inputs X0 to X7 were when they were sampled last.
     inputs: [L; 8],
-    forces: Vec<Force>,
+    pub(super) forces: Vec<Force>,
     /// Rows of the program whose outputs are forced, instead of its own.
-    forced_rows: Option<Arc<[Row]>>,
+    pub(super) forced_rows: Option<Arc<[Row]>>,
     /// Scans so far.
-    scans: u64,
-    now_ns: i64,
-    scan_ns: i64,
-    /// Ops that a scan may run.
-    most_ops: u64,
-}
-
-/// A device that keeps a value whatever the program does.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-enum Force {
-    Relay(Cell, bool),
-    Word(Slot, i64),
+    pub(super) scans: u64,
+    pub(super) now_ns: i64,
+    pub(super) scan_ns: i64,
 }
 
 /// What came of a scan.
@@ -77,6 +69,8 @@ pub enum ErrorKind {
     TooDeep,
     /// SRET without CALL, or NEXT without FOR.
     NothingToReturnTo,
+    /// The program has stopped the CPU by M8037.
+    Stopped,
 }
 
 /// What an instruction saw when it was executed.
@@ -109,6 +103,7 @@ impl ErrorKind {
             }
             ErrorKind::Watchdog => Message::new("simulate.watchdog"),
             ErrorKind::TooDeep => Message::new("simulate.too-deep"),
+            ErrorKind::Stopped => Message::new("simulate.stopped"),
             ErrorKind::NothingToReturnTo => Message::new("simulate.nothing-to-return-to"),
         }
     }
@@ -137,7 +132,6 @@ impl<L: Lanes> Machine<L> {
             scans: 0,
             now_ns: 0,
             scan_ns: 0,
-            most_ops: Self::MOST_OPS,
         }
     }
 
@@ -184,7 +178,13 @@ impl<L: Lanes> Machine<L> {
 
     /// Switches an input terminal, or writes a relay; of timers and counters the contact.
     pub fn set(&mut self, device: Device, value: L) {
-        let Some(cell) = self.code.layout.cell(device) else { return };
+        if let Some(cell) = self.code.layout.cell(device) {
+            self.write_cell(cell, value);
+        }
+    }
+
+    /// Switches the input terminal in a cell, or writes the cell.
+    pub(super) fn write_cell(&mut self, cell: Cell, value: L) {
         match self.terminals.input_mut(cell) {
             Some(input) => *input = value,
             None => self.memory.set_cell(cell, value),
@@ -195,12 +195,9 @@ impl<L: Lanes> Machine<L> {
     pub fn set_word(&mut self, device: Device, value: i64) {
         let layout = Arc::clone(&self.code.layout);
         let Some(slot) = layout.slot(device) else { return };
-        let value = if layout.is_wide(device) { i64::from(value as i32) } else { i64::from(value as i16) };
+        let value = layout.held(device, value);
         for lane in 0..L::COUNT {
-            self.memory.set_word(slot, lane, value);
-            if device.kind == DeviceKind::T {
-                self.memory.set_word(slot + NS_BEYOND, lane, 0);
-            }
+            timing::store(&mut self.memory, &layout, (slot, device), lane, value);
         }
     }
 
@@ -217,90 +214,6 @@ impl<L: Lanes> Machine<L> {
     /// The register, or the current value of the timer or counter, in a scenario.
     pub fn word(&self, device: Device, lane: usize) -> i64 {
         self.code.layout.slot(device).map_or(0, |slot| self.memory.word(slot, lane))
-    }
-
-    /// Holds a relay at a value whatever inputs and program say, until [`Machine::release`].
-    pub fn force(&mut self, device: Device, on: bool) {
-        self.release(device);
-        if let Some(cell) = self.code.layout.cell(device) {
-            self.forces.push(Force::Relay(cell, on));
-        }
-        self.patch();
-        self.hold();
-    }
-
-    /// Holds a register, or the current value of a timer or counter, at a value.
-    pub fn force_word(&mut self, device: Device, value: i64) {
-        self.release(device);
-        self.forces.extend(self.code.layout.slot(device).map(|slot| Force::Word(slot, value)));
-        self.hold();
-    }
-
-    /// Lets a forced device go; it keeps its value until something writes it.
-    pub fn release(&mut self, device: Device) {
-        let (cell, slot) = (self.code.layout.cell(device), self.code.layout.slot(device));
-        self.forces.retain(|force| match force {
-            Force::Relay(forced, _) => Some(*forced) != cell,
-            Force::Word(forced, _) => Some(*forced) != slot,
-        });
-        self.patch();
-    }
-
-    /// The forced devices.
-    pub fn forced(&self) -> impl Iterator<Item = Device> {
-        self.forces.iter().filter_map(|force| match force {
-            Force::Relay(cell, _) => self.code.layout.device_of_cell(*cell),
-            Force::Word(slot, _) => self.code.layout.device_of_slot(*slot),
-        })
-    }
-
-    /// Whether it is forced.
-    pub fn is_forced(&self, variable: Variable) -> bool {
-        self.forces.iter().any(|force| match (force, variable) {
-            (Force::Relay(forced, _), Variable::Relay(cell)) => *forced == cell,
-            (Force::Word(forced, _), Variable::Word(slot) | Variable::Pair(slot, _)) => *forced == slot,
-            _ => false,
-        })
-    }
-
-    /// Goes on with other code for the same PLC: devices keep their values, what instructions noted is forgotten.
-    pub fn adopt(&mut self, code: Arc<Code>) {
-        let mut memory = Memory::new(code.slots);
-        let layout = &code.layout;
-        memory.cells[..layout.cells()].copy_from_slice(&self.memory.cells[..layout.cells()]);
-        for slot in 0..layout.slots() as Slot {
-            (0..L::COUNT).for_each(|lane| memory.set_word(slot, lane, self.memory.word(slot, lane)));
-        }
-        self.memory = memory;
-        self.set_code(code);
-    }
-
-    /// Rows do not write relays that are forced.
-    fn patch(&mut self) {
-        let forced: Vec<Cell> = self
-            .forces
-            .iter()
-            .filter_map(|force| match force {
-                Force::Relay(cell, _) => Some(*cell),
-                Force::Word(..) => None,
-            })
-            .collect();
-        self.forced_rows = (!forced.is_empty()).then(|| {
-            let free = |row: &Row| if forced.contains(&row.dst) { row.to(Row::SINK) } else { *row };
-            self.code.rows.iter().map(free).collect()
-        });
-    }
-
-    /// Puts forced devices back to their values.
-    fn hold(&mut self) {
-        for force in &self.forces {
-            match *force {
-                Force::Relay(cell, on) => self.memory.set_cell(cell, L::all(on)),
-                Force::Word(slot, value) => {
-                    (0..L::COUNT).for_each(|lane| self.memory.set_word(slot, lane, value))
-                }
-            }
-        }
     }
 
     /// Runs a scan that begins at `now_ns`.
@@ -325,8 +238,12 @@ impl<L: Lanes> Machine<L> {
         self.fast(&code);
         let rows = self.forced_rows.clone();
         let mut run = Run::default();
-        self.run(&code, rows.as_deref().unwrap_or(&code.rows), &mut run, watch);
-        self.terminals.publish(&self.memory);
+        if self.is_stopped() {
+            self.stand_still();
+        } else {
+            self.run(&code, rows.as_deref().unwrap_or(&code.rows), &mut run, watch);
+            self.end_scan(&code, &mut run);
+        }
         run.outcome
     }
 
@@ -354,7 +271,7 @@ impl<L: Lanes> Machine<L> {
     fn special(&mut self) {
         let layout = Arc::clone(&self.code.layout);
         let is_first = self.scans == 1;
-        let half = |ms: i64| self.now_ns / (ms * 1_000_000 / 2) % 2 == 1;
+        let half = |ms: i64| clock::is_second_half(ms, self.now_ns, self.scan_ns, self.scans);
         let relays = [
             (8000, true),
             (8001, false),
@@ -370,6 +287,7 @@ impl<L: Lanes> Machine<L> {
                 self.memory.set_cell(cell, L::all(on));
             }
         }
+        self.identify();
         clock::advance(&mut self.memory, &layout, self.scans, self.scan_ns);
         annunciators::monitor(&mut self.memory, &layout);
         // In tenths of a millisecond: the present scan time, the least and the greatest so far.
@@ -393,11 +311,11 @@ impl<L: Lanes> Machine<L> {
         run: &mut Run,
         watch: &mut impl FnMut(Glimpse<'_, L>) -> bool,
     ) {
-        let mut at = 0;
+        let (mut at, most_ops) = (0, self.most_ops());
         while let Some(op) = code.ops.get(at) {
             let mut next = at + 1;
             run.ops += 1;
-            if run.ops > self.most_ops && !run.renew(&mut self.interrupts) {
+            if run.ops > most_ops && !run.renew(&mut self.interrupts) {
                 run.error(code, at, ErrorKind::Watchdog, 0);
                 return;
             }
@@ -431,7 +349,7 @@ impl<L: Lanes> Machine<L> {
                 }
                 Op::Timer { power, timer } => {
                     let power = self.memory.cell(power);
-                    let moment = Moment { scan: self.scans as i64, elapsed_ns: self.scan_ns };
+                    let moment = self.moment();
                     timing::timer(&mut self.memory, timer, power, moment);
                 }
                 Op::Counter { power, counter } => {
@@ -488,6 +406,7 @@ impl<L: Lanes> Machine<L> {
                 },
                 Op::For { call, next: behind } => {
                     let rounds = self.rounds(code, at, call, run);
+                    run.leave_loop(next);
                     if rounds < 1 {
                         next = behind as usize;
                     } else if run.loops.len() >= code.target.limits.loops as usize {
@@ -497,9 +416,8 @@ impl<L: Lanes> Machine<L> {
                         run.loops.push((next, rounds));
                     }
                 }
-                Op::Next { first } => match run.loops.last_mut() {
-                    // A jump into a loop meets a NEXT that is not its own.
-                    Some((begin, rounds)) if *begin == first as usize => {
+                Op::Next { first } => match run.inner_loop(first as usize) {
+                    Some((begin, rounds)) => {
                         *rounds -= 1;
                         if *rounds > 0 {
                             next = *begin;
@@ -507,7 +425,7 @@ impl<L: Lanes> Machine<L> {
                             run.loops.pop();
                         }
                     }
-                    _ => {
+                    None => {
                         run.error(code, at, ErrorKind::NothingToReturnTo, 0);
                         return;
                     }
@@ -656,7 +574,7 @@ impl<L: Lanes> Machine<L> {
 
 /// A scan that runs.
 #[derive(Default)]
-struct Run {
+pub(super) struct Run {
     outcome: Outcome,
     /// Where calls go back to.
     calls: Vec<usize>,
@@ -688,7 +606,21 @@ impl Run {
         Glimpse { machine, sight, calls: &self.calls, routines: &self.routines }
     }
 
-    fn error(&mut self, code: &Code, at: usize, kind: ErrorKind, lane: usize) {
+    /// The loop that begins at an op, if it runs. A jump may have left loops within it, which are done with.
+    fn inner_loop(&mut self, begin: usize) -> Option<&mut (usize, i64)> {
+        let own = self.loops.iter().rposition(|(op, _)| *op == begin)?;
+        self.loops.truncate(own + 1);
+        self.loops.last_mut()
+    }
+
+    /// A loop that begins again was left by a jump, if it runs.
+    fn leave_loop(&mut self, begin: usize) {
+        if self.inner_loop(begin).is_some() {
+            self.loops.pop();
+        }
+    }
+
+    pub(super) fn error(&mut self, code: &Code, at: usize, kind: ErrorKind, lane: usize) {
         if self.outcome.errors.len() < Outcome::MOST_ERRORS {
             self.outcome.errors.push(Error { place: code.place(at), kind, lane });
         }

@@ -23,6 +23,8 @@ pub use problem::{Obstacle, Problem};
 
 mod builder;
 
+mod adopting;
+
 mod from_list;
 
 mod from_path;
@@ -33,6 +35,10 @@ pub use compile::compile;
 mod annunciators;
 
 mod clock;
+
+mod forces;
+
+mod orders;
 
 mod execution;
 
@@ -52,6 +58,9 @@ pub use glimpse::{Caller, Glimpse};
 
 mod session;
 pub use session::{Session, Touch};
+
+mod search;
+pub use search::ChangeSearch;
 
 mod variable;
 pub use variable::{Value, Variable};

@@ -34,7 +34,7 @@ impl Code {
             Some(Counted { device, preset: preset.named(layout), unit_ms })
         };
         let found = self.ops.iter().filter_map(|op| match op {
-            Op::Timer { timer, .. } => counted(timer.contact, timer.preset, Some(timer.unit_ms)),
+            Op::Timer { timer, .. } => counted(timer.contact, timer.preset, Some(u32::from(timer.unit_ms))),
             Op::Counter { counter, .. } | Op::HighSpeed { counter, .. } => {
                 counted(counter.contact, counter.preset, None)
             }

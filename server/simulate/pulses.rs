@@ -105,7 +105,11 @@ impl<L: Lanes> Machine<L> {
     fn count(&mut self, counter: HighSpeed, wiring: &Wiring, fed: i32, watches: &[Watch]) {
         let HighSpeed { number, slot, lane, .. } = counter;
         if wiring.reset.is_some_and(|x| self.is_input_on(x, lane)) {
+            // It acts as RST does.
             self.memory.set_word(slot, lane, 0);
+            if let Some(contact) = self.code.layout.cell(Device::new(DeviceKind::C, number)) {
+                self.memory.set_bit(contact, lane, false);
+            }
             return;
         }
         let is_started = wiring.start.is_none_or(|x| self.is_input_on(x, lane));

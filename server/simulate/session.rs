@@ -6,12 +6,13 @@
 
 use super::code::Code;
 use super::machine::{Machine, Outcome, Sight};
+use super::{Value, Variable};
 use crate::target::Device;
 use crate::target::outside::Event;
 use std::sync::Arc;
 
 /// What is done to a PLC between two scans.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub enum Touch {
     /// Switches an input terminal, or writes a relay.
     Set(Device, bool),
@@ -27,12 +28,24 @@ pub enum Touch {
     Pulse(Device, i32),
     /// Something happens around the CPU.
     Around(Event),
+    /// Writes a variable; of an input what is wired to it.
+    Write(Variable, Value),
+    /// Holds a variable at a value.
+    Hold(Variable, Value),
+    /// Lets a variable go.
+    LetGo(Variable),
+    /// Lets all that is forced go.
+    LetAllGo,
 }
 
 impl Touch {
     /// Does it.
-    pub fn apply(self, machine: &mut Machine<u8>) {
-        match self {
+    pub fn apply(&self, machine: &mut Machine<u8>) {
+        match *self {
+            Touch::Write(variable, ref value) => machine.write(variable, value),
+            Touch::Hold(variable, ref value) => machine.hold_at(variable, value),
+            Touch::LetGo(variable) => machine.let_go(variable),
+            Touch::LetAllGo => machine.let_all_go(),
             Touch::Set(device, on) => machine.set(device, if on { 0xFF } else { 0 }),
             Touch::SetWord(device, value) => machine.set_word(device, value),
             Touch::Force(device, on) => machine.force(device, on),
@@ -199,14 +212,35 @@ impl Session {
         Some(sights)
     }
 
-    /// Goes on with another program for the same PLC: devices keep their values, and history begins anew.
-    pub fn adopt(&mut self, code: Arc<Code>) {
+    /// Goes on with an edited program. One that does the same keeps its history; for any other [`Machine::adopt`] says
+    /// what is kept, and history begins anew. Gives whether it goes on.
+    pub fn adopt(&mut self, code: Arc<Code>) -> bool {
+        if self.machine.code().does_the_same_as(&code) {
+            self.moments.iter_mut().for_each(|moment| moment.set_code(Arc::clone(&code)));
+            self.machine.set_code(code);
+            return true;
+        }
+        if !self.machine.code().has_layout_of(&code) {
+            *self = Session::new(code);
+            return false;
+        }
         self.stride = stride(&code);
         self.machine.adopt(code);
         self.moments = vec![self.machine.clone()];
         let begin = self.machine.scans();
         self.touches.clear();
         self.times.forget(begin);
+        false
+    }
+
+    /// Does to this PLC what stays done when another is switched off: what is wired to its inputs, and what is forced.
+    pub fn take_over(&mut self, before: &Machine<u8>) {
+        let own = Arc::clone(self.machine.code());
+        for (name, value, is_forced) in before.standing() {
+            let Some(variable) = own.variable(&name) else { continue };
+            let touch = if is_forced { variable.force(&own, &value) } else { variable.set(&own, &value) };
+            touch.into_iter().for_each(|touch| self.touch(touch));
+        }
     }
 
     /// The last scan up to `scan` whose state is kept, from which others are run again.
@@ -224,19 +258,24 @@ impl Session {
         true
     }
 
-    fn touches_before(&self, scan: u64) -> impl Iterator<Item = Touch> {
+    fn touches_before(&self, scan: u64) -> impl Iterator<Item = &Touch> {
         let first = self.touches.partition_point(|(before, _)| *before < scan);
         let touches = self.touches.get(first..).unwrap_or_default().iter();
-        touches.take_while(move |(before, _)| *before == scan).map(|(_, touch)| *touch)
+        touches.take_while(move |(before, _)| *before == scan).map(|(_, touch)| touch)
     }
 
-    fn moment_before(&self, scan: u64) -> Option<&Machine<u8>> {
+    pub(super) fn moment_before(&self, scan: u64) -> Option<&Machine<u8>> {
         let after = self.moments.partition_point(|moment| moment.scans() <= scan);
         self.moments.get(after.checked_sub(1)?)
     }
 
     /// Runs a PLC of an earlier moment on to `last`, and shows it after each scan until `see` returns false.
-    fn replay(&self, machine: &mut Machine<u8>, last: u64, mut see: impl FnMut(&Machine<u8>) -> bool) {
+    pub(super) fn replay(
+        &self,
+        machine: &mut Machine<u8>,
+        last: u64,
+        mut see: impl FnMut(&Machine<u8>) -> bool,
+    ) {
         while machine.scans() < last {
             let scan = machine.scans() + 1;
             let Some(time) = self.times.of(scan) else { return };

@@ -12,13 +12,15 @@ pub(super) struct Terminals<L> {
     y: Range<usize>,
     inputs: Vec<L>,
     outputs: Vec<L>,
+    /// Where all outputs are off, whatever their images are.
+    off: L,
 }
 
 impl<L: Lanes> Terminals<L> {
     /// The terminals of a PLC, all off.
     pub(super) fn new(layout: &Layout) -> Terminals<L> {
         let (x, y) = (layout.terminals(DeviceKind::X), layout.terminals(DeviceKind::Y));
-        Terminals { inputs: vec![L::NONE; x.len()], outputs: vec![L::NONE; y.len()], x, y }
+        Terminals { inputs: vec![L::NONE; x.len()], outputs: vec![L::NONE; y.len()], off: L::NONE, x, y }
     }
 
     /// The images of inputs become what is wired, also through keypads.
@@ -43,6 +45,14 @@ impl<L: Lanes> Terminals<L> {
     /// Output terminals become what their images are.
     pub(super) fn publish(&mut self, memory: &Memory<L>) {
         self.outputs.copy_from_slice(&memory.cells[self.y.clone()]);
+        if self.off != L::NONE {
+            self.outputs.iter_mut().for_each(|output| *output = *output & !self.off);
+        }
+    }
+
+    /// Output terminals are off from now on where `off` says so.
+    pub(super) fn switch_off(&mut self, off: L) {
+        self.off = off;
     }
 
     /// What is wired to the input in a cell.
@@ -69,7 +79,7 @@ impl<L: Lanes> Terminals<L> {
             memory.set_bit(cell, lane, on);
         } else if self.y.contains(&at) {
             let output = &mut self.outputs[at - self.y.start];
-            *output = output.with(lane, memory.bit(cell, lane));
+            *output = output.with(lane, memory.bit(cell, lane) && !self.off.lane(lane));
         }
     }
 }

@@ -2,12 +2,13 @@
 //!
 //! A timer counts only while its coil has power in one scan after the other. Its current value is time in its units;
 //! what is beyond a whole unit is kept beside it. A contact closes in the scan in which its coil is executed, not
-//! between. Sources: the FX programming manuals on timers and counters; that a preset of 0 works as 1, and that a
-//! counter whose RST is driven does not count, is theirs as well.
+//! between; only timers for routines go on without it. Sources: the FX programming manuals on timers and counters; that
+//! a preset of 0 works as 1, and that a counter whose RST is driven does not count, is theirs as well.
 
 use super::code::{Counter, Timer};
-use super::layout::{NS_BEYOND, PRESET, RESET, SCAN_SEEN};
-use super::{Lanes, Memory};
+use super::layout::{NS_BEYOND, PRESET, RESET, SCAN_SEEN, WRITTEN};
+use super::{Lanes, Layout, Memory, Slot};
+use crate::target::{Device, DeviceKind};
 
 /// Nanoseconds in a millisecond.
 const MS: i64 = 1_000_000;
@@ -25,14 +26,17 @@ pub(super) struct Moment {
 pub(super) fn timer<L: Lanes>(memory: &mut Memory<L>, timer: Timer, power: L, moment: Moment) {
     let before = memory.cell(timer.coil);
     memory.set_cell(timer.coil, power);
-    if (power | before) == L::NONE {
+    // Without power it is held at 0, which it is unless one of these says otherwise.
+    let (contact, written) = (memory.cell(timer.contact), memory.cell(timer.contact + WRITTEN));
+    if (power | before | contact | written) == L::NONE {
         return;
     }
+    memory.set_cell(timer.contact + WRITTEN, L::NONE);
     let reset = memory.cell(timer.contact + RESET);
-    let mut contact = memory.cell(timer.contact);
+    let mut contact = contact;
     for lane in 0..L::COUNT {
         if !power.lane(lane) {
-            if before.lane(lane) && !timer.is_retentive {
+            if !timer.is_retentive {
                 contact = contact.with(lane, false);
                 memory.set_word(timer.current, lane, 0);
                 memory.set_word(timer.current + NS_BEYOND, lane, 0);
@@ -44,7 +48,7 @@ pub(super) fn timer<L: Lanes>(memory: &mut Memory<L>, timer: Timer, power: L, mo
         if contact.lane(lane) || reset.lane(lane) {
             continue;
         }
-        let unit_ns = i64::from(timer.unit_ms.max(1)) * MS;
+        let unit_ns = unit_ns(timer, memory, lane);
         let runs_on = before.lane(lane) && seen + 1 == moment.scan;
         let passed = if runs_on { moment.elapsed_ns } else { 0 };
         let beyond = memory.word(timer.current + NS_BEYOND, lane);
@@ -57,6 +61,49 @@ pub(super) fn timer<L: Lanes>(memory: &mut Memory<L>, timer: Timer, power: L, mo
         memory.set_word(timer.current + NS_BEYOND, lane, rest);
     }
     memory.set_cell(timer.contact, contact);
+}
+
+/// Nanoseconds that a timer counts.
+fn unit_ns<L: Lanes>(timer: Timer, memory: &Memory<L>, lane: usize) -> i64 {
+    match timer.finer {
+        Some(relay) if memory.bit(relay, lane) => 10 * MS,
+        _ => i64::from(timer.unit_ms.max(1)) * MS,
+    }
+}
+
+/// Lets a timer of routines go on at the end of a scan that did not come to its coil, while that has power. The
+/// contact of those that count 1 ms closes at their coil only. Source: the sections on timers in routines of the FX
+/// programming manuals; that they go on as well while CJ leaves their coils out is theirs of CJ.
+pub(super) fn routine_timer<L: Lanes>(memory: &mut Memory<L>, of: Timer, moment: Moment) {
+    let coil = memory.cell(of.coil);
+    let is_left_out =
+        |lane: &usize| coil.lane(*lane) && memory.word(of.current + SCAN_SEEN, *lane) != moment.scan;
+    if coil == L::NONE || !(0..L::COUNT).any(|lane| is_left_out(&lane)) {
+        return;
+    }
+    let contact = memory.cell(of.contact);
+    timer(memory, of, coil, moment);
+    if of.unit_ms == 1 {
+        memory.set_cell(of.contact, contact);
+    }
+}
+
+/// Writes a register, or the current value of a timer or counter. What is written to a timer is whole units, and its
+/// coil sees it.
+pub(super) fn store<L: Lanes>(
+    memory: &mut Memory<L>,
+    layout: &Layout,
+    (slot, device): (Slot, Device),
+    lane: usize,
+    value: i64,
+) {
+    memory.set_word(slot, lane, value);
+    if device.kind == DeviceKind::T {
+        memory.set_word(slot + NS_BEYOND, lane, 0);
+        if let Some(contact) = layout.cell(device) {
+            memory.set_bit(contact + WRITTEN, lane, true);
+        }
+    }
 }
 
 /// Executes the coil of a counter with `power`.
@@ -81,7 +128,10 @@ pub(super) fn counter<L: Lanes>(memory: &mut Memory<L>, counter: Counter, power:
                 (next, (next == preset).then_some(true))
             }
             None if contact.lane(lane) => continue,
-            None => (current + 1, (current + 1 >= preset.max(1)).then_some(true)),
+            None => {
+                let next = (current + 1).min(i64::from(i16::MAX));
+                (next, (next >= preset.max(1)).then_some(true))
+            }
         };
         memory.set_word(counter.current, lane, next);
         if let Some(is_on) = is_on {

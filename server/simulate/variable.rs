@@ -6,8 +6,10 @@ use super::row::Cell;
 use super::session::Touch;
 use super::{Lanes, Slot};
 use crate::target::{Device, DeviceKind, Operand};
+use crate::text::Message;
 use serde_json::Value as Json;
 use std::fmt;
+use std::ops::RangeInclusive;
 
 /// Something with a value that a person can watch and set.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -37,9 +39,11 @@ impl Code {
     pub fn variable(&self, name: &str) -> Option<Variable> {
         let name = name.trim();
         if let Some(register) = name.strip_suffix(":32") {
-            let device = self.device(register)?;
+            let device = self.device(register).filter(|device| has_pairs(device.kind))?;
             let behind = Device::new(device.kind, device.number + 1);
-            return Some(Variable::Pair(self.layout.slot(device)?, self.layout.slot(behind)?));
+            let is_pair = device.is_special() == behind.is_special();
+            let pair = Variable::Pair(self.layout.slot(device)?, self.layout.slot(behind)?);
+            return is_pair.then_some(pair);
         }
         if let Some(device) = self.device(name) {
             let word = self.layout.slot(device).map(Variable::Word);
@@ -79,25 +83,53 @@ impl Variable {
     pub fn set(self, code: &Code, value: &Value) -> Option<Touch> {
         match (self, value) {
             (Variable::Relay(cell), _) => {
-                let on = value.as_bit()?;
-                code.layout.device_of_cell(cell).map(|device| Touch::Set(device, on))
+                let device = code.layout.device_of_cell(cell).filter(|_| !self.is_coil(code));
+                device.zip(value.as_bit()).map(|(_, on)| Touch::Write(self, Value::Bit(on)))
             }
-            (Variable::Word(slot), Value::Number(number)) => {
-                code.layout.device_of_slot(slot).map(|device| Touch::SetWord(device, *number))
+            (_, Value::Number(number)) if self.range(code)?.contains(number) => {
+                Some(Touch::Write(self, value.clone()))
             }
             _ => None,
         }
     }
-}
 
-impl Variable {
+    /// The numbers that it takes; nothing for a relay.
+    pub fn range(self, code: &Code) -> Option<RangeInclusive<i64>> {
+        let narrow = i64::from(i16::MIN)..=i64::from(i16::MAX);
+        let wide = i64::from(i32::MIN)..=i64::from(i32::MAX);
+        match self {
+            Variable::Relay(_) => None,
+            Variable::Word(slot) => {
+                let device = code.layout.device_of_slot(slot)?;
+                Some(if code.layout.is_wide(device) { wide } else { narrow })
+            }
+            Variable::Pair(..) => Some(wide),
+        }
+    }
+
+    /// Why it, which people call `name`, cannot be set to `value`.
+    pub fn refusal(self, code: &Code, name: &str, value: &Value) -> Message {
+        match (value, self.range(code)) {
+            (Value::Number(number), Some(range)) => Message::new("simulate.range")
+                .with("name", name)
+                .with("value", number)
+                .with("least", range.start())
+                .with("greatest", range.end()),
+            _ if self.is_coil(code) => Message::new("simulate.coil").with("name", name),
+            _ => Message::new("cli.run-no-value").with("name", name),
+        }
+    }
+
+    /// Whether it is the coil of a timer or counter, which only the program drives.
+    fn is_coil(self, code: &Code) -> bool {
+        let Variable::Relay(cell) = self else { return false };
+        let device = code.layout.device_of_cell(cell);
+        device.and_then(|device| code.layout.coil(device)) == Some(cell)
+    }
+
     /// What holding it at `value` does; nothing if that is no value of it.
     pub fn force(self, code: &Code, value: &Value) -> Option<Touch> {
-        self.set(code, value).map(|touch| match touch {
-            Touch::Set(device, on) => Touch::Force(device, on),
-            Touch::SetWord(device, number) => Touch::ForceWord(device, number),
-            other => other,
-        })
+        self.set(code, value).map(|_| Touch::Hold(self, value.clone()))
     }
 
     /// What letting it go does.
@@ -106,8 +138,13 @@ impl Variable {
             Variable::Relay(cell) => code.layout.device_of_cell(cell),
             Variable::Word(slot) | Variable::Pair(slot, _) => code.layout.device_of_slot(slot),
         };
-        device.map(Touch::Release)
+        device.map(|_| Touch::LetGo(self))
     }
+}
+
+/// Whether two of these, one behind the other, are a number of 32 bits.
+fn has_pairs(kind: DeviceKind) -> bool {
+    matches!(kind, DeviceKind::D | DeviceKind::R)
 }
 
 impl Value {

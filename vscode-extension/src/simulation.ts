@@ -43,7 +43,7 @@ export function parsePicture(params: unknown): Picture | undefined {
   return {
     uri: given.uri,
     version: given.version,
-    mode: given.mode === 'paused' ? 'paused' : 'running',
+    mode: given.mode === 'paused' || given.mode === 'stopped' ? given.mode : 'running',
     scan: Number(given.scan),
     timeMs: Number(given.time_ms),
     energised: elements.filter(({ energised }) => energised).map(({ range }) => range),

@@ -128,14 +128,20 @@ export class SimulationView implements vscode.Disposable {
   }
 
   async stop(document: vscode.Uri): Promise<void> {
-    const uri = this.server.protocolUri(document);
-    if (!this.running.delete(uri)) {
-      return;
+    if (this.forget(document)) {
+      await this.tell(document, 'stop');
+    }
+  }
+
+  /** Shows nothing more of it; whether it was simulated. */
+  private forget(document: vscode.Uri): boolean {
+    if (!this.running.delete(this.server.protocolUri(document))) {
+      return false;
     }
     this.clear(document);
     this.showContext();
     this.changes.fire(document);
-    await this.tell(document, 'stop');
+    return true;
   }
 
   private async pause(program: vscode.Uri): Promise<void> {
@@ -211,6 +217,11 @@ export class SimulationView implements vscode.Disposable {
     const picture = parsePicture(params);
     const running = picture && this.running.get(picture.uri);
     if (picture !== undefined && running !== undefined) {
+      if (picture.mode === 'stopped') {
+        // Its document was closed.
+        this.forget(running.uri);
+        return;
+      }
       this.paint(picture, running);
       this.pictures.fire({ document: running.uri, params });
     }

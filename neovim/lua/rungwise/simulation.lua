@@ -69,12 +69,23 @@ local function mark(buffer, range, encoding, options)
   end
 end
 
+local function forget(buffer)
+  M.running[vim.uri_from_bufnr(buffer)] = nil
+  panel.on_picture(buffer, nil)
+  if vim.api.nvim_buf_is_valid(buffer) then
+    vim.api.nvim_buf_clear_namespace(buffer, SPACE, 0, -1)
+  end
+end
+
 --- The notification `rungwise/monitor`.
 function M.on_monitor(_, picture, context)
   local running = type(picture) == 'table' and M.running[picture.uri]
   local server = vim.lsp.get_client_by_id(context.client_id)
   if not running or not server or not vim.api.nvim_buf_is_loaded(running.buffer) then
     return
+  end
+  if picture.mode == 'stopped' then
+    return forget(running.buffer)
   end
   running.mode, running.scan, running.time_ms = picture.mode, picture.scan, picture.time_ms
   panel.on_picture(running.buffer, picture)
@@ -109,14 +120,6 @@ function M.on_monitor(_, picture, context)
     })
   end
   vim.cmd.redrawstatus()
-end
-
-local function forget(buffer)
-  M.running[vim.uri_from_bufnr(buffer)] = nil
-  panel.on_picture(buffer, nil)
-  if vim.api.nvim_buf_is_valid(buffer) then
-    vim.api.nvim_buf_clear_namespace(buffer, SPACE, 0, -1)
-  end
 end
 
 local function start(buffer)

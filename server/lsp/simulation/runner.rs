@@ -11,9 +11,8 @@ use crate::check;
 use crate::document::Document;
 use crate::scenario::{Bench, InputKind, Recording};
 use crate::simulate::{
-    Code, Drivers, Error, Inquiry, Recorder, Session, Sight, Touch, Value, Variable, compile,
+    ChangeSearch, Code, Drivers, Error, Inquiry, Recorder, Session, Sight, Touch, Value, Variable, compile,
 };
-use crate::target::Device;
 use crate::text::{Language, Message};
 use serde_json::{Value as Json, json};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -53,6 +52,38 @@ pub(super) enum About {
 
 type Reply = Result<Json, Message>;
 
+impl Order {
+    /// Whether it only asks, so that what takes long goes on meanwhile.
+    fn is_question(&self) -> bool {
+        matches!(
+            self,
+            Order::Watch { .. }
+                | Order::State { .. }
+                | Order::Panel
+                | Order::Trace { .. }
+                | Order::Export { .. }
+        )
+    }
+}
+
+/// Says when dropped, also by a panic, that a thread has ended.
+struct Mark(Arc<AtomicBool>);
+
+impl Drop for Mark {
+    fn drop(&mut self) {
+        self.0.store(false, Ordering::Release);
+    }
+}
+
+/// What takes more than one slice of time.
+#[derive(Debug)]
+enum Task {
+    /// So many scans.
+    Steps(u64),
+    /// To before the last change of a variable.
+    BackTo(Box<ChangeSearch>),
+}
+
 /// The other end of a simulation's thread.
 #[derive(Clone)]
 pub(super) struct Runner {
@@ -68,9 +99,9 @@ impl Runner {
         let (alive, workspace) = (Arc::clone(&is_alive), Arc::downgrade(workspace));
         let tokio = tokio::runtime::Handle::current();
         std::thread::spawn(move || {
-            let mut thread = Thread { uri, workspace, tokio, running: None };
+            let mut thread = Thread { uri, workspace, tokio, running: None, waiting: None };
+            let _mark = Mark(alive);
             thread.run(&receiver);
-            alive.store(false, Ordering::Release);
         });
         Runner { sender, is_alive }
     }
@@ -94,6 +125,8 @@ struct Thread {
     workspace: Weak<Workspace>,
     tokio: tokio::runtime::Handle,
     running: Option<Running>,
+    /// Who waits until the task is done.
+    waiting: Option<oneshot::Sender<Reply>>,
 }
 
 /// A program that runs, or pauses.
@@ -105,6 +138,11 @@ struct Running {
     /// Whether the text is no longer what runs.
     is_outdated: bool,
     is_paused: bool,
+    /// Whether nothing follows.
+    is_over: bool,
+    /// Whether the editor had the document.
+    is_open: bool,
+    task: Option<Task>,
     /// Simulated time for each unit of real time; 0 for as fast as can be.
     speed: f64,
     scan_ns: i64,
@@ -141,12 +179,21 @@ impl Thread {
             let wait = self.running.as_ref().map_or(Duration::from_secs(60), Running::wait);
             match receiver.recv_timeout(wait) {
                 Ok((order, reply)) => {
-                    let is_stop = matches!(order, Order::Stop);
+                    if !order.is_question() {
+                        // What takes long ends where it is when something else is wanted.
+                        self.end_task();
+                    }
                     let answer = self.obey(order);
-                    let has_failed = self.running.is_none();
-                    // Who asked may have gone.
-                    let _ = reply.send(answer);
-                    if is_stop || has_failed {
+                    // The last picture comes before the answer, behind which another simulation may begin.
+                    self.show();
+                    let has_task = self.running.as_ref().is_some_and(|running| running.task.is_some());
+                    if has_task && self.waiting.is_none() && answer.is_ok() {
+                        self.waiting = Some(reply);
+                    } else {
+                        // Who asked may have gone.
+                        let _ = reply.send(answer);
+                    }
+                    if self.running.is_none() {
                         return;
                     }
                 }
@@ -157,11 +204,37 @@ impl Thread {
             if let Some(running) = &mut self.running {
                 running.follow(&workspace, &self.uri);
                 running.advance();
-                if let Some(picture) = running.picture(&workspace, &self.uri) {
-                    let client = workspace.client.clone();
-                    self.tokio.spawn(async move { client.send_notification::<MonitorMethod>(picture).await });
+                if running.task.is_none() {
+                    self.end_task();
                 }
             }
+            self.show();
+            if self.running.as_ref().is_some_and(|running| running.is_over) {
+                return;
+            }
+        }
+    }
+
+    /// Tells the client what it shows, if it is time for that.
+    fn show(&mut self) {
+        let (Some(running), Some(workspace)) = (&mut self.running, self.workspace.upgrade()) else { return };
+        let Some(picture) = running.picture(&workspace, &self.uri) else { return };
+        let client = workspace.client.clone();
+        let is_last = running.is_over;
+        let sent = async move { client.send_notification::<MonitorMethod>(picture).await };
+        if is_last {
+            self.tokio.block_on(sent);
+        } else {
+            self.tokio.spawn(sent);
+        }
+    }
+
+    /// Ends what takes long, done or not, and tells who waits for it.
+    fn end_task(&mut self) {
+        let (Some(running), Some(workspace)) = (&mut self.running, self.workspace.upgrade()) else { return };
+        running.task = None;
+        if let Some(waiting) = self.waiting.take() {
+            let _ = waiting.send(Ok(running.state(&workspace, &self.uri, None)));
         }
     }
 
@@ -169,12 +242,16 @@ impl Thread {
         let workspace = self.workspace.upgrade().ok_or_else(|| Message::new("simulate.not-running"))?;
         if let Order::Start { scan_ms, speed, is_paused } = &order {
             let mut running = Running::start(&workspace, &self.uri)?;
-            if let Some(scan_ms) = scan_ms.filter(|ms| ms.is_finite()) {
-                running.scan_ns = ((scan_ms * 1e6) as i64).clamp(1_000, 60_000_000_000);
+            if let Some(scan_ms) = scan_ms {
+                if !SCAN_MS.contains(scan_ms) {
+                    return Err(Message::new("simulate.scan-time").with("value", scan_ms));
+                }
+                running.scan_ns = (scan_ms * 1e6) as i64;
             }
-            running.set_speed(*speed);
+            running.set_speed(*speed)?;
             running.is_paused = *is_paused;
             if let Some(before) = self.running.take() {
+                running.session.take_over(before.session.machine());
                 running.monitor = before.monitor;
                 (running.edition, running.branch) = (before.edition + 1, before.branch + 1);
             }
@@ -214,6 +291,9 @@ impl Running {
             files,
             is_outdated: false,
             is_paused: false,
+            is_over: false,
+            is_open: workspace.snapshot().open(uri).is_some(),
+            task: None,
             speed: 1.0,
             scan_ns: 10_000_000,
             since: (Instant::now(), 0),
@@ -233,6 +313,9 @@ impl Running {
     /// How long there is nothing to do.
     fn wait(&self) -> Duration {
         let until_picture = PICTURE.saturating_sub(self.shown.elapsed());
+        if self.task.is_some() {
+            return Duration::ZERO;
+        }
         match (self.is_paused, self.is_news) {
             (true, true) => until_picture,
             (true, false) => IDLE,
@@ -254,7 +337,7 @@ impl Running {
     /// When the next scan begins.
     fn next_ns(&self) -> i64 {
         let machine = self.session.machine();
-        if machine.scans() == 0 { 0 } else { machine.now_ns() + self.scan_ns }
+        if machine.scans() == 0 { 0 } else { machine.now_ns() + self.scan_ns.max(machine.least_scan_ns()) }
     }
 
     /// Simulated time goes on from here.
@@ -262,19 +345,26 @@ impl Running {
         self.since = (Instant::now(), self.next_ns());
     }
 
-    fn set_speed(&mut self, speed: Option<f64>) {
-        if let Some(speed) = speed.filter(|speed| speed.is_finite() && *speed >= 0.0) {
+    fn set_speed(&mut self, speed: Option<f64>) -> Result<(), Message> {
+        if let Some(speed) = speed {
+            if !(speed.is_finite() && speed >= 0.0) {
+                return Err(Message::new("simulate.speed").with("value", speed));
+            }
             self.speed = speed.min(1e6);
         }
         self.resume();
+        Ok(())
     }
 
     /// Runs the scans that are due.
     fn advance(&mut self) {
-        if self.is_paused {
+        let started = Instant::now();
+        if let Some(task) = self.task.take() {
+            self.task = self.go_on(task, || started.elapsed() < SLICE);
+        }
+        if self.is_paused || self.is_over {
             return;
         }
-        let started = Instant::now();
         while self.speed == 0.0 || self.next_ns() <= self.due_ns() {
             self.scan();
             if started.elapsed() >= SLICE {
@@ -284,6 +374,30 @@ impl Running {
         let late_ns = self.due_ns() - self.next_ns();
         if self.speed > 0.0 && late_ns > (TOO_LATE.as_nanos() as f64 * self.speed) as i64 {
             self.resume();
+        }
+    }
+
+    /// Goes on with what takes long while there is time; gives what is left of it.
+    fn go_on(&mut self, task: Task, has_time: impl Fn() -> bool) -> Option<Task> {
+        match task {
+            Task::Steps(mut left) => {
+                while left > 0 {
+                    self.scan();
+                    left -= 1;
+                    if !has_time() {
+                        break;
+                    }
+                }
+                (left > 0).then_some(Task::Steps(left))
+            }
+            Task::BackTo(mut search) => match search.look(&self.session, has_time) {
+                None => Some(Task::BackTo(search)),
+                Some(changed) => {
+                    // To before the change, so that the next step shows it.
+                    self.go_back(changed.map_or(self.session.first_scan(), |scan| scan - 1));
+                    None
+                }
+            },
         }
     }
 
@@ -336,19 +450,21 @@ impl Running {
                 self.scan();
                 self.resume();
             }
-            Order::Stop => self.is_paused = true,
+            Order::Stop => self.is_over = true,
             Order::Pause => self.is_paused = true,
             Order::Run { speed } => {
+                self.set_speed(speed)?;
                 self.is_paused = false;
-                self.set_speed(speed);
             }
             Order::Step { count } => {
                 self.is_paused = true;
-                (0..count.min(MOST_STEPS)).for_each(|_| self.scan());
+                self.task = Some(Task::Steps(count));
             }
             Order::StepBack { count, change_of } => self.step_back(count, change_of)?,
             Order::Reset => {
-                self.session = Session::new(Arc::clone(self.session.machine().code()));
+                let mut session = Session::new(Arc::clone(self.session.machine().code()));
+                session.take_over(self.session.machine());
+                self.session = session;
                 self.errors.clear();
                 self.recorder.clear();
                 self.branch += 1;
@@ -364,8 +480,7 @@ impl Running {
             }
             Order::Release { name: None } => {
                 self.recording.release_all(self.session.machine().scans());
-                let forced: Vec<Device> = self.session.machine().forced().collect();
-                forced.into_iter().for_each(|device| self.session.touch(Touch::Release(device)));
+                self.session.touch(Touch::LetAllGo);
             }
             Order::Watch { ranges, names } => self.monitor.watch(ranges, names),
             Order::State { .. }
@@ -395,17 +510,21 @@ impl Running {
     }
 
     fn step_back(&mut self, count: u64, change_of: Option<String>) -> Result<(), Message> {
-        self.is_paused = true;
-        let scans = self.session.machine().scans();
-        let to = match change_of {
-            None => scans.saturating_sub(count),
+        match change_of {
+            None => self.go_back(self.session.machine().scans().saturating_sub(count)),
             Some(name) => {
-                let variable = self.variable(&name)?;
-                let changed = self.session.last_change(scans, |machine| machine.value(variable, 0));
-                // To before the change, so that the next step shows it.
-                changed.map_or(self.session.first_scan(), |scan| scan - 1)
+                let search = ChangeSearch::new(&self.session, self.variable(&name)?);
+                self.task = Some(Task::BackTo(Box::new(search)));
             }
-        };
+        }
+        self.is_paused = true;
+        Ok(())
+    }
+
+    /// Goes back to the PLC as it was after a scan.
+    fn go_back(&mut self, to: u64) {
+        self.sights.clear();
+        self.is_news = true;
         // Something of the first scan remains to be seen.
         self.session.back_to(to.max(self.session.first_scan()).max(1));
         self.recorder.cut(self.session.machine());
@@ -413,7 +532,6 @@ impl Running {
         self.recording.back_to(self.session.machine().scans());
         self.errors.clear();
         self.resume();
-        Ok(())
     }
 
     fn variable(&self, name: &str) -> Result<Variable, Message> {
@@ -430,14 +548,14 @@ impl Running {
             _ => None,
         };
         let code = self.session.machine().code();
-        let touch = value.as_ref().and_then(|value| match is_force {
-            true => variable.force(code, value),
-            false => variable.set(code, value),
-        });
-        let touch = touch.ok_or_else(|| Message::new("cli.run-no-value").with("name", name))?;
+        let value = value.ok_or_else(|| Message::new("cli.run-no-value").with("name", name))?;
+        let touch = match is_force {
+            true => variable.force(code, &value),
+            false => variable.set(code, &value),
+        };
+        let touch = touch.ok_or_else(|| variable.refusal(code, name, &value))?;
         let kind = if is_force { InputKind::Force } else { InputKind::Set };
-        let scan = self.session.machine().scans();
-        value.into_iter().for_each(|value| self.recording.note(scan, name, kind(value)));
+        self.recording.note(self.session.machine().scans(), name, kind(value));
         self.session.touch(touch);
         Ok(())
     }
@@ -461,9 +579,16 @@ impl Running {
 
     /// Takes over what edits made of the program, if that can be run.
     fn follow(&mut self, workspace: &Workspace, uri: &Uri) {
+        // Nobody sees any more what a program does whose document is closed.
+        if self.is_open && workspace.snapshot().open(uri).is_none() {
+            (self.is_over, self.is_news) = (true, true);
+        }
         let Some(around) = around(workspace, uri) else { return };
-        let is_same = |file: &(Uri, i32, Document)| {
-            around.files().iter().any(|open| open.uri == file.0 && open.version == file.1)
+        let is_same = |(uri, version, document): &(Uri, i32, Document)| {
+            around.files().iter().any(|open| {
+                // Whoever closes a document and opens it again may count its versions from the same number.
+                open.uri == *uri && open.version == *version && open.document.is_instance(document)
+            })
         };
         if self.files.iter().all(is_same) {
             return;
@@ -472,8 +597,10 @@ impl Running {
         self.is_news = true;
         match compiled(&files) {
             Ok((code, watched)) => {
-                self.session.adopt(code);
-                self.recorder.adopt(self.session.machine());
+                self.task = None;
+                if !self.session.adopt(code) {
+                    self.recorder.adopt(self.session.machine());
+                }
                 self.edition += 1;
                 (self.watched, self.is_outdated) = (watched, false);
                 self.sights.clear();
@@ -491,12 +618,17 @@ impl Running {
     }
 
     fn mode(&self) -> &'static str {
-        if self.is_paused { "paused" } else { "running" }
+        match (self.is_over, self.is_paused) {
+            (true, _) => "stopped",
+            (false, true) => "paused",
+            (false, false) => "running",
+        }
     }
 
     /// What the client is to show, if it is time for that.
     fn picture(&mut self, workspace: &Workspace, uri: &Uri) -> Option<Picture> {
-        if !self.is_news || self.shown.elapsed() < PICTURE || self.monitor.is_empty() {
+        let is_time = self.is_over || self.shown.elapsed() >= PICTURE;
+        if !self.is_news || !is_time || self.monitor.is_empty() {
             return None;
         }
         (self.is_news, self.shown) = (false, Instant::now());
@@ -587,15 +719,15 @@ impl Running {
             "speed": self.speed,
             "edition": self.edition,
             "branch": self.branch,
-            "forced": machine.forced().map(|device| device.to_string()).collect::<Vec<_>>(),
+            "forced": machine.forced(),
             "values": self.monitor.values(names, machine),
             "errors": errors,
         })
     }
 }
 
-/// More steps at once are not taken.
-const MOST_STEPS: u64 = 1_000_000;
+/// Times from one scan to the next, in milliseconds.
+const SCAN_MS: std::ops::RangeInclusive<f64> = 0.001..=60_000.0;
 
 /// The files around the document at `uri` as they are now.
 fn around(workspace: &Workspace, uri: &Uri) -> Option<Around> {

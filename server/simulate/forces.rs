@@ -1,0 +1,180 @@
+//! Values that are held whatever inputs and program say, and values that a person writes.
+
+use super::row::{Cell, Row};
+use super::{Lanes, Machine, Slot, Value, Variable};
+use crate::target::{Device, DeviceKind};
+
+/// Something that keeps a value whatever the program does.
+#[derive(Clone, PartialEq, Debug)]
+pub(super) enum Force {
+    Relay(Cell, bool),
+    Word(Slot, i64),
+}
+
+impl Force {
+    /// Whether it holds this, or a half of it.
+    fn holds(&self, variable: Variable) -> bool {
+        match (self, variable) {
+            (Force::Relay(forced, _), Variable::Relay(cell)) => *forced == cell,
+            (Force::Word(forced, _), Variable::Word(slot)) => *forced == slot,
+            (Force::Word(forced, _), Variable::Pair(lower, upper)) => *forced == lower || *forced == upper,
+            _ => false,
+        }
+    }
+}
+
+impl<L: Lanes> Machine<L> {
+    /// Holds a relay at a value whatever inputs and program say, until [`Machine::release`]; of a timer or counter the
+    /// contact.
+    pub fn force(&mut self, device: Device, on: bool) {
+        if let Some(cell) = self.code.layout.cell(device) {
+            self.hold_at(Variable::Relay(cell), &Value::Bit(on));
+        }
+    }
+
+    /// Holds a register, or the current value of a timer or counter, at a value.
+    pub fn force_word(&mut self, device: Device, value: i64) {
+        let value = self.code.layout.held(device, value);
+        if let Some(slot) = self.code.layout.slot(device) {
+            self.hold_at(Variable::Word(slot), &Value::Number(value));
+        }
+    }
+
+    /// Lets a forced device go; it keeps its value until something writes it.
+    pub fn release(&mut self, device: Device) {
+        let layout = &self.code.layout;
+        let relay = layout.cell(device).map(Variable::Relay);
+        let word = layout.slot(device).map(Variable::Word);
+        relay.into_iter().chain(word).for_each(|variable| self.let_go(variable));
+    }
+
+    /// Holds a variable at a value, if that is one of its own.
+    pub fn hold_at(&mut self, variable: Variable, value: &Value) {
+        self.let_go(variable);
+        match (variable, value) {
+            (Variable::Relay(cell), _) => {
+                self.forces.extend(value.as_bit().map(|on| Force::Relay(cell, on)));
+            }
+            (Variable::Word(slot), Value::Number(number)) => self.forces.push(Force::Word(slot, *number)),
+            (Variable::Pair(lower, upper), Value::Number(number)) => {
+                let halves = halves(*number);
+                self.forces.extend([Force::Word(lower, halves.0), Force::Word(upper, halves.1)]);
+            }
+            _ => {}
+        }
+        self.patch();
+        self.hold();
+    }
+
+    /// Lets a forced variable go; it keeps its value until something writes it.
+    pub fn let_go(&mut self, variable: Variable) {
+        self.leave(|force| force.holds(variable));
+    }
+
+    /// Lets all that is forced go.
+    pub fn let_all_go(&mut self) {
+        self.leave(|_| true);
+    }
+
+    fn leave(&mut self, is_left: impl Fn(&Force) -> bool) {
+        let (left, kept): (Vec<Force>, Vec<Force>) = self.forces.drain(..).partition(is_left);
+        self.forces = kept;
+        for force in left {
+            if let Force::Word(slot, _) = force {
+                self.note_written(slot);
+            }
+        }
+        self.patch();
+    }
+
+    /// Writes a variable; of an input what is wired to it.
+    pub fn write(&mut self, variable: Variable, value: &Value) {
+        match (variable, value) {
+            (Variable::Relay(cell), _) => {
+                if let Some(on) = value.as_bit() {
+                    self.write_cell(cell, L::all(on));
+                }
+            }
+            (Variable::Word(slot), Value::Number(number)) => {
+                if let Some(device) = self.code.layout.device_of_slot(slot) {
+                    self.set_word(device, *number);
+                }
+            }
+            (Variable::Pair(lower, upper), Value::Number(number)) => {
+                let halves = halves(*number);
+                for lane in 0..L::COUNT {
+                    self.memory.set_word(lower, lane, halves.0);
+                    self.memory.set_word(upper, lane, halves.1);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// The names of what is forced.
+    pub fn forced(&self) -> Vec<String> {
+        let layout = &self.code.layout;
+        let name = |force: &Force| match force {
+            Force::Relay(cell, _) => {
+                layout.device_of_cell(*cell).map(|device| match device.kind.has_preset() {
+                    true => format!("{}S{}", device.kind.letter(), device.number),
+                    false => device.to_string(),
+                })
+            }
+            Force::Word(slot, _) => layout.device_of_slot(*slot).map(|device| device.to_string()),
+        };
+        self.forces.iter().filter_map(name).collect()
+    }
+
+    /// What is wired to inputs, and what is forced, by name; with whether it is forced.
+    pub(super) fn standing(&self) -> Vec<(String, Value, bool)> {
+        let layout = &self.code.layout;
+        let wired = layout.terminals(DeviceKind::X).filter_map(|cell| {
+            let on = self.terminals.input(cell as Cell)?.lane(0);
+            on.then(|| Some((layout.device_of_cell(cell as Cell)?.to_string(), Value::Bit(true), false)))?
+        });
+        let forced = self.forced().into_iter().zip(&self.forces).map(|(name, force)| match force {
+            Force::Relay(_, on) => (name, Value::Bit(*on), true),
+            Force::Word(_, number) => (name, Value::Number(*number), true),
+        });
+        wired.chain(forced).collect()
+    }
+
+    /// Whether it is forced.
+    pub fn is_forced(&self, variable: Variable) -> bool {
+        self.forces.iter().any(|force| force.holds(variable))
+    }
+
+    /// Rows do not write relays that are forced.
+    pub(super) fn patch(&mut self) {
+        let forced: Vec<Cell> = self
+            .forces
+            .iter()
+            .filter_map(|force| match force {
+                Force::Relay(cell, _) => Some(*cell),
+                Force::Word(..) => None,
+            })
+            .collect();
+        self.forced_rows = (!forced.is_empty()).then(|| {
+            let free = |row: &Row| if forced.contains(&row.dst) { row.to(Row::SINK) } else { *row };
+            self.code.rows.iter().map(free).collect()
+        });
+    }
+
+    /// Puts what is forced back to its value.
+    pub(super) fn hold(&mut self) {
+        for force in &self.forces {
+            match *force {
+                Force::Relay(cell, on) => self.memory.set_cell(cell, L::all(on)),
+                Force::Word(slot, value) => {
+                    (0..L::COUNT).for_each(|lane| self.memory.set_word(slot, lane, value));
+                }
+            }
+        }
+    }
+}
+
+/// The lower and the upper word of a number of 32 bits.
+fn halves(number: i64) -> (i64, i64) {
+    (i64::from(number as i16), i64::from((number >> 16) as i16))
+}
