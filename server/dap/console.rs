@@ -11,7 +11,6 @@ use super::launch::Debugged;
 use super::variables::value_of;
 use crate::document::Document;
 use crate::simulate::{Drivers, Inquiry, Touch, Value, duration};
-use crate::target::Device;
 use crate::text::Message;
 use serde_json::{Value as Json, json};
 use std::io::Write;

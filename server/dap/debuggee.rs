@@ -194,7 +194,7 @@ impl Debuggee {
 
     /// Runs this scan to its end; gives what went wrong in it.
     pub(super) fn finish(&mut self) -> Vec<Error> {
-        let touches: Vec<Touch> = self.touches(self.scan).collect();
+        let touches: Vec<Touch> = self.touches(self.scan).cloned().collect();
         touches.into_iter().for_each(|touch| self.session.touch(touch));
         let outcome = self.session.scan(self.now_ns());
         self.begin(self.scan + 1);

@@ -3,7 +3,7 @@
 use super::debuggee::Debuggee;
 use super::program::{File, Program};
 use crate::document::Symbol;
-use crate::simulate::{Code, Touch, Value, Variable};
+use crate::simulate::{Code, Touch, Variable};
 use crate::target::{Device, DeviceKind, Operand};
 use crate::text::{Language, Message};
 use serde_json::{Value as Json, json};
