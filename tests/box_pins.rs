@@ -192,3 +192,19 @@ fn the_current_result_is_no_variable_unless_it_was_just_loaded() {
     assert_eq!(function("LD 7\nBump 5"), ["operand-kind 7"]);
     assert_eq!(function("LD t\nADD 1\nBump 5"), ["operand-kind ADD 1"]);
 }
+
+#[test]
+fn a_coil_writes_its_variable() {
+    let text = |section: &str| {
+        format!(
+            "PROGRAM p\nVAR {section}\n k : BOOL := TRUE;\nEND_VAR\nVAR\n a : BOOL;\nEND_VAR\n\n\
+             |    a        k   |\n+---| |------( )--+\n\n|    k        a   |\n+---| |------(S)--+\n\nEND_PROGRAM\n"
+        )
+    };
+    for (section, expected) in [("CONSTANT", 1), ("", 0)] {
+        let folder = crate::binary::folder(&[("main.lad", &text(section))]);
+        let (_, out, _) = crate::binary::run(&folder, &["check", "main.lad", "--lang", "en"]);
+        assert_eq!(out.matches("error[constant-written]").count(), expected, "{out}");
+        assert_eq!(out.contains("main.lad:9:14"), expected == 1, "{out}");
+    }
+}

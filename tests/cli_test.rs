@@ -155,6 +155,8 @@ fn steps_of_the_file_begin_every_scenario() {
     let (code, out, _) = run(&tested(MOTOR, suite), &["test"]);
     assert!(code == 1 && out.contains("ok     a\n") && out.contains("FAILED b\n"), "{out}");
     assert_eq!(run(&tested(MOTOR, suite), &["test", "--only", "A"]).0, 0);
+    let (code, _, err) = run(&tested(MOTOR, suite), &["test", "--only", "c"]);
+    assert!(code == 2 && err.contains("no scenario has `c` in its name"), "{err}");
 }
 
 #[test]
@@ -265,6 +267,24 @@ fn coverage_tells_states_and_who_decided() {
 }
 
 #[test]
+fn a_contact_that_is_on_and_off_need_not_decide() {
+    // X1 goes on and off while X0 is off: whatever it does, Y0 stays off. X2 beside it lets power past it for a while.
+    let program = "LD X1\nOR X2\nAND X0\nOUT Y0\nEND\n";
+    let suite = "[[scenario]]\nname = \"a\"\nsteps = [{ at = 20, pulse = { X1 = 20 } }, { at = 60, expect = { Y0 = 0 } }";
+    let told = |more: &str| {
+        let files = tested(program, &format!("{suite}{more}]\n"));
+        run(&files, &["test", "--coverage"]).1
+    };
+    let out = told("");
+    assert!(out.contains("1 of 3 contacts") && out.contains("0 deciding both ways"), "{out}");
+    assert!(out.contains("motor.il:1:1: X1 was on and off, and decided nothing\n"), "{out}");
+    // With X0 on it decides while it is off, not while it is on, for X2 is on then.
+    let more = ", { at = 80, set = { X0 = 1 } }, { at = 100, set = { X1 = 1, X2 = 1 }, expect = { Y0 = 1 } }";
+    let out = told(more);
+    assert!(out.contains("motor.il:1:1: X1 decided nothing while it was on\n"), "{out}");
+}
+
+#[test]
 fn code_that_no_scan_comes_to_is_not_covered() {
     let program = "LD M8000\nCJ P1\nLD X0\nOUT Y0\nP1\nLD X1\nOUT Y1\nEND\n";
     let files = tested(
@@ -347,6 +367,12 @@ fn mistakes_are_told_with_line_and_column_in_both_languages() {
             "3:10",
             "needs a `time`",
             "需要 `time`",
+        ),
+        (
+            suite("steps = [{ always = { X0 = 1 }, for = 5, until = 5 }]"),
+            "3:33",
+            "`until` says how long already",
+            "`until` 已经",
         ),
         (suite("scan-time = \"1h\""), "3:13", "from 1us to 60s", "1us 到 60s"),
         (suite("steps = 5"), "3:9", "a list in brackets", "方括号"),

@@ -52,7 +52,7 @@ fn a_proof_says_equal_or_which_scan_differs() {
     let (code, out, err) = run(&folder, &["prove", "motor.il", "motor.lad", "--format", "json"]);
     assert_eq!((code, err.as_str()), (0, ""));
     assert_eq!(serde_json::from_str::<Value>(&out).unwrap(), json!({"equal": true, "reordered": false}));
-    let arguments = ["prove", "motor.lad", "wrong.il", "--format", "json", "--scenario", "test.toml"];
+    let arguments = ["prove", "motor.lad", "wrong.il", "--format", "json", "--scenario", "motor.test.toml"];
     let (code, out, _) = run(&folder, &arguments);
     let answer: Value = serde_json::from_str(&out).unwrap();
     assert_eq!((code, &answer["equal"]), (1, &json!(false)));
@@ -63,10 +63,12 @@ fn a_proof_says_equal_or_which_scan_differs() {
     assert_eq!(found["left"]["Y0"], json!(seal && !on("X1")), "{out}");
     assert_eq!(found["right"]["Y0"], json!(seal && on("X1")), "{out}");
     assert_eq!(found["lines"], json!({"left": 2, "right": 1}));
-    let scenario = std::fs::read_to_string(folder.path().join("test.toml")).unwrap();
+    let scenario = std::fs::read_to_string(folder.path().join("motor.test.toml")).unwrap();
     let scenario: toml::Value = toml::from_str(&scenario).unwrap();
-    let expected = &scenario["scenario"][0]["expect"][0]["values"]["Y0"];
-    assert_eq!(expected.as_bool(), found["left"]["Y0"].as_bool());
+    assert_eq!(scenario["program"].as_str(), Some("motor.lad"));
+    let expected = &scenario["scenario"][0]["steps"][0]["expect"]["Y0"];
+    assert_eq!(expected.as_integer().map(|value| value == 1), found["left"]["Y0"].as_bool());
+    assert_eq!(run(&folder, &["test"]).0, 0);
     let (code, out, _) = run(&folder, &["prove", "motor.il", "wrong.il", "--lang", "zh-CN"]);
     assert_eq!(code, 1);
     assert!(out.starts_with("不相等：Y0（motor.il:2, wrong.il:1）"), "{out}");

@@ -206,6 +206,7 @@ fn a_change_of_data_stops_behind_what_changed_it() {
 fn a_drawing_has_breakpoints_at_rungs_and_at_elements() {
     let drawn = program("motor.lad", DRAWN);
     let mut plc = entered(&drawn);
+    assert_eq!(plc.stack()[0], "motor.lad · rung 1 @1:1");
     let locations = plc.ask("breakpointLocations", json!({ "source": { "path": drawn.path }, "line": 2 }));
     let columns = locations["breakpoints"].as_array().unwrap().iter().map(|place| place["column"].clone());
     let columns: Vec<Value> = columns.collect();
@@ -469,4 +470,26 @@ fn nothing_that_a_client_sends_ends_the_adapter() {
     plc.ask("continue", json!({ "threadId": 1 }));
     plc.hang_up();
     assert_eq!(plc.exit_code(), Some(0));
+}
+
+#[test]
+fn the_console_says_why() {
+    let motor = program("motor.il", MOTOR);
+    let mut plc = entered(&motor);
+    plc.console("set X0=1");
+    plc.console("scan 5");
+    plc.event("stopped");
+    let on = "Y0 is on: OUT Y0 has power  [motor.il:4]\n  X0 is on: an input, since scan 0 (0 ms)  [motor.il:1]\n  \
+              X1 is off: an input  [motor.il:3]";
+    // Where a scan begins, the one before it is the answer.
+    assert_eq!(plc.console("why Y0"), on);
+    // Within the scan, behind the coil, it is this scan.
+    plc.go("next");
+    assert_eq!(plc.console("why Y0"), on);
+    assert_eq!(
+        plc.console("why D0"),
+        "D0 is 0: nothing that drives it has done so yet\n  \
+        MOV K5 D0 is not executed  [motor.il:12]"
+    );
+    assert!(plc.refusal("evaluate", json!({ "expression": "why Q7", "context": "repl" })).contains("Q7"));
 }

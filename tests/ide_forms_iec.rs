@@ -145,3 +145,23 @@ fn little_is_read_of_a_long_unit() {
     let forms = translate(&document, Some(part), To::Boolean, &Options::default());
     assert!(forms.text.contains("Held1"), "{}", forms.text);
 }
+
+/// A menu asks at each step of the cursor, and a rung may be longer than what it stands in.
+#[test]
+fn a_menu_does_not_wait_for_the_forms_of_a_long_rung() {
+    let text = |calculations: usize| {
+        let body = "    LD n\n    ADD 1\n    ST n\n".repeat(calculations);
+        let head = "PROGRAM Main\nVAR\n    a : BOOL;\n    n : INT;\nEND_VAR\n";
+        format!("{head}    LD a\n    JMPCN over\n{body}over:\n    LD a\n    ST a\nEND_PROGRAM\n")
+    };
+    let settings = (ide::Style { kind: rungwise::project::FormatStyle::Iec, width: 48 }, None);
+    for (calculations, is_told) in [(3, true), (1000, false)] {
+        let document = list(&text(calculations));
+        let place = document.text().find("LD n").expect("a load");
+        let part = ide::part_at(&document, Span::at(place)).expect("a part").span();
+        let told = ide::forms_at_once(&document, (part, 16_384), &[To::Ladder], settings, &|| false);
+        assert_eq!(told.is_some(), is_told, "{calculations}");
+        let asked = ide::forms(&document, Some(part), &[To::Ladder], settings, &|| false);
+        assert!(asked.is_some_and(|forms| !forms.is_empty()));
+    }
+}

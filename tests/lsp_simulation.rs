@@ -186,3 +186,53 @@ fn an_endless_loop_is_told_at_its_jump_and_the_server_lives() {
     assert!((0..=4).contains(&errors[0]["range"]["start"]["line"].as_i64().unwrap()), "{state}");
     plc.tell("stop", json!({}));
 }
+
+/// A reason and those behind it, each set in by a blank.
+fn reasons(reason: &Value) -> String {
+    let behind = reason["because"].as_array().unwrap().iter().map(reasons);
+    let behind: String = behind.collect::<String>().lines().map(|line| format!(" {line}\n")).collect();
+    let line = reason["range"]["start"]["line"].as_i64().map(|line| format!(" @{line}"));
+    format!("{}{}\n{behind}", reason["text"].as_str().unwrap(), line.unwrap_or_default())
+}
+
+#[test]
+fn why_is_answered_for_names_and_places_and_scans_and_in_the_hover() {
+    let uri = "file:///simulated/why.lad";
+    let mut plc = Simulated::open(uri, "ladder", &MOTOR.replace("T0  K100", " T0 K100"));
+    let refused = plc.answer("why", json!({ "name": "Y0" }));
+    assert!(refused["error"]["message"].as_str().unwrap().contains("not being simulated"), "{refused}");
+    let hover = |plc: &mut Simulated| {
+        let position = json!({ "line": 1, "character": 22 });
+        let params = json!({ "textDocument": { "uri": uri }, "position": position });
+        plc.client.request("textDocument/hover", params)["result"]["contents"]["value"].to_string()
+    };
+    assert!(!hover(&mut plc).contains("is off"));
+    plc.tell("start", json!({ "paused": true }));
+    plc.tell("set", json!({ "name": "X0", "value": true }));
+    plc.tell("step", json!({ "count": 5 }));
+    let why = plc.tell("why", json!({ "position": { "line": 1, "character": 22 } }));
+    assert_eq!(
+        reasons(&why),
+        concat!(
+            "Y0 is on: ( ) Y0 has power @1\n",
+            " X0 is on: an input, since scan 1 (10 ms) @1\n",
+            " X1 is off: an input @1\n"
+        )
+    );
+    assert_eq!((&why["scan"], &why["time_ms"], &why["uri"]), (&json!(5), &json!(50.0), &json!(uri)), "{why}");
+    let before = plc.tell("why", json!({ "name": "y0", "scan": 0 }));
+    assert!(reasons(&before).starts_with("Y0 is off: ( ) Y0 has no power"), "{before}");
+    let timer = plc.tell("why", json!({ "name": "T0" }));
+    assert!(reasons(&timer).starts_with("T0 is off: 0 s of 10 s have passed"), "{timer}");
+    let shown = hover(&mut plc);
+    assert!(shown.starts_with("\"Y0 is on: ( ) Y0 has power\\n- X0 is on"), "{shown}");
+    for wrong in [
+        json!({ "name": "Q7" }),
+        json!({ "name": "Y0", "scan": 99 }),
+        json!({ "position": { "line": 4, "character": 0 } }),
+        json!({}),
+    ] {
+        let refused = plc.answer("why", wrong);
+        assert!(refused["error"]["message"].is_string(), "{refused}");
+    }
+}

@@ -184,6 +184,37 @@ fn programs_of_other_people() {
 }
 
 #[test]
+fn an_external_variable_has_the_type_of_the_global_one() {
+    let text = |global: &str, external: &str| {
+        format!(
+            "TYPE\n Level : INT;\n Part : INT(0..9);\nEND_TYPE\nVAR_GLOBAL\n g {global};\nEND_VAR\nPROGRAM p\n\
+             VAR_EXTERNAL\n g : {external};\nEND_VAR\nVAR\n y : BOOL;\nEND_VAR\nLD g\nGT g\nST y\nEND_PROGRAM\n"
+        )
+    };
+    for (global, external, is_found) in [
+        (": INT", "INT", false),
+        ("AT %MW1 : INT := 5", "int", false),
+        (": INT", "Level", false),
+        (": Level", "INT", false),
+        (": Part", "INT(0..9)", false),
+        (": INT", "UINT", true),
+        (": INT", "Part", true),
+        (": Part", "INT(0..10)", true),
+    ] {
+        let text = text(global, external);
+        let all: Vec<String> =
+            found(&text).into_iter().filter(|one| one.starts_with("external-type")).collect();
+        assert_eq!(!all.is_empty(), is_found, "{global} {external}: {all:?}");
+        if is_found {
+            let judged = judged(&text);
+            let one = judged.iter().find(|one| one.code == "external-type").expect("the finding");
+            let mended = TextEdit::apply_all(&one.fixes[0].edits, &text);
+            assert!(!found(&mended).iter().any(|one| one.starts_with("external-type")), "{mended}");
+        }
+    }
+}
+
+#[test]
 fn the_mixer_is_clean() {
     let text =
         std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/mixer/mixer.il")).unwrap();

@@ -20,6 +20,7 @@ mod server;
 mod test;
 mod translate;
 mod usage;
+mod why;
 
 use crate::text::Language;
 use clap::{Parser, Subcommand, ValueEnum};

@@ -3,9 +3,9 @@
 use super::across::linked;
 use super::input::{Program, complain, programs, put, say};
 use super::{Outcome, translate};
-use crate::scenario;
+use crate::scenario::of_counterexample;
 use crate::text::{Language, Message};
-use crate::translate::{Proof, prove, told};
+use crate::translate::{Counterexample, Proof, prove, told};
 use clap::ValueEnum;
 use std::path::{Path, PathBuf};
 
@@ -46,7 +46,7 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         ProofFormat::Text => say(&told::text(&proof, sides, &names, language)),
     }
     if let (Some(path), Proof::Different(found)) = (&arguments.scenario, &proof)
-        && !put(&scenario::of_counterexample(found, &names, language), Some(path), language)
+        && !put(&scenario(found, &names, path, language), Some(path), language)
     {
         return Outcome::Unusable;
     }
@@ -54,6 +54,15 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         Proof::Equal { .. } => Outcome::Clean,
         Proof::Different(_) | Proof::Undecided { .. } => Outcome::Findings,
     }
+}
+
+/// A scenario test for the file at `path`, which names the first program as it is found from there.
+fn scenario(found: &Counterexample, names: &[String; 2], path: &Path, language: Language) -> String {
+    let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
+    let left = absolute(Path::new(&names[0]));
+    let folder = absolute(path).parent().map(Path::to_path_buf).unwrap_or_default();
+    let left = left.strip_prefix(&folder).unwrap_or(&left).display().to_string();
+    of_counterexample(found, &[left, names[1].clone()], language)
 }
 
 /// The one program at `path`, which knows what the other files of its project declare; nothing after a complaint.

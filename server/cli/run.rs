@@ -2,9 +2,12 @@
 
 use super::Outcome;
 use super::input::{Program, complain, programs, put, say};
+use super::why;
 use crate::document::Document;
 use crate::scenario::picture;
-use crate::simulate::{self, Code, Place, Session, Setting, Touch, Trace, TraceRow, Variable, compile};
+use crate::simulate::{
+    self, Code, Place, Reason, Session, Setting, Touch, Trace, TraceRow, Variable, compile,
+};
 use crate::text::{Encoding, Language, Message};
 use clap::ValueEnum;
 use serde_json::{Map, Value as Json, json};
@@ -30,6 +33,9 @@ pub(super) struct Arguments {
     /// What is shown, parted by commas; all that the program uses if left out.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     watch: Vec<String>,
+    /// Says which contacts held a device on or off in the last scan, or at a time: Y0, Y0@500ms.
+    #[arg(long = "why", value_name = "NAME[@TIME]", value_parser = why::question)]
+    questions: Vec<why::Question>,
     /// Writes the values over time to a file, as a value change dump (.vcd) or a table (.csv).
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
@@ -48,7 +54,7 @@ enum RunFormat {
 }
 
 /// A time as people write it, in nanoseconds.
-fn duration(word: &str) -> Result<i64, String> {
+pub(super) fn duration(word: &str) -> Result<i64, String> {
     simulate::duration(word).ok_or_else(|| word.to_string())
 }
 
@@ -69,7 +75,12 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     let Some((touches, watched)) = named(arguments, &code, language) else { return Outcome::Unusable };
     let mut simulation = Simulation { session: Session::new(code), trace: Trace::new(watched), touches };
     let is_clean = simulation.run(arguments, &programs, language);
-    if !simulation.tell(arguments, language) {
+    let session = &simulation.session;
+    let step = arguments.scan_time.max(1);
+    let Some(reasons) = why::answers(&arguments.questions, session, step, &programs, language) else {
+        return Outcome::Unusable;
+    };
+    if !simulation.tell(arguments, &reasons, &programs, language) {
         return Outcome::Unusable;
     }
     if is_clean { Outcome::Clean } else { Outcome::Findings }
@@ -145,7 +156,13 @@ impl Simulation {
     }
 
     /// Writes what came out; whether that could be done.
-    fn tell(&self, arguments: &Arguments, language: Language) -> bool {
+    fn tell(
+        &self,
+        arguments: &Arguments,
+        reasons: &[Reason],
+        programs: &[Program],
+        language: Language,
+    ) -> bool {
         if let Some(path) = &arguments.trace {
             let is_vcd = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vcd"));
             let text = match is_vcd {
@@ -157,8 +174,18 @@ impl Simulation {
             }
         }
         match arguments.format {
-            RunFormat::Json => say(&format!("{:#}\n", json_of(&self.trace, arguments.scan_time))),
-            RunFormat::Text => say(&picture(&self.trace, &[], language)),
+            RunFormat::Json => {
+                let mut told = json_of(&self.trace, arguments.scan_time);
+                if !reasons.is_empty() {
+                    let reasons = reasons.iter().map(|reason| why::json(reason, programs, language));
+                    told["why"] = reasons.collect();
+                }
+                say(&format!("{told:#}\n"));
+            }
+            RunFormat::Text => {
+                say(&picture(&self.trace, &[], language));
+                say(&why::text(reasons, programs, language));
+            }
         }
         true
     }

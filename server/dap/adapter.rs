@@ -85,7 +85,9 @@ impl<W: Write> Adapter<W> {
                 response["message"] = json!(words);
                 // Braces would be variables of the format.
                 let format = words.replace(['{', '}'], "'");
-                response["body"] = json!({ "error": { "id": 1, "format": format, "showUser": true } });
+                // Who points at a word that is no name is not to be told so.
+                let is_shown = request.command != "evaluate";
+                response["body"] = json!({ "error": { "id": 1, "format": format, "showUser": is_shown } });
             }
         }
         self.send(response);

@@ -1,21 +1,23 @@
 //! The console: words that people write to the debugger, and expressions.
 //!
 //! ```text
-//! run TIME    scan [N]    back [NAME]    set NAME=VALUE    force NAME=VALUE    release [NAME]    help
+//! run TIME    scan [N]    back [NAME]    set NAME=VALUE    force NAME=VALUE    release [NAME]    why NAME    help
 //! ```
 
 use super::adapter::{Adapter, Answer, THREAD};
 use super::expression::Expression;
 use super::going::Going;
 use super::launch::Debugged;
-use crate::simulate::{Touch, Value, duration};
+use super::variables::value_of;
+use crate::document::Document;
+use crate::simulate::{Drivers, Inquiry, Touch, Value, duration};
 use crate::target::Device;
 use crate::text::Message;
 use serde_json::{Value as Json, json};
 use std::io::Write;
 
 /// The words that something can begin with.
-const VERBS: [&str; 7] = ["run", "scan", "back", "set", "force", "release", "help"];
+const VERBS: [&str; 8] = ["run", "scan", "back", "set", "force", "release", "why", "help"];
 /// So many names are offered.
 const MOST_TARGETS: usize = 200;
 
@@ -32,6 +34,7 @@ impl<W: Write> Adapter<W> {
             "set" => self.assign(rest, false),
             "force" => self.assign(rest, true),
             "release" => self.release(rest),
+            "why" => self.why(rest),
             "help" | "?" => Ok(self.result("debug.help")),
             _ => self.evaluate(line),
         }
@@ -115,6 +118,30 @@ impl<W: Write> Adapter<W> {
         };
         touches.into_iter().try_for_each(|touch| self.touch(touch))?;
         if name.is_empty() { Ok(self.result("debug.released")) } else { self.evaluate(name) }
+    }
+
+    /// Why a device is what it is, here.
+    fn why(&mut self, name: &str) -> Answer {
+        let language = self.language;
+        let debugged = self.stopped()?;
+        let variable = debugged.variable(name)?;
+        let program = &debugged.program;
+        let documents: Vec<&Document> = program.files.iter().map(|file| &file.document).collect();
+        let debuggee = &debugged.debuggee;
+        let drivers = program.drivers.get_or_init(|| Drivers::of(&documents));
+        let inquiry = Inquiry::new(debuggee.session(), debuggee.code(), &documents, drivers);
+        let sights = debuggee.sights();
+        // Where a scan begins, the one before it is the answer.
+        let is_inside = sights.len() > 1 || debuggee.scan() == 1;
+        let reason = match is_inside && debuggee.here().is_some() {
+            true => inquiry.within(debuggee.machine(), sights).why(name, None),
+            false => inquiry.why(name, None),
+        };
+        let told = match reason {
+            Some(reason) => reason.told(language, |place| program.shown(place)),
+            None => value_of(variable, debuggee, language),
+        };
+        Ok(json!({ "result": told.trim_end(), "variablesReference": 0 }))
     }
 
     /// What the word before a column may become.

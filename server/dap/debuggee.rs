@@ -90,6 +90,18 @@ impl Debuggee {
         (scan as i64 - 1) * self.scan_ns
     }
 
+    /// What was seen in this scan so far.
+    pub(super) fn sights(&self) -> Vec<Sight<u8>> {
+        let (mut sights, last) = (Vec::new(), self.seen);
+        if last > 0 {
+            self.at_start().scan_inside(self.now_ns(), &mut |glimpse| {
+                sights.push(glimpse.sight);
+                (sights.len() as u64) < last
+            });
+        }
+        sights
+    }
+
     /// Does something to the PLC. It arrives between two scans, as with a real one: before this scan where nothing of
     /// it was executed yet, else before the next.
     pub(super) fn touch(&mut self, touch: Touch) {

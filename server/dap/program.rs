@@ -1,16 +1,17 @@
 //! The program that is debugged: read from the disk, compiled, and its places as the protocol names them.
 
 use crate::check;
-use crate::document::{Document, Member, ProjectView, Tree};
+use crate::document::{Document, Member, Notation, ProjectView, Tree};
 use crate::project::{
     CommentsFile, MANIFEST_NAME, Manifest, Project, Stamp, is_program_file, open_document, program_files,
     read_text,
 };
-use crate::simulate::{Code, Place, Problem, compile};
+use crate::simulate::{Code, Drivers, Place, Problem, compile, instruction_words};
 use crate::target::{Model, Target};
 use crate::text::{Encoding, LineColumn, Message, Span};
 use rustc_hash::FxHashSet;
 use serde_json::{Value, json};
+use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -21,6 +22,8 @@ pub(super) struct Program {
     /// Code that says what it sees. The same code runs without breakpoints, so that a scan that the watchdog ends is
     /// ended at the same instruction.
     pub(super) code: Arc<Code>,
+    /// What drives what, once somebody has asked why.
+    pub(super) drivers: OnceCell<Drivers>,
     /// Instructions at which it can stop, in the order of the text.
     stops: Vec<(Place, u32)>,
     /// Where rungs begin, in the order of the text.
@@ -75,7 +78,7 @@ impl Program {
         stops.sort_unstable_by_key(|(place, _)| {
             (place.document, place.span.start, std::cmp::Reverse(place.span.end))
         });
-        Ok(Program { files, code: Arc::new(code), stops, rungs })
+        Ok(Program { files, code: Arc::new(code), drivers: OnceCell::new(), stops, rungs })
     }
 
     /// The number of the file at `path`.
@@ -109,11 +112,17 @@ impl Program {
         self.files.get(place.document as usize).map_or(Value::Null, File::source)
     }
 
-    /// The words at a place, with single blanks, up to the end of the first line.
+    /// How the instruction at a place is called.
     pub(super) fn words(&self, place: Place) -> String {
-        let text = self.document(place).map(|document| document.slice(place.span)).unwrap_or_default();
-        let line = text.lines().next().unwrap_or_default();
-        line.split_whitespace().collect::<Vec<_>>().join(" ")
+        self.document(place).map(|document| instruction_words(document, place.span)).unwrap_or_default()
+    }
+
+    /// The number of a drawn rung in its file, from 1 on; nothing for what is none.
+    pub(super) fn rung_at(&self, place: Place) -> Option<usize> {
+        let first = self.rungs.partition_point(|rung| rung.document < place.document);
+        let own = self.rungs.iter().skip(first).take_while(|rung| rung.document == place.document);
+        let is_drawn = self.document(place)?.notation() == Notation::Ladder;
+        own.into_iter().position(|rung| *rung == place).filter(|_| is_drawn).map(|number| number + 1)
     }
 
     /// `motor.il:3`

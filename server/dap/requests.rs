@@ -179,8 +179,11 @@ impl<W: Write> Adapter<W> {
     }
 
     fn place_breakpoints(&mut self) -> Vec<Placed> {
-        match &self.debugged {
-            Some(debugged) => self.breakpoints.place(&debugged.program),
+        match &mut self.debugged {
+            Some(debugged) => {
+                debugged.is_fresh = true;
+                self.breakpoints.place(&debugged.program)
+            }
             None => Vec::new(),
         }
     }

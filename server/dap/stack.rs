@@ -23,15 +23,22 @@ impl<W: Write> Adapter<W> {
         let debugged = self.debugged.as_ref().ok_or_else(|| Message::new("debug.not-launched"))?;
         let frame = |(number, (place, routine)): (usize, &(Place, String))| {
             let lines = self.lines(&debugged.program.lines(*place));
-            json!({
+            let words = match debugged.program.rung_at(*place) {
+                Some(number) => Message::new("debug.rung").with("number", number).render(language),
+                None => debugged.program.words(*place),
+            };
+            let mut frame = json!({
                 "id": number + 1,
-                "name": format!("{routine} · {}", debugged.program.words(*place)),
+                "name": format!("{routine} · {words}"),
                 "source": debugged.program.source(*place),
                 "line": lines.line,
                 "column": lines.column,
-                "endLine": lines.end_line,
-                "endColumn": lines.end_column,
-            })
+            });
+            // A whole rung would be selected by editors, which hides what is in it.
+            if lines.line == lines.end_line {
+                (frame["endLine"], frame["endColumn"]) = (json!(lines.end_line), json!(lines.end_column));
+            }
+            frame
         };
         let mut frames: Vec<Value> = places.iter().enumerate().map(frame).collect();
         let mut bottom = json!({

@@ -101,12 +101,35 @@ pub fn forms(
     document: &Document,
     part: Option<Span>,
     to: &[To],
+    settings: (Style, Option<Model>),
+    is_cancelled: &dyn Fn() -> bool,
+) -> Option<Vec<TranslatedForm>> {
+    forms_of(&Original::of(document, part), part.is_none(), to, settings, is_cancelled)
+}
+
+/// The same of a part, for a menu: nothing if its rungs have more bytes than `longest`, too.
+pub fn forms_at_once(
+    document: &Document,
+    (part, longest): (Span, u32),
+    to: &[To],
+    settings: (Style, Option<Model>),
+    is_cancelled: &dyn Fn() -> bool,
+) -> Option<Vec<TranslatedForm>> {
+    let source = Original::of(document, Some(part));
+    if source.length() > longest as usize {
+        return None;
+    }
+    forms_of(&source, false, to, settings, is_cancelled)
+}
+
+fn forms_of(
+    source: &Original<'_>,
+    is_whole: bool,
+    to: &[To],
     (style, model): (Style, Option<Model>),
     is_cancelled: &dyn Fn() -> bool,
 ) -> Option<Vec<TranslatedForm>> {
-    let is_whole = part.is_none();
     let options = Options { style: style.ladder(), is_whole, model, ..Options::default() };
-    let source = Original::of(document, part);
     let mut forms = Vec::with_capacity(to.len());
     for to in to {
         let translation = source.translated(*to, &options, is_cancelled)?;

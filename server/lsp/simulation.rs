@@ -19,9 +19,19 @@
 //! rungwise.simulate.panel     { }
 //! rungwise.simulate.trace     { names: string[], from?: scan, to?: scan, most?: points = 2000 }
 //! rungwise.simulate.export    { format: "vcd" | "csv", names?: string[], from?: scan, to?: scan }
+//! rungwise.simulate.record    { names?: string[] }                // what was done so far as a scenario test
+//! rungwise.simulate.why       { name | position, scan?: number }  // from 0 on; the last one if left out
 //! ```
 //!
-//! Each answers the state, the last three with more members:
+//! `record` answers `{ uri, name, text }`: what the file could be called, and what stands in it. What is expected in it
+//! are the changes of `names`, of the outputs where they are left out. `why` answers a tree, the fewest contacts that
+//! hold a device on or keep it off, each with the reasons for it:
+//!
+//! ```text
+//! { text, scan, time_ms, uri?, range?, because: … [] }
+//! ```
+//!
+//! Each of the others answers the state, `panel`, `trace` and `export` with more members:
 //!
 //! ```text
 //! { uri, mode: "running" | "paused" | "stopped", scan, first_scan, time_ms, scan_ms, speed, edition, branch,
@@ -77,17 +87,19 @@ mod panel;
 
 mod runner;
 
+mod why;
+
 use super::answering::{refused, snapshot};
 use super::workspace::Workspace;
 use crate::text::Message;
 use chart::Wanted;
-use runner::{Order, Runner};
+use runner::{About, Order, Runner};
 use rustc_hash::FxHashMap;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::sync::{Arc, Mutex, PoisonError};
 use tower_lsp::jsonrpc::Result;
-use tower_lsp::ls_types::{LSPAny, Range, Uri};
+use tower_lsp::ls_types::{LSPAny, Position, Range, Uri};
 
 /// What all commands begin with; [`COMMANDS`](super::capabilities::COMMANDS) has them.
 pub(super) const PREFIX: &str = "rungwise.simulate.";
@@ -111,6 +123,8 @@ struct Asked {
     to: Option<u64>,
     most: Option<usize>,
     format: Option<String>,
+    position: Option<Position>,
+    scan: Option<u64>,
 }
 
 /// The simulations that run.
@@ -158,6 +172,15 @@ impl Simulations {
     }
 }
 
+impl Simulations {
+    /// Why what stands at a position is on or off, in Markdown; nothing unless its program is being simulated.
+    pub(super) async fn brief(&self, uri: &Uri, position: Position) -> Option<String> {
+        let runner = self.0.lock().unwrap_or_else(PoisonError::into_inner).get(uri).cloned()?;
+        let order = Order::Why { about: About::At(position), scan: None, is_brief: true };
+        runner.ask(order).await.ok()?.as_str().map(str::to_string)
+    }
+}
+
 fn order(command: &str, asked: Asked) -> std::result::Result<Order, Message> {
     let verb = command.strip_prefix(PREFIX).unwrap_or_default();
     let missing = |member: &'static str| {
@@ -183,6 +206,15 @@ fn order(command: &str, asked: Asked) -> std::result::Result<Order, Message> {
         "set" => Order::Set { name: name?, value: value?, is_force: false },
         "force" => Order::Set { name: name?, value: value?, is_force: true },
         "release" => Order::Release { name: asked.name },
+        "record" => Order::Record { names: asked.names },
+        "why" => {
+            let about = asked.position.map(About::At);
+            Order::Why {
+                about: about.map_or_else(|| name.map(About::Name), Ok)?,
+                scan: asked.scan,
+                is_brief: false,
+            }
+        }
         "watch" => Order::Watch { ranges: asked.ranges, names: asked.names },
         "panel" => Order::Panel,
         "trace" => Order::Trace { wanted },

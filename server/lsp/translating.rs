@@ -274,8 +274,8 @@ fn told(
     }
     let style = settings.style(&around.here().manifest);
     let model = model_of_project(around, place);
-    let told = ide::forms(place.document, Some(span), forms, (style, model), &|| around.is_cancelled());
-    Some(told.unwrap_or_default())
+    let is_cancelled = || around.is_cancelled();
+    ide::forms_at_once(place.document, (span, TOLD_MAX), forms, (style, model), &is_cancelled)
 }
 
 /// The actions for rungs; none if nothing of them has this form.

@@ -153,6 +153,13 @@ pub fn suite_files(folder: &Path) -> Vec<PathBuf> {
     walk.files
 }
 
+/// The files with scenario tests in `folder` itself, by name; none if it cannot be read.
+pub fn suites_in(folder: &Path) -> Vec<PathBuf> {
+    let entries = entries(folder).unwrap_or_default();
+    let files = entries.iter().filter(|entry| !is_hidden(entry)).map(DirEntry::path);
+    files.filter(|path| is_suite_file(path) && path.is_file()).collect()
+}
+
 /// The folders with a manifest in `folder` and below, by name; what is hidden is passed over.
 pub fn projects_in(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();

@@ -10,6 +10,7 @@ mod files;
 pub use files::{
     MANIFEST_NAME, MOST_FILE_BYTES, MOST_FILES, MOST_PROJECT_BYTES, Project, decide, is_program_file,
     is_suite_file, is_table_file, names_in, open_document, program_files, projects_in, suite_files,
+    suites_in,
 };
 
 pub mod encoding;

@@ -34,9 +34,22 @@ impl Recording {
         self.touches.push((scan, name.to_string(), kind));
     }
 
-    /// What came behind scan number `scan` did not happen.
-    pub fn back_to(&mut self, scan: u64) {
-        self.touches.retain(|(own, ..)| *own <= scan);
+    /// All that is forced is let go before scan number `scan`.
+    pub fn release_all(&mut self, scan: u64) {
+        let mut forced: Vec<&str> = Vec::new();
+        for (_, name, kind) in &self.touches {
+            forced.retain(|known| !known.eq_ignore_ascii_case(name));
+            if matches!(kind, InputKind::Force(_)) {
+                forced.push(name);
+            }
+        }
+        let released = forced.into_iter().map(|name| (scan, name.to_string(), InputKind::Release));
+        self.touches.extend(released.collect::<Vec<_>>());
+    }
+
+    /// Only the first `scans` scans did happen.
+    pub fn back_to(&mut self, scans: u64) {
+        self.touches.retain(|(own, ..)| *own < scans);
     }
 
     /// Whether nothing was done.
@@ -209,7 +222,8 @@ pub fn of_counterexample(found: &Counterexample, names: &[String; 2], language: 
         .with("second", &names[1]);
     let held = |value: &Held| match value {
         Held::Bit(value) => u8::from(*value).to_string(),
-        Held::Word(value) => value.to_string(),
+        Held::Time(_) => quoted(&value.to_string()),
+        Held::Word(_) | Held::Real(_) => value.to_string(),
     };
     let scan = u64::from(!found.before.is_empty());
     let at = |scan: u64| if scan == 1 { "1 scan".to_string() } else { format!("{scan} scans") };

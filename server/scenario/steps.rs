@@ -173,6 +173,9 @@ impl Plan {
         let deviation = reading.entry(table, "deviation").and_then(|entry| reading.number_of(entry));
         let deviation = deviation.map_or(self.deviation, f64::abs);
         let until = self.until(reading, table);
+        if let (Some(again), Some(_)) = (reading.entry(table, "for"), reading.entry(table, "until")) {
+            reading.flaw(again.key, Message::new("scenario.for-and-until"));
+        }
         let kinds = [("expect", CheckKind::Once), ("always", CheckKind::Always), ("never", CheckKind::Never)];
         let mut has_range = false;
         for (key, kind) in kinds {

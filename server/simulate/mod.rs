@@ -71,5 +71,11 @@ pub use recorder::{Change, Recorder, Signal, is_affordable};
 mod presets;
 pub use presets::{Counted, CountedPreset};
 
+mod words;
+pub use words::instruction_words;
+
+mod why;
+pub use why::{Condition, Drivers, Inquiry, Reason};
+
 mod power_flow;
 pub use power_flow::{Energised, EnergisedKind, power_flow};

@@ -18,6 +18,10 @@ pub use counterexample::{Counterexample, Value};
 
 mod declared;
 
+mod paired;
+
+mod reached;
+
 mod units;
 
 mod types;
@@ -167,6 +171,11 @@ impl<'d> Original<'d> {
     /// Reads `document`; with `part` only the rungs that touch these bytes.
     pub fn of(document: &'d Document, part: Option<Span>) -> Original<'d> {
         Original { document, is_whole: part.is_none(), program: source::program(document, part) }
+    }
+
+    /// How many bytes its rungs have. Those of a part may reach far beyond it.
+    pub fn length(&self) -> usize {
+        self.program.rungs.iter().map(|source| source.text().len()).sum()
     }
 
     /// In another form; nothing if `is_cancelled` says on the way that nobody waits for it any more.

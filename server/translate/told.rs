@@ -38,6 +38,8 @@ fn value_json(value: &Value) -> Json {
     match value {
         Value::Bit(value) => json!(value),
         Value::Word(value) => json!(value),
+        Value::Real(value) => json!(value),
+        Value::Time(_) => json!(value.to_string()),
     }
 }
 
@@ -73,7 +75,7 @@ fn picture(found: &Counterexample, names: &[String; 2], language: Language) -> S
                 let before = found.before.get(name).copied().unwrap_or(*value);
                 (name.clone(), format!("{}{}", level(before), level(*value)))
             }
-            Value::Word(value) => (name.clone(), value.to_string()),
+            value => (name.clone(), value.to_string()),
         });
     }
     for (name, value) in names.iter().zip(found.sides) {

@@ -3,6 +3,7 @@
 import * as vscode from 'vscode';
 import { registerCommands } from './commands';
 import { currentSettings } from './configuration';
+import { Debuggers } from './debuggers';
 import { DevicesView } from './devicesView';
 import { DrawingEditor } from './drawing';
 import { registerExample } from './example';
@@ -14,6 +15,7 @@ import { ServerController } from './server';
 import type { ProgramStatus, ServerState } from './status';
 import { SimulationView } from './simulationView';
 import { StatusBar } from './statusBar';
+import { TestExplorer } from './testExplorer';
 import { RungwiseTasks } from './tasks';
 import { registerTranslations } from './translations';
 import { UsageView } from './usageView';
@@ -53,6 +55,8 @@ export async function activate(context: vscode.ExtensionContext): Promise<Rungwi
     new ProofView(controller),
     simulation,
     new PanelView(context.extensionUri, simulation),
+    new TestExplorer(controller),
+    new Debuggers(controller),
     RungwiseTasks.register(controller),
     registerExample(context),
     registerWalkthrough(),

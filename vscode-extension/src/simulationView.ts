@@ -4,6 +4,7 @@ import * as vscode from 'vscode';
 import type { ServerController } from './server';
 import { clock, deviceAt, MONITOR, parsePicture, simulate, type Mode, type Picture } from './simulation';
 import type { PlainRange } from './structuralEdits';
+import { freeName } from './testing';
 
 const LANGUAGES = ['ladder', 'plc-il'];
 /** The visible lines are told when they stand still for so long. */
@@ -65,6 +66,7 @@ export class SimulationView implements vscode.Disposable {
       registerCommand('rungwise.simulation.stepBack', tells('stepBack')),
       registerCommand('rungwise.simulation.reset', tells('reset')),
       registerCommand('rungwise.simulation.toggle', atCursor((editor) => this.toggle(editor))),
+      registerCommand('rungwise.simulation.record', here((program) => this.record(program))),
       registerCommand('rungwise.simulation.setValue', atCursor((editor) => this.setValue(editor))),
       vscode.window.onDidChangeTextEditorVisibleRanges(() => this.scroll()),
       vscode.window.onDidChangeVisibleTextEditors(() => this.scroll()),
@@ -167,6 +169,23 @@ export class SimulationView implements vscode.Disposable {
     }
   }
 
+  /** Opens what was done so far as a scenario test in a file that is not saved yet. */
+  private async record(program: vscode.Uri): Promise<void> {
+    const { name, text } = (await this.tell(program, 'record')) as { name: string; text: string };
+    const at = (file: string) => vscode.Uri.joinPath(program, '..', file);
+    const exists = async (file: string) => {
+      const isOpen = vscode.workspace.textDocuments.some(({ uri }) => uri.path === at(file).path);
+      return isOpen || vscode.workspace.fs.stat(at(file)).then(() => true, () => false);
+    };
+    const uri = at(await freeName(name, exists)).with({ scheme: 'untitled' });
+    const recorded = await vscode.workspace.openTextDocument(uri);
+    const edit = new vscode.WorkspaceEdit();
+    edit.insert(uri, new vscode.Position(0, 0), text);
+    await vscode.workspace.applyEdit(edit);
+    await vscode.window.showTextDocument(recorded);
+  }
+
+  /** Gives the simulation of a program an order, and its answer. */
   async tell(document: vscode.Uri, verb: string, more: object = {}): Promise<unknown> {
     return this.server.executeCommand(simulate(verb), [{ ...more, uri: this.server.protocolUri(document) }]);
   }

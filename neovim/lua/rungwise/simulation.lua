@@ -190,8 +190,31 @@ M.verbs = {
   force = function(buffer, words)
     M.tell(buffer, 'force', { name = words[1], value = words[2] })
   end,
+  --- What was done so far as a scenario test, in a new buffer.
+  record = function(buffer)
+    tell(buffer, 'record', {}, function(recorded)
+      local folder = vim.fs.dirname(vim.api.nvim_buf_get_name(buffer))
+      local stem, name, number = recorded.name:gsub('%.test%.toml$', ''), recorded.name, 1
+      while vim.uv.fs_stat(vim.fs.joinpath(folder, name)) or vim.fn.bufexists(vim.fs.joinpath(folder, name)) == 1 do
+        number = number + 1
+        name = ('%s-%d.test.toml'):format(stem, number)
+      end
+      vim.cmd.split(vim.fn.fnameescape(vim.fs.joinpath(folder, name)))
+      vim.api.nvim_buf_set_lines(0, 0, -1, false, vim.split(vim.trim(recorded.text), '\n'))
+    end)
+  end,
   release = function(buffer, words)
     M.tell(buffer, 'release', { name = words[1] })
+  end,
+  why = function(buffer, words)
+    local server = client.expect(buffer)
+    if server then
+      local encoding = server.offset_encoding
+      local here = vim.lsp.util.make_position_params(0, encoding).position
+      tell(buffer, 'why', words[1] and { name = words[1] } or { position = here }, function(reason)
+        require('rungwise.why').show(reason, encoding)
+      end)
+    end
   end,
 }
 

@@ -17,24 +17,36 @@ pub(super) fn parameters(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>
     each(context, |_, block, callee| unknown_pins(context.chunk.text(), block, callee, found));
 }
 
-/// What the pins of boxes write that is only to be read: variables declared so, and outputs of blocks.
+/// What coils and the pins of boxes write that is only to be read: variables declared so, and outputs of blocks.
 pub(super) fn variables(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     let text = context.chunk.text();
     let tree = IecTree::default();
     let view = View { text, tree: &tree, scopes: context.scopes, pou: context.pou };
+    let judge = |element: &Element, place: usize| {
+        let operand = element.operands.get(place).filter(|operand| operand.value == Operand::Variable)?;
+        constant_written::judge(&view, &element.operand_text(place, text), operand.span)
+    };
+    for element in elements(context) {
+        if matches!(element.kind, ElementKind::Coil(_)) {
+            found.extend(judge(element, 0));
+        }
+    }
     each(context, |element, block, callee| {
         for (_, place) in written(text, block, callee) {
-            let Written::Operand(place) = place else { continue };
-            let Some(operand) = element.operands.get(place) else { continue };
-            if operand.value == Operand::Variable {
-                found.extend(constant_written::judge(
-                    &view,
-                    &element.operand_text(place, text),
-                    operand.span,
-                ));
+            if let Written::Operand(place) = place {
+                found.extend(judge(element, place));
             }
         }
     });
+}
+
+/// What is drawn in IEC 61131-3.
+fn elements<'c>(context: &'c ChunkContext<'_>) -> impl Iterator<Item = &'c Element> {
+    let rungs = match context.chunk.tree() {
+        Tree::Ladder(tree) if !context.target.is_fx() => &tree.rungs[..],
+        _ => &[],
+    };
+    rungs.iter().flat_map(|rung| &rung.graph.elements)
 }
 
 /// What the pins of boxes would have to write and that is no variable: constants, inverted values, power.
@@ -93,12 +105,8 @@ fn written<'t>(text: &'t str, block: &Block, callee: &'t Callee) -> Vec<(&'t str
 
 /// Calls `found` with each box that has a name, and with what it calls.
 fn each(context: &ChunkContext<'_>, mut found: impl FnMut(&Element, &Block, &Callee)) {
-    let Tree::Ladder(tree) = context.chunk.tree() else { return };
-    if context.target.is_fx() {
-        return;
-    }
     let text = context.chunk.text();
-    for element in tree.rungs.iter().flat_map(|rung| &rung.graph.elements) {
+    for element in elements(context) {
         let ElementKind::Block(block) = &element.kind else { continue };
         // The boxes of LDmicro have no names but what stands in for them.
         let Some(name) = block.type_text(text).filter(|_| block.ldmicro.is_none()) else { continue };

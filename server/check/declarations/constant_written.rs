@@ -4,7 +4,7 @@
 //! (`VAR_INPUT`), or an output of a function block that only the block itself sets. Many controllers keep constants
 //! in program memory, where the write has no effect or stops the CPU; a written input or output is overwritten by the
 //! next call, so the value is there in one part of the scan and gone in another. What a call hands over at a
-//! `VAR_IN_OUT` is written by what is called, in lists as at the pins of a drawn box.
+//! `VAR_IN_OUT` is written by what is called, in lists as at the pins of a drawn box. A coil writes its variable.
 //!
 //! ```iec
 //! FUNCTION_BLOCK Dose

@@ -146,6 +146,13 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     if !session.run(arguments, language) {
         return Outcome::Unusable;
     }
+    if let (Some(words), true) =
+        (&arguments.only, session.results.iter().all(Vec::is_empty) && !session.has_flaws())
+    {
+        let reason = Message::new("cli.no-scenario").with("words", words).render(language);
+        complain("no-tests", &reason, &Message::new("cli.give-suite").render(language), language);
+        return Outcome::Unusable;
+    }
     if arguments.mutate {
         session.mutate(arguments);
     }

@@ -4,7 +4,9 @@ use super::super::across::linked;
 use super::super::input::{Program, complain, folder_of, programs};
 use crate::check;
 use crate::document::{Document, Member, ProjectView};
-use crate::project::{MANIFEST_NAME, Project, encoding, is_program_file, is_suite_file, suite_files};
+use crate::project::{
+    MANIFEST_NAME, Project, encoding, is_program_file, is_suite_file, suite_files, suites_in,
+};
 use crate::scenario::{Bench, Coverage, Flaw, Suite, programs_beside};
 use crate::simulate::Problem;
 use crate::text::{Language, Message, Span};
@@ -133,7 +135,7 @@ fn about(program: &Path) -> Vec<PathBuf> {
             files.iter().any(|path| path.canonicalize().ok() == wanted)
         })
     };
-    suite_files(folder).into_iter().filter(|file| file.parent() == Some(folder) && is_about(file)).collect()
+    suites_in(folder).into_iter().filter(is_about).collect()
 }
 
 impl SuiteFile {
