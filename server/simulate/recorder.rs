@@ -1,4 +1,5 @@
-//! What some variables were while a program runs: every change of late, and of long ago the least and the greatest.
+//! What some variables were while a program runs: every change of late, and of long ago the least and the greatest
+//! value in each of equal spans of time.
 //!
 //! A change costs some bytes and a scan without one a comparison, so a chart of a run of any length is kept beside it.
 //! What was before a variable was recorded is found by running the history again, in portions.
@@ -21,6 +22,8 @@ pub struct Signal {
     variable: Variable,
     /// From this scan on every change is there; before it, the extremes of some at a time.
     exact_from: u64,
+    /// How many scans have their extremes together before that.
+    span: u64,
     /// In the order of scans; the first one is the earliest value that is known.
     changes: Vec<Change>,
 }
@@ -30,8 +33,8 @@ pub type Change = (u64, Value);
 
 /// More changes of a variable are thinned out.
 const MOST_CHANGES: usize = 1 << 15;
-/// Of so many changes in a row the first, the least, the greatest and the last are kept.
-const GROUP: usize = 8;
+/// Scans of which the first, the least, the greatest and the last value are kept; more in a longer run.
+const FIRST_SPAN: u64 = 16;
 /// More variables are not recorded at once.
 const MOST_SIGNALS: usize = 64;
 /// Instructions that are run again at most to look back once; a fraction of a second.
@@ -73,8 +76,10 @@ impl Recorder {
 
     /// Begins anew with a PLC that was just switched on.
     pub fn clear(&mut self) {
-        self.signals.iter_mut().for_each(|signal| signal.changes.clear());
-        self.signals.iter_mut().for_each(|signal| signal.exact_from = 0);
+        for signal in &mut self.signals {
+            signal.changes.clear();
+            (signal.exact_from, signal.span) = (0, FIRST_SPAN);
+        }
     }
 
     /// Goes on with other code for the same PLC; what it does not have is no longer recorded.
@@ -153,7 +158,8 @@ pub fn is_affordable(session: &Session, first: u64, last: u64) -> bool {
 
 impl Signal {
     fn new(name: String, variable: Variable, machine: &Machine<u8>) -> Signal {
-        let mut signal = Signal { name, variable, exact_from: machine.scans(), changes: Vec::new() };
+        let mut signal =
+            Signal { name, variable, exact_from: machine.scans(), span: FIRST_SPAN, changes: Vec::new() };
         signal.note(machine);
         signal
     }
@@ -172,9 +178,7 @@ impl Signal {
         let mut changes = std::mem::take(&mut self.changes);
         self.note_into(&mut changes, machine);
         self.changes = changes;
-        if self.changes.len() > MOST_CHANGES {
-            self.thin();
-        }
+        self.thin();
     }
 
     fn note_into(&self, changes: &mut Vec<Change>, machine: &Machine<u8>) {
@@ -184,14 +188,26 @@ impl Signal {
         }
     }
 
-    /// Leaves out half of the older half of the changes.
+    /// Of the older half of what is exact only the extremes of equal spans of time are kept from now on, as of what is
+    /// older; spans grow with the time that there is.
     fn thin(&mut self) {
-        while self.changes.len() > MOST_CHANGES {
-            let late = self.changes.split_off(self.changes.len() / 2);
-            self.exact_from = self.exact_from.max(late[0].0);
-            self.changes = self.changes.chunks(GROUP).flat_map(extremes).collect();
-            self.changes.extend(late);
+        if self.changes.len() <= MOST_CHANGES {
+            return;
         }
+        let exact = self.changes.partition_point(|(scan, _)| *scan < self.exact_from);
+        let half = ((exact + self.changes.len()) / 2).min(self.changes.len() - 1);
+        let late = self.changes.split_off(half);
+        self.exact_from = late[0].0;
+        loop {
+            let span = self.span;
+            let old = self.changes.chunk_by(|one, other| one.0 / span == other.0 / span);
+            self.changes = old.flat_map(extremes).collect();
+            if self.changes.len() <= MOST_CHANGES / 2 {
+                break;
+            }
+            self.span *= 2;
+        }
+        self.changes.extend(late);
     }
 
     /// The value at `first`, or the earliest one if that is later, and the changes up to `last`, `most` or a few more

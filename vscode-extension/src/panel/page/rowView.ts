@@ -54,7 +54,7 @@ export class RowView {
       controls.append(this.switch);
     } else if (row.type === 'word') {
       this.bar = row.contact === undefined ? undefined : this.progressBar(label);
-      this.slider = this.bar === undefined ? this.makeSlider(label) : undefined;
+      this.slider = this.bar === undefined && row.least !== undefined ? this.makeSlider(label) : undefined;
       // A time is read, not typed in units.
       this.field = row.unitMs === undefined ? this.makeField(label) : undefined;
       controls.append(...[this.bar, this.slider, this.field].filter((node) => node !== undefined));
@@ -186,9 +186,11 @@ export class RowView {
   }
 
   private makeField(label: string): HTMLInputElement {
-    const field = element('input', { type: 'text', inputmode: 'numeric', class: 'number', spellcheck: false, 'aria-label': t('Value of {0}', label) });
+    const field = element('input', { type: 'text', class: 'number', spellcheck: false, 'aria-label': t('Value of {0}', label) });
     const take = () => {
-      const value = typedNumber(field.value, this.row);
+      // What a variable of IEC 61131-3 takes, the server knows: `T#2s`, a text, a name.
+      const isFree = this.row.least === undefined && field.value.trim() !== '';
+      const value = typedNumber(field.value, this.row) ?? (isFree ? field.value.trim() : undefined);
       put(field, 'aria-invalid', value === undefined ? 'true' : undefined);
       if (value !== undefined && value !== this.value) {
         void this.around.plc.set(this.row.name, value);
