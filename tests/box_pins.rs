@@ -205,6 +205,6 @@ fn a_coil_writes_its_variable() {
         let folder = crate::binary::folder(&[("main.lad", &text(section))]);
         let (_, out, _) = crate::binary::run(&folder, &["check", "main.lad", "--lang", "en"]);
         assert_eq!(out.matches("error[constant-written]").count(), expected, "{out}");
-        assert_eq!(out.contains("main.lad:9:14"), expected == 1, "{out}");
+        assert_eq!(out.contains("main.lad:9:15"), expected == 1, "{out}");
     }
 }

@@ -203,13 +203,13 @@ fn an_external_variable_has_the_type_of_the_global_one() {
     ] {
         let text = text(global, external);
         let all: Vec<String> =
-            found(&text).into_iter().filter(|one| one.starts_with("external-type")).collect();
+            told(&text).into_iter().filter(|one| one.starts_with("external-type")).collect();
         assert_eq!(!all.is_empty(), is_found, "{global} {external}: {all:?}");
         if is_found {
             let judged = judged(&text);
             let one = judged.iter().find(|one| one.code == "external-type").expect("the finding");
             let mended = TextEdit::apply_all(&one.fixes[0].edits, &text);
-            assert!(!found(&mended).iter().any(|one| one.starts_with("external-type")), "{mended}");
+            assert!(!told(&mended).iter().any(|one| one.starts_with("external-type")), "{mended}");
         }
     }
 }

@@ -98,10 +98,10 @@ pub(super) fn found(units: &[Unit<'_>; 2], state: &State) -> Option<(Term, State
     bits.dedup();
     starts(units, state).into_iter().find_map(|start| {
         let ends = scans(units, &start)?;
-        let values = |term: &Term| ends.each_ref().map(|scan| scan.bit(&term.key()));
-        let bit = bits.iter().find(|bit| values(bit)[0] != values(bit)[1])?;
-        let found = (bit.clone(), values(bit));
-        Some((found.0, start.clone(), found.1))
+        bits.iter().find_map(|bit| {
+            let values = ends.each_ref().map(|scan| scan.bit(&bit.key()));
+            (values[0] != values[1]).then(|| (bit.clone(), start.clone(), values))
+        })
     })
 }
 
