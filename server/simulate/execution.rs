@@ -3,7 +3,7 @@
 use super::clock;
 use super::code::Call;
 use super::interrupts::Interrupts;
-use super::layout::{NS_BEYOND, index_register};
+use super::layout::index_register;
 use super::terminals::Terminals;
 use super::{Cell, Lanes, Layout, Memory, Slot};
 use crate::target::semantics::NOTES;
@@ -151,11 +151,7 @@ impl<L: Lanes> Executing<'_, L> {
     }
 
     fn store(&mut self, slot: Slot, kind: DeviceKind, value: i64) {
-        self.memory.set_word(slot, self.lane, value);
-        // What is written to a timer is whole units.
-        if kind == DeviceKind::T {
-            self.memory.set_word(slot + NS_BEYOND, self.lane, 0);
-        }
+        self.memory.store(slot, kind, self.lane, value);
     }
 
     fn relay_cell(&self, number: u32) -> Option<Cell> {

@@ -59,7 +59,7 @@ pub(super) fn index_register(register: Device) -> Option<Device> {
 impl Layout {
     /// The memory of `target`.
     pub fn new(target: &Target) -> Layout {
-        let cells = usize::from(Row::RAIL) + 1;
+        let cells = usize::from(Row::OFF) + 1;
         let mut layout = Layout { kinds: Default::default(), cells, slots: 0, clock: 0 };
         for range in target.devices {
             let count = (range.last - range.first + 1) as usize;
@@ -136,6 +136,11 @@ impl Layout {
     /// Whether the device is a counter or a register of 32 bits.
     pub fn is_wide(&self, device: Device) -> bool {
         self.run(device).is_some_and(|run| run.bits == 32)
+    }
+
+    /// What the register, or the current value of the timer or counter, holds of a number.
+    pub(super) fn held(&self, device: Device, value: i64) -> i64 {
+        if self.is_wide(device) { i64::from(value as i32) } else { i64::from(value as i16) }
     }
 
     /// The cells of inputs, or of outputs, one behind the other in the order of their numbers.

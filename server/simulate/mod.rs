@@ -44,6 +44,17 @@ mod pulses;
 
 mod interrupts;
 
+mod iec;
+pub use iec::{Lies, Spot};
+
+mod forces;
+
+mod special;
+
+mod instruct;
+
+mod run;
+
 mod machine;
 pub use machine::{Error, ErrorKind, Machine, Outcome, Sight};
 

@@ -6,12 +6,13 @@
 
 use super::code::Code;
 use super::machine::{Machine, Outcome, Sight};
+use super::{Value, Variable};
 use crate::target::Device;
 use crate::target::outside::Event;
 use std::sync::Arc;
 
 /// What is done to a PLC between two scans.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, PartialEq, Debug)]
 pub enum Touch {
     /// Switches an input terminal, or writes a relay.
     Set(Device, bool),
@@ -23,6 +24,14 @@ pub enum Touch {
     ForceWord(Device, i64),
     /// Lets a forced device go.
     Release(Device),
+    /// Writes a variable of an IEC 61131-3 program; of an input what is wired to it.
+    Write(Variable, Value),
+    /// Holds such a variable at a value.
+    Hold(Variable, Value),
+    /// Lets such a variable go.
+    LetGo(Variable),
+    /// Lets all that is forced go.
+    LetAllGo,
     /// Lets pulses arrive before the next scan, see [`Machine::pulse`].
     Pulse(Device, i32),
     /// Something happens around the CPU.
@@ -30,13 +39,17 @@ pub enum Touch {
 }
 
 impl Touch {
-    fn apply(self, machine: &mut Machine<u8>) {
-        match self {
+    fn apply(&self, machine: &mut Machine<u8>) {
+        match *self {
             Touch::Set(device, on) => machine.set(device, if on { 0xFF } else { 0 }),
             Touch::SetWord(device, value) => machine.set_word(device, value),
             Touch::Force(device, on) => machine.force(device, on),
             Touch::ForceWord(device, value) => machine.force_word(device, value),
             Touch::Release(device) => machine.release(device),
+            Touch::Write(variable, ref value) => machine.write(variable, value),
+            Touch::Hold(variable, ref value) => machine.hold_at(variable, value),
+            Touch::LetGo(variable) => machine.let_go(variable),
+            Touch::LetAllGo => machine.let_all_go(),
             Touch::Pulse(device, count) => machine.pulse(device, count),
             Touch::Around(event) => {
                 machine.outside_mut().iter_mut().for_each(|outside| outside.apply(event));
@@ -204,10 +217,10 @@ impl Session {
         self.times.forget(begin);
     }
 
-    fn touches_before(&self, scan: u64) -> impl Iterator<Item = Touch> {
+    fn touches_before(&self, scan: u64) -> impl Iterator<Item = &Touch> {
         let first = self.touches.partition_point(|(before, _)| *before < scan);
         let touches = self.touches.get(first..).unwrap_or_default().iter();
-        touches.take_while(move |(before, _)| *before == scan).map(|(_, touch)| *touch)
+        touches.take_while(move |(before, _)| *before == scan).map(|(_, touch)| touch)
     }
 
     fn moment_before(&self, scan: u64) -> Option<&Machine<u8>> {

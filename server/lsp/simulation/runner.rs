@@ -7,7 +7,6 @@ use super::monitor::{Monitor, MonitorMethod, Picture};
 use crate::check;
 use crate::document::Document;
 use crate::simulate::{Code, Error, Session, Sight, Touch, Value, Variable, compile};
-use crate::target::Device;
 use crate::text::Message;
 use serde_json::{Value as Json, json};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -308,8 +307,7 @@ impl Running {
                 touch.into_iter().for_each(|touch| self.session.touch(touch));
             }
             Order::Release { name: None } => {
-                let forced: Vec<Device> = self.session.machine().forced().collect();
-                forced.into_iter().for_each(|device| self.session.touch(Touch::Release(device)));
+                self.session.touch(Touch::LetAllGo);
             }
             Order::Watch { ranges, names } => self.monitor.watch(ranges, names),
             Order::State { .. } => {}
@@ -345,7 +343,12 @@ impl Running {
         let variable = self.variable(name)?;
         let value = match value {
             Json::Bool(on) => Some(Value::Bit(*on)),
-            Json::Number(number) => number.as_i64().map(Value::Number),
+            Json::Number(number) => {
+                let whole = number.as_i64().map(Value::Number);
+                whole
+                    .or_else(|| number.as_u64().map(Value::Unsigned))
+                    .or_else(|| number.as_f64().map(Value::Real))
+            }
             Json::String(word) => Value::read(word),
             _ => None,
         };
@@ -448,7 +451,7 @@ impl Running {
             "first_scan": self.session.first_scan().saturating_sub(1),
             "time_ms": machine.now_ns() as f64 / 1e6,
             "speed": self.speed,
-            "forced": machine.forced().map(|device| device.to_string()).collect::<Vec<_>>(),
+            "forced": machine.forced(),
             "values": self.monitor.values(names, machine),
             "errors": errors,
         })

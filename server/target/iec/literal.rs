@@ -3,6 +3,8 @@
 use super::{ElementaryType, GenericType, is_identifier};
 
 mod number;
+mod spelling;
+pub use spelling::{characters_of, spelled};
 mod text;
 mod time;
 
