@@ -23,10 +23,14 @@ pub mod check;
 
 pub mod simulate;
 
+pub mod scenario;
+
 pub mod project;
 
 pub mod ide;
 
 pub mod lsp;
+
+pub mod dap;
 
 pub mod cli;

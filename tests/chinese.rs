@@ -114,6 +114,7 @@ fn table_phrases() -> BTreeSet<&'static str> {
         words.extend(target.devices.iter().map(|range| range.purpose));
     }
     add_descriptions(&crate::manifest_help::SCHEMA, &mut words);
+    add_descriptions(&crate::scenario_schema::SCHEMA, &mut words);
     words
 }
 

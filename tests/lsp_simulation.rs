@@ -7,20 +7,21 @@ const MOTOR: &str = "|  X0        X1     Y0  |\n+--| |---+---|/|----( )-+\n|  Y0
 const LIST: &str = "LD X0\nOR Y0\nANI X1\nOUT Y0\nOUT T0 K100\nEND\n";
 const URI: &str = "file:///simulated/motor.il";
 
-struct Simulated {
-    client: Client,
-    uri: String,
+/// A program that a client has open and simulates.
+pub struct Simulated {
+    pub client: Client,
+    pub uri: String,
 }
 
 impl Simulated {
-    fn open(uri: &str, language: &str, text: &str) -> Simulated {
+    pub fn open(uri: &str, language: &str, text: &str) -> Simulated {
         let mut client = Client::start();
         client.open(uri, language, text);
         client.diagnostics(uri, 1);
         Simulated { client, uri: uri.to_string() }
     }
 
-    fn answer(&mut self, verb: &str, more: Value) -> Value {
+    pub fn answer(&mut self, verb: &str, more: Value) -> Value {
         let mut argument = json!({ "uri": self.uri });
         argument.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
         let params = json!({ "command": format!("rungwise.simulate.{verb}"), "arguments": [argument] });
@@ -28,20 +29,20 @@ impl Simulated {
     }
 
     #[track_caller]
-    fn tell(&mut self, verb: &str, more: Value) -> Value {
+    pub fn tell(&mut self, verb: &str, more: Value) -> Value {
         let answer = self.answer(verb, more);
         assert!(answer["error"].is_null(), "{answer}");
         answer["result"].clone()
     }
 
     /// The values of these names.
-    fn values(&mut self, names: &[&str]) -> Vec<Value> {
+    pub fn values(&mut self, names: &[&str]) -> Vec<Value> {
         let state = self.tell("state", json!({ "names": names }));
         state["values"].as_array().unwrap().iter().map(|value| value["value"].clone()).collect()
     }
 
     /// The next picture that is wanted.
-    fn picture(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
+    pub fn picture(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
         let is_one = |message: &Value| message["method"] == "rungwise/monitor" && wanted(&message["params"]);
         self.client.wait_for("a picture", is_one)["params"].clone()
     }
@@ -123,8 +124,10 @@ fn what_is_shown_is_painted_as_power_flowed() {
 
 #[test]
 fn what_is_shown_belongs_to_the_scan_and_the_lines_that_are_shown() {
-    let mut plc = Simulated::open(URI, "plc-il", LIST);
+    let two_rungs = LIST.replace("END\n", "LD X0\nOUT Y5\nEND\n");
+    let mut plc = Simulated::open(URI, "plc-il", &two_rungs);
     plc.tell("start", json!({ "paused": true }));
+    plc.tell("step", json!({ "count": 3 }));
     let lines = |first: u32, last: u32| json!([{ "start": { "line": first, "character": 0 }, "end": { "line": last, "character": 0 } }]);
     plc.tell("watch", json!({ "ranges": lines(0, 4) }));
     plc.tell("set", json!({ "name": "X0", "value": true }));
@@ -137,12 +140,13 @@ fn what_is_shown_belongs_to_the_scan_and_the_lines_that_are_shown() {
         })
     };
     plc.picture(|picture| has(picture, 3, true));
-    plc.tell("stepBack", json!({}));
+    plc.tell("stepBack", json!({ "count": 2 }));
     plc.tell("state", json!({}));
-    plc.picture(|picture| has(picture, 3, false));
+    plc.picture(|picture| picture["scan"] == json!(2) && has(picture, 3, false));
+    plc.tell("set", json!({ "name": "X0", "value": true }));
     plc.tell("step", json!({}));
-    plc.tell("watch", json!({ "ranges": lines(4, 6) }));
-    plc.picture(|picture| has(picture, 4, true) && !has(picture, 3, true));
+    plc.tell("watch", json!({ "ranges": lines(6, 7) }));
+    plc.picture(|picture| has(picture, 6, true));
 }
 
 #[test]
@@ -181,4 +185,54 @@ fn an_endless_loop_is_told_at_its_jump_and_the_server_lives() {
     assert!(errors[0]["message"].as_str().unwrap().contains("does not end"), "{state}");
     assert!((0..=4).contains(&errors[0]["range"]["start"]["line"].as_i64().unwrap()), "{state}");
     plc.tell("stop", json!({}));
+}
+
+/// A reason and those behind it, each set in by a blank.
+fn reasons(reason: &Value) -> String {
+    let behind = reason["because"].as_array().unwrap().iter().map(reasons);
+    let behind: String = behind.collect::<String>().lines().map(|line| format!(" {line}\n")).collect();
+    let line = reason["range"]["start"]["line"].as_i64().map(|line| format!(" @{line}"));
+    format!("{}{}\n{behind}", reason["text"].as_str().unwrap(), line.unwrap_or_default())
+}
+
+#[test]
+fn why_is_answered_for_names_and_places_and_scans_and_in_the_hover() {
+    let uri = "file:///simulated/why.lad";
+    let mut plc = Simulated::open(uri, "ladder", MOTOR);
+    let refused = plc.answer("why", json!({ "name": "Y0" }));
+    assert!(refused["error"]["message"].as_str().unwrap().contains("not being simulated"), "{refused}");
+    let hover = |plc: &mut Simulated| {
+        let position = json!({ "line": 1, "character": 22 });
+        let params = json!({ "textDocument": { "uri": uri }, "position": position });
+        plc.client.request("textDocument/hover", params)["result"]["contents"]["value"].to_string()
+    };
+    assert!(!hover(&mut plc).contains("is off"));
+    plc.tell("start", json!({ "paused": true }));
+    plc.tell("set", json!({ "name": "X0", "value": true }));
+    plc.tell("step", json!({ "count": 5 }));
+    let why = plc.tell("why", json!({ "position": { "line": 1, "character": 22 } }));
+    assert_eq!(
+        reasons(&why),
+        concat!(
+            "Y0 is on: ( ) has power @1\n",
+            " X0 is on: an input, since scan 1 (10 ms) @1\n",
+            " X1 is off: an input @1\n"
+        )
+    );
+    assert_eq!((&why["scan"], &why["time_ms"], &why["uri"]), (&json!(5), &json!(50.0), &json!(uri)), "{why}");
+    let before = plc.tell("why", json!({ "name": "y0", "scan": 0 }));
+    assert!(reasons(&before).starts_with("Y0 is off: ( ) has no power"), "{before}");
+    let timer = plc.tell("why", json!({ "name": "T0" }));
+    assert!(reasons(&timer).starts_with("T0 is off: 0 s of 10 s have passed"), "{timer}");
+    let shown = hover(&mut plc);
+    assert!(shown.starts_with("\"Y0 is on: ( ) has power\\n- X0 is on"), "{shown}");
+    for wrong in [
+        json!({ "name": "Q7" }),
+        json!({ "name": "Y0", "scan": 99 }),
+        json!({ "position": { "line": 4, "character": 0 } }),
+        json!({}),
+    ] {
+        let refused = plc.answer("why", wrong);
+        assert!(refused["error"]["message"].is_string(), "{refused}");
+    }
 }

@@ -3,7 +3,7 @@
 use crate::lsp_client::Client;
 use proptest::prelude::*;
 use rungwise::check::RULES;
-use rungwise::ide::{manifest_completions, manifest_hover};
+use rungwise::ide::{Schema, manifest_completions, manifest_hover};
 use rungwise::text::Language;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
@@ -301,7 +301,8 @@ fn a_manifest_of_any_depth_is_read_in_bounded_time() {
     for (start, repeated) in deep {
         let text = format!("{start}{}", repeated.repeat(200_000));
         let begun = Instant::now();
-        let found = manifest_completions(&text, text.len(), &|_| Vec::new(), Language::English);
+        let found =
+            manifest_completions(Schema::Manifest, &text, text.len(), &|_| Vec::new(), Language::English);
         assert!(
             found.len() < 200 && begun.elapsed() < Duration::from_secs(5),
             "{repeated}: {:?}",
@@ -315,10 +316,10 @@ proptest! {
     #[test]
     fn help_in_any_text(text in "([\\[\\]{}=\"',.#\\\\é𠀀 \n\r]|rules|task|format|files|a|1){0,40}") {
         for offset in (0..=text.len()).filter(|offset| text.is_char_boundary(*offset)) {
-            if let Some(hover) = manifest_hover(&text, offset, Language::English) {
+            if let Some(hover) = manifest_hover(Schema::Manifest, &text, offset, Language::English) {
                 prop_assert!(text.get(hover.span.range()).is_some());
             }
-            for found in manifest_completions(&text, offset, &|_| Vec::new(), Language::English) {
+            for found in manifest_completions(Schema::Manifest, &text, offset, &|_| Vec::new(), Language::English) {
                 let replaced = text.get(found.edit.span.range());
                 prop_assert!(replaced.is_some_and(|text| !text.contains('\n')), "{text:?} {offset} {found:?}");
                 prop_assert!(found.edit.span.touches(offset), "{text:?} {offset} {found:?}");

@@ -245,23 +245,23 @@ fn structures_enumerations_and_bits() {
                 LD TRUE\nST w.1\nLD line[i].x\nADD q.y\nST n\nLD c\nEQ Green\nJMPCN No\nLD Colour#Blue\nST c\nNo:\nEND_PROGRAM\n";
     let mut plc = Plc::new(text);
     plc.scan();
-    assert_eq!(plc.get("c"), "Blue");
+    assert_eq!(plc.get("c"), "'Blue'");
     assert_eq!((plc.get("q.x"), plc.get("q.y"), plc.get("n")), ("4".into(), "9".into(), "13".into()));
     assert_eq!(
         (plc.get("b"), plc.get("line[1].lit"), plc.get("line[0].lit")),
         ("1".into(), "1".into(), "0".into())
     );
     assert_eq!(plc.get("w"), "32771");
-    plc.set("c", "Red").scan();
-    assert_eq!(plc.get("c"), "Red");
+    plc.set("c", "Colour#Red").scan();
+    assert_eq!(plc.get("c"), "'Red'");
 }
 
 #[test]
 fn texts() {
     let r = |body: &str| result("x : STRING[8] := 'A-4711'; n : INT;", body, "x");
-    assert_eq!(r("LD x\nLEFT 3\nST x"), "A-4");
-    assert_eq!(r("LD x\nCONCAT ' is long'\nST x"), "A-4711 i");
-    assert_eq!(r("LD 12\nINT_TO_STRING\nST x"), "12");
+    assert_eq!(r("LD x\nLEFT 3\nST x"), "'A-4'");
+    assert_eq!(r("LD x\nCONCAT ' is long'\nST x"), "'A-4711 i'");
+    assert_eq!(r("LD 12\nINT_TO_STRING\nST x"), "'12'");
     assert_eq!(result("x : STRING; b : BOOL;", "LD 'ab'\nLT 'b'\nST b", "b"), "1");
 }
 
@@ -272,14 +272,14 @@ fn history_forces_and_names() {
     let mut plc = Plc::new(text);
     plc.set("run", "1");
     (0..50).for_each(|_| _ = plc.scan());
-    assert_eq!((plc.get("t.ET"), plc.get("s")), ("T#490ms".into(), "50".into()));
+    assert_eq!((plc.get("t.ET"), plc.get("s")), ("T#490ms".into(), "'50'".into()));
     let before = plc.session.at(20).expect("known");
     let value = |machine: &Machine<u8>, name: &str| {
         machine.value(machine.code().variable(name).expect("a name"), 0).to_string()
     };
     assert_eq!(
         (value(&before, "n"), value(&before, "t.et"), value(&before, "s")),
-        ("20".into(), "T#190ms".into(), "20".into())
+        ("20".into(), "T#190ms".into(), "'20'".into())
     );
     let code = Arc::clone(plc.session.machine().code());
     let n = code.variable("n").expect("a name");

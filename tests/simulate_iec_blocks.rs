@@ -282,16 +282,16 @@ fn bit_and_selection_functions() {
 fn text_functions() {
     for (kind, body, expected) in [
         ("INT", "LD 'A-4711'\nLEN", "6"),
-        ("STRING", "LD 'A-4711'\nRIGHT 4", "4711"),
-        ("STRING", "LD 'A-4711'\nRIGHT 40", "A-4711"),
-        ("STRING", "LD 'A-4711'\nLEFT -1", "Value(1) "),
-        ("STRING", "LD 'A-4711'\nMID 2, 3", "47"),
-        ("STRING", "LD '20240131'\nINSERT '-', 4", "2024-0131"),
-        ("STRING", "LD 'A-4711'\nDELETE 1, 2", "A4711"),
-        ("STRING", "LD 'Pump off'\nREPLACE 'on', 3, 6", "Pump on"),
+        ("STRING", "LD 'A-4711'\nRIGHT 4", "'4711'"),
+        ("STRING", "LD 'A-4711'\nRIGHT 40", "'A-4711'"),
+        ("STRING", "LD 'A-4711'\nLEFT -1", "Value(1) ''"),
+        ("STRING", "LD 'A-4711'\nMID 2, 3", "'47'"),
+        ("STRING", "LD '20240131'\nINSERT '-', 4", "'2024-0131'"),
+        ("STRING", "LD 'A-4711'\nDELETE 1, 2", "'A4711'"),
+        ("STRING", "LD 'Pump off'\nREPLACE 'on', 3, 6", "'Pump on'"),
         ("INT", "LD 'OK 42'\nFIND '42'", "4"),
         ("INT", "LD 'OK 42'\nFIND 'x'", "0"),
-        ("STRING", "LD 'a$'b$41'", "a'bA"),
+        ("STRING", "LD 'a$'b$41'", "'a$'bA'"),
     ] {
         assert_eq!(outcome(kind, body), expected, "{body}");
     }
@@ -319,9 +319,9 @@ fn conversions() {
         ("UINT", "LD WORD#16#123A\nWORD_BCD_TO_UINT", "Value(0) 0"),
         ("WORD", "LD UINT#1234\nUINT_TO_BCD_WORD", "4660"),
         ("BYTE", "LD UINT#100\nUINT_TO_BCD_BYTE", "Value(0) 0"),
-        ("STRING", "LD T#90s\nTIME_TO_STRING", "T#1m30s"),
-        ("STRING", "LD WORD#16#AF\nWORD_TO_STRING", "16#AF"),
-        ("STRING", "LD D#2024-02-29\nDATE_TO_STRING", "D#2024-02-29"),
+        ("STRING", "LD T#90s\nTIME_TO_STRING", "'T#1m30s'"),
+        ("STRING", "LD WORD#16#AF\nWORD_TO_STRING", "'16#AF'"),
+        ("STRING", "LD D#2024-02-29\nDATE_TO_STRING", "'D#2024-02-29'"),
         ("INT", "LD ' 42 '\nSTRING_TO_INT", "42"),
         ("INT", "LD 'x'\nSTRING_TO_INT", "Value(0) 0"),
         ("DATE", "LD DT#2024-02-29-12:00:00\nDT_TO_DATE", "D#2024-02-29"),

@@ -13,16 +13,18 @@ const FLOORS: &[(&str, u8)] = &[
     ("translate", 5),
     ("check", 6),
     ("simulate", 6),
+    ("scenario", 7),
     ("project", 7),
     ("ide", 8),
     ("lsp", 9),
+    ("dap", 9),
     ("cli", 10),
 ];
 
 /// Words that only some rooms may know.
 const RESERVED: &[(&str, &[&str])] = &[
     ("tower_lsp::", &["lsp"]),
-    ("std::time::Instant", &["lsp", "cli"]),
+    ("std::time::Instant", &["lsp", "dap", "cli"]),
     ("std::time::SystemTime", &["lsp", "cli"]),
     ("std::fs", &["project", "cli"]),
     ("std::net", &[]),

@@ -449,7 +449,7 @@ fn bits_of(found: &rungwise::translate::Counterexample) -> (Bits, Bits) {
         .iter()
         .filter_map(|(name, value)| match value {
             Value::Bit(value) => Some((name.clone(), *value)),
-            Value::Word(_) => None,
+            _ => None,
         })
         .collect();
     let mut before = now.clone();

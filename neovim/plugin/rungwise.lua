@@ -17,6 +17,15 @@ vim.api.nvim_create_autocmd('LspAttach', {
   end,
 })
 
+-- nvim-dap is asked for when a program is opened, lest it be loaded for nothing.
+vim.api.nvim_create_autocmd('FileType', {
+  pattern = require('rungwise.client').filetypes,
+  once = true,
+  callback = function()
+    require('rungwise.dap').setup()
+  end,
+})
+
 if type(vim.g.rungwise) ~= 'table' or vim.g.rungwise.enable ~= false then
   -- A missing server is only worth a message when a program is opened, so the message waits for one.
   local enabled, reason = require('rungwise.client').enable()

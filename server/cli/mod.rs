@@ -17,8 +17,10 @@ mod render;
 mod run;
 mod sarif;
 mod server;
+mod test;
 mod translate;
 mod usage;
+mod why;
 
 use crate::text::Language;
 use clap::{Parser, Subcommand, ValueEnum};
@@ -55,6 +57,8 @@ enum Verb {
         #[arg(long, value_name = "FILE")]
         replay: Option<PathBuf>,
     },
+    /// Run the debug adapter on standard input and output.
+    Dap,
     /// Check files, folders or projects with every rule.
     Check(check::Arguments),
     /// Write files in canonical form.
@@ -65,6 +69,8 @@ enum Verb {
     Prove(prove::Arguments),
     /// Run a program on a simulated PLC.
     Run(run::Arguments),
+    /// Run scenario tests.
+    Test(test::Arguments),
     /// List the devices that programs use: where read, where written, comment.
     Usage(usage::Arguments),
     /// Show the page of a rule, an instruction, a function or a function block.
@@ -115,11 +121,13 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Verb::Lsp { stdio: _, mirror, replay } => {
             server::run(mirror.as_deref(), replay.as_deref(), arguments.language)
         }
+        Verb::Dap => server::debug(arguments.language, language),
         Verb::Check(verb) => check::run(&verb, arguments.color, language).into(),
         Verb::Fmt(verb) => fmt::run(&verb, arguments.color, language).into(),
         Verb::Translate(verb) => translate::run(&verb, language).into(),
         Verb::Prove(verb) => prove::run(&verb, language).into(),
         Verb::Run(verb) => run::run(&verb, language).into(),
+        Verb::Test(verb) => test::run(&verb, language).into(),
         Verb::Usage(verb) => usage::run(&verb, language).into(),
         Verb::Explain(arguments) => explain::run(&arguments, language).into(),
         Verb::Import(arguments) => import::run(&arguments, language).into(),

@@ -3,6 +3,7 @@
 use super::across::linked;
 use super::input::{Program, complain, programs, put, say};
 use super::{Outcome, translate};
+use crate::scenario;
 use crate::text::{Language, Message};
 use crate::translate::{Proof, prove, told};
 use clap::ValueEnum;
@@ -45,7 +46,7 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         ProofFormat::Text => say(&told::text(&proof, sides, &names, language)),
     }
     if let (Some(path), Proof::Different(found)) = (&arguments.scenario, &proof)
-        && !put(&told::scenario(found, &names), Some(path), language)
+        && !put(&scenario::of_counterexample(found, &names, language), Some(path), language)
     {
         return Outcome::Unusable;
     }

@@ -2,14 +2,15 @@
 
 use super::Outcome;
 use super::input::{Program, complain, programs, put, say};
+use super::why;
 use crate::document::Document;
-use crate::simulate::{Code, Place, Session, Touch, Trace, TraceRow, Value, Variable, compile, milliseconds};
-use crate::target::iec::LiteralValue;
-use crate::target::{Model, Operand};
-use crate::text::{Encoding, Language, Message, text_width};
+use crate::scenario::picture;
+use crate::simulate::{
+    self, Code, Place, Reason, Session, Setting, Touch, Trace, TraceRow, Variable, compile,
+};
+use crate::text::{Encoding, Language, Message};
 use clap::ValueEnum;
 use serde_json::{Map, Value as Json, json};
-use std::fmt::Write;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -27,11 +28,14 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "TIME", value_parser = duration, default_value = "10ms")]
     scan_time: i64,
     /// Sets a device or variable, from time 0 or from a time on: X0=1, D0=25@100ms.
-    #[arg(long = "set", value_name = "NAME=VALUE[@TIME]", value_parser = setting)]
+    #[arg(long = "set", value_name = "NAME=VALUE[@TIME]", value_parser = Setting::read)]
     settings: Vec<Setting>,
     /// What is shown, parted by commas; all that the program uses if left out.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     watch: Vec<String>,
+    /// Says which contacts held a device on or off in the last scan, or at a time: Y0, Y0@500ms.
+    #[arg(long = "why", value_name = "NAME[@TIME]", value_parser = why::question)]
+    questions: Vec<why::Question>,
     /// Writes the values over time to a file, as a value change dump (.vcd) or a table (.csv).
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
@@ -49,36 +53,9 @@ enum RunFormat {
     Json,
 }
 
-/// A setting of the command line.
-#[derive(Clone, Debug)]
-struct Setting {
-    name: String,
-    value: Value,
-    from_ns: i64,
-}
-
-/// A time as people write it, in nanoseconds; a number alone is milliseconds.
-fn duration(word: &str) -> Result<i64, String> {
-    let bare = word.trim();
-    let time = match bare.parse::<f64>() {
-        Ok(_) => format!("T#{bare}ms"),
-        Err(_) if bare.contains('#') => bare.to_string(),
-        Err(_) => format!("T#{bare}"),
-    };
-    match Operand::read(&time, Model::Iec) {
-        Operand::Literal(literal) => match literal.value {
-            LiteralValue::Time(time_ns) if time_ns >= 0 => Ok(time_ns),
-            _ => Err(word.to_string()),
-        },
-        _ => Err(word.to_string()),
-    }
-}
-
-fn setting(word: &str) -> Result<Setting, String> {
-    let (setting, from) = word.rsplit_once('@').map_or((word, None), |(setting, from)| (setting, Some(from)));
-    let (name, value) = setting.split_once('=').ok_or("NAME=VALUE")?;
-    let value = Value::read(value).ok_or_else(|| value.to_string())?;
-    Ok(Setting { name: name.trim().to_string(), value, from_ns: from.map_or(Ok(0), duration)? })
+/// A time as people write it, in nanoseconds.
+pub(super) fn duration(word: &str) -> Result<i64, String> {
+    simulate::duration(word).ok_or_else(|| word.to_string())
 }
 
 pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
@@ -98,7 +75,12 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     let Some((touches, watched)) = named(arguments, &code, language) else { return Outcome::Unusable };
     let mut simulation = Simulation { session: Session::new(code), trace: Trace::new(watched), touches };
     let is_clean = simulation.run(arguments, &programs, language);
-    if !simulation.tell(arguments, language) {
+    let session = &simulation.session;
+    let step = arguments.scan_time.max(1);
+    let Some(reasons) = why::answers(&arguments.questions, session, step, &programs, language) else {
+        return Outcome::Unusable;
+    };
+    if !simulation.tell(arguments, &reasons, &programs, language) {
         return Outcome::Unusable;
     }
     if is_clean { Outcome::Clean } else { Outcome::Findings }
@@ -174,7 +156,13 @@ impl Simulation {
     }
 
     /// Writes what came out; whether that could be done.
-    fn tell(&self, arguments: &Arguments, language: Language) -> bool {
+    fn tell(
+        &self,
+        arguments: &Arguments,
+        reasons: &[Reason],
+        programs: &[Program],
+        language: Language,
+    ) -> bool {
         if let Some(path) = &arguments.trace {
             let is_vcd = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vcd"));
             let text = match is_vcd {
@@ -186,8 +174,18 @@ impl Simulation {
             }
         }
         match arguments.format {
-            RunFormat::Json => say(&format!("{:#}\n", json_of(&self.trace, arguments.scan_time))),
-            RunFormat::Text => say(&picture(&self.trace, language)),
+            RunFormat::Json => {
+                let mut told = json_of(&self.trace, arguments.scan_time);
+                if !reasons.is_empty() {
+                    let reasons = reasons.iter().map(|reason| why::json(reason, programs, language));
+                    told["why"] = reasons.collect();
+                }
+                say(&format!("{told:#}\n"));
+            }
+            RunFormat::Text => {
+                say(&picture(&self.trace, &[], language));
+                say(&why::text(reasons, programs, language));
+            }
         }
         true
     }
@@ -209,52 +207,6 @@ fn as_ms(time_ns: i64) -> Json {
         0 => json!(time_ns / 1_000_000),
         _ => json!(time_ns as f64 / 1e6),
     }
-}
-
-/// Columns of a picture that stand side by side.
-const PICTURE_WIDTH: usize = 100;
-
-/// A timing picture: a column for each scan in which something changed.
-fn picture(trace: &Trace, language: Language) -> String {
-    let heads =
-        [Message::new("cli.run-scan"), Message::new("cli.run-time")].map(|head| head.render(language));
-    let names = heads.iter().chain(&trace.names);
-    let margin = names.map(|name| text_width(name)).max().unwrap_or(0);
-    let cells = |row: &TraceRow| -> Vec<String> {
-        let head = [row.scan.to_string(), milliseconds(row.time_ns)];
-        head.into_iter().chain(row.values.iter().map(Value::to_string)).collect()
-    };
-    let mut text = String::new();
-    let mut rows = trace.rows.iter().peekable();
-    while rows.peek().is_some() {
-        let mut columns: Vec<(Vec<String>, usize, &TraceRow)> = Vec::new();
-        let mut width = 0;
-        while let Some(row) = rows.next_if(|row| {
-            let next = cells(row).iter().map(|cell| cell.len()).max().unwrap_or(0) + 2;
-            columns.is_empty() || width + next <= PICTURE_WIDTH
-        }) {
-            let cells = cells(row);
-            let own = cells.iter().map(|cell| cell.len()).max().unwrap_or(0) + 2;
-            width += own;
-            columns.push((cells, own, row));
-        }
-        for (line, name) in heads.iter().chain(&trace.names).enumerate() {
-            let _ = write!(text, "{name}{}", " ".repeat(margin - text_width(name)));
-            for (cells, width, row) in &columns {
-                match line.checked_sub(heads.len()).and_then(|value| row.values.get(value)) {
-                    Some(Value::Bit(on)) => text += &if *on { "▆" } else { "_" }.repeat(*width),
-                    _ => {
-                        let _ = write!(text, "{:>width$}", cells[line], width = *width);
-                    }
-                }
-            }
-            text.push('\n');
-        }
-        if rows.peek().is_some() {
-            text.push('\n');
-        }
-    }
-    text
 }
 
 /// A complaint about a place in one of the programs.

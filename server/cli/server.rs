@@ -1,8 +1,8 @@
-//! `rungwise lsp`
+//! `rungwise lsp` and `rungwise dap`
 
 use super::{Outcome, input, language};
-use crate::lsp;
 use crate::text::{Language, Message};
+use crate::{dap, lsp};
 use std::future::Future;
 use std::num::NonZero;
 use std::path::Path;
@@ -35,6 +35,13 @@ pub(super) fn run(mirror: Option<&Path>, replay: Option<&Path>, asked: Option<La
         },
         (None, None) => on_runtime(lsp::serve(asked, otherwise)),
     }
+}
+
+/// Serves a client of the debug adapter. `asked` is the language that `--lang` says; it goes before the client's.
+pub(super) fn debug(asked: Option<Language>, otherwise: Language) -> ExitCode {
+    dap::serve(std::io::stdin(), std::io::stdout(), asked.unwrap_or(otherwise), asked.is_some());
+    // A thread still reads standard input; it ends with the process.
+    Outcome::Clean.into()
 }
 
 /// The exit code of wrong usage, after a complaint.

@@ -5,6 +5,7 @@ use super::{Document, Scopes};
 use crate::text::folded;
 use rustc_hash::FxHasher;
 use smol_str::SmolStr;
+use std::collections::BTreeMap;
 use std::hash::{Hash, Hasher};
 use std::path::Path;
 use std::sync::Arc;
@@ -17,6 +18,8 @@ pub struct Exports {
     pub(super) pous: Vec<Arc<Pou>>,
     pub(super) globals: Vec<(SmolStr, Variable)>,
     pub(super) types: Vec<(SmolStr, DeclaredType)>,
+    pub(super) type_words: Vec<(SmolStr, SmolStr)>,
+    pub(super) configured: BTreeMap<SmolStr, SmolStr>,
     pub(super) has_configuration: bool,
 }
 
@@ -35,6 +38,8 @@ impl Exports {
             pous: scopes.own_pous().iter().map(|pou| Arc::new(pou.seen_from_outside())).collect(),
             globals: own(&scopes.globals, &scopes.own_globals),
             types: own(&scopes.types, &scopes.own_types),
+            type_words: own(&scopes.type_words, &scopes.own_types),
+            configured: scopes.own_configured.clone(),
             has_configuration: scopes.own_configuration,
             key: 0,
         };
@@ -43,6 +48,7 @@ impl Exports {
             (&pou.name, pou.kind as u8, format!("{:?}", (&pou.result, &pou.variables))).hash(&mut hasher);
         }
         format!("{:?}", (&exports.globals, &exports.types)).hash(&mut hasher);
+        (&exports.type_words, &exports.configured).hash(&mut hasher);
         exports.has_configuration.hash(&mut hasher);
         exports.key = hasher.finish();
         exports
@@ -117,6 +123,10 @@ impl Scopes {
             for (name, declared) in &file.types {
                 self.types.entry(name.clone()).or_insert_with(|| declared.clone());
             }
+            for (name, words) in &file.type_words {
+                self.type_words.entry(name.clone()).or_insert_with(|| words.clone());
+            }
+            self.configured.extend(file.configured.iter().map(|(path, words)| (path.clone(), words.clone())));
             self.has_configuration |= file.has_configuration;
         }
     }

@@ -65,7 +65,7 @@ mod comments;
 pub use comments::{Comments, DeviceComment};
 
 mod scope;
-pub use scope::{DeclaredType, Pou, Scopes, Variable};
+pub use scope::{DeclaredType, Limits, Pou, Scopes, Variable};
 
 mod project_view;
 pub use project_view::{At, Member, ProjectView};

@@ -6,13 +6,14 @@ use super::mention::of_operand;
 use super::{Chunk, Document, Mention, Symbol, Tree, Use};
 use crate::il::iec::{
     Direction, IecTree, ItemKind, MentionRole, OperandId, ParameterValue, PouKind, SectionKind, TypeId,
-    TypeSpec,
+    TypeSpec, words,
 };
-use crate::target::iec::{ElementaryType, FunctionBlock, OperatorRole, ParameterType};
+use crate::target::iec::{ElementaryType, FunctionBlock, LiteralValue, OperatorRole, ParameterType};
 use crate::target::{DirectAddress, Operand};
-use crate::text::folded;
+use crate::text::{Span, folded};
 use rustc_hash::{FxHashMap, FxHasher};
-use smol_str::SmolStr;
+use smol_str::{SmolStr, format_smolstr};
+use std::collections::BTreeMap;
 use std::collections::hash_map::Entry;
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
@@ -28,6 +29,10 @@ pub struct Scopes {
     pub globals: FxHashMap<SmolStr, Variable>,
     /// Data types, by folded name.
     pub types: FxHashMap<SmolStr, DeclaredType>,
+    /// What is said of each data type behind its name, in [one spelling](words), by folded name.
+    pub type_words: FxHashMap<SmolStr, SmolStr>,
+    /// What VAR_CONFIG says of variables of instances, in one spelling, by their folded paths, in order.
+    pub configured: BTreeMap<SmolStr, SmolStr>,
     /// Whether there is a CONFIGURATION.
     pub has_configuration: bool,
     /// The number of the first POU with each folded name.
@@ -38,6 +43,7 @@ pub struct Scopes {
     pub(super) own_globals: Vec<SmolStr>,
     pub(super) own_types: Vec<SmolStr>,
     pub(super) own_configuration: bool,
+    pub(super) own_configured: BTreeMap<SmolStr, SmolStr>,
     /// Whether there are variables that may lie in one place with others, at addresses or where a caller says, or that
     /// may be changed elsewhere, by functions and function blocks.
     pub shares_storage: bool,
@@ -70,13 +76,17 @@ pub struct Variable {
     pub declared: DeclaredType,
     /// Where it lies, if it is located.
     pub address: Option<DirectAddress>,
+    /// What is said of it beside its name, in [one spelling](words): the type, the address, the value at first.
+    pub words: SmolStr,
 }
 
 /// A type, resolved as far as the declaration goes.
 #[derive(Clone, PartialEq, Debug)]
 pub enum DeclaredType {
-    /// An elementary type; subranges count as the type they are cut from.
+    /// An elementary type.
     Elementary(ElementaryType),
+    /// The numbers of a type from one to another. The [type itself](Scopes::resolved) is the one they are cut from.
+    Subrange(Box<DeclaredType>, Limits),
     /// A data type, function block or program of this folded name.
     Named(SmolStr),
     /// An array of these elements.
@@ -88,6 +98,9 @@ pub enum DeclaredType {
     /// It could not be read.
     Unknown,
 }
+
+/// The least and the greatest number of a subrange; nothing where names of constants stand for them.
+pub type Limits = Option<(i128, i128)>;
 
 impl Chunk {
     /// How many POUs start in it.
@@ -159,6 +172,7 @@ impl Scopes {
         }
         scopes.own_pous = scopes.pous.len();
         scopes.own_configuration = scopes.has_configuration;
+        scopes.own_configured = scopes.configured.clone();
         if let Some((outer, own)) = document.outer() {
             scopes.add_outer(outer, own, &mut hasher);
         }
@@ -203,6 +217,11 @@ impl Scopes {
         self.globals.contains_key(&name) && !self.own_globals.contains(&name)
     }
 
+    /// The folded names of the global variables that are declared here, in the order of the text.
+    pub fn own_globals(&self) -> impl Iterator<Item = &SmolStr> {
+        self.own_globals.iter()
+    }
+
     /// Whether `name` is a declared data type.
     pub fn is_type(&self, name: &str) -> bool {
         self.types.contains_key(&folded(name))
@@ -225,6 +244,25 @@ impl Scopes {
     /// The type of a path such as `a`, `T1.Q`, `matrix[1,2].x`, seen from POU number `pou`.
     /// `None` where some part of it is not declared.
     pub fn type_of(&self, pou: Option<usize>, path: &str) -> Option<DeclaredType> {
+        self.resolved(self.declared_of(pou, path)?)
+    }
+
+    /// The numbers that a path such as `a`, `matrix[1,2].x`, seen from POU number `pou`, is declared to be among, if
+    /// that is a subrange with known limits.
+    pub fn limits_of(&self, pou: Option<usize>, path: &str) -> Limits {
+        let mut declared = self.declared_of(pou, path)?;
+        for _ in 0..CHAIN_MAX {
+            declared = match declared {
+                DeclaredType::Subrange(_, limits) => return limits,
+                DeclaredType::Named(name) => self.types.get(&name)?.clone(),
+                _ => return None,
+            };
+        }
+        None
+    }
+
+    /// The type of a path as it is declared, which may be a name or a subrange.
+    fn declared_of(&self, pou: Option<usize>, path: &str) -> Option<DeclaredType> {
         let end = path.find(['.', '[']).unwrap_or(path.len());
         let (root, mut rest) = path.split_at(end);
         let mut declared = match self.variable(pou, root) {
@@ -249,19 +287,19 @@ impl Scopes {
                 rest = &after[end..];
             }
         }
-        self.resolved(declared)
+        Some(declared)
     }
 
-    /// The type itself where `declared` is the name of a data type.
+    /// The type itself where `declared` is the name of a data type, or a subrange.
     pub fn resolved(&self, declared: DeclaredType) -> Option<DeclaredType> {
         let mut declared = declared;
-        // Types that name each other in a circle end here, not in an endless loop.
-        for _ in 0..16 {
-            match &declared {
-                DeclaredType::Named(name) => match self.types.get(name) {
+        for _ in 0..CHAIN_MAX {
+            match declared {
+                DeclaredType::Named(name) => match self.types.get(&name) {
                     Some(next) => declared = next.clone(),
-                    None => return Some(declared),
+                    None => return Some(DeclaredType::Named(name)),
                 },
+                DeclaredType::Subrange(base, _) => declared = *base,
                 _ => return Some(declared),
             }
         }
@@ -329,7 +367,7 @@ impl Scopes {
                     let result = result.map(|id| declared_type(text, tree, id));
                     self.add_pou(Arc::new(Pou::new(name, kind, result, std::iter::empty())));
                 }
-                ItemKind::Section { kind, constant, declarations, .. } => {
+                ItemKind::Section { kind, constant, retain, declarations } => {
                     for declaration in declarations.of(&tree.declarations) {
                         let declared = declaration
                             .declared
@@ -338,18 +376,33 @@ impl Scopes {
                             Some(Operand::Direct(address)) => Some(address),
                             _ => None,
                         };
-                        for name in declaration.names.of(&tree.names) {
+                        let names = declaration.names.of(&tree.names);
+                        let said = kept(retain, words(text, behind(names, declaration.span)));
+                        if let (SectionKind::Config, Some(path)) = (kind, declaration.path) {
+                            let said = words(text, Span { start: path.end, ..declaration.span });
+                            self.configured.entry(words(text, path)).or_insert(said);
+                        }
+                        for name in names {
                             let name = SmolStr::from(name.of(text));
-                            let declared = declared.clone();
-                            self.declare(Variable { name, section: kind, constant, declared, address });
+                            let (declared, words) = (declared.clone(), said.clone());
+                            self.declare(Variable {
+                                name,
+                                section: kind,
+                                constant,
+                                declared,
+                                address,
+                                words,
+                            });
                         }
                     }
                 }
                 ItemKind::Types { declarations } => {
                     for declaration in declarations.of(&tree.declarations) {
-                        let name = declaration.names.of(&tree.names).first();
-                        if let (Some(name), Some(id)) = (name, declaration.declared) {
+                        let names = declaration.names.of(&tree.names);
+                        if let (Some(name), Some(id)) = (names.first(), declaration.declared) {
                             let name = folded(name.of(text));
+                            let said = words(text, behind(names, declaration.span));
+                            self.type_words.insert(name.clone(), said);
                             if self.types.insert(name.clone(), declared_type(text, tree, id)).is_none() {
                                 self.own_types.push(name);
                             }
@@ -384,6 +437,23 @@ impl DeclaredType {
     }
 }
 
+/// Types that name each other in a circle end after so many, not in an endless loop.
+const CHAIN_MAX: usize = 16;
+
+/// What is said in a section that says whether its variables keep their values without power.
+fn kept(retain: Option<bool>, words: SmolStr) -> SmolStr {
+    match retain {
+        None => words,
+        Some(true) => format_smolstr!("retain {words}"),
+        Some(false) => format_smolstr!("non_retain {words}"),
+    }
+}
+
+/// What a declaration says behind its names.
+fn behind(names: &[Span], declaration: Span) -> Span {
+    Span { start: names.last().map_or(declaration.start, |last| last.end), ..declaration }
+}
+
 fn declared_type(text: &str, tree: &IecTree, id: TypeId) -> DeclaredType {
     let written = tree.type_spec(id);
     match written.value {
@@ -391,7 +461,17 @@ fn declared_type(text: &str, tree: &IecTree, id: TypeId) -> DeclaredType {
         TypeSpec::Named => DeclaredType::Named(folded(written.span.of(text))),
         TypeSpec::Text { wide: false, .. } => DeclaredType::Elementary(ElementaryType::String),
         TypeSpec::Text { wide: true, .. } => DeclaredType::Elementary(ElementaryType::Wstring),
-        TypeSpec::Subrange { base, .. } => declared_type(text, tree, base),
+        TypeSpec::Subrange { base, least, greatest } => {
+            let limit = |id: OperandId| match tree.operand(id).value {
+                Operand::Literal(literal) => match literal.value {
+                    LiteralValue::Integer(number) => Some(number),
+                    _ => None,
+                },
+                _ => None,
+            };
+            let base = Box::new(declared_type(text, tree, base));
+            DeclaredType::Subrange(base, limit(least).zip(limit(greatest)))
+        }
         TypeSpec::Enumeration { values } => DeclaredType::Enumeration(
             values.of(&tree.names).iter().map(|name| folded(name.of(text))).collect(),
         ),

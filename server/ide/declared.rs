@@ -117,6 +117,10 @@ pub(super) fn type_name(declared: &DeclaredType, scopes: &Scopes) -> String {
             (Some(block), None) => block.name.to_string(),
             (None, None) => name.to_string(),
         },
+        DeclaredType::Subrange(base, None) => type_name(base, scopes),
+        DeclaredType::Subrange(base, Some((least, greatest))) => {
+            format!("{}({least}..{greatest})", type_name(base, scopes))
+        }
         DeclaredType::Array(element) => format!("ARRAY OF {}", type_name(element, scopes)),
         DeclaredType::Enumeration(values) => format!("({})", values.join(", ")),
         DeclaredType::Structure(_) => "STRUCT".to_string(),

@@ -1,4 +1,5 @@
-//! Help in `rungwise.toml`: what its keys mean, and what could be written. All that it knows is in the schema.
+//! Help in `rungwise.toml` and in scenario tests: what their keys mean, and what could be written. All that it knows is
+//! in the schemas.
 
 use super::completion::is_abbreviation;
 use super::{Completion, CompletionKind, Hover};
@@ -6,7 +7,7 @@ use crate::check::Rule;
 use crate::text::{Language, Message, Span, TextEdit, phrase};
 
 mod schema;
-pub use schema::FileKind;
+pub use schema::{FileKind, Schema};
 use schema::{Kind, Node};
 
 mod site;
@@ -16,7 +17,7 @@ use site::{Reading, Site};
 const RULES: &str = "rules";
 
 /// What the key, the table or the value at `offset` means.
-pub fn manifest_hover(text: &str, offset: usize, language: Language) -> Option<Hover> {
+pub fn manifest_hover(schema: Schema, text: &str, offset: usize, language: Language) -> Option<Hover> {
     let (path, span) = match Reading::of(text, offset).site {
         Site::Header { path, word, .. } => (path, word),
         Site::Key { table, before, word, .. } => {
@@ -25,7 +26,7 @@ pub fn manifest_hover(text: &str, offset: usize, language: Language) -> Option<H
         Site::Value { path, word, .. } => (path, word),
         Site::Nowhere => return None,
     };
-    let node = schema::at(&path)?;
+    let node = schema.at(&path)?;
     let name = path.last().filter(|_| span.start < span.end)?;
     let mut markdown = format!("`{name}`\n\n{}", description(&path, node, language));
     let mut say = |message: Message| {
@@ -52,13 +53,14 @@ pub fn manifest_hover(text: &str, offset: usize, language: Language) -> Option<H
 /// What could be written at `offset`: tables, keys that are not there yet, values. `files` is asked where a value names
 /// one: for the names of the files of a kind, from the manifest's folder, with `/`.
 pub fn manifest_completions(
+    schema: Schema,
     text: &str,
     offset: usize,
     files: &dyn Fn(FileKind) -> Vec<String>,
     language: Language,
 ) -> Vec<Completion> {
     let reading = Reading::of(text, offset);
-    let mut found = List { text, offset, language, found: Vec::new() };
+    let mut found = List { schema, text, offset, language, found: Vec::new() };
     match &reading.site {
         Site::Header { span, .. } => found.tables(&reading, *span),
         Site::Key { table, before, word, has_value, starts_line } => {
@@ -69,7 +71,7 @@ pub fn manifest_completions(
             }
         }
         Site::Value { path, word, is_quoted, in_list } => {
-            if let Some(node) = schema::at(path) {
+            if let Some(node) = schema.at(path) {
                 found.values(&reading, path, node, (*word, *is_quoted, *in_list), files);
             }
         }
@@ -95,6 +97,7 @@ fn description(path: &[String], node: Node, language: Language) -> String {
 
 /// The proposals so far.
 struct List<'t> {
+    schema: Schema,
     text: &'t str,
     offset: usize,
     language: Language,
@@ -129,7 +132,7 @@ impl List<'_> {
 
     /// The tables that may begin on a line of their own.
     fn tables(&mut self, reading: &Reading, span: Span) {
-        for (name, node) in schema::root().properties() {
+        for (name, node) in self.schema.root().properties() {
             let label = match node.kind() {
                 Kind::Table if !reading.has_table(name) => format!("[{name}]"),
                 Kind::Tables => format!("[[{name}]]"),
@@ -143,7 +146,7 @@ impl List<'_> {
 
     /// The keys of the table at `path`. A table of the root is written under a header of its own.
     fn keys(&mut self, reading: &Reading, path: &[String], word: Span, has_value: bool) {
-        let Some(table) = schema::at(path) else { return };
+        let Some(table) = self.schema.at(path) else { return };
         for (name, node) in table.element().properties() {
             let own = [path, &[name.to_string()]].concat();
             if matches!(node.kind(), Kind::Table | Kind::Tables) || reading.has_key(&own) {
@@ -194,6 +197,9 @@ fn template(node: Node) -> String {
     match node.kind() {
         _ if !words.is_empty() => format!("\"${{1|{}|}}\"", words.join(",")),
         Kind::List => "[\"$1\"]".to_string(),
+        Kind::Inline => "{ $1 }".to_string(),
+        Kind::Inlines => "[\n  { $1 },\n]".to_string(),
+        Kind::Truth => "${1|true,false|}".to_string(),
         Kind::Number => format!("${{1:{}}}", node.default().unwrap_or_else(|| "0".to_string())),
         _ => "\"$1\"".to_string(),
     }

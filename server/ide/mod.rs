@@ -96,7 +96,7 @@ mod refactor;
 pub use refactor::Refactoring;
 
 mod manifest;
-pub use manifest::{FileKind, manifest_completions, manifest_hover};
+pub use manifest::{FileKind, Schema, manifest_completions, manifest_hover};
 
 /// What stands at `offset`: the page of an instruction, the meaning and range of a device, where it is used.
 pub fn hover(document: &Document, offset: usize, language: Language) -> Option<Hover> {

@@ -163,6 +163,7 @@ fn type_name(declared: &DeclaredType) -> Option<SmolStr> {
     match declared {
         DeclaredType::Elementary(kind) => Some(kind.name().into()),
         DeclaredType::Named(name) => Some(name.clone()),
+        DeclaredType::Subrange(base, _) => type_name(base),
         _ => None,
     }
 }

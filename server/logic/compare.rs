@@ -32,6 +32,10 @@ pub enum Comparison {
     Unlike,
     /// Too large a question.
     Undecided,
+    /// They differ for values only that words need not have.
+    Doubtful,
+    /// This action finds other values on either side, and nobody knows what it makes of them.
+    Open(String),
 }
 
 /// What differs between two runs.
@@ -104,7 +108,7 @@ pub fn compare_outcome(
         return Comparison::Unlike;
     }
     let in_step = in_step([&left, &right], known, formulas);
-    let mut is_open = false;
+    let mut open = None;
     for (left, right) in pairs().skip(skipped) {
         let sides = [left.guard, right.guard];
         if let Some(difference) = difference(formulas, sides, || place_of(left)) {
@@ -114,7 +118,7 @@ pub fn compare_outcome(
             if let Some(difference) = difference(formulas, sides, || place_of(left)) {
                 // What the call makes of it, nobody knows.
                 return match difference {
-                    Comparison::Different { .. } => Comparison::Undecided,
+                    Comparison::Different { .. } => Comparison::Open(shown(left.action)),
                     other => other,
                 };
             }
@@ -122,8 +126,9 @@ pub fn compare_outcome(
         // What an event makes of bits that differ when it happens, nobody knows. Behind a unit that finds them
         // different nothing is the same for sure, but what it leaves may still tell both sides apart.
         match left.action.runs_unit() {
-            true => is_open |= left.event > in_step,
-            false if touches_bits(left.action) => return Comparison::Undecided,
+            true if left.event > in_step => open = open.or_else(|| Some(shown(left.action))),
+            true => {}
+            false if touches_bits(left.action) => return Comparison::Open(shown(left.action)),
             false => {}
         }
     }
@@ -139,9 +144,9 @@ pub fn compare_outcome(
             return difference;
         }
     }
-    match is_open {
-        true => Comparison::Undecided,
-        false => Comparison::Same { is_boolean: left.is_boolean() },
+    match open {
+        Some(what) => Comparison::Open(what),
+        None => Comparison::Same { is_boolean: left.is_boolean() },
     }
 }
 
@@ -174,6 +179,7 @@ fn difference(
     match equal(formulas, left, right) {
         Verdict::Equal => None,
         Verdict::Undecided => Some(Comparison::Undecided),
+        Verdict::Doubtful => Some(Comparison::Doubtful),
         Verdict::Different(values) => {
             let value = |atom: u32| values.get(&atom).copied().unwrap_or(false);
             let sides = formulas.evaluate(&[left, right], value);

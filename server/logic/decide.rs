@@ -2,9 +2,9 @@
 //! question has the same answer on every machine.
 
 use super::formula::{Atom, Node};
-use super::{Formula, Formulas, Moment};
-use biodivine_lib_bdd::{Bdd, BddVariable, BddVariableSet, op_function};
-use rustc_hash::FxHashMap;
+use super::{Bounds, Formula, Formulas, Moment};
+use biodivine_lib_bdd::{Bdd, BddPartialValuation, BddVariable, BddVariableSet, op_function};
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 
 /// An answer.
@@ -16,12 +16,16 @@ pub enum Verdict {
     Different(BTreeMap<u32, bool>),
     /// Too large a question.
     Undecided,
+    /// Not equal, but only for values that words need not have: beyond a subrange, or no number.
+    Doubtful,
 }
 
 /// So many nodes a diagram may have: some tens of milliseconds.
 const NODES_MAX: usize = 200_000;
 /// Two diagrams are joined without a look at how much work it will be if it cannot be more than so many steps.
 const STEPS_MAX: usize = 1 << 16;
+/// So many values that words cannot have are taken out of a question.
+const TRIES_MAX: usize = 200;
 /// The library numbers variables with 16 bits.
 const ATOMS_MAX: usize = 4_000;
 
@@ -32,15 +36,9 @@ pub fn equal(formulas: &mut Formulas, left: Formula, right: Formula) -> Verdict 
         return Verdict::Equal;
     }
     let Some(mut diagrams) = Diagrams::of(formulas, &[left, right]) else { return Verdict::Undecided };
-    let differ = diagrams.differing(left, right);
+    let verdict = diagrams.differing(left, right).map(|differ| diagrams.verdict(differ, formulas));
     formulas.spend(diagrams.work.spent);
-    match differ {
-        None => Verdict::Undecided,
-        Some(differ) => match differ.sat_witness() {
-            None => Verdict::Equal,
-            Some(_) => Verdict::Different(diagrams.values(&differ)),
-        },
-    }
+    verdict.unwrap_or(Verdict::Undecided)
 }
 
 /// Whether a formula holds for no values that can occur together; nothing if that is too large a question.
@@ -48,7 +46,7 @@ pub fn is_never(formulas: &mut Formulas, formula: Formula) -> Option<bool> {
     match equal(formulas, formula, Formulas::FALSE) {
         Verdict::Equal => Some(true),
         Verdict::Different(_) => Some(false),
-        Verdict::Undecided => None,
+        Verdict::Undecided | Verdict::Doubtful => None,
     }
 }
 
@@ -136,6 +134,41 @@ impl Diagrams {
         self.work.join(&differ, &self.possible, op_function::and)
     }
 
+    /// Whether there are values for which `differ` holds and which words can have. Each try that words cannot follow
+    /// takes out what is wrong with it. What only some PLCs can make of a word decides nothing.
+    fn verdict(&mut self, mut differ: Bdd, formulas: &Formulas) -> Verdict {
+        let mut is_open = false;
+        for _ in 0..TRIES_MAX {
+            if differ.is_false() {
+                return if is_open { Verdict::Doubtful } else { Verdict::Equal };
+            }
+            let values = self.values(&differ);
+            let conflict = match Bounds::of(formulas, &values, false).conflict() {
+                Some(conflict) => Some(conflict),
+                None => {
+                    let conflict = Bounds::of(formulas, &values, true).conflict();
+                    let no_number = values.iter().find(|(atom, value)| {
+                        **value && matches!(formulas.atom_at(**atom), Atom::NoNumber(_))
+                    });
+                    let conflict = conflict.or_else(|| Some(vec![*no_number?.0]));
+                    is_open |= conflict.is_some();
+                    conflict
+                }
+            };
+            let Some(conflict) = conflict else { return Verdict::Different(values) };
+            let names = self.variables.variables();
+            let others = names.into_iter().zip(&self.atoms).filter(|(_, atom)| conflict.contains(atom));
+            let others: Vec<(BddVariable, bool)> =
+                others.map(|(name, atom)| (name, !values.get(atom).copied().unwrap_or(false))).collect();
+            let clause = self.variables.mk_disjunctive_clause(&BddPartialValuation::from_values(&others));
+            match self.work.join(&differ, &clause, op_function::and) {
+                Some(rest) => differ = rest,
+                None => return Verdict::Undecided,
+            }
+        }
+        Verdict::Undecided
+    }
+
     /// Values for which `diagram` holds, with as few atoms on as there are on the shortest way.
     fn values(&self, diagram: &Bdd) -> BTreeMap<u32, bool> {
         let Some(valuation) = diagram.most_negative_valuation() else { return BTreeMap::new() };
@@ -167,24 +200,33 @@ fn joined(
 }
 
 /// The atoms in the order in which the formulas were written down, which is that of the drawing: contacts that belong
-/// together get neighbouring variables.
+/// together get neighbouring variables. So do the numbers that one word is compared with, for each tells of the next.
 fn in_order_of_use(formulas: &Formulas, wanted: &[Formula], parts: &[Formula]) -> Vec<u32> {
     let mut atoms = formulas.atoms_of(wanted.iter().copied());
-    let known: rustc_hash::FxHashSet<u32> = atoms.iter().copied().collect();
+    let known: FxHashSet<u32> = atoms.iter().copied().collect();
     let more = formulas.atoms_of(parts.iter().copied());
     atoms.extend(more.into_iter().filter(|atom| !known.contains(atom)));
-    atoms
+    let mut first: FxHashMap<&Moment, usize> = FxHashMap::default();
+    let place = |(place, atom): (usize, &u32)| match formulas.atom_at(*atom) {
+        Atom::Reaches { word, number } => (*first.entry(word).or_insert(place), *number),
+        _ => (place, 0),
+    };
+    let places: Vec<(usize, i64)> = atoms.iter().enumerate().map(place).collect();
+    let mut order: Vec<usize> = (0..atoms.len()).collect();
+    order.sort_by_key(|number| places[*number]);
+    order.into_iter().map(|number| atoms[number]).collect()
 }
 
 /// What is true of the atoms of `wanted` among each other: a bit that just came on is on, a word that reaches 10
 /// reaches 5, and of two words one is at least as large as the other.
 pub(super) fn axioms(formulas: &mut Formulas, wanted: &[Formula]) -> Vec<Formula> {
     let atoms = formulas.atoms_of(wanted.iter().copied());
+    let asked: FxHashSet<u32> = atoms.iter().copied().collect();
     let mut axioms = Vec::new();
     let mut numbers: BTreeMap<Moment, Vec<i64>> = BTreeMap::new();
     for atom in atoms {
         match formulas.atom_at(atom).clone() {
-            Atom::Bit(_) | Atom::Behind(_) | Atom::Rail => {}
+            Atom::Bit(_) | Atom::NoNumber(_) | Atom::Behind(_) | Atom::Rail => {}
             Atom::Edge { of, value, rising } => {
                 let edge = formulas.atom(Atom::Edge { of: of.clone(), value, rising });
                 let bit = value.unwrap_or_else(|| formulas.atom(Atom::Bit(of)));
@@ -195,7 +237,10 @@ pub(super) fn axioms(formulas: &mut Formulas, wanted: &[Formula]) -> Vec<Formula
             Atom::AtLeast { word, other } => {
                 let one = formulas.atom(Atom::AtLeast { word: word.clone(), other: other.clone() });
                 let two = formulas.atom(Atom::AtLeast { word: other, other: word });
-                axioms.push(formulas.or([one, two]));
+                // Where nobody asks for the other way round, it may always be so.
+                if one < two && formulas.atoms_of([two]).iter().all(|two| asked.contains(two)) {
+                    axioms.push(formulas.or([one, two]));
+                }
             }
         }
     }

@@ -1,21 +1,33 @@
 //! Runs paths with plain values, one scan from a given state: a second opinion on what the diagrams say, that shares
 //! nothing with them but the reading of rungs.
 
-use super::{Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
+use super::{Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Rung, Term, Test};
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::target::iec::LiteralValue;
 use crate::target::{Constant, Device, DeviceKind, Flow, Form, Model, Operand};
 use crate::text::folded;
 use smol_str::{SmolStr, format_smolstr};
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
+/// A real number as a variable holds it.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Real {
+    /// The number.
+    pub value: f64,
+    /// Whether the variable is a REAL, so that literals have 32 bits beside it.
+    pub single: bool,
+}
+
 /// Devices and variables by their keys, see [`Term::key`]; what is left out is off, or 0.
-#[derive(Clone, PartialEq, Eq, Debug, Default)]
+#[derive(Clone, PartialEq, Debug, Default)]
 pub struct State {
     /// Bits.
     pub bits: BTreeMap<SmolStr, bool>,
     /// Words; 32-bit values with a `D` and a blank before the key.
     pub words: BTreeMap<SmolStr, i64>,
+    /// Real numbers of IEC 61131-3.
+    pub reals: BTreeMap<SmolStr, Real>,
     /// Bits one scan before, as contacts of edges saw them; those that are left out did not change.
     pub before: BTreeMap<SmolStr, bool>,
     /// What an event leaves behind whose working nobody knows, by its number from 1: timers, instructions, calls.
@@ -46,15 +58,71 @@ pub struct Scan<'s> {
     pub guesses: Vec<u32>,
     /// Whether words were guessed that units of the program and calculations may never come to.
     pub guesses_words: bool,
+    /// Whether something was executed of which nobody knows what it does.
+    is_vague: bool,
+    next: Next,
+}
+
+/// Where a scan goes on behind an action.
+#[derive(Clone, PartialEq, Eq, Debug)]
+enum Next {
+    /// At the next one.
+    Here,
+    /// At a label.
+    At(SmolStr),
+    /// Nowhere.
+    End,
+    /// Where nobody follows: in a subroutine, in a loop, in what a step leaves out.
+    Lost,
 }
 
 /// One scan of `paths` from `state`.
 pub fn evaluate<'s>(paths: &[&Path], state: &'s State) -> Scan<'s> {
     let (bits, words) = (state.bits.clone(), state.words.clone());
-    let mut scan = Scan { state, bits, words, events: Vec::new(), guesses: Vec::new(), guesses_words: false };
+    let mut scan = Scan {
+        state,
+        bits,
+        words,
+        events: Vec::new(),
+        guesses: Vec::new(),
+        guesses_words: false,
+        is_vague: false,
+        next: Next::Here,
+    };
     paths.iter().for_each(|path| scan.path(path, true));
     scan
 }
+
+/// One scan from `state` of rungs with their labels, where jumps lead. Nothing where it comes to a rung that cannot be
+/// read, to an instruction of which nobody knows what it does, or where nobody can follow it.
+pub fn evaluate_jumping<'s>(rungs: &[&Rung], state: &'s State) -> Option<Scan<'s>> {
+    let mut scan = evaluate(&[], state);
+    let mut at = 0;
+    // Whoever jumps back may do so for ever.
+    for round in 0.. {
+        if round > rungs.len() * ROUNDS_MAX {
+            return None;
+        }
+        let Some(rung) = rungs.get(at) else { break };
+        scan.next = Next::Here;
+        if let Some(path) = rung.path.as_ref().ok()? {
+            scan.path(path, true);
+        }
+        at = match &scan.next {
+            Next::Here => at + 1,
+            Next::End => break,
+            Next::Lost => return None,
+            Next::At(label) => {
+                let is_it = |own: &SmolStr| own.eq_ignore_ascii_case(label);
+                rungs.iter().position(|rung| rung.labels.iter().any(is_it))?
+            }
+        };
+    }
+    (!scan.is_vague).then_some(scan)
+}
+
+/// So often each rung is executed on average before a scan counts as one that never ends.
+const ROUNDS_MAX: usize = 8;
 
 impl<'s> Scan<'s> {
     /// The bit with this key.
@@ -79,7 +147,10 @@ impl<'s> Scan<'s> {
         }
         for drive in &path.drives {
             match drive {
-                Drive::Action(action) => self.act(action, power),
+                Drive::Action(action) => {
+                    self.act(action, power);
+                    self.next = next(action, power, std::mem::replace(&mut self.next, Next::Here));
+                }
                 Drive::Path(path) => self.path(path, power),
             }
         }
@@ -108,14 +179,14 @@ impl<'s> Scan<'s> {
                 }
             }
             (Test::Compare(operator), [left, right]) => {
-                let [left, right] = [left, right].map(|term| self.compared(term, operator.is_wide()));
+                let order = self.order([left, right], operator.is_wide());
                 match operator {
-                    CompareOperator::Equal { .. } => left == right,
-                    CompareOperator::NotEqual { .. } => left != right,
-                    CompareOperator::Greater { .. } => left > right,
-                    CompareOperator::Less { .. } => left < right,
-                    CompareOperator::GreaterOrEqual { .. } => left >= right,
-                    CompareOperator::LessOrEqual { .. } => left <= right,
+                    CompareOperator::Equal { .. } => order == Some(Ordering::Equal),
+                    CompareOperator::NotEqual { .. } => order != Some(Ordering::Equal),
+                    CompareOperator::Greater { .. } => order == Some(Ordering::Greater),
+                    CompareOperator::Less { .. } => order == Some(Ordering::Less),
+                    CompareOperator::GreaterOrEqual { .. } => order.is_some_and(Ordering::is_ge),
+                    CompareOperator::LessOrEqual { .. } => order.is_some_and(Ordering::is_le),
                 }
             }
             _ => false,
@@ -134,10 +205,43 @@ impl<'s> Scan<'s> {
         }
     }
 
-    /// What is compared: a literal may be larger than any word that a state has.
+    /// How two words compare; nothing if one of them is no number.
+    fn order(&self, sides: [&Term; 2], wide: bool) -> Option<Ordering> {
+        let reals = sides.map(|side| self.state.reals.get(&side.key()));
+        let written = |side: &Term| match side.operand {
+            Operand::Literal(literal) => match literal.value {
+                LiteralValue::Real(value) => Some(value),
+                LiteralValue::Integer(value) => Some(value as f64),
+                _ => None,
+            },
+            _ => None,
+        };
+        let is_whole = |side: &Term| match side.operand {
+            Operand::Literal(literal) => !matches!(literal.value, LiteralValue::Real(_)),
+            _ => true,
+        };
+        if reals.iter().any(Option::is_some) || !sides.into_iter().all(is_whole) {
+            let is_single = reals.iter().flatten().any(|real| real.single);
+            let value = |side: usize| {
+                let written = written(sides[side]).unwrap_or_default();
+                let written = if is_single { f64::from(written as f32) } else { written };
+                reals[side].map_or(written, |real| real.value)
+            };
+            return value(0).partial_cmp(&value(1));
+        }
+        let [left, right] = sides.map(|side| self.compared(side, wide));
+        Some(left.cmp(&right))
+    }
+
+    /// What is compared: a literal may be larger than any word that a state has. Times are in nanoseconds.
     fn compared(&self, term: &Term, wide: bool) -> i128 {
         match term.operand {
-            Operand::Literal(literal) if let LiteralValue::Integer(value) = literal.value => value,
+            Operand::Literal(literal) => match literal.value {
+                LiteralValue::Integer(value) | LiteralValue::DateAndTime(value) => value,
+                LiteralValue::Time(value) | LiteralValue::TimeOfDay(value) => i128::from(value),
+                LiteralValue::Date(value) => i128::from(value),
+                _ => i128::from(self.word(term, wide)),
+            },
             _ => i128::from(self.word(term, wide)),
         }
     }
@@ -186,6 +290,9 @@ impl<'s> Scan<'s> {
         let works = matches!(action.deed, Deed::Instruction(_) | Deed::Compute(_));
         let is_guessed = action.runs_unit() || power && works && copied.is_none();
         self.events.push(power);
+        let is_straight = |form: &Form| form.instruction.flow() == Flow::Straight;
+        let is_known = matches!(&action.deed, Deed::Instruction(form) if !is_straight(form));
+        self.is_vague |= is_guessed && moved.is_none() && !is_known;
         let nothing = LeftBehind::default();
         let left = self.left_behind().filter(|_| copied.is_none()).unwrap_or(&nothing);
         let words: Vec<_> = left.words.iter().filter(|(key, _)| may_write_word(action, key)).collect();
@@ -329,6 +436,29 @@ impl<'s> Scan<'s> {
             _ => return None,
         };
         i16::try_from(result).is_ok().then_some(result)
+    }
+}
+
+/// Where the scan goes on behind an action, if it went on as `before` says up to there.
+fn next(action: &Action, power: bool, before: Next) -> Next {
+    if before != Next::Here {
+        return before;
+    }
+    let label = || action.terms.first().map_or(Next::Lost, |term| Next::At(term.text.clone()));
+    match &action.deed {
+        Deed::Jump | Deed::Return if !power => Next::Here,
+        Deed::Jump => label(),
+        Deed::Return => Next::End,
+        Deed::Instruction(form) => match form.instruction.flow() {
+            Flow::Jump if form.pulse => Next::Lost,
+            Flow::Jump if power => label(),
+            Flow::ProgramEnd | Flow::MainEnd | Flow::SubroutineEnd | Flow::InterruptEnd => Next::End,
+            Flow::Jump | Flow::Straight | Flow::Nothing | Flow::Refresh | Flow::InterruptsAllowed => {
+                Next::Here
+            }
+            _ => Next::Lost,
+        },
+        _ => Next::Here,
     }
 }
 

@@ -2,6 +2,7 @@
 //! are done when they are written down.
 
 use super::effort;
+use crate::document::Limits;
 use crate::target::iec::ElementaryType;
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
@@ -10,7 +11,16 @@ use std::sync::Arc;
 
 /// The types of variables by their [keys](super::Term::key), as far as they are known beyond doubt; nothing inside
 /// where several names of one place have different types.
-pub type Types = FxHashMap<SmolStr, Option<ElementaryType>>;
+pub type Types = FxHashMap<SmolStr, Option<Kind>>;
+
+/// What numbers a variable has.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Kind {
+    /// Its type.
+    pub elementary: ElementaryType,
+    /// Those that it is declared to be among.
+    pub limits: Limits,
+}
 
 /// The number of a formula in its [`Formulas`].
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -44,6 +54,8 @@ pub enum Atom {
         /// The other.
         other: Moment,
     },
+    /// Whether a word is no number, with which every comparison fails (IEC 60559).
+    NoNumber(Moment),
     /// Whether power goes on behind the event of this number, from 1.
     Behind(u32),
     /// Whether there is power at the left rail, where a master control or a step may leave it without.
@@ -136,6 +148,11 @@ impl Formulas {
 
     /// The type of the variable with this key, if it is known.
     pub fn type_of(&self, key: &str) -> Option<ElementaryType> {
+        self.kind_of(key).map(|kind| kind.elementary)
+    }
+
+    /// What numbers the variable with this key has, if that is known.
+    pub fn kind_of(&self, key: &str) -> Option<Kind> {
         self.types.get(key).copied().flatten()
     }
 

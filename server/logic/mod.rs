@@ -45,9 +45,16 @@ mod apart;
 pub use apart::apart;
 
 mod formula;
-pub use formula::{Atom, Formula, Formulas, Moment, Step, Types};
+pub use formula::{Atom, Formula, Formulas, Kind, Moment, Step, Types};
 
 mod number;
+pub use number::real_at;
+
+mod bounds;
+pub use bounds::Bounds;
+
+/// What the names of words of 32 bits begin with in a [`Moment`].
+pub const WIDE: &str = "D ";
 
 mod run;
 pub use run::{Effect, Run};
@@ -68,7 +75,7 @@ mod compare;
 pub use compare::{Comparison, Place, compare, compare_but, compare_outcome, may_drive, shown, touches_bits};
 
 mod evaluate;
-pub use evaluate::{LeftBehind, Scan, State, evaluate};
+pub use evaluate::{LeftBehind, Real, Scan, State, evaluate, evaluate_jumping};
 
 use crate::document::{Chunk, Scopes, Tree};
 use crate::target::Target;

@@ -1,8 +1,10 @@
 //! Runs paths with formulas in place of bits: what is done, under which conditions, in which order.
 
 use super::formula::{Atom, Moment, Step};
-use super::number::{NUMBER_MAX, number, range};
-use super::{Action, Contact, Deed, Drive, Expression, Formula, Formulas, Gate, Path, Storage, Term, Test};
+use super::number::{is_real, number, range};
+use super::{
+    Action, Contact, Deed, Drive, Expression, Formula, Formulas, Gate, Path, Storage, Term, Test, WIDE,
+};
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::target::iec::LiteralValue;
 use crate::target::{Access, Device, DeviceKind, Flow, Form, Location, Operand};
@@ -284,7 +286,7 @@ impl<'p> Run<'p> {
     ) -> Formula {
         use CompareOperator::*;
         let wide = operator.is_wide();
-        match operator {
+        let holds = match operator {
             GreaterOrEqual { .. } => self.at_least(left, right, wide, formulas),
             LessOrEqual { .. } => self.at_least(right, left, wide, formulas),
             Less { .. } => {
@@ -298,10 +300,24 @@ impl<'p> Run<'p> {
             Equal { .. } | NotEqual { .. } => {
                 let sides =
                     [self.at_least(left, right, wide, formulas), self.at_least(right, left, wide, formulas)];
-                let equal = formulas.and(sides);
-                if matches!(operator, Equal { .. }) { equal } else { formulas.not(equal) }
+                formulas.and(sides)
             }
+        };
+        let holds = self.of_numbers(holds, [left, right], formulas);
+        if matches!(operator, NotEqual { .. }) { formulas.not(holds) } else { holds }
+    }
+
+    /// A comparison that fails where one of its sides is no number.
+    fn of_numbers(&self, holds: Formula, sides: [&Term; 2], formulas: &mut Formulas) -> Formula {
+        let reals = sides.into_iter().filter(|side| formulas.type_of(&side.key()).is_some_and(is_real));
+        let reals: Vec<&Term> = reals.collect();
+        let mut all = vec![holds];
+        for side in reals {
+            let word = self.word(side, false, formulas);
+            let is_none = formulas.atom(Atom::NoNumber(word));
+            all.push(formulas.not(is_none));
         }
+        formulas.and(all)
     }
 
     fn at_least(&self, left: &Term, right: &Term, wide: bool, formulas: &mut Formulas) -> Formula {
@@ -328,13 +344,13 @@ impl<'p> Run<'p> {
     /// Whether `term` is at least `number`; nothing if that is too large a number to work with.
     fn reaches(&self, term: &Term, number: i128, wide: bool, formulas: &mut Formulas) -> Option<Formula> {
         let range = range(term, wide, formulas);
-        if number <= *range.start() {
+        if range.least.is_some_and(|least| number <= least) {
             return Some(Formulas::TRUE);
         }
-        if number > *range.end() {
+        if range.greatest.is_some_and(|greatest| number > greatest) {
             return Some(Formulas::FALSE);
         }
-        let number = i64::try_from(number).ok().filter(|number| number.unsigned_abs() < NUMBER_MAX)?;
+        let number = i64::try_from(number).ok()?;
         let word = self.word(term, wide, formulas);
         Some(formulas.atom(Atom::Reaches { word, number }))
     }
@@ -343,7 +359,7 @@ impl<'p> Run<'p> {
     fn word(&self, term: &Term, wide: bool, formulas: &mut Formulas) -> Moment {
         let key = term.key();
         let name = match wide {
-            true => format_smolstr!("D {key}"),
+            true => format_smolstr!("{WIDE}{key}"),
             // An INT and a UINT at one address are two numbers, which no scan with plain values has.
             false if term.address().is_some() && formulas.is_of_many_types(&key) => {
                 format_smolstr!("{key} {}", folded(&term.text))

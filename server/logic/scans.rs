@@ -84,7 +84,7 @@ impl Scans<'_, '_> {
             let bad = if holds_at_start { bad } else { formulas.and([fact, on]) };
             match equal_to_never(bad, formulas) {
                 Verdict::Equal => return Exclusion::Never,
-                Verdict::Undecided => return possible.unwrap_or(Exclusion::Undecided),
+                Verdict::Undecided | Verdict::Doubtful => return possible.unwrap_or(Exclusion::Undecided),
                 Verdict::Different(values) => {
                     possible.get_or_insert(Exclusion::Possible(values));
                 }
@@ -165,7 +165,7 @@ fn is_never(formula: Formula, formulas: &mut Formulas) -> Option<bool> {
     match equal_to_never(formula, formulas) {
         Verdict::Equal => Some(true),
         Verdict::Different(_) => Some(false),
-        Verdict::Undecided => None,
+        Verdict::Undecided | Verdict::Doubtful => None,
     }
 }
 

@@ -2,7 +2,6 @@
 
 use crate::document::{DeclaredType, Scopes, Variable};
 use crate::il::iec::SectionKind;
-use crate::target::iec::LiteralValue;
 use crate::target::{Constant, Device, DeviceKind, DirectAddress, Operand, Width};
 use crate::text::{Span, folded};
 use smol_str::{SmolStr, ToSmolStr, format_smolstr};
@@ -158,8 +157,7 @@ impl Term {
                 format_smolstr!("K{value}")
             }
             Operand::Text => self.text.clone(),
-            // Capitals count between quotes.
-            Operand::Literal(literal) if matches!(literal.value, LiteralValue::Text) => self.text.clone(),
+            Operand::Literal(literal) => literal.spelled(&self.text),
             _ => folded(&self.text),
         }
     }
@@ -170,7 +168,7 @@ fn is_plain(scopes: &Scopes, variable: &Variable) -> bool {
     let is_own = matches!(variable.section, SectionKind::Local | SectionKind::Temporary);
     let is_elementary = match &variable.declared {
         DeclaredType::Elementary(_) => true,
-        DeclaredType::Named(_) => {
+        DeclaredType::Named(_) | DeclaredType::Subrange(..) => {
             matches!(scopes.resolved(variable.declared.clone()), Some(DeclaredType::Elementary(_)))
         }
         _ => false,

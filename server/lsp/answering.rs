@@ -3,7 +3,7 @@
 use super::projects::Around;
 use super::settings::Settings;
 use super::to_proto::Place;
-use super::workspace::{Open, SNAPSHOT, Snapshot, is_manifest};
+use super::workspace::{Open, SNAPSHOT, Snapshot, is_toml};
 use crate::text::Message;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -52,7 +52,7 @@ pub(super) async fn aside<T: Send + 'static>(
     beside(move |cancelled| {
         // What was named by an answer of before, such as a call in a file that is not open, is a file of a project.
         let around = match snapshot.open(&uri) {
-            Some(open) if is_manifest(&open.uri) => return None,
+            Some(open) if is_toml(&open.uri) => return None,
             Some(open) => snapshot.around(open),
             None => snapshot.around_closed(&uri)?,
         };

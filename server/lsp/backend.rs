@@ -9,9 +9,9 @@ use super::pulled::{self, PartialReport, PartialReportParams};
 use super::to_proto;
 use super::tokens;
 use super::typed;
-use super::workspace::{SNAPSHOT, Snapshot, Workspace};
+use super::workspace::{SNAPSHOT, Snapshot, Workspace, is_suite};
 use super::written::{given, write};
-use super::{capabilities, features, proving, simulation, translating, usage};
+use super::{capabilities, features, proving, simulation, testing, translating, usage};
 use crate::ide;
 use crate::text::Message;
 use serde_json::{Value, json};
@@ -79,12 +79,20 @@ impl LanguageServer for Backend {
         if let Some(manifest) = manifest_help::asked(&at) {
             return Ok(manifest_help::hover(&manifest, at.position));
         }
-        Ok(with_around(&at.text_document.uri, |around, place| {
+        let hover = with_around(&at.text_document.uri, |around, place| {
             let link =
                 |file, line| features::link(around, file, line).filter(|_| place.abilities.markdown_hover);
             let hover = ide::hover_in(&around.view(), place.offset(at.position), place.language, &link)?;
             Some(to_proto::hover(place, hover))
-        }))
+        });
+        let Some(mut hover) = hover else { return Ok(None) };
+        // While the program runs beside its text, what it does comes first.
+        if let Some(why) = self.simulations.brief(&at.text_document.uri, at.position).await
+            && let HoverContents::Markup(content) = &mut hover.contents
+        {
+            content.value = format!("{why}\n\n---\n\n{}", content.value);
+        }
+        Ok(Some(hover))
     }
 
     async fn completion(&self, params: CompletionParams) -> Result<Option<CompletionResponse>> {
@@ -297,9 +305,14 @@ impl LanguageServer for Backend {
     }
 
     async fn code_lens(&self, params: CodeLensParams) -> Result<Option<Vec<CodeLens>>> {
-        let wanted = settings().lenses;
+        let settings = settings();
+        if is_suite(&params.text_document.uri) {
+            return Ok(testing::lenses(&params.text_document.uri, &settings));
+        }
+        let snapshot = snapshot();
         whole(params.text_document.uri, move |around, place| {
-            write(&features::lenses(around.here(), place, wanted))
+            let has_tests = settings.run_lenses && testing::has_tests(&snapshot, around);
+            write(&features::lenses(around.here(), place, &settings, has_tests))
         })
         .await
         .map(given)
@@ -431,6 +444,9 @@ impl LanguageServer for Backend {
         }
         if params.command == proving::PROVE {
             return proving::answer(params.arguments.first()).await;
+        }
+        if params.command.starts_with(testing::PREFIX) {
+            return testing::answer(&params.command, params.arguments.first(), &self.workspace).await;
         }
         if params.command.starts_with(simulation::PREFIX) {
             let argument = params.arguments.first();

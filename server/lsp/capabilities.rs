@@ -1,7 +1,7 @@
 //! What the server offers, and what the client can do.
 
 use super::abilities::{Abilities, Requests};
-use super::{editing, manifest_help, proving, to_proto, translating, usage};
+use super::{editing, manifest_help, proving, testing, to_proto, translating, usage};
 use crate::text::Encoding;
 use serde_json::json;
 use tower_lsp::ls_types::*;
@@ -27,6 +27,13 @@ pub(super) const COMMANDS: &[&str] = &[
     "rungwise.simulate.release",
     "rungwise.simulate.watch",
     "rungwise.simulate.state",
+    "rungwise.simulate.panel",
+    "rungwise.simulate.trace",
+    "rungwise.simulate.export",
+    "rungwise.simulate.record",
+    testing::LIST,
+    testing::RUN,
+    "rungwise.simulate.why",
 ];
 
 /// Applies the `WorkspaceEdit` that is its argument: what a code action does where clients know commands alone.
@@ -56,6 +63,7 @@ pub(super) fn registrations(requests: Requests) -> Vec<Registration> {
     };
     let watchers = json!({"watchers": [
         {"globPattern": "**/rungwise.toml"},
+        {"globPattern": "**/*.test.toml"},
         {"globPattern": "**/*.{lad,LAD,il,IL,csv,CSV}"},
     ]});
     let files = requests

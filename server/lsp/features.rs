@@ -2,13 +2,15 @@
 
 use super::editing;
 use super::projects::Around;
+use super::settings::Settings;
 use super::sheets;
+use super::testing;
 use super::to_proto::{self, Place};
 use super::workspace::{Open, Snapshot};
 use crate::document::Document;
-use crate::ide::{self, HighlightKind, LensKind, LensSettings};
+use crate::ide::{self, HighlightKind, LensKind};
 use crate::target::{Device, Operand};
-use crate::text::{Encoding, Language, column_of_offset};
+use crate::text::{Encoding, Language, Message, Span, column_of_offset};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -74,37 +76,66 @@ struct LensData {
     kind: String,
 }
 
-pub(super) fn lenses(open: &Open, place: Place<'_>, wanted: LensSettings) -> Vec<CodeLens> {
-    let lenses = ide::lenses(place.document, wanted).into_iter();
-    let lens = |lens: ide::Lens| {
-        let kind = match lens.kind {
+/// What can be done with a program stands above its first line, then come the lenses of its rungs.
+pub(super) fn lenses(open: &Open, place: Place<'_>, settings: &Settings, has_tests: bool) -> Vec<CodeLens> {
+    let lenses = ide::lenses(place.document, settings.lenses).into_iter();
+    let lens = |offset: usize, kind: String| {
+        let data = LensData { uri: open.uri.to_string(), offset, kind };
+        let range = place.range(Span::at(offset));
+        CodeLens { range, command: None, data: serde_json::to_value(data).ok() }
+    };
+    let runs = [SIMULATE, RUN].into_iter().filter(|kind| *kind == SIMULATE || has_tests);
+    let runs = runs.filter(|_| settings.run_lenses && !place.document.is_empty());
+    let runs: Vec<CodeLens> = runs.map(|kind| lens(0, kind.to_string())).collect();
+    let of_rungs = lenses.map(|found| {
+        let kind = match found.kind {
             LensKind::Steps => "steps".to_string(),
             LensKind::NextFree => "next-free".to_string(),
             LensKind::More => "more".to_string(),
             LensKind::References(device) => device.to_string(),
         };
-        let data = LensData { uri: open.uri.to_string(), offset: lens.span.start as usize, kind };
-        CodeLens { range: place.range(lens.span), command: None, data: serde_json::to_value(data).ok() }
-    };
-    lenses.map(lens).collect()
+        lens(found.span.start as usize, kind)
+    });
+    runs.into_iter().chain(of_rungs).collect()
 }
 
-/// The lens with its words, as a command that does nothing; every client shows that as text.
+/// The lens that simulates a program, and the one that runs its scenarios.
+const SIMULATE: &str = "simulate";
+const RUN: &str = "run";
+
+/// The lens with its words, as a command that does nothing where it only tells; every client shows that as text.
 pub(super) fn resolved(snapshot: &Snapshot, mut lens: CodeLens) -> CodeLens {
-    let title = lens.data.as_ref().and_then(|data| {
-        let data = LensData::deserialize(data).ok()?;
-        let around = snapshot.around(snapshot.open(&data.uri.parse().ok()?)?);
-        let kind = match data.kind.as_str() {
-            "steps" => LensKind::Steps,
-            "next-free" => LensKind::NextFree,
-            "more" => LensKind::More,
-            name => LensKind::References(device_named(&around.here().document, name)?),
-        };
-        ide::lens_title(&around.view(), data.offset, &kind, snapshot.manner.language)
-    });
-    let title = title.unwrap_or_else(|| "–".to_string());
-    lens.command = Some(Command { title, command: String::new(), arguments: None });
+    let data = lens.data.as_ref().and_then(|data| LensData::deserialize(data).ok());
+    let does = |title: &'static str, command: &str, argument: Value| Command {
+        title: Message::new(title).render(snapshot.manner.language),
+        command: command.to_string(),
+        arguments: Some(vec![argument]),
+    };
+    let command = match &data {
+        Some(data) if data.kind == SIMULATE => {
+            does("lens.simulate", "rungwise.simulate.start", json!({ "uri": data.uri }))
+        }
+        Some(data) if data.kind == RUN => {
+            does("lens.run-all", testing::RUN, json!({ "uri": data.uri, "show": true }))
+        }
+        _ => {
+            let title = data.and_then(|data| told(snapshot, &data)).unwrap_or_else(|| "–".to_string());
+            Command { title, command: String::new(), arguments: None }
+        }
+    };
+    lens.command = Some(command);
     lens
+}
+
+fn told(snapshot: &Snapshot, data: &LensData) -> Option<String> {
+    let around = snapshot.around(snapshot.open(&data.uri.parse().ok()?)?);
+    let kind = match data.kind.as_str() {
+        "steps" => LensKind::Steps,
+        "next-free" => LensKind::NextFree,
+        "more" => LensKind::More,
+        name => LensKind::References(device_named(&around.here().document, name)?),
+    };
+    ide::lens_title(&around.view(), data.offset, &kind, snapshot.manner.language)
 }
 
 fn device_named(document: &Document, name: &str) -> Option<Device> {

@@ -1,10 +1,10 @@
-//! Hover and completion in `rungwise.toml`.
+//! Hover and completion in `rungwise.toml` and in scenario tests.
 
 use super::answering::{beside, snapshot};
 use super::projects::file_path;
 use super::to_proto::{self, Place};
-use super::workspace::{Open, is_manifest};
-use crate::ide::{self, FileKind};
+use super::workspace::{Open, is_suite, is_toml};
+use crate::ide::{self, FileKind, Schema};
 use crate::project::{is_program_file, is_table_file, names_in};
 use std::sync::Arc;
 use tower_lsp::jsonrpc::Result;
@@ -13,9 +13,9 @@ use tower_lsp::ls_types::*;
 /// A word of a manifest begins with it; in programs it opens no list of proposals.
 pub(super) const TRIGGER: &str = "\"";
 
-/// The open manifest that is asked about, if it is one.
+/// The open manifest or file of scenario tests that is asked about, if it is one.
 pub(super) fn asked(at: &TextDocumentPositionParams) -> Option<Arc<Open>> {
-    snapshot().open(&at.text_document.uri).filter(|open| is_manifest(&open.uri)).cloned()
+    snapshot().open(&at.text_document.uri).filter(|open| is_toml(&open.uri)).cloned()
 }
 
 /// Whether proposals are asked for because of a character that asks for none in a program.
@@ -23,9 +23,14 @@ pub(super) fn is_for_manifests(context: Option<&CompletionContext>) -> bool {
     context.and_then(|context| context.trigger_character.as_deref()) == Some(TRIGGER)
 }
 
+fn schema(open: &Open) -> Schema {
+    if is_suite(&open.uri) { Schema::Scenarios } else { Schema::Manifest }
+}
+
 pub(super) fn hover(open: &Open, position: Position) -> Option<Hover> {
     let place = Place::new(&open.document, snapshot().manner);
-    let hover = ide::manifest_hover(&open.document.text(), place.offset(position), place.language)?;
+    let hover =
+        ide::manifest_hover(schema(open), &open.document.text(), place.offset(position), place.language)?;
     Some(to_proto::hover(place, hover))
 }
 
@@ -43,7 +48,8 @@ pub(super) async fn completion(open: Arc<Open>, position: Position) -> Result<Op
         };
         let place = Place::new(&open.document, manner);
         let text = open.document.text();
-        let proposals = ide::manifest_completions(&text, place.offset(position), &files, place.language);
+        let proposals =
+            ide::manifest_completions(schema(&open), &text, place.offset(position), &files, place.language);
         let items = proposals.into_iter().map(|proposal| to_proto::completion(place, proposal));
         Some(CompletionResponse::Array(items.collect()))
     })

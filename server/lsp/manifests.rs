@@ -2,8 +2,9 @@
 
 use super::projects::canonical;
 use super::to_proto::{Manner, Place};
-use super::workspace::Open;
+use super::workspace::{Open, is_suite};
 use crate::project::{MANIFEST_NAME, Manifest, Project};
+use crate::scenario::Suite;
 use crate::text::{LineColumn, Message};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::path::Path;
@@ -83,22 +84,29 @@ impl Manifests {
         self.open.insert(manifest.clone(), Typed { path: path.cloned(), is_told });
     }
 
-    /// Tells the mistake in the text of an open manifest, or that there is none any more.
+    /// Tells the mistakes in the text of an open manifest or of scenario tests, or that there are none any more.
     pub(super) fn judge(&mut self, client: &Client, open: &Open, manner: Manner) {
-        let Some(typed) = self.open.get_mut(&open.uri) else { return };
-        let error = Manifest::read(&open.document.text()).err();
-        let was_told = std::mem::replace(&mut typed.is_told, error.is_some());
-        if !was_told && error.is_none() {
-            return;
-        }
+        let text = open.document.text();
         let place = Place::new(&open.document, manner);
-        let found =
-            error.map(|error| diagnostic(place.range(error.span), error.message.render(manner.language)));
-        let (manifest, version) = (open.uri.clone(), Some(open.version));
-        self.send(
-            client,
-            Notice { manifest, version, diagnostics: found.into_iter().collect(), message: None },
-        );
+        let mistake = |message: Message, span| diagnostic(place.range(span), message.render(manner.language));
+        let found = match is_suite(&open.uri) {
+            true => Suite::read(&text).1.into_iter().map(|flaw| mistake(flaw.message, flaw.span)).collect(),
+            false => {
+                let error = Manifest::read(&text).err();
+                error.into_iter().map(|error| mistake(error.message, error.span)).collect()
+            }
+        };
+        self.show(client, open, found);
+    }
+
+    /// Shows this in an open document until its text changes.
+    pub(super) fn show(&mut self, client: &Client, open: &Open, diagnostics: Vec<Diagnostic>) {
+        let Some(typed) = self.open.get_mut(&open.uri) else { return };
+        let was_told = std::mem::replace(&mut typed.is_told, !diagnostics.is_empty());
+        if was_told || !diagnostics.is_empty() {
+            let (manifest, version) = (open.uri.clone(), Some(open.version));
+            self.send(client, Notice { manifest, version, diagnostics, message: None });
+        }
     }
 
     /// The editor has a manifest no longer.
@@ -134,7 +142,7 @@ impl Notice {
     }
 }
 
-fn diagnostic(range: Range, message: String) -> Diagnostic {
+pub(super) fn diagnostic(range: Range, message: String) -> Diagnostic {
     Diagnostic {
         range,
         severity: Some(DiagnosticSeverity::ERROR),

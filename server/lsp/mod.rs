@@ -31,6 +31,7 @@ mod settings;
 mod sheets;
 mod simulation;
 mod status;
+mod testing;
 mod to_proto;
 mod tokens;
 mod translating;

@@ -24,7 +24,7 @@ use super::answering::{beside, refused, settings, snapshot};
 use super::keeper::read_program;
 use super::projects::{canonical, file_path};
 use super::to_proto::Place;
-use super::workspace::{Open, Snapshot, is_manifest};
+use super::workspace::{Open, Snapshot, is_toml};
 use crate::document::Document;
 use crate::text::{Message, Span};
 use crate::translate::{Proof, prove, told};
@@ -73,7 +73,7 @@ fn program(
     settings: &super::settings::Settings,
 ) -> Option<Document> {
     if let Some(open) = snapshot.open(uri) {
-        return (!is_manifest(&open.uri)).then(|| open.document.lean());
+        return (!is_toml(&open.uri)).then(|| open.document.lean());
     }
     if let Some(around) = snapshot.around_closed(uri) {
         return Some(around.here().document.clone());

@@ -26,6 +26,8 @@ pub(super) struct Settings {
     pub comment_hints: bool,
     /// `codeLens.steps`, `codeLens.references`, `codeLens.nextFree`.
     pub lenses: LensSettings,
+    /// `codeLens.run`: what can be done with a program, above its first line.
+    pub run_lenses: bool,
     /// `diagnostics.scope` is `project` and not `open`: files of a project that are not open are reported, too.
     pub whole_project: bool,
     /// `diagnostics.mode` is `pull` and not `push`. A client that shows both kinds would show everything twice.
@@ -54,6 +56,7 @@ impl Default for Settings {
             inlay_hints: true,
             comment_hints: true,
             lenses: LensSettings { steps: true, references: true, next_free: true },
+            run_lenses: true,
             whole_project: true,
             pulls: false,
         }
@@ -96,6 +99,7 @@ impl Settings {
                 references: is_on("codeLens", "references"),
                 next_free: is_on("codeLens", "nextFree"),
             },
+            run_lenses: is_on("codeLens", "run"),
             whole_project: word(part("diagnostics", "scope")).as_deref() != Some("open"),
             pulls: word(part("diagnostics", "mode")).as_deref() == Some("pull"),
         })

@@ -16,41 +16,90 @@
 //! rungwise.simulate.release   { name? }                           // one, or all
 //! rungwise.simulate.watch     { ranges?: Range[], names?: string[] }   // what the client shows
 //! rungwise.simulate.state     { names?: string[] }
+//! rungwise.simulate.panel     { }
+//! rungwise.simulate.trace     { names: string[], from?: scan, to?: scan, most?: points = 2000 }
+//! rungwise.simulate.export    { format: "vcd" | "csv", names?: string[], from?: scan, to?: scan }
+//! rungwise.simulate.record    { names?: string[] }                // what was done so far as a scenario test
+//! rungwise.simulate.why       { name | position, scan?: number }  // from 0 on; the last one if left out
 //! ```
 //!
-//! Each answers the state:
+//! `record` answers `{ uri, name, text }`: what the file could be called, and what stands in it. What is expected in it
+//! are the changes of `names`, of the outputs where they are left out. `why` answers a tree, the fewest contacts that
+//! hold a device on or keep it off, each with the reasons for it:
 //!
 //! ```text
-//! { uri, mode: "running" | "paused" | "stopped", scan, first_scan, time_ms, speed, forced: string[],
-//!   values: { device, value, forced }[], errors: { range, message }[] }
+//! { text, scan, time_ms, uri?, range?, because: … [] }
 //! ```
 //!
-//! `values` are those of `names`, or of what is watched. While a simulation runs, the notification `rungwise/monitor`
+//! Each of the others answers the state, `panel`, `trace` and `export` with more members:
+//!
+//! ```text
+//! { uri, mode: "running" | "paused" | "stopped", scan, first_scan, time_ms, scan_ms, speed, edition, branch,
+//!   forced: string[], values: { device, value, forced, wired? }[], errors: { range, message }[] }
+//! ```
+//!
+//! `values` are those of `names`, or of what is watched; `wired` is what an input will be in the next scan, if that is
+//! something else. `edition` is another number whenever the program is another,
+//! as by an edit, and `branch` whenever scans of before have been taken back.
+//!
+//! `panel` says with `rows` what belongs on a panel of the program, group by group:
+//!
+//! ```text
+//! { name, label, type: "bit" | "word", symbol, comment, reads, writes,
+//!   group: "inputs" | "outputs" | "timers" | "counters" | "states" | "relays" | "registers" | "variables",
+//!   least?, greatest?,                    // of a word
+//!   contact?, preset?, preset_of?, unit_ms? }   // of a timer or counter, whose current value `name` is
+//! ```
+//!
+//! `name`, `contact` and `preset_of`, which is where the preset lies, are names for the other commands; `preset` is the
+//! constant of the program. `unit_ms` is what a timer counts.
+//!
+//! `trace` says what variables were, and records them from then on:
+//!
+//! ```text
+//! { from, to, signals: { name, known_from: scan, points: [scan, value][] }[] }
+//! ```
+//!
+//! The first point has the value at `from`, or at `known_from` if that is later; each other one is a change. Of more
+//! changes than `most` those are kept that show the least and the greatest value in each of equal spans of time. What
+//! was before a variable was recorded is found bit by bit: whoever wants it asks again. A chart that is kept up to date
+//! asks from the last scan that it has, and for everything again when `branch` is another number.
+//!
+//! `export` has the `text` of a file with every change, and `from` and `to`, which scans it tells of.
+//!
+//! While a simulation runs, the notification `rungwise/monitor`
 //! tells what is watched, at most thirty times a second, when something may have changed:
 //!
 //! ```text
-//! { uri, version, source: "simulator", mode, scan, time_ms,
+//! { uri, version, source: "simulator", mode, scan, time_ms, edition, branch,
 //!   elements: { range, kind: "wire" | "contact" | "output" | "line" | "value", energised, conducts?, value? }[],
-//!   values: { device, value, forced }[], errors: { range, message }[] }
+//!   values: { device, value, forced, wired? }[], errors: { range, message }[] }
 //! ```
 //!
 //! `scan` counts from 0. What an edit made of the program is taken over as soon as it can be run; until then the old
 //! program goes on and `elements` is empty.
 
+mod chart;
+
 mod monitor;
 
+mod panel;
+
 mod runner;
+
+mod why;
 
 use super::answering::{refused, snapshot};
 use super::workspace::Workspace;
 use crate::text::Message;
-use runner::{Order, Runner};
+use chart::Wanted;
+use runner::{About, Order, Runner};
 use rustc_hash::FxHashMap;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::sync::{Arc, Mutex, PoisonError};
 use tower_lsp::jsonrpc::Result;
-use tower_lsp::ls_types::{LSPAny, Range, Uri};
+use tower_lsp::ls_types::{LSPAny, Position, Range, Uri};
 
 /// What all commands begin with; [`COMMANDS`](super::capabilities::COMMANDS) has them.
 pub(super) const PREFIX: &str = "rungwise.simulate.";
@@ -70,6 +119,12 @@ struct Asked {
     value: Option<Value>,
     ranges: Option<Vec<Range>>,
     names: Option<Vec<String>>,
+    from: Option<u64>,
+    to: Option<u64>,
+    most: Option<usize>,
+    format: Option<String>,
+    position: Option<Position>,
+    scan: Option<u64>,
 }
 
 /// The simulations that run.
@@ -117,6 +172,15 @@ impl Simulations {
     }
 }
 
+impl Simulations {
+    /// Why what stands at a position is on or off, in Markdown; nothing unless its program is being simulated.
+    pub(super) async fn brief(&self, uri: &Uri, position: Position) -> Option<String> {
+        let runner = self.0.lock().unwrap_or_else(PoisonError::into_inner).get(uri).cloned()?;
+        let order = Order::Why { about: About::At(position), scan: None, is_brief: true };
+        runner.ask(order).await.ok()?.as_str().map(str::to_string)
+    }
+}
+
 fn order(command: &str, asked: Asked) -> std::result::Result<Order, Message> {
     let verb = command.strip_prefix(PREFIX).unwrap_or_default();
     let missing = |member: &'static str| {
@@ -125,6 +189,12 @@ fn order(command: &str, asked: Asked) -> std::result::Result<Order, Message> {
     };
     let name = asked.name.clone().ok_or_else(|| missing("name"));
     let value = asked.value.clone().ok_or_else(|| missing("value"));
+    let wanted = Wanted {
+        names: asked.names.clone().unwrap_or_default(),
+        from: asked.from,
+        to: asked.to,
+        most: asked.most,
+    };
     Ok(match verb {
         "start" => Order::Start { scan_ms: asked.scan_time, speed: asked.speed, is_paused: asked.paused },
         "stop" => Order::Stop,
@@ -136,7 +206,19 @@ fn order(command: &str, asked: Asked) -> std::result::Result<Order, Message> {
         "set" => Order::Set { name: name?, value: value?, is_force: false },
         "force" => Order::Set { name: name?, value: value?, is_force: true },
         "release" => Order::Release { name: asked.name },
+        "record" => Order::Record { names: asked.names },
+        "why" => {
+            let about = asked.position.map(About::At);
+            Order::Why {
+                about: about.map_or_else(|| name.map(About::Name), Ok)?,
+                scan: asked.scan,
+                is_brief: false,
+            }
+        }
         "watch" => Order::Watch { ranges: asked.ranges, names: asked.names },
+        "panel" => Order::Panel,
+        "trace" => Order::Trace { wanted },
+        "export" => Order::Export { wanted, format: asked.format.ok_or_else(|| missing("format"))? },
         _ => Order::State { names: asked.names },
     })
 }

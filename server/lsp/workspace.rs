@@ -14,6 +14,7 @@ use super::tokens::SentTokens;
 use crate::check::Severities;
 use crate::document::{Document, Edit, Notation};
 use crate::project::{MANIFEST_NAME, Manifest, Project, decide};
+use crate::scenario::SUITE_ENDING;
 use crate::target::{Model, Target};
 use crate::text::{Encoding, Language, LineColumn};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -91,7 +92,7 @@ pub(super) struct State {
     publishers: FxHashMap<Uri, Publisher>,
     /// Publishers of closed documents that are not done yet.
     closing: FxHashMap<Uri, Closing>,
-    manifests: Manifests,
+    pub manifests: Manifests,
     pub keeper: Option<Keeper>,
     pub speech: Speech,
     /// Projects that are read for the first time: their documents wait for what the other files declare.
@@ -112,7 +113,7 @@ impl Snapshot {
 
     /// The open document, if it is a program.
     pub(super) fn program(&self, uri: &Uri) -> Option<&Arc<Open>> {
-        self.open(uri).filter(|open| !is_manifest(&open.uri))
+        self.open(uri).filter(|open| !is_toml(&open.uri))
     }
 
     /// The open document of the file at a canonical path.
@@ -240,14 +241,14 @@ impl Workspace {
         // Before the text is read, which may take a while: what was published is not to be cleared.
         let before = state.closing.remove(&uri).map(Closing::superseded);
         let path = file_path(&uri).map(|path| canonical(&path));
-        if is_manifest(&uri) {
+        if is_toml(&uri) {
             state.manifests.open(&self.client, &uri, path.as_ref());
         }
         let Belonging { manifest, project, .. } = self.belonging(&mut state, &uri);
         let manifest = Arc::new(manifest);
         let is_ladder = language_id == "ladder";
         let (notation, target) = decided(&uri, &text, &manifest, &state.snapshot.settings, is_ladder);
-        let document = match is_manifest(&uri) {
+        let document = match is_toml(&uri) {
             true => Document::unread(&text, notation, target),
             false => read(&text, notation, target),
         };
@@ -257,7 +258,7 @@ impl Workspace {
             None => document,
         };
         let snapshot = &state.snapshot;
-        if !is_manifest(&uri) {
+        if !is_toml(&uri) {
             let publisher = Publisher::start(state.this.clone(), &self.client, snapshot, before);
             state.publishers.insert(uri.clone(), publisher);
         }
@@ -293,7 +294,7 @@ impl Workspace {
         for change in params.content_changes {
             let edit = edit_of(&open.document, change, state.snapshot.manner.encoding);
             let (notation, target) = (open.document.notation(), open.document.target());
-            if is_manifest(&open.uri) {
+            if is_toml(&open.uri) {
                 open.document = Document::unread(&spliced(&open.document, &edit), notation, target);
                 continue;
             }
@@ -327,11 +328,13 @@ impl Workspace {
         let closed = Arc::make_mut(&mut state.snapshot.documents).remove(&uri);
         let Some(closed) = closed else { return };
         state.forget_path(&closed);
-        if is_manifest(&uri) {
+        if is_toml(&uri) {
             state.manifests.close(&self.client, &uri);
             drop(state);
-            // From now on the disk has the say.
-            self.reread_projects();
+            if is_manifest(&uri) {
+                // From now on the disk has the say.
+                self.reread_projects();
+            }
             return;
         }
         if let Some(publisher) = state.publishers.remove(&uri) {
@@ -501,7 +504,7 @@ impl State {
         let is_awaited = open.project.as_ref().is_some_and(|project| self.awaited.contains(project));
         let open = Arc::new(open);
         Arc::make_mut(&mut self.snapshot.documents).insert(open.uri.clone(), open.clone());
-        if is_manifest(&open.uri)
+        if is_toml(&open.uri)
             && let Some(workspace) = self.this.upgrade()
         {
             self.manifests.judge(&workspace.client, &open, self.snapshot.manner);
@@ -516,7 +519,7 @@ impl Open {
     /// Decides anew in which language and for which target the document is written, and reads it anew if that
     /// changed: what is typed into an empty file says what it is only after some lines.
     fn decide_again(&mut self, settings: &Settings) {
-        if is_manifest(&self.uri) {
+        if is_toml(&self.uri) {
             return;
         }
         let text = self.document.text();
@@ -560,6 +563,16 @@ fn read(text: &str, notation: Notation, target: &'static Target) -> Document {
 /// Whether a document is a manifest: its text is kept for the links in it, and it is no program.
 pub(super) fn is_manifest(uri: &Uri) -> bool {
     uri.path().as_str().rsplit('/').next() == Some(MANIFEST_NAME)
+}
+
+/// Whether a document has scenario tests.
+pub(super) fn is_suite(uri: &Uri) -> bool {
+    uri.path().as_str().to_ascii_lowercase().ends_with(SUITE_ENDING)
+}
+
+/// Whether a document is a manifest or has scenario tests: neither is a program.
+pub(super) fn is_toml(uri: &Uri) -> bool {
+    is_manifest(uri) || is_suite(uri)
 }
 
 /// The value, or nothing and a line in the log if making it panics.

@@ -138,6 +138,21 @@ pub fn program_files(folder: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(walk.files)
 }
 
+/// Whether the name is that of a file with scenario tests.
+pub fn is_suite_file(path: &Path) -> bool {
+    let name = path.file_name().map(|name| name.to_string_lossy().to_ascii_lowercase());
+    name.is_some_and(|name| name.ends_with(".test.toml"))
+}
+
+/// The files with scenario tests in `folder` and below, by name; what is hidden is passed over, and a search that has
+/// no end is ended.
+pub fn suite_files(folder: &Path) -> Vec<PathBuf> {
+    let mut walk = Walk { files: Vec::new(), nested: true, left: MOST_ENTRIES, wanted: is_suite_file };
+    // What was found before a folder that cannot be read stays.
+    let _ = walk.folder(folder, true);
+    walk.files
+}
+
 /// The folders with a manifest in `folder` and below, by name; what is hidden is passed over.
 pub fn projects_in(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();

@@ -9,7 +9,7 @@ pub use comments::{CommentsFile, decode};
 mod files;
 pub use files::{
     MANIFEST_NAME, MOST_FILE_BYTES, MOST_FILES, MOST_PROJECT_BYTES, Project, decide, is_program_file,
-    is_table_file, names_in, open_document, program_files, projects_in,
+    is_suite_file, is_table_file, names_in, open_document, program_files, projects_in, suite_files,
 };
 
 pub mod encoding;

@@ -244,6 +244,15 @@ impl Code {
         if self.target.is_fx() { self.target.limits.calls as usize } else { usize::MAX }
     }
 
+    /// The instructions that say what they see, by their numbers, with their places in the order of the code.
+    pub fn seen(&self) -> impl Iterator<Item = (u32, Place)> {
+        let numbers = self.ops.iter().filter_map(|op| match op {
+            Op::Seen { place, .. } | Op::SeenContact { place, .. } => Some(*place),
+            _ => None,
+        });
+        numbers.filter_map(|number| Some((number, *self.places.get(number as usize)?)))
+    }
+
     /// Where the op stands in the text.
     pub(super) fn place(&self, op: usize) -> Option<Place> {
         self.places.get(*self.op_places.get(op)? as usize).copied()

@@ -6,7 +6,7 @@ use super::interrupts::Interrupts;
 use super::row::{Cell, Row};
 use super::run::Run;
 use super::terminals::Terminals;
-use super::{Lanes, Memory, Slot, iec};
+use super::{Glimpse, Lanes, Memory, Slot, Variable, iec};
 use crate::target::{Device, DeviceKind, Fault, Outside};
 use crate::text::Message;
 use std::sync::Arc;
@@ -218,6 +218,14 @@ impl<L: Lanes> Machine<L> {
         self.terminals.output(cell).unwrap_or_else(|| self.memory.cell(cell))
     }
 
+    /// What is wired to an input, which the next scan will see; nothing for what is none.
+    pub fn wired(&self, variable: Variable) -> Option<L> {
+        match variable {
+            Variable::Relay(cell) => self.terminals.input(cell),
+            _ => None,
+        }
+    }
+
     /// The register, or the current value of the timer or counter, in a scenario.
     pub fn word(&self, device: Device, lane: usize) -> i64 {
         self.code.layout.slot(device).map_or(0, |slot| self.memory.word(slot, lane))
@@ -249,6 +257,11 @@ impl<L: Lanes> Machine<L> {
 
     /// The same; `watch` is told what each instruction sees, if the code says it, and ends the scan there with false.
     pub fn scan_watched(&mut self, now_ns: i64, watch: &mut impl FnMut(Sight<L>) -> bool) -> Outcome {
+        self.scan_inside(now_ns, &mut |glimpse| watch(glimpse.sight))
+    }
+
+    /// The same, and `watch` may look at the PLC as it is there.
+    pub fn scan_inside(&mut self, now_ns: i64, watch: &mut impl FnMut(Glimpse<'_, L>) -> bool) -> Outcome {
         self.scan_ns = if self.scans == 0 { 0 } else { now_ns - self.now_ns };
         self.now_ns = now_ns;
         self.scans += 1;

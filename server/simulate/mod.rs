@@ -58,14 +58,31 @@ mod run;
 mod machine;
 pub use machine::{Error, ErrorKind, Machine, Outcome, Sight};
 
+mod glimpse;
+pub use glimpse::{Caller, Glimpse};
+
 mod session;
 pub use session::{Session, Touch};
 
 mod variable;
 pub use variable::{Value, Variable};
 
+mod setting;
+pub use setting::Setting;
+
 mod trace;
 pub use trace::{Row as TraceRow, Trace, milliseconds};
+
+mod duration;
+pub use duration::duration;
+
+mod recorder;
+pub use recorder::{Change, Recorder, Signal, is_affordable};
+
+mod presets;
+pub use presets::{Counted, CountedPreset};
+mod why;
+pub use why::{Condition, Drivers, Inquiry, Reason};
 
 mod power_flow;
 pub use power_flow::{Energised, EnergisedKind, power_flow};

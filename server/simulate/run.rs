@@ -5,7 +5,7 @@ use super::interrupts::{self, Interrupts};
 use super::machine::{Error, Outcome};
 use super::row::{self, Row};
 use super::timing::{self, Moment};
-use super::{ErrorKind, Lanes, Machine, Sight, iec};
+use super::{ErrorKind, Glimpse, Lanes, Machine, Sight, iec};
 use crate::target::Fault;
 
 /// A scan that runs.
@@ -38,6 +38,10 @@ impl Run {
         is_renewed
     }
 
+    fn glimpse<'m, L>(&'m self, machine: &'m Machine<L>, sight: Sight<L>) -> Glimpse<'m, L> {
+        Glimpse { machine, sight, calls: &self.calls, routines: &self.routines }
+    }
+
     pub(super) fn error(&mut self, code: &Code, at: usize, kind: ErrorKind, lane: usize) {
         if self.outcome.errors.len() < Outcome::MOST_ERRORS {
             self.outcome.errors.push(Error { place: code.place(at), kind, lane });
@@ -51,7 +55,7 @@ impl<L: Lanes> Machine<L> {
         code: &Code,
         rows: &[Row],
         run: &mut Run,
-        watch: &mut impl FnMut(Sight<L>) -> bool,
+        watch: &mut impl FnMut(Glimpse<'_, L>) -> bool,
     ) {
         let mut at = 0;
         while let Some(op) = code.ops.get(at) {
@@ -68,7 +72,8 @@ impl<L: Lanes> Machine<L> {
                     continue;
                 }
                 Op::Seen { .. } | Op::SeenContact { .. } => {
-                    if !self.sight(*op).is_none_or(&mut *watch) {
+                    let sight = self.sight(*op);
+                    if !sight.is_none_or(|sight| watch(run.glimpse(self, sight))) {
                         run.outcome.is_broken_off = true;
                         return;
                     }

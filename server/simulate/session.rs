@@ -39,7 +39,8 @@ pub enum Touch {
 }
 
 impl Touch {
-    fn apply(&self, machine: &mut Machine<u8>) {
+    /// Does it.
+    pub fn apply(&self, machine: &mut Machine<u8>) {
         match *self {
             Touch::Set(device, on) => machine.set(device, if on { 0xFF } else { 0 }),
             Touch::SetWord(device, value) => machine.set_word(device, value),
@@ -215,6 +216,21 @@ impl Session {
         let begin = self.machine.scans();
         self.touches.clear();
         self.times.forget(begin);
+    }
+
+    /// The last scan up to `scan` whose state is kept, from which others are run again.
+    pub fn moment_of(&self, scan: u64) -> u64 {
+        self.moment_before(scan).map_or_else(|| self.first_scan(), Machine::scans)
+    }
+
+    /// Shows the PLC as it was after each scan from `first` to `last`, until `see` returns false. Gives whether the
+    /// first one is known.
+    pub fn walk(&self, first: u64, last: u64, mut see: impl FnMut(&Machine<u8>) -> bool) -> bool {
+        let Some(mut machine) = self.at(first.min(self.machine.scans())) else { return false };
+        if see(&machine) {
+            self.replay(&mut machine, last, see);
+        }
+        true
     }
 
     fn touches_before(&self, scan: u64) -> impl Iterator<Item = &Touch> {

@@ -74,6 +74,11 @@ impl<L: Lanes> Terminals<L> {
         self.inputs.get_mut(place(&self.x, cell)?)
     }
 
+    /// The same, to look at it.
+    pub(super) fn input(&self, cell: Cell) -> Option<L> {
+        self.inputs.get(place(&self.x, cell)?).copied()
+    }
+
     /// What is at the terminal of the output in a cell.
     pub(super) fn output(&self, cell: Cell) -> Option<L> {
         self.outputs.get(place(&self.y, cell)?).copied()

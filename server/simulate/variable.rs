@@ -39,8 +39,10 @@ pub enum Value {
     Real(f64),
     /// A duration, in nanoseconds.
     Time(i64),
-    /// A text; also a date as a literal, and a value of an enumerated type by its name.
+    /// A text, and a value of an enumerated type by its name.
     Text(SmolStr),
+    /// A date or a character as a literal.
+    Name(SmolStr),
 }
 
 impl Code {
@@ -146,7 +148,7 @@ impl Variable {
     /// The value as a variable of IEC 61131-3 takes it; nothing if it is none of its type.
     pub(super) fn datum(self, code: &Code, value: &Value) -> Option<Datum> {
         let kind = match (self, value) {
-            (Variable::Enumerated(_, enumeration), Value::Text(name)) => {
+            (Variable::Enumerated(_, enumeration), Value::Text(name) | Value::Name(name)) => {
                 return code.iec.value_named(enumeration, name).map(Datum::Whole);
             }
             (Variable::Enumerated(_, enumeration), Value::Number(number)) => {
@@ -171,13 +173,14 @@ fn value_of(datum: Datum, kind: ElementaryType) -> Value {
             Ok(number) => Value::Number(number),
             Err(_) => Value::Unsigned(number as u64),
         },
-        (datum, _) => Value::Text(spelled(&datum, kind)),
+        (Datum::Text(text), _) => Value::Text(text),
+        (datum, _) => Value::Name(spelled(&datum, kind)),
     }
 }
 
 impl Value {
     /// A value as people write it: `1`, `on`, `TRUE`, `-5`, `H1F`, `16#1F`, `1.5`, `T#2s`, `'text'`, `D#2024-01-31`,
-    /// the name of a value of an enumerated type.
+    /// `Colour#Red`.
     pub fn read(word: &str) -> Option<Value> {
         let word = word.trim();
         match word.to_ascii_lowercase().as_str() {
@@ -206,9 +209,8 @@ impl Value {
                 LiteralValue::Real(number) => Some(Value::Real(number)),
                 LiteralValue::Time(time) => Some(Value::Time(time)),
                 LiteralValue::Text | LiteralValue::WideText => characters_of(word).map(Value::Text),
-                _ => Some(Value::Text(word.into())),
+                _ => Some(Value::Name(word.into())),
             },
-            Operand::Variable => Some(Value::Text(word.into())),
             _ => None,
         }
     }
@@ -229,8 +231,10 @@ impl Value {
             Value::Real(number) if is_real => Datum::Real(*number),
             Value::Real(ms) if matches!(kind, Time | Ltime) => Datum::Whole((ms * 1e6).round() as i128),
             Value::Time(time) if matches!(kind, Time | Ltime) => Datum::Whole(i128::from(*time)),
-            Value::Text(text) if matches!(kind, String | Wstring) => Datum::Text(text.clone()),
-            Value::Text(text) => match Literal::read(text) {
+            Value::Text(text) | Value::Name(text) if matches!(kind, String | Wstring) => {
+                Datum::Text(text.clone())
+            }
+            Value::Text(text) | Value::Name(text) => match Literal::read(text) {
                 Ok(literal) => return Datum::of_literal(literal.value, kind),
                 Err(_) => return None,
             },
@@ -257,7 +261,7 @@ impl Value {
             // Milliseconds, as a whole number where they are one.
             Value::Time(time) if time % 1_000_000 == 0 => Json::from(time / 1_000_000),
             Value::Time(time) => Json::from(*time as f64 / 1e6),
-            Value::Text(text) => Json::from(text.as_str()),
+            Value::Text(text) | Value::Name(text) => Json::from(text.as_str()),
         }
     }
 
@@ -282,7 +286,8 @@ impl fmt::Display for Value {
             Value::Time(time) => {
                 f.write_str(&spelled(&Datum::Whole(i128::from(*time)), ElementaryType::Time))
             }
-            Value::Text(text) => f.write_str(text),
+            Value::Text(text) => write!(f, "'{}'", text.replace('$', "$$").replace('\'', "$'")),
+            Value::Name(name) => f.write_str(name),
         }
     }
 }

@@ -205,6 +205,8 @@ macro_rules! catalogue_in {
                 include_str!(concat!("messages/", $tag, "/sense.toml")),
                 include_str!(concat!("messages/", $tag, "/proof.toml")),
                 include_str!(concat!("messages/", $tag, "/simulate.toml")),
+                include_str!(concat!("messages/", $tag, "/scenario.toml")),
+                include_str!(concat!("messages/", $tag, "/debug.toml")),
                 include_str!(concat!("messages/", $tag, "/ide.toml")),
                 include_str!(concat!("messages/", $tag, "/devices.toml")),
                 include_str!(concat!("messages/", $tag, "/cli.toml")),

@@ -159,6 +159,8 @@ fn judge(
         Comparison::Different { .. } | Comparison::Unlike => {
             (Certificate::Undecided, Some("translate.different"))
         }
-        Comparison::Undecided => (Certificate::Undecided, Some("translate.undecided")),
+        Comparison::Undecided | Comparison::Doubtful | Comparison::Open(_) => {
+            (Certificate::Undecided, Some("translate.undecided"))
+        }
     }
 }

@@ -1,13 +1,16 @@
 //! The scan in which two programs differ, made of the values for which their formulas do, and confirmed by running both
 //! programs with them.
 
-use crate::logic::{Atom, Formulas, Moment, Path, Place, Scan, State, Step, evaluate};
-use crate::target::iec::{ElementaryType, LiteralValue};
-use crate::target::{Device, DirectAddress, Model, Operand};
+use crate::logic::{
+    Atom, Bounds, Formulas, Moment, Path, Place, Real, Scan, State, Step, WIDE, evaluate, real_at,
+};
+use crate::target::iec::ElementaryType;
+use crate::target::{Device, DirectAddress, Model, Operand, Width};
 use crate::text::Span;
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 
 /// A scan in which two programs differ.
 #[derive(Clone, PartialEq, Debug)]
@@ -31,6 +34,22 @@ pub enum Value {
     Bit(bool),
     /// Of a word.
     Word(i64),
+    /// Of a real number.
+    Real(f64),
+    /// Of a time, in nanoseconds.
+    Time(i64),
+}
+
+impl fmt::Display for Value {
+    /// As a literal: `true`, `5`, `1.5`, `T#1500ms`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Value::Bit(value) => write!(f, "{value}"),
+            Value::Word(value) => write!(f, "{value}"),
+            Value::Real(value) => write!(f, "{value:?}"),
+            Value::Time(nanoseconds) => write!(f, "T#{}ms", nanoseconds / 1_000_000),
+        }
+    }
 }
 
 /// Inputs and states by the names that `paths` have for them, and bits as they were before, as a counterexample has
@@ -38,15 +57,20 @@ pub enum Value {
 pub(super) fn inputs(
     state: &State,
     paths: [&[&Path]; 2],
+    type_of: &dyn Fn(&str) -> Option<ElementaryType>,
 ) -> (BTreeMap<String, Value>, BTreeMap<String, bool>) {
     let names = names_of_addresses(paths);
     let named = |key: &str| names.get(key).map_or_else(|| key.to_string(), SmolStr::to_string);
     let bits = state.bits.iter().map(|(key, value)| (named(key), Value::Bit(*value)));
-    let is_variable = |key: &str| integer(key).is_none() && !key.contains('#');
-    let words = state.words.iter().filter(|(key, _)| is_variable(key));
-    let words = words.map(|(key, value)| (named(key.trim_start_matches(WIDE)), Value::Word(*value)));
+    let words = state.words.iter().filter(|(key, _)| !is_literal(key));
+    let words = words.map(|(key, value)| {
+        let key = key.trim_start_matches(WIDE);
+        let is_time = matches!(type_of(key), Some(ElementaryType::Time | ElementaryType::Ltime));
+        (named(key), if is_time { Value::Time(*value) } else { Value::Word(*value) })
+    });
+    let reals = state.reals.iter().map(|(key, real)| (named(key), Value::Real(real.value)));
     let before = state.before.iter().map(|(key, value)| (named(key), *value));
-    (bits.chain(words).collect(), before.collect())
+    (bits.chain(words).chain(reals).collect(), before.collect())
 }
 
 /// The variables that programs have at addresses, by the keys of these: the first name of each, unless another place
@@ -136,13 +160,9 @@ fn differing(scans: &[Scan<'_>; 2], place: &Place) -> Option<[bool; 2]> {
     (values[0] != values[1]).then_some(values)
 }
 
-/// What 32-bit values have before their names.
-const WIDE: &str = "D ";
-
 /// The state of the PLC in which atoms have these values; nothing if there is none, as words are numbers.
 pub(super) fn state(formulas: &Formulas, values: &BTreeMap<u32, bool>) -> Option<State> {
     let mut state = State::default();
-    let mut bounds = Bounds::default();
     let mut idle = Vec::new();
     for (atom, value) in values {
         match formulas.atom_at(*atom) {
@@ -161,15 +181,9 @@ pub(super) fn state(formulas: &Formulas, values: &BTreeMap<u32, bool>) -> Option
             }
             Atom::Edge { of, value: driven, rising } => idle.push((of, *driven, *rising)),
             Atom::Behind(event) => state.left_behind.entry(*event).or_default().passes = *value,
-            Atom::Rail => {}
-            Atom::Reaches { word, number } => match value {
-                true => bounds.at_least(Some(word), None, *number),
-                false => bounds.at_least(None, Some(word), 1 - *number),
-            },
-            Atom::AtLeast { word, other } => match value {
-                true => bounds.at_least(Some(word), Some(other), 0),
-                false => bounds.at_least(Some(other), Some(word), 1),
-            },
+            // What a PLC makes of it, nobody knows.
+            Atom::NoNumber(_) if *value => return None,
+            Atom::NoNumber(_) | Atom::Rail | Atom::Reaches { .. } | Atom::AtLeast { .. } => {}
         }
     }
     for (of, driven, rising) in idle {
@@ -183,13 +197,19 @@ pub(super) fn state(formulas: &Formulas, values: &BTreeMap<u32, bool>) -> Option
         };
         state.before.entry(of.name.clone()).or_insert(now);
     }
-    for (word, number) in bounds.solved()? {
-        match event(formulas, &word) {
-            None => {
+    for (word, number) in Bounds::of(formulas, values, true).solved()? {
+        let real = formulas.type_of(&word.name).and_then(|kind| Some((real_at(number, kind)?, kind)));
+        match (event(formulas, &word), real) {
+            (None, Some((value, kind))) => {
+                let single = kind == ElementaryType::Real;
+                state.reals.insert(word.name, Real { value, single });
+            }
+            (None, None) => {
                 spread(&mut state, &word.name, number);
                 state.words.insert(word.name, number);
             }
-            Some(event) => {
+            (Some(_), Some(_)) => return None,
+            (Some(event), None) => {
                 state.left_behind.entry(event).or_default().words.insert(word.name, number);
             }
         }
@@ -203,7 +223,7 @@ pub(super) fn state(formulas: &Formulas, values: &BTreeMap<u32, bool>) -> Option
             state.words.entry(name.clone()).or_insert(*value);
         }
     }
-    (!has_halves(&state)).then_some(state)
+    (!has_halves(&state) && has_its_bits(&state)).then_some(state)
 }
 
 /// Whether a 32-bit value is there beside its own halves, or words of several sizes in one area of memory, of which
@@ -234,6 +254,44 @@ fn has_halves(state: &State) -> bool {
     })
 }
 
+/// Whether bits that are parts of words are what the numbers of these say, as far as both are known, and no bit lies at
+/// an address where a word may lie, too: which bits are whose, the PLC decides.
+fn has_its_bits(state: &State) -> bool {
+    let is_known = |key: &str| match Operand::read(key, Model::Iec) {
+        Operand::Direct(bit) => !state.words.keys().any(|word| match Operand::read(word, Model::Iec) {
+            Operand::Direct(word) => may_hold(word, bit),
+            _ => false,
+        }),
+        _ => true,
+    };
+    state.bits.iter().all(|(key, value)| match key.rsplit_once('.') {
+        Some((word, number)) if state.words.contains_key(word) => {
+            let digits = number.trim_start_matches(['%', 'x']);
+            // Of the FX family in hexadecimal digits.
+            let radix = if key.starts_with(|c: char| c.is_ascii_uppercase()) { 16 } else { 10 };
+            let bit = u32::from_str_radix(digits, radix).ok().filter(|bit| *bit < 63);
+            bit.is_some_and(|bit| (state.words[word] >> bit & 1 == 1) == *value)
+        }
+        _ => is_known(key),
+    })
+}
+
+/// Whether a bit may be a part of a word, whether words are counted in words or in bytes.
+fn may_hold(word: DirectAddress, bit: DirectAddress) -> bool {
+    let bytes = match word.width {
+        Width::Bit => return false,
+        Width::Byte => 1,
+        Width::Word => 2,
+        Width::Double => 4,
+        Width::Long => 8,
+    };
+    let ([Some(word_at), None, ..], [Some(byte), Some(_), None, None]) = (word.path, bit.path) else {
+        return word.location == bit.location;
+    };
+    let holds = |first: u32| (first..first.saturating_add(bytes)).contains(&byte);
+    word.location == bit.location && (holds(word_at) || holds(word_at.saturating_mul(bytes)))
+}
+
 /// The event after which a device is read; nothing if that is its value at the start, or what was driven tells it.
 fn event(formulas: &Formulas, of: &Moment) -> Option<u32> {
     match formulas.step_at(of.since)? {
@@ -259,61 +317,7 @@ fn group(name: &str) -> Option<impl Iterator<Item = SmolStr> + use<>> {
     Some((0..u32::from(digits) * 4).map(device))
 }
 
-/// The whole number that a literal of IEC 61131-3 is.
-fn integer(name: &str) -> Option<i64> {
-    let Operand::Literal(literal) = Operand::read(name, Model::Iec) else { return None };
-    let LiteralValue::Integer(value) = literal.value else { return None };
-    i64::try_from(value).ok()
-}
-
-/// Words that are at least so much larger than others.
-#[derive(Default)]
-struct Bounds {
-    /// The number of each word; that of zero is 0.
-    numbers: FxHashMap<Moment, usize>,
-    words: Vec<Moment>,
-    /// The larger one, the smaller one, and by how much.
-    least: Vec<(usize, usize, i64)>,
-}
-
-impl Bounds {
-    /// `left` is at least `more` more than `right`, where nothing is zero.
-    fn at_least(&mut self, left: Option<&Moment>, right: Option<&Moment>, more: i64) {
-        let [left, right] = [left, right].map(|word| word.map_or(0, |word| self.number(word)));
-        self.least.push((left, right, more));
-    }
-
-    fn number(&mut self, word: &Moment) -> usize {
-        if let Some(known) = self.numbers.get(word) {
-            return *known;
-        }
-        self.words.push(word.clone());
-        let number = self.words.len();
-        self.numbers.insert(word.clone(), number);
-        if let Some(value) = integer(&word.name) {
-            self.least.extend([(number, 0, value), (0, number, value.saturating_neg())]);
-        }
-        number
-    }
-
-    /// The least numbers that fit, by the method of Bellman and Ford; nothing if there are none.
-    fn solved(&self) -> Option<Vec<(Moment, i64)>> {
-        let mut values = vec![0_i64; self.words.len() + 1];
-        for _ in 0..=values.len() {
-            let mut is_done = true;
-            for (left, right, more) in &self.least {
-                let least = values[*right].saturating_add(*more);
-                if values[*left] < least {
-                    values[*left] = least;
-                    is_done = false;
-                }
-            }
-            if is_done {
-                let zero = values[0];
-                let words = self.words.iter().cloned().zip(&values[1..]);
-                return Some(words.map(|(word, value)| (word, value.saturating_sub(zero))).collect());
-            }
-        }
-        None
-    }
+/// Whether a word of IEC 61131-3 is a literal.
+fn is_literal(name: &str) -> bool {
+    matches!(Operand::read(name, Model::Iec), Operand::Literal(_))
 }

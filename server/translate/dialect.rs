@@ -259,8 +259,11 @@ pub(super) fn part_calculations(program: &mut Program) {
 
 /// Takes out of `program`, which is one of IEC 61131-3, the rungs that mean another thing than the same words would on
 /// the FX family: types decide how numbers compare and divide.
-pub(super) fn refuse_other_types(document: &Document, program: &mut Program) {
-    for source in &mut program.rungs {
+pub(super) fn refuse_other_types(document: &Document, sources: &mut [Source]) {
+    if document.target().is_fx() {
+        return;
+    }
+    for source in sources {
         let is_other = |path: &Path| !to_devices::is_of_family(path, document.scopes(), source.pou);
         if matches!(&source.rung.path, Ok(Some(path)) if is_other(path)) {
             source.rung.path = Err(Refusal::NoCounterpart);

@@ -18,6 +18,10 @@ pub use counterexample::{Counterexample, Value};
 
 mod declared;
 
+mod paired;
+
+mod reached;
+
 mod units;
 
 mod types;
@@ -41,8 +45,9 @@ pub mod to_boolean;
 
 pub mod from_boolean;
 
-use crate::document::Document;
+use crate::document::{Document, Notation};
 use crate::ladder::Style;
+use crate::logic::{Path, Rung};
 use crate::target::Model;
 use crate::text::{Message, Span};
 use smol_str::SmolStr;
@@ -176,6 +181,37 @@ impl<'d> Original<'d> {
         is_cancelled: &dyn Fn() -> bool,
     ) -> Option<Translation> {
         written((self.document, self.is_whole), self.program.clone(), to, options, is_cancelled)
+    }
+}
+
+/// A rung of a document as it is written there if it does what `path` says; its comments and labels are left out.
+///
+/// # Errors
+/// With the reason why the form of the document has no words for it.
+pub fn rewritten(document: &Document, source: &Source, path: Path) -> Result<String, Message> {
+    let to = match document.notation() {
+        Notation::Ladder => To::Ladder,
+        Notation::FxIl => To::Fx,
+        Notation::IecIl => To::Iec,
+    };
+    let rung = Rung {
+        labels: Vec::new(),
+        network: None,
+        comments: Vec::new(),
+        path: Ok(Some(path)),
+        ..source.rung.clone()
+    };
+    let rungs = vec![Source { rung, declarations: String::new(), ..source.clone() }];
+    let program = source::Program { rungs, tail: String::new() };
+    let options = Options { is_whole: false, ..Options::default() };
+    let written = page::write(document, &program, (to, document.target()), &options, false, &|| false);
+    let no_words = || Message::new("translate.no-drawing");
+    let (translation, helpers) = written.ok_or_else(no_words)?;
+    let rung = translation.rungs.into_iter().next().ok_or_else(no_words)?;
+    match rung.note {
+        Some(reason) => Err(reason),
+        None if !helpers.is_empty() => Err(no_words()),
+        None => Ok(translation.text.get(rung.result).unwrap_or_default().to_string()),
     }
 }
 

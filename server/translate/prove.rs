@@ -4,19 +4,23 @@
 //! another way, stretches between jumps, labels and the like are compared by what comes of them.
 
 use super::counterexample::{self, Counterexample};
+use super::paired::Paired;
 use super::source::{self, Source};
-use super::{To, declared, dialect, types, units};
-use crate::document::{DeclaredType, Document, Scopes};
-use crate::il::iec::SectionKind;
+use super::{To, declared, dialect, reached, types, units};
+use crate::document::{DeclaredType, Document, Scopes, Tree};
+use crate::il::iec::{SectionKind, words_of_body};
+use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{
-    Action, Comparison, Deed, Effort, Path, Place, State, Storage, Term, compare, compare_outcome,
+    Action, Comparison, Deed, Effort, Path, Place, State, Storage, Term, Test, compare, compare_outcome,
     is_helper_name, may_drive, shown, touches_bits,
 };
+use crate::target::iec::ElementaryType;
 use crate::target::{Flow, Model, Target};
 use crate::text::{Message, Span, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 use std::borrow::Cow;
+use std::cell::RefCell;
 
 /// What is known of two programs.
 #[derive(Clone, PartialEq, Debug)]
@@ -51,7 +55,7 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
     let [left, right] =
         [(left, 0), (right, 1)].map(|(own, side)| placed.get(side).and_then(Option::as_ref).unwrap_or(own));
     let is_mixed = left.target().is_fx() != right.target().is_fx();
-    let sources = [left, right].map(|document| {
+    let mut sources = [left, right].map(|document| {
         let mut program = source::program(document, None);
         match document.target().is_fx() {
             _ if !is_mixed => {}
@@ -59,18 +63,20 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
                 dialect::convert(document, (To::Iec, Target::of(Model::Iec)), &mut program, true);
                 dialect::part_calculations(&mut program);
             }
-            false => dialect::refuse_other_types(document, &mut program),
+            false => {}
         }
         program.rungs
     });
-    let stretches = [(left, &sources[0]), (right, &sources[1])].map(|(document, sources)| {
-        let unit = |pou: usize| document.scopes().pous.get(pou).map_or("", |pou| pou.name.as_str());
-        stretches(sources, unit)
-    });
-    if let Some((name, at)) = declared::difference(left, right) {
-        let reason = Message::new("prove.declared").with("name", name);
-        return Proof::Undecided { reason, at: at.map(Some) };
+    let paired = Paired::of([left, right]);
+    let unlike = declared::difference([left, right], [&sources[0], &sources[1]], &paired)
+        .or_else(|| declared::other_type([left, right], [&sources[0], &sources[1]]));
+    if let Some((reason, at)) = unlike {
+        return Proof::Undecided { reason, at };
     }
+    for (document, sources) in [left, right].into_iter().zip(&mut sources).filter(|_| is_mixed) {
+        dialect::refuse_other_types(document, sources);
+    }
+    let stretches = [0, 1].map(|side| stretches(&sources[side]));
     if let Some((reason, at)) = units::unlike([left, right], [&sources[0], &sources[1]]) {
         return Proof::Undecided { reason, at };
     }
@@ -82,12 +88,20 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
         before: [Vec::new(), Vec::new()],
         next: [0, 0],
         may_be_off,
-        helpers: if is_mixed { helpers([left, right]) } else { FxHashSet::default() },
+        helpers: helpers([left, right], [&sources[0], &sources[1]]),
         is_reordered: false,
         is_mixed,
         scopes: [left.scopes(), right.scopes()],
         effort,
+        paired,
     };
+    let starts = [0, 1].map(|side| sources[side].first());
+    if let [Some(left), Some(right)] = starts
+        && !prover.paired.are(left.pou, right.pou)
+    {
+        let at = [left, right].map(|source| Some(source.span()));
+        return Proof::Undecided { reason: Message::new("prove.structure"), at };
+    }
     let [left, right] = &stretches;
     let outcome = left.iter().zip(right).try_for_each(|(left, right)| prover.stretches(left, right));
     match outcome {
@@ -102,8 +116,9 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
 }
 
 /// The variables, by their keys, that keep the power of a rung and that nobody outside of their program unit knows. A
-/// program of the FX family has nothing that stands for them.
-fn helpers(documents: [&Document; 2]) -> FxHashSet<SmolStr> {
+/// program of the FX family has nothing that stands for them; in one of IEC 61131-3 they are only looked at behind the
+/// store that gives them their value, so that no scan knows what they were in the one before.
+fn helpers(documents: [&Document; 2], sources: [&[Source]; 2]) -> FxHashSet<SmolStr> {
     let mut helpers = FxHashSet::default();
     let mut known = FxHashSet::default();
     for scopes in documents.map(Document::scopes) {
@@ -114,8 +129,58 @@ fn helpers(documents: [&Document; 2]) -> FxHashSet<SmolStr> {
             kind.insert(folded(&variable.name));
         }
     }
+    if !documents.iter().any(|document| document.target().is_fx()) {
+        sources.into_iter().for_each(|sources| known.extend(remembered(&helpers, sources)));
+    }
     helpers.retain(|name| !known.contains(name));
     helpers
+}
+
+/// Those of `helpers` that a program looks at without having stored to them before, or uses for something else.
+fn remembered(helpers: &FxHashSet<SmolStr>, sources: &[Source]) -> FxHashSet<SmolStr> {
+    let found = RefCell::new(FxHashSet::default());
+    let stored: RefCell<FxHashSet<SmolStr>> = RefCell::default();
+    let looks_at = |term: &Term| {
+        let key = term.key();
+        if helpers.contains(&key) && !stored.borrow().contains(&key) {
+            found.borrow_mut().insert(key);
+        }
+    };
+    let mut unit = None;
+    for source in sources {
+        if source.pou != unit || !source.rung.labels.is_empty() || source.rung.path.is_err() {
+            stored.borrow_mut().clear();
+            unit = source.pou;
+        }
+        match &source.rung.path {
+            Ok(path) => path.iter().for_each(|path| {
+                path.visit(
+                    &mut |action| match (&action.deed, &action.terms[..]) {
+                        (Deed::Coil(CoilKind::Plain | CoilKind::Negated), [term]) => {
+                            stored.borrow_mut().insert(term.key());
+                        }
+                        _ => action.terms.iter().for_each(looks_at),
+                    },
+                    &mut |condition| {
+                        for contact in condition.contacts() {
+                            match contact.test {
+                                Test::Bit(ContactKind::NormallyOpen | ContactKind::NormallyClosed) => {
+                                    contact.terms.iter().for_each(looks_at);
+                                }
+                                // What an edge remembers of it goes on to the next scan.
+                                _ => found.borrow_mut().extend(contact.terms.iter().map(Term::key)),
+                            }
+                        }
+                    },
+                );
+            }),
+            Err(_) => {
+                let words = words_of(source);
+                found.borrow_mut().extend(words.split(' ').map(SmolStr::new));
+            }
+        }
+    }
+    found.into_inner()
 }
 
 /// Whether a rung begins a part of the program in which there may be no power at the left rail.
@@ -137,11 +202,11 @@ struct Stretch<'s> {
 
 enum End<'s> {
     Label(Span, &'s str),
-    /// The program unit that begins, by its name.
-    Unit(Span, &'s str),
+    /// The program unit that begins, by its number.
+    Unit(Span, Option<usize>),
     Rung(&'s Source, &'s Path),
     /// A rung that cannot be read, by its words.
-    Unread(&'s Source, Vec<&'s str>),
+    Unread(&'s Source, SmolStr),
 }
 
 impl Stretch<'_> {
@@ -168,7 +233,7 @@ impl End<'_> {
 }
 
 /// The stretches of a program. The END at its end is left out: a drawing may go without.
-fn stretches<'s>(sources: &'s [Source], unit: impl Fn(usize) -> &'s str) -> Vec<Stretch<'s>> {
+fn stretches(sources: &[Source]) -> Vec<Stretch<'_>> {
     let mut stretches = Vec::new();
     let mut open = Stretch::default();
     let mut pou = sources.first().and_then(|source| source.pou);
@@ -178,7 +243,7 @@ fn stretches<'s>(sources: &'s [Source], unit: impl Fn(usize) -> &'s str) -> Vec<
         is_left &= source.pou == pou && source.rung.labels.is_empty();
         if source.pou != pou {
             pou = source.pou;
-            open.end = Some(End::Unit(source.span(), pou.map_or("", &unit)));
+            open.end = Some(End::Unit(source.span(), pou));
             stretches.push(std::mem::take(&mut open));
         }
         for label in &source.rung.labels {
@@ -197,8 +262,7 @@ fn stretches<'s>(sources: &'s [Source], unit: impl Fn(usize) -> &'s str) -> Vec<
             }
             Ok(Some(path)) => open.rungs.push((source, path)),
             Err(_) => {
-                let text = source.rung.span.of(source.chunk.text());
-                open.end = Some(End::Unread(source, text.split_whitespace().collect()));
+                open.end = Some(End::Unread(source, words_of(source)));
                 stretches.push(std::mem::take(&mut open));
             }
         }
@@ -210,6 +274,15 @@ fn stretches<'s>(sources: &'s [Source], unit: impl Fn(usize) -> &'s str) -> Vec<
         _ => stretches.push(open),
     }
     stretches
+}
+
+/// The words of a rung in one spelling, comments aside.
+fn words_of(source: &Source) -> SmolStr {
+    let (text, span) = (source.chunk.text(), source.rung.span);
+    match source.chunk.tree() {
+        Tree::Iec(_) => words_of_body(text, span),
+        _ => span.of(text).split_whitespace().collect::<Vec<_>>().join(" ").into(),
+    }
 }
 
 /// Whether the rungs behind it are not executed if it is without condition.
@@ -234,6 +307,8 @@ struct Prover<'s> {
     /// What either program declares.
     scopes: [&'s Scopes; 2],
     effort: Effort,
+    /// Which units are the same.
+    paired: Paired,
 }
 
 impl<'s> Prover<'s> {
@@ -241,8 +316,8 @@ impl<'s> Prover<'s> {
         // What ends at different things does not start at the same ones, either.
         let is_alike = match (&left.end, &right.end) {
             (None, None) | (Some(End::Rung(..)), Some(End::Rung(..))) => true,
-            (Some(End::Label(_, left)), Some(End::Label(_, right)))
-            | (Some(End::Unit(_, left)), Some(End::Unit(_, right))) => left.eq_ignore_ascii_case(right),
+            (Some(End::Label(_, left)), Some(End::Label(_, right))) => left.eq_ignore_ascii_case(right),
+            (Some(End::Unit(_, left)), Some(End::Unit(_, right))) => self.paired.are(*left, *right),
             (Some(End::Unread(_, left)), Some(End::Unread(_, right))) => left == right,
             _ => false,
         };
@@ -324,6 +399,10 @@ impl<'s> Prover<'s> {
             },
             Comparison::Same { .. } => Ok(()),
             Comparison::Undecided => undecided("prove.undecided"),
+            Comparison::Doubtful => undecided("prove.unconfirmed"),
+            Comparison::Open(what) => {
+                Err(Proof::Undecided { reason: Message::new("prove.open").with("what", what), at })
+            }
             Comparison::Unlike => undecided("prove.unlike"),
             Comparison::Different { place: Place::Bit(key), .. } if self.is_driven_behind(sides, &key) => {
                 self.beyond(sides).map_or_else(|| undecided("prove.driven-again"), Err)
@@ -408,18 +487,31 @@ impl Prover<'_> {
         paths: [&[&Path]; 2],
         sides: [Rungs<'_, '_>; 2],
     ) -> Option<Proof> {
-        let state = state.filter(|state| self.is_possible(state, sides))?;
+        let types = self.types(sides);
+        let type_of = |key: &str| types.get(key).copied();
+        let state = state.filter(|state| counterexample::is_possible(state, &type_of))?;
         if matches!(place, Place::Event(_)) && !self.lasts(&what) {
             return None;
         }
         let (state, values) = counterexample::confirmed_near(state, paths, &place)?;
+        let units = [0, 1].map(|side| self.unit_around(side, sides[side]));
+        reached::is_reached(units, &state, &place).then_some(())?;
         let at = sides.map(|side| rung_of(side, &what));
-        let (inputs, before) = counterexample::inputs(&state, paths);
+        let (inputs, before) = counterexample::inputs(&state, paths, &type_of);
         Some(Proof::Different(Box::new(Counterexample { inputs, before, what, sides: values, at })))
     }
 
-    /// Whether the numbers of a state are those of the types that variables have in the units of `sides`.
-    fn is_possible(&self, state: &State, sides: [Rungs<'_, '_>; 2]) -> bool {
+    /// The rungs around those of a side that are executed in one scan.
+    fn unit_around(&self, side: usize, rungs: Rungs<'_, '_>) -> reached::Unit<'_> {
+        let all = self.all[side];
+        let next = self.next[side].min(all.len());
+        let first = rungs.first().map(|(first, _)| behind(all, first.span()) - 1);
+        let end = rungs.last().map_or(next, |(last, _)| behind(all, last.span()));
+        reached::Unit::around(all, first.unwrap_or(next), end)
+    }
+
+    /// The types that variables have in the units of `sides`, by their keys.
+    fn types(&self, sides: [Rungs<'_, '_>; 2]) -> FxHashMap<SmolStr, ElementaryType> {
         let mut types = FxHashMap::default();
         for ((all, scopes), side) in self.all.iter().zip(self.scopes).zip(sides) {
             let unit = side.first().map(|(source, _)| source.pou);
@@ -431,7 +523,7 @@ impl Prover<'_> {
                 }
             }
         }
-        counterexample::is_possible(state, &|key| types.get(key).copied())
+        types
     }
 
     /// Whether what an action does is still there when the scan ends, as far as one can see: nothing else writes what
@@ -473,7 +565,7 @@ impl Prover<'_> {
             };
             behind.any(|source| match &source.rung.path {
                 Ok(path) => path.iter().flat_map(Path::actions).any(|action| drives(source, action)),
-                Err(_) => source.rung.span.of(source.chunk.text()).contains(key),
+                Err(_) => may_name(source, key),
             })
         })
     }
@@ -496,6 +588,15 @@ impl Prover<'_> {
             _ => true,
         }
     }
+}
+
+/// Whether a rung that cannot be read may drive the variable with this key: it has the name; or a device of the kind,
+/// among which may be groups and the first of a row; or it has any name, if the variable lies at an address.
+fn may_name(source: &Source, key: &str) -> bool {
+    let (text, root) = (folded(source.text()), folded(key.split(['.', '[', '^']).next().unwrap_or(key)));
+    let is_device = key.starts_with(|letter: char| letter.is_ascii_uppercase());
+    let name = root.trim_end_matches(|digit: char| digit.is_ascii_digit());
+    key.starts_with('%') || text.contains(if is_device { name } else { &root })
 }
 
 /// Rungs with their paths.

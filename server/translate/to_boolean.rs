@@ -1,9 +1,13 @@
 //! Writes a path of power as equations, one for each output.
 
 use crate::ladder::{CoilKind, ContactKind};
-use crate::logic::{Action, Contact, Conversion, Deed, Drive, Expression, Gate, Path, Test};
+use crate::logic::{
+    Action, Comparison, Contact, Conversion, Deed, Drive, Expression, Formulas, Gate, Path, Term, Test,
+    compare,
+};
 use crate::text::Message;
 use smol_str::format_smolstr;
+use std::borrow::Cow;
 
 /// How equations are written.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -17,10 +21,119 @@ pub enum Notation {
 
 /// The equations of `path` in the order of execution, one a line, or why it has none.
 pub fn equations(path: &Path, notation: Notation) -> Result<Vec<String>, Message> {
-    let mut equations = Vec::new();
     let writer = Writer { notation };
-    writer.path(path, None, &mut equations)?;
-    Ok(equations)
+    let equations = parted(path)?.into_iter().map(|(power, action)| match power {
+        Some(power) => Ok(format!("{} = {}", writer.left(&action), writer.sum(&power))),
+        None if action.deed.stands_alone() => Ok(writer.left(&action)),
+        None => Err(Message::new("translate.no-condition")),
+    });
+    equations.collect()
+}
+
+/// What is driven, in the order of execution, each with the whole condition.
+type Parts = Vec<(Option<Expression>, Action)>;
+
+/// The parts of `path`. In a rung the power of all outputs is that before the first of them; an equation is looked at
+/// in its turn. So where an output changes what those behind it are driven by, these go on from it: `Y0 = X0*[Y0]` and
+/// `Y1 = Y0`.
+fn parted(path: &Path) -> Result<Parts, Message> {
+    let part = |goes_on: bool| {
+        let mut parts = Parter { goes_on, changed: Vec::new(), parts: Vec::new() };
+        parts.path(path, None).map(|()| parts)
+    };
+    let plain = part(false)?;
+    if !plain.reads_changed() || is_same(path, &plain.parts) {
+        return Ok(plain.parts);
+    }
+    Ok(part(true)?.parts)
+}
+
+/// Whether parts one after the other do what the path does.
+fn is_same(path: &Path, parts: &Parts) -> bool {
+    let parts = parts.iter().map(|(power, action)| Path {
+        gates: power.iter().cloned().map(Gate::Pass).collect(),
+        drives: vec![Drive::Action(action.clone())],
+    });
+    let parts: Vec<Path> = parts.collect();
+    let parts: Vec<&Path> = parts.iter().collect();
+    matches!(compare(&[path], &parts, &mut Formulas::default()), Comparison::Same { .. })
+}
+
+struct Parter {
+    /// Whether conditions that have changed are taken from an output that they drove.
+    goes_on: bool,
+    /// What was driven so far.
+    changed: Vec<Term>,
+    parts: Parts,
+}
+
+impl Parter {
+    fn path(&mut self, path: &Path, power: Option<&Expression>) -> Result<(), Message> {
+        let power = Gate::condition(&path.gates, power.cloned()).map_err(|gate| match gate {
+            Gate::Through(action) if action.runs_unit() => lack_of(action),
+            Gate::Through(_) => Message::new("translate.not-boolean"),
+            _ => Message::new("translate.no-condition"),
+        })?;
+        // The output that is what the power was.
+        let mut holder: Option<Contact> = None;
+        for drive in &path.drives {
+            let is_other = |power: &Expression| self.goes_on && self.has_changed(power, self.changed.len());
+            let now = match &holder {
+                Some(contact) if power.as_ref().is_some_and(is_other) => {
+                    Some(Expression::Contact(contact.clone()))
+                }
+                _ => power.clone(),
+            };
+            let before = self.changed.len();
+            let mut held = None;
+            match drive {
+                Drive::Path(path) => self.path(path, now.as_ref())?,
+                Drive::Action(action) if action.runs_unit() => return Err(lack_of(action)),
+                // A word of an equation stands for itself.
+                Drive::Action(action) if is_converted(action) => {
+                    return Err(Message::new("translate.not-boolean"));
+                }
+                Drive::Action(action) => {
+                    self.parts.push((now, action.clone()));
+                    self.changed.extend(action.changes().into_iter().map(Cow::into_owned));
+                    held = holding(action);
+                }
+            }
+            let is_gone = |contact: &Contact| self.changed[before..].contains(&contact.terms[0]);
+            holder = held.or(holder.filter(|contact| !is_gone(contact)));
+        }
+        Ok(())
+    }
+
+    /// Whether a condition reads what was changed by then.
+    fn has_changed(&self, condition: &Expression, by_then: usize) -> bool {
+        let changed = &self.changed[..by_then.min(self.changed.len())];
+        let reads = |term: &Term| {
+            changed.iter().any(|own| {
+                let kind = |term: &Term| term.operand.device().map(|device| device.kind);
+                own == term || own.may_cover(term) || !term.is_lone() && kind(own) == kind(term)
+            })
+        };
+        condition.contacts().into_iter().any(|contact| contact.terms.iter().any(reads))
+    }
+
+    /// Whether some condition reads what any output changes.
+    fn reads_changed(&self) -> bool {
+        let conditions = self.parts.iter().skip(1).filter_map(|(power, _)| power.as_ref());
+        conditions.into_iter().any(|power| self.has_changed(power, self.changed.len()))
+    }
+}
+
+/// The contact that conducts as the power of this output did, if it has one.
+fn holding(action: &Action) -> Option<Contact> {
+    let kind = match action.deed {
+        Deed::Coil(CoilKind::Plain) => ContactKind::NormallyOpen,
+        Deed::Coil(CoilKind::Negated) => ContactKind::NormallyClosed,
+        _ => return None,
+    };
+    let [term] = &action.terms[..] else { return None };
+    let contact = Contact { test: Test::Bit(kind), terms: vec![term.clone()], span: term.span };
+    term.is_lone().then_some(contact)
 }
 
 struct Writer {
@@ -28,35 +141,6 @@ struct Writer {
 }
 
 impl Writer {
-    fn path(
-        &self,
-        path: &Path,
-        power: Option<&Expression>,
-        equations: &mut Vec<String>,
-    ) -> Result<(), Message> {
-        let power = Gate::condition(&path.gates, power.cloned()).map_err(|gate| match gate {
-            Gate::Through(action) if action.runs_unit() => lack_of(action),
-            Gate::Through(_) => Message::new("translate.not-boolean"),
-            _ => Message::new("translate.no-condition"),
-        })?;
-        for drive in &path.drives {
-            match drive {
-                Drive::Path(path) => self.path(path, power.as_ref(), equations)?,
-                Drive::Action(action) if action.runs_unit() => return Err(lack_of(action)),
-                // A word of an equation stands for itself.
-                Drive::Action(action) if is_converted(action) => {
-                    return Err(Message::new("translate.not-boolean"));
-                }
-                Drive::Action(action) => equations.push(match &power {
-                    Some(power) => format!("{} = {}", self.left(action), self.sum(power)),
-                    None if action.deed.stands_alone() => self.left(action),
-                    None => return Err(Message::new("translate.no-condition")),
-                }),
-            }
-        }
-        Ok(())
-    }
-
     /// What is driven.
     fn left(&self, action: &Action) -> String {
         let mnemonic = match &action.deed {
@@ -151,6 +235,6 @@ fn lack_of(action: &Action) -> Message {
     Message::new("translate.no-counterpart").with("word", word)
 }
 
-fn words(terms: &[crate::logic::Term]) -> String {
+fn words(terms: &[Term]) -> String {
     terms.iter().map(|term| term.text.as_str()).collect::<Vec<_>>().join(" ")
 }

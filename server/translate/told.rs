@@ -38,6 +38,8 @@ fn value_json(value: &Value) -> Json {
     match value {
         Value::Bit(value) => json!(value),
         Value::Word(value) => json!(value),
+        Value::Real(value) => json!(value),
+        Value::Time(_) => json!(value.to_string()),
     }
 }
 
@@ -73,7 +75,7 @@ fn picture(found: &Counterexample, names: &[String; 2], language: Language) -> S
                 let before = found.before.get(name).copied().unwrap_or(*value);
                 (name.clone(), format!("{}{}", level(before), level(*value)))
             }
-            Value::Word(value) => (name.clone(), value.to_string()),
+            value => (name.clone(), value.to_string()),
         });
     }
     for (name, value) in names.iter().zip(found.sides) {
@@ -85,35 +87,6 @@ fn picture(found: &Counterexample, names: &[String; 2], language: Language) -> S
     let width = rows.iter().map(|(name, _)| text_width(name)).max().unwrap_or(0);
     let pad = |name: &str| " ".repeat(width - text_width(name));
     rows.iter().map(|(name, shown)| format!("  {name}{}  {shown}\n", pad(name))).collect()
-}
-
-/// A scenario test that the first program passes and the second fails.
-pub fn scenario(found: &Counterexample, names: &[String; 2]) -> String {
-    let mut text = format!(
-        "# {} = {} in {}, {} in {}\n[[scenario]]\nname = \"{}\"\n",
-        found.what, found.sides[0], names[0], found.sides[1], names[1], found.what
-    );
-    let quoted = |name: &str| format!("\"{}\"", name.replace('\\', "\\\\").replace('"', "\\\""));
-    let values = |values: Vec<(String, String)>| {
-        let pairs = values.into_iter().map(|(name, value)| format!("{} = {value}", quoted(&name)));
-        pairs.collect::<Vec<_>>().join(", ")
-    };
-    let now = found.inputs.iter().map(|(name, value)| {
-        let value = match value {
-            Value::Bit(value) => value.to_string(),
-            Value::Word(value) => value.to_string(),
-        };
-        (name.clone(), value)
-    });
-    let before: Vec<_> = found.before.iter().map(|(name, value)| (name.clone(), value.to_string())).collect();
-    let scan = if before.is_empty() { 0 } else { 1 };
-    text += "set = [\n";
-    if scan > 0 {
-        text += &format!("  {{ scan = 0, values = {{ {} }} }},\n", values(before));
-    }
-    text += &format!("  {{ scan = {scan}, values = {{ {} }} }},\n]\n", values(now.collect()));
-    let expected = values(vec![(found.what.clone(), found.sides[0].to_string())]);
-    text + &format!("expect = [{{ scan = {scan}, values = {{ {expected} }} }}]\n")
 }
 
 fn line(document: &Document, span: Span) -> u32 {

@@ -2,16 +2,15 @@
 
 use super::source::Source;
 use crate::document::{DeclaredType, Document};
-use crate::logic::{Term, Types};
+use crate::logic::{Kind, Term, Types};
 use crate::target::Operand;
-use crate::target::iec::ElementaryType;
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
 /// What all places of both programs together say of the type of a variable.
 #[derive(Default)]
 struct Said {
-    kind: Option<ElementaryType>,
+    kind: Option<Kind>,
     /// Whether some place does not know it.
     is_open: bool,
     /// Whether it is not the same everywhere: several units have the name, or several names have the address.
@@ -28,7 +27,10 @@ pub(super) fn compared(documents: [&Document; 2], sources: [&[Source]; 2]) -> Ty
             let Some(path) = source.path() else { continue };
             for term in path.compared().into_iter().filter(is_named) {
                 let kind = match document.scopes().type_of(source.pou, &term.text) {
-                    Some(DeclaredType::Elementary(kind)) => Some(kind),
+                    Some(DeclaredType::Elementary(elementary)) => {
+                        let limits = document.scopes().limits_of(source.pou, &term.text);
+                        Some(Kind { elementary, limits })
+                    }
                     _ => None,
                 };
                 found.entry(term.key()).or_default().add(kind);
@@ -44,7 +46,7 @@ pub(super) fn compared(documents: [&Document; 2], sources: [&[Source]; 2]) -> Ty
 }
 
 impl Said {
-    fn add(&mut self, kind: Option<ElementaryType>) {
+    fn add(&mut self, kind: Option<Kind>) {
         self.is_open |= kind.is_none();
         self.is_disputed |= kind.is_some() && self.kind.is_some() && kind != self.kind;
         self.kind = self.kind.or(kind);

@@ -22,8 +22,8 @@ pub fn measure(table: &Table) {
     let other = scans("simulated, 10,000 rungs of one shape", "", &uniform);
     table.value("simulated, mixed over uniform", "< 1.3", &format!("{:.2}", one / other));
     scans("simulated, one rung in five ends in a timer, counter or word instruction", "< 2.5 ns", &words);
-    side_by_side(table, "simulated, 64 scenarios at once, mixed shapes", &mixed);
-    side_by_side(table, "simulated, 64 scenarios at once, timers and words", &words);
+    side_by_side(table, "simulated, 64 scenarios at once, mixed shapes", "< 0.03 ns", &mixed);
+    side_by_side(table, "simulated, 64 scenarios at once, timers and words", "", &words);
     first_scan(table);
     with_history(table, one, &mixed);
     a_day(table);
@@ -123,7 +123,7 @@ fn nanoseconds(duration: Duration, parts: usize) -> f64 {
     duration.as_secs_f64() * 1e9 / parts as f64
 }
 
-fn side_by_side(table: &Table, name: &str, code: &Arc<Code>) {
+fn side_by_side(table: &Table, name: &str, target: &str, code: &Arc<Code>) {
     let mut machine: Machine<u64> = Machine::new(Arc::clone(code));
     let figures = Figures::of(500, |scan| {
         for number in 0..20u32 {
@@ -137,7 +137,7 @@ fn side_by_side(table: &Table, name: &str, code: &Arc<Code>) {
         started.elapsed()
     });
     let each = nanoseconds(figures.percentile(50), code.instructions() * 64);
-    table.value(name, "< 0.03 ns", &format!("{each:.4} ns an instruction and scenario"));
+    table.value(name, target, &format!("{each:.4} ns an instruction and scenario"));
 }
 
 /// From the document, as an editor has it, to the end of the first scan.

@@ -1,4 +1,4 @@
-// Bundles the extension into dist/extension.js and dist/web.js, and copies the grammars and the example in.
+// Bundles the extension into dist/extension.js and dist/web.js, the page of a panel into dist/panel.js, and copies the grammars and the example in.
 //
 // Usage: node scripts/build.mjs [--production] [--tests]
 //   --production  minified, no source map
@@ -32,6 +32,8 @@ const bundle = { ...common, format: 'cjs', external: ['vscode'], minify: product
 await build({ ...bundle, entryPoints: ['src/extension.ts'], outfile: 'dist/extension.js' });
 // The edition for the browser alone, which has no Node.
 await build({ ...bundle, platform: 'browser', target: 'es2022', entryPoints: ['src/web.ts'], outfile: 'dist/web.js' });
+const page = { ...common, platform: 'browser', target: 'es2022', format: 'iife', minify: production, sourcemap: production ? false : 'inline' };
+await build({ ...page, entryPoints: ['src/panel/page/main.ts'], outfile: 'dist/panel.js' });
 
 if (process.argv.includes('--tests')) {
   rmSync(join(root, 'out'), { recursive: true, force: true });

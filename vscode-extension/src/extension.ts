@@ -3,16 +3,19 @@
 import * as vscode from 'vscode';
 import { registerCommands } from './commands';
 import { currentSettings } from './configuration';
+import { Debuggers } from './debuggers';
 import { DevicesView } from './devicesView';
 import { DrawingEditor } from './drawing';
 import { registerExample } from './example';
 import { FormsView } from './formsView';
 import { ProofView } from './proving';
 import { Pages } from './pages';
+import { PanelView } from './panel/panelView';
 import { ServerController } from './server';
 import type { ProgramStatus, ServerState } from './status';
 import { SimulationView } from './simulationView';
 import { StatusBar } from './statusBar';
+import { TestExplorer } from './testExplorer';
 import { RungwiseTasks } from './tasks';
 import { registerTranslations } from './translations';
 import { UsageView } from './usageView';
@@ -37,6 +40,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<Rungwi
   const output = vscode.window.createOutputChannel('Rungwise', { log: true });
   const statusBar = new StatusBar();
   const controller = new ServerController(context, output, statusBar);
+  const simulation = new SimulationView(controller);
   server = controller;
   context.subscriptions.push(
     output,
@@ -49,7 +53,10 @@ export async function activate(context: vscode.ExtensionContext): Promise<Rungwi
     new DevicesView(controller),
     new FormsView(controller),
     new ProofView(controller),
-    new SimulationView(controller),
+    simulation,
+    new PanelView(context.extensionUri, simulation),
+    new TestExplorer(controller),
+    new Debuggers(controller),
     RungwiseTasks.register(controller),
     registerExample(context),
     registerWalkthrough(),

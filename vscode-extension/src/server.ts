@@ -37,7 +37,15 @@ const DOCUMENTS = [
   { scheme: 'untitled', language: 'markdown' },
   // Its language is that of whatever extension for TOML there is.
   { scheme: 'file', pattern: '**/rungwise.toml' },
+  { scheme: 'file', pattern: '**/*.test.toml' },
+  { scheme: 'untitled', pattern: '**/*.test.toml' },
 ];
+
+/** Lenses stand for commands that every client has; here the extension's own show more. */
+const OWN_COMMANDS: Readonly<Record<string, string>> = {
+  'rungwise.simulate.start': 'rungwise.simulation.start',
+  'rungwise.test.run': 'rungwise.scenarios.run',
+};
 
 export class ServerController implements vscode.Disposable {
   private client: LanguageClient | undefined;
@@ -222,6 +230,11 @@ export class ServerController implements vscode.Disposable {
       synchronize: { fileEvents: this.watcher },
       middleware: {
         handleDiagnostics: (uri, diagnostics, next) => next(uri, diagnostics.map(linkCode)),
+        provideCodeLenses: async (document, token, next) => (await next(document, token))?.map(withOwnCommand),
+        resolveCodeLens: async (lens, token, next) => {
+          const resolved = await next(lens, token);
+          return resolved && withOwnCommand(resolved);
+        },
         // The editor would answer some keystrokes in a drawing only; `DrawingEditor` answers them all.
         provideOnTypeFormattingEdits: (document, position, character, format, token, next) =>
           document.languageId === 'ladder' ? [] : next(document, position, character, format, token),
@@ -309,6 +322,14 @@ function linkCode(diagnostic: vscode.Diagnostic): vscode.Diagnostic {
     diagnostic.code = { value: diagnostic.code, target: pageUri(diagnostic.code) };
   }
   return diagnostic;
+}
+
+function withOwnCommand(lens: vscode.CodeLens): vscode.CodeLens {
+  const own = lens.command && OWN_COMMANDS[lens.command.command];
+  if (lens.command !== undefined && own !== undefined) {
+    lens.command = { ...lens.command, command: own };
+  }
+  return lens;
 }
 
 function isExecutable(file: string): boolean {

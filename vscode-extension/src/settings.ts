@@ -23,7 +23,7 @@ export interface ServerSettings {
   readonly language: string | null;
   /** `comments`: symbols and comments of the project behind devices. */
   readonly inlayHints: { readonly enabled: boolean; readonly comments: boolean };
-  readonly codeLens: { readonly steps: boolean; readonly references: boolean; readonly nextFree: boolean };
+  readonly codeLens: { readonly steps: boolean; readonly references: boolean; readonly nextFree: boolean; readonly run: boolean };
   /** `open` leaves out the programs of a project that are not open. */
   readonly diagnostics: { readonly scope: DiagnosticsScope };
 }
@@ -48,7 +48,12 @@ export function readServerSettings(read: ReadSetting): ServerSettings {
     format: { style: oneOf(read('format.style'), STYLES), width: width(read('format.width')) },
     language: oneOf(read('language'), LANGUAGES),
     inlayHints: { enabled: isOn('inlayHints.enabled'), comments: isOn('inlayHints.comments') },
-    codeLens: { steps: isOn('codeLens.steps'), references: isOn('codeLens.references'), nextFree: isOn('codeLens.nextFree') },
+    codeLens: {
+      steps: isOn('codeLens.steps'),
+      references: isOn('codeLens.references'),
+      nextFree: isOn('codeLens.nextFree'),
+      run: isOn('codeLens.run'),
+    },
     diagnostics: { scope: oneOf(read('diagnostics.scope'), SCOPES) ?? 'project' },
   };
 }

@@ -4,6 +4,7 @@ import * as vscode from 'vscode';
 import type { ServerController } from './server';
 import { clock, deviceAt, MONITOR, parsePicture, simulate, type Mode, type Picture } from './simulation';
 import type { PlainRange } from './structuralEdits';
+import { freeName } from './testing';
 
 const LANGUAGES = ['ladder', 'plc-il'];
 /** The visible lines are told when they stand still for so long. */
@@ -21,7 +22,7 @@ export class SimulationView implements vscode.Disposable {
     textDecoration: 'underline dotted',
   });
   private readonly value = vscode.window.createTextEditorDecorationType({
-    after: { color: new vscode.ThemeColor('editorInlayHint.foreground'), margin: '0 0 0 0.3em' },
+    after: { color: new vscode.ThemeColor('editorInlayHint.foreground'), margin: '0 0.4em 0 0.3em' },
   });
   private readonly error = vscode.window.createTextEditorDecorationType({
     textDecoration: 'underline wavy',
@@ -30,12 +31,25 @@ export class SimulationView implements vscode.Disposable {
   private readonly status = vscode.window.createStatusBarItem('rungwise.simulation', vscode.StatusBarAlignment.Left, 5);
   /** Programs that are simulated, by the server's address. */
   private readonly running = new Map<string, { uri: vscode.Uri; mode: Mode }>();
+  private readonly pictures = new vscode.EventEmitter<{ readonly document: vscode.Uri; readonly params: unknown }>();
+  private readonly changes = new vscode.EventEmitter<vscode.Uri>();
+  /** The server's pictures of a program. */
+  readonly onDidPicture = this.pictures.event;
+  /** A program that is simulated from now on, or no longer. */
+  readonly onDidChange = this.changes.event;
+  private readonly painted = new WeakMap<vscode.TextEditor, Map<vscode.TextEditorDecorationType, string>>();
+  private operated: vscode.Uri | undefined;
   private scrolled: ReturnType<typeof setTimeout> | undefined;
 
   constructor(private readonly server: ServerController) {
     const { registerCommand } = vscode.commands;
-    const here = (run: (editor: vscode.TextEditor) => Promise<unknown>) => () => this.run(run);
-    const tells = (verb: string) => here(({ document }) => this.tell(document.uri, verb));
+    const here = (run: (program: vscode.Uri) => Promise<unknown>) => () => this.run(run);
+    const tells = (verb: string) => here((program) => this.tell(program, verb));
+    const atCursor = (run: (editor: vscode.TextEditor) => Promise<void>) =>
+      here(async () => {
+        const editor = vscode.window.activeTextEditor;
+        await (editor && run(editor));
+      });
     this.status.name = 'Rungwise';
     this.subscriptions = [
       this.energised,
@@ -43,19 +57,22 @@ export class SimulationView implements vscode.Disposable {
       this.value,
       this.error,
       this.status,
-      registerCommand('rungwise.simulation.start', here((editor) => this.start(editor))),
-      registerCommand('rungwise.simulation.stop', here((editor) => this.stop(editor.document.uri))),
-      registerCommand('rungwise.simulation.pause', here((editor) => this.pause(editor))),
+      this.pictures,
+      this.changes,
+      registerCommand('rungwise.simulation.start', here((program) => this.start(program))),
+      registerCommand('rungwise.simulation.stop', here((program) => this.stop(program))),
+      registerCommand('rungwise.simulation.pause', here((program) => this.pause(program))),
       registerCommand('rungwise.simulation.step', tells('step')),
       registerCommand('rungwise.simulation.stepBack', tells('stepBack')),
       registerCommand('rungwise.simulation.reset', tells('reset')),
-      registerCommand('rungwise.simulation.toggle', here((editor) => this.toggle(editor))),
-      registerCommand('rungwise.simulation.setValue', here((editor) => this.setValue(editor))),
+      registerCommand('rungwise.simulation.toggle', atCursor((editor) => this.toggle(editor))),
+      registerCommand('rungwise.simulation.record', here((program) => this.record(program))),
+      registerCommand('rungwise.simulation.setValue', atCursor((editor) => this.setValue(editor))),
       vscode.window.onDidChangeTextEditorVisibleRanges(() => this.scroll()),
       vscode.window.onDidChangeVisibleTextEditors(() => this.scroll()),
       vscode.window.onDidChangeActiveTextEditor(() => this.showContext()),
       vscode.workspace.onDidCloseTextDocument((document) => void this.stop(document.uri)),
-      server.onNotification(MONITOR, (params) => this.paint(parsePicture(params))),
+      server.onNotification(MONITOR, (params) => this.take(params)),
       server.onDidStart(() => this.forgetAll()),
     ];
   }
@@ -65,41 +82,65 @@ export class SimulationView implements vscode.Disposable {
     vscode.Disposable.from(...this.subscriptions).dispose();
   }
 
-  private async run(run: (editor: vscode.TextEditor) => Promise<unknown>): Promise<void> {
-    const editor = vscode.window.activeTextEditor;
-    if (editor === undefined || !LANGUAGES.includes(editor.document.languageId)) {
+  /** A panel that has the keyboard is about this program; without one the program is that of the editor. */
+  operate(program: vscode.Uri | undefined): void {
+    this.operated = program;
+    this.showContext();
+  }
+
+  private get program(): vscode.Uri | undefined {
+    const document = vscode.window.activeTextEditor?.document;
+    return this.operated ?? (document && LANGUAGES.includes(document.languageId) ? document.uri : undefined);
+  }
+
+  private async run(run: (program: vscode.Uri) => Promise<unknown>): Promise<void> {
+    const { program } = this;
+    if (program === undefined) {
       void vscode.window.showInformationMessage(vscode.l10n.t('Rungwise: open a .lad or .il file to simulate it.'));
       return;
     }
     try {
-      await run(editor);
+      await run(program);
     } catch (error) {
       const reason = error instanceof Error ? error.message : String(error);
       void vscode.window.showErrorMessage(`Rungwise: ${reason}`);
     }
   }
 
-  private async start({ document }: vscode.TextEditor): Promise<void> {
-    const uri = this.server.protocolUri(document.uri);
-    await this.tell(document.uri, 'start');
-    this.running.set(uri, { uri: document.uri, mode: 'running' });
+  isRunning(document: vscode.Uri): boolean {
+    return this.running.has(this.server.protocolUri(document));
+  }
+
+  async start(document: vscode.Uri): Promise<void> {
+    const uri = this.server.protocolUri(document);
+    await this.tell(document, 'start');
+    this.running.set(uri, { uri: document, mode: 'running' });
     this.showContext();
+    this.changes.fire(document);
     await this.watch();
   }
 
-  private async stop(document: vscode.Uri): Promise<void> {
+  /** Lets pictures tell the values of these names. */
+  async watchNames(document: vscode.Uri, names: readonly string[]): Promise<void> {
+    if (this.isRunning(document)) {
+      await this.tell(document, 'watch', { names });
+    }
+  }
+
+  async stop(document: vscode.Uri): Promise<void> {
     const uri = this.server.protocolUri(document);
     if (!this.running.delete(uri)) {
       return;
     }
     this.clear(document);
     this.showContext();
+    this.changes.fire(document);
     await this.tell(document, 'stop');
   }
 
-  private async pause({ document }: vscode.TextEditor): Promise<void> {
-    const running = this.running.get(this.server.protocolUri(document.uri));
-    await this.tell(document.uri, running?.mode === 'paused' ? 'run' : 'pause');
+  private async pause(program: vscode.Uri): Promise<void> {
+    const running = this.running.get(this.server.protocolUri(program));
+    await this.tell(program, running?.mode === 'paused' ? 'run' : 'pause');
   }
 
   /** Turns the relay or input at the cursor over. */
@@ -109,7 +150,7 @@ export class SimulationView implements vscode.Disposable {
       return;
     }
     const state = (await this.tell(editor.document.uri, 'state', { names: [name] })) as State;
-    const before = state.values?.[0]?.value;
+    const before = state.values?.[0]?.wired ?? state.values?.[0]?.value;
     if (typeof before === 'boolean') {
       await this.tell(editor.document.uri, 'set', { name, value: !before });
     } else {
@@ -128,8 +169,25 @@ export class SimulationView implements vscode.Disposable {
     }
   }
 
-  private async tell(document: vscode.Uri, verb: string, more: object = {}): Promise<unknown> {
-    return this.server.executeCommand(simulate(verb), [{ uri: this.server.protocolUri(document), ...more }]);
+  /** Opens what was done so far as a scenario test in a file that is not saved yet. */
+  private async record(program: vscode.Uri): Promise<void> {
+    const { name, text } = (await this.tell(program, 'record')) as { name: string; text: string };
+    const at = (file: string) => vscode.Uri.joinPath(program, '..', file);
+    const exists = async (file: string) => {
+      const isOpen = vscode.workspace.textDocuments.some(({ uri }) => uri.path === at(file).path);
+      return isOpen || vscode.workspace.fs.stat(at(file)).then(() => true, () => false);
+    };
+    const uri = at(await freeName(name, exists)).with({ scheme: 'untitled' });
+    const recorded = await vscode.workspace.openTextDocument(uri);
+    const edit = new vscode.WorkspaceEdit();
+    edit.insert(uri, new vscode.Position(0, 0), text);
+    await vscode.workspace.applyEdit(edit);
+    await vscode.window.showTextDocument(recorded);
+  }
+
+  /** Gives the simulation of a program an order, and its answer. */
+  async tell(document: vscode.Uri, verb: string, more: object = {}): Promise<unknown> {
+    return this.server.executeCommand(simulate(verb), [{ ...more, uri: this.server.protocolUri(document) }]);
   }
 
   /** Tells the server what is on the screen, once it stands still. */
@@ -149,11 +207,16 @@ export class SimulationView implements vscode.Disposable {
     await Promise.all(watched);
   }
 
-  private paint(picture: Picture | undefined): void {
+  private take(params: unknown): void {
+    const picture = parsePicture(params);
     const running = picture && this.running.get(picture.uri);
-    if (picture === undefined || running === undefined) {
-      return;
+    if (picture !== undefined && running !== undefined) {
+      this.paint(picture, running);
+      this.pictures.fire({ document: running.uri, params });
     }
+  }
+
+  private paint(picture: Picture, running: { readonly uri: vscode.Uri; mode: Mode }): void {
     if (running.mode !== picture.mode) {
       running.mode = picture.mode;
       this.showContext();
@@ -161,19 +224,10 @@ export class SimulationView implements vscode.Disposable {
     for (const editor of editorsOf(running.uri)) {
       // What was painted of another version stands in other places.
       if (editor.document.version === picture.version) {
-        editor.setDecorations(this.energised, picture.energised.map(toRange));
-        editor.setDecorations(this.ready, picture.ready.map(toRange));
-        editor.setDecorations(
-          this.value,
-          placedValues(editor.document, picture.values).map(({ range, text }) => ({
-            range,
-            renderOptions: { after: { contentText: text } },
-          })),
-        );
-        editor.setDecorations(
-          this.error,
-          picture.errors.map(({ range, message }) => ({ range: toRange(range), hoverMessage: message })),
-        );
+        this.decorate(editor, this.energised, picture.energised);
+        this.decorate(editor, this.ready, picture.ready);
+        this.decorate(editor, this.value, placedValues(editor.document, picture.values));
+        this.decorate(editor, this.error, picture.errors);
       }
     }
     const icon = picture.mode === 'paused' ? '$(debug-pause)' : '$(play)';
@@ -182,22 +236,38 @@ export class SimulationView implements vscode.Disposable {
     this.status.show();
   }
 
+  /** Paints what is another than before: most of a screen stays as it is from picture to picture. */
+  private decorate(editor: vscode.TextEditor, type: vscode.TextEditorDecorationType, painted: readonly Painted[]): void {
+    const before = this.painted.get(editor) ?? new Map<vscode.TextEditorDecorationType, string>();
+    this.painted.set(editor, before);
+    const now = `${editor.document.version} ${JSON.stringify(painted)}`;
+    if (before.get(type) !== now) {
+      before.set(type, now);
+      editor.setDecorations(type, painted.map(toDecoration));
+    }
+  }
+
   private clear(document: vscode.Uri): void {
     for (const editor of editorsOf(document)) {
+      this.painted.delete(editor);
       [this.energised, this.ready, this.value, this.error].forEach((type) => editor.setDecorations(type, []));
     }
   }
 
   /** A server that was started anew simulates nothing. */
   private forgetAll(): void {
-    [...this.running.values()].forEach(({ uri }) => this.clear(uri));
+    const before = [...this.running.values()];
     this.running.clear();
+    before.forEach(({ uri }) => {
+      this.clear(uri);
+      this.changes.fire(uri);
+    });
     this.showContext();
   }
 
   private showContext(): void {
-    const document = vscode.window.activeTextEditor?.document;
-    const mode = document && this.running.get(this.server.protocolUri(document.uri))?.mode;
+    const { program } = this;
+    const mode = program && this.running.get(this.server.protocolUri(program))?.mode;
     void vscode.commands.executeCommand('setContext', 'rungwise.simulation', mode ?? 'stopped');
     if (this.running.size === 0) {
       this.status.hide();
@@ -206,27 +276,38 @@ export class SimulationView implements vscode.Disposable {
 }
 
 interface State {
-  readonly values?: readonly { readonly value?: unknown }[];
+  readonly values?: readonly { readonly value?: unknown; readonly wired?: boolean }[];
 }
 
 function editorsOf(uri: vscode.Uri): readonly vscode.TextEditor[] {
   return vscode.window.visibleTextEditors.filter(({ document }) => document.uri.toString() === uri.toString());
 }
 
+/** A piece of text that is painted, or one with words of its own. */
+type Painted = PlainRange | { readonly range: PlainRange; readonly text: string } | Picture['errors'][number];
+
+function toDecoration(painted: Painted): vscode.DecorationOptions {
+  if (!('range' in painted)) {
+    return { range: toRange(painted) };
+  }
+  const range = toRange(painted.range);
+  return 'text' in painted ? { range, renderOptions: { after: { contentText: painted.text } } } : { range, hoverMessage: painted.message };
+}
+
 /** Beside the words of a list; in a drawing at the end of the row, lest its columns move. */
-function placedValues(
-  document: vscode.TextDocument,
-  values: Picture['values'],
-): { range: vscode.Range; text: string }[] {
+function placedValues(document: vscode.TextDocument, values: Picture['values']): { range: PlainRange; text: string }[] {
   if (document.languageId !== 'ladder') {
-    return values.map(({ range, value }) => ({ range: toRange(range), text: `= ${value}` }));
+    return values.map(({ range, value }) => ({ range, text: `= ${value}` }));
   }
   const rows = new Map<number, string[]>();
   for (const { range, value } of values) {
     const row = rows.get(range.start.line) ?? [];
     rows.set(range.start.line, [...row, `${document.getText(toRange(range))} = ${value}`]);
   }
-  return [...rows].map(([line, words]) => ({ range: document.lineAt(line).range, text: `  ${words.join(', ')}  ` }));
+  return [...rows].map(([line, words]) => {
+    const { start, end } = document.lineAt(line).range;
+    return { range: { start, end }, text: `  ${words.join(', ')}  ` };
+  });
 }
 
 function nameAt({ document, selection }: vscode.TextEditor): string | undefined {

@@ -8,6 +8,9 @@ interface Snippet {
   body: string | string[];
 }
 
+/** The sources, by their names below `src`. */
+const SOURCES = readdirSync('src', { recursive: true, encoding: 'utf8' }).filter((name) => name.endsWith('.ts'));
+
 const json = (file: string): any => JSON.parse(readFileSync(file, 'utf8'));
 const manifest = json('package.json');
 
@@ -97,7 +100,7 @@ test('every sentence of the sources has a translation', () => {
   const translated = json('l10n/bundle.l10n.zh-cn.json');
   // A sentence may be written as several strings with + between them.
   const call = /\bt\(\s*((?:'(?:[^'\\]|\\.)*'\s*\+?\s*)+)/g;
-  for (const name of readdirSync('src')) {
+  for (const name of SOURCES) {
     for (const [, strings = ''] of readFileSync(`src/${name}`, 'utf8').matchAll(call)) {
       const sentence = [...strings.matchAll(/'((?:[^'\\]|\\.)*)'/g)].map(([, text]) => text).join('');
       assert.ok(sentence in translated, `${name}: "${sentence}" has no translation`);
@@ -144,7 +147,7 @@ test('each keyword entry of the grammar is one pattern, longest word first', () 
 });
 
 test('the commands of the palette are all implemented', () => {
-  const sources = readdirSync('src').filter((name) => name !== 'web.ts').map((name) => readFileSync(`src/${name}`, 'utf8')).join('\n');
+  const sources = SOURCES.filter((name) => name !== 'web.ts').map((name) => readFileSync(`src/${name}`, 'utf8')).join('\n');
   for (const { command } of manifest.contributes.commands) {
     const edit = STRUCTURAL_EDITS.some((name) => `rungwise.${name}` === command);
     assert.ok(edit || sources.includes(`register('${command}'`) || sources.includes(`registerCommand('${command}'`), command);

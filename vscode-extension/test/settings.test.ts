@@ -17,7 +17,7 @@ const properties = manifest.contributes.configuration.properties;
 /** What is shown unless the user says no. */
 const SHOWN = {
   inlayHints: { enabled: true, comments: true },
-  codeLens: { steps: true, references: true, nextFree: true },
+  codeLens: { steps: true, references: true, nextFree: true, run: true },
   diagnostics: { scope: 'project' },
 };
 
@@ -54,6 +54,7 @@ test('values are passed on', () => {
     'codeLens.steps': false,
     'codeLens.references': false,
     'codeLens.nextFree': false,
+    'codeLens.run': false,
     'diagnostics.scope': 'open',
   };
   assert.deepEqual(readServerSettings((name) => values[name]), {
@@ -62,7 +63,7 @@ test('values are passed on', () => {
     format: { style: 'unicode', width: 60 },
     language: 'zh-CN',
     inlayHints: { enabled: false, comments: false },
-    codeLens: { steps: false, references: false, nextFree: false },
+    codeLens: { steps: false, references: false, nextFree: false, run: false },
     diagnostics: { scope: 'open' },
   });
 });

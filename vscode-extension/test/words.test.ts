@@ -19,7 +19,8 @@ function calls(source: string): string[] {
   return found;
 }
 
-const used = new Set(readdirSync('src').flatMap((name) => calls(readFileSync(`src/${name}`, 'utf8'))));
+const sources = readdirSync('src', { recursive: true, encoding: 'utf8' }).filter((name) => name.endsWith('.ts'));
+const used = new Set(sources.flatMap((name) => calls(readFileSync(`src/${name}`, 'utf8'))));
 
 after(() => useTranslations((message) => message));
 
@@ -66,7 +67,7 @@ test('no sentence in package.json bypasses the translations', () => {
 });
 
 test('messages of VS Code are given in words that can be translated', () => {
-  for (const name of readdirSync('src')) {
+  for (const name of sources) {
     const source = readFileSync(`src/${name}`, 'utf8');
     for (const call of source.matchAll(/show(?:Information|Warning|Error)Message\(\s*(['"`])/g)) {
       assert.match(source.slice(call.index, call.index + 60), /Rungwise: \$\{reason\}/, `${name}: ${source.slice(call.index, call.index + 80)}`);

@@ -63,6 +63,7 @@ function M.settings()
       steps = lenses.steps ~= false,
       references = lenses.references ~= false,
       nextFree = lenses.nextFree ~= false,
+      run = lenses.run ~= false,
     },
     diagnostics = { scope = (options.diagnostics or {}).scope or vim.NIL },
   }
@@ -101,10 +102,11 @@ local function resolved()
   return vim.deepcopy(configured or M.config())
 end
 
---- Whether a buffer is a program, a manifest, or Markdown with a program in a fence.
+--- Whether a buffer is a program, a manifest, scenario tests, or Markdown with a program in a fence.
 function M.serves(buffer)
   if vim.bo[buffer].filetype == 'toml' then
-    return vim.fs.basename(vim.api.nvim_buf_get_name(buffer)) == 'rungwise.toml'
+    local name = vim.fs.basename(vim.api.nvim_buf_get_name(buffer)) or ''
+    return name == 'rungwise.toml' or vim.endswith(name, '.test.toml')
   elseif vim.bo[buffer].filetype ~= 'markdown' then
     return vim.list_contains(M.filetypes, vim.bo[buffer].filetype)
   end

@@ -115,6 +115,11 @@ M.subcommands = {
       return TARGETS
     end,
   },
+  test = {
+    run = function(words)
+      require('rungwise.testing').run(table.concat(words, ' '))
+    end,
+  },
   usage = {
     run = function()
       require('rungwise.pages').usage()
@@ -156,8 +161,22 @@ function M.complete(start, line)
   return #words == 2 and subcommand and subcommand.complete and matching(start, subcommand.complete(start)) or {}
 end
 
+--- What lenses do: the same as the commands, which show more than the server alone can.
+local LENSES = {
+  ['rungwise.simulate.start'] = function()
+    require('rungwise.simulation').run({})
+  end,
+  ['rungwise.test.run'] = function(command)
+    local names = command.arguments[1].names or {}
+    require('rungwise.testing').run(names[1] or '')
+  end,
+}
+
 function M.create()
   local command = vim.api.nvim_create_user_command
+  for name, run in pairs(LENSES) do
+    vim.lsp.commands[name] = run
+  end
   command('Rungwise', M.run, {
     desc = t('Check, edit, explain: what Rungwise can do'), nargs = '+', range = true, complete = M.complete,
   })

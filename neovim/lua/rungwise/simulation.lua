@@ -1,5 +1,6 @@
 --- Running the program of a buffer on the simulated PLC: power as extmarks, values behind the lines.
 local client = require('rungwise.client')
+local panel = require('rungwise.panel')
 local t = require('rungwise.words').t
 local M = {}
 
@@ -17,7 +18,7 @@ vim.api.nvim_set_hl(0, 'RungwiseReady', { default = true, underdotted = true })
 vim.api.nvim_set_hl(0, 'RungwiseValue', { default = true, link = 'Comment' })
 
 --- Tells the server something about the program of a buffer; `done` gets the answer.
-local function tell(buffer, verb, more, done)
+function M.tell(buffer, verb, more, done)
   local running = client.expect(buffer)
   if not running then
     return
@@ -42,7 +43,7 @@ local function watch(buffer)
       start = { line = first - 1, character = 0 }, ['end'] = { line = last, character = 0 },
     })
   end
-  tell(buffer, 'watch', { ranges = #ranges > 0 and ranges or vim.empty_dict() })
+  M.tell(buffer, 'watch', { ranges = ranges })
 end
 
 local function scrolled()
@@ -76,6 +77,7 @@ function M.on_monitor(_, picture, context)
     return
   end
   running.mode, running.scan, running.time_ms = picture.mode, picture.scan, picture.time_ms
+  panel.on_picture(running.buffer, picture)
   -- What was painted of another version stands in other places.
   if picture.version ~= vim.lsp.util.buf_versions[running.buffer] then
     return
@@ -111,13 +113,14 @@ end
 
 local function forget(buffer)
   M.running[vim.uri_from_bufnr(buffer)] = nil
+  panel.on_picture(buffer, nil)
   if vim.api.nvim_buf_is_valid(buffer) then
     vim.api.nvim_buf_clear_namespace(buffer, SPACE, 0, -1)
   end
 end
 
 local function start(buffer)
-  tell(buffer, 'start', {}, function()
+  M.tell(buffer, 'start', {}, function()
     M.running[vim.uri_from_bufnr(buffer)] = { buffer = buffer, mode = 'running' }
     local group = vim.api.nvim_create_augroup('rungwise_simulation', { clear = true })
     local events = { 'WinScrolled', 'BufWinEnter', 'TextChanged', 'TextChangedI' }
@@ -131,6 +134,7 @@ local function start(buffer)
       end,
     })
     watch(buffer)
+    panel.on_start(buffer)
   end)
 end
 
@@ -141,46 +145,76 @@ end
 
 --- What `:Rungwise simulate VERB …` does.
 M.verbs = {
+  panel = function(buffer)
+    panel.open(buffer)
+  end,
   start = start,
   stop = function(buffer)
     forget(buffer)
-    tell(buffer, 'stop')
+    M.tell(buffer, 'stop')
   end,
   pause = function(buffer)
-    tell(buffer, 'pause')
+    M.tell(buffer, 'pause')
   end,
   run = function(buffer)
-    tell(buffer, 'run')
+    M.tell(buffer, 'run')
   end,
   step = function(buffer, words)
-    tell(buffer, 'step', { count = tonumber(words[1]) })
+    M.tell(buffer, 'step', { count = tonumber(words[1]) })
   end,
   back = function(buffer, words)
     local count = tonumber(words[1])
-    tell(buffer, 'stepBack', { count = count, changeOf = not count and words[1] or nil })
+    M.tell(buffer, 'stepBack', { count = count, changeOf = not count and words[1] or nil })
   end,
   reset = function(buffer)
-    tell(buffer, 'reset')
+    M.tell(buffer, 'reset')
   end,
   toggle = function(buffer, words)
     local name = name_of(words)
-    tell(buffer, 'state', { names = { name } }, function(state)
-      local value = state.values and state.values[1] and state.values[1].value
+    M.tell(buffer, 'state', { names = { name } }, function(state)
+      local found = state.values and state.values[1] or {}
+      local value = found.value
+      if found.wired ~= nil then
+        value = found.wired
+      end
       if type(value) == 'boolean' then
-        tell(buffer, 'set', { name = name, value = not value })
+        M.tell(buffer, 'set', { name = name, value = not value })
       else
         client.notify(t('"%s" is no relay', name), vim.log.levels.WARN)
       end
     end)
   end,
   set = function(buffer, words)
-    tell(buffer, 'set', { name = words[1], value = words[2] })
+    M.tell(buffer, 'set', { name = words[1], value = words[2] })
   end,
   force = function(buffer, words)
-    tell(buffer, 'force', { name = words[1], value = words[2] })
+    M.tell(buffer, 'force', { name = words[1], value = words[2] })
+  end,
+  --- What was done so far as a scenario test, in a new buffer.
+  record = function(buffer)
+    tell(buffer, 'record', {}, function(recorded)
+      local folder = vim.fs.dirname(vim.api.nvim_buf_get_name(buffer))
+      local stem, name, number = recorded.name:gsub('%.test%.toml$', ''), recorded.name, 1
+      while vim.uv.fs_stat(vim.fs.joinpath(folder, name)) or vim.fn.bufexists(vim.fs.joinpath(folder, name)) == 1 do
+        number = number + 1
+        name = ('%s-%d.test.toml'):format(stem, number)
+      end
+      vim.cmd.split(vim.fn.fnameescape(vim.fs.joinpath(folder, name)))
+      vim.api.nvim_buf_set_lines(0, 0, -1, false, vim.split(vim.trim(recorded.text), '\n'))
+    end)
   end,
   release = function(buffer, words)
-    tell(buffer, 'release', { name = words[1] })
+    M.tell(buffer, 'release', { name = words[1] })
+  end,
+  why = function(buffer, words)
+    local server = client.expect(buffer)
+    if server then
+      local encoding = server.offset_encoding
+      local here = vim.lsp.util.make_position_params(0, encoding).position
+      tell(buffer, 'why', words[1] and { name = words[1] } or { position = here }, function(reason)
+        require('rungwise.why').show(reason, encoding)
+      end)
+    end
   end,
 }
 

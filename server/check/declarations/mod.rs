@@ -14,6 +14,8 @@ mod unknown_parameter;
 
 pub(super) mod boxes;
 
+mod external_type;
+
 mod constant_written;
 
 mod address_overlap;
@@ -32,6 +34,7 @@ mod guess;
 pub(super) const RULES: &[&Rule] = &[
     &undeclared_variable::RULE,
     &duplicate_declaration::RULE,
+    &external_type::RULE,
     &unknown_type::RULE,
     &unknown_function_block::RULE,
     &unknown_parameter::RULE,

@@ -25,7 +25,7 @@ pub(super) fn is_private(name: &Name<'_>) -> bool {
     matches!(name.key, Key::Local(..))
         && name.variable.is_some_and(|variable| {
             matches!(variable.section, SectionKind::Local | SectionKind::Temporary)
-                && matches!(variable.declared, DeclaredType::Elementary(_))
+                && matches!(variable.declared, DeclaredType::Elementary(_) | DeclaredType::Subrange(..))
                 && variable.address.is_none()
         })
 }

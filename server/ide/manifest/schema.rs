@@ -1,14 +1,47 @@
-//! The schema of `rungwise.toml`, the same that editors of TOML get. A test holds it to what the reader takes.
+//! The schemas of `rungwise.toml` and of scenario tests, the same that editors of TOML get. Tests hold them to what the
+//! readers take.
 
 use serde_json::Value;
 use std::sync::LazyLock;
 
-static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
-    let text = include_str!("../../../vscode-extension/schemas/rungwise.schema.json");
+static MANIFEST: LazyLock<Value> =
+    LazyLock::new(|| read(include_str!("../../../vscode-extension/schemas/rungwise.schema.json")));
+
+static SCENARIOS: LazyLock<Value> =
+    LazyLock::new(|| read(include_str!("../../../vscode-extension/schemas/scenarios.schema.json")));
+
+fn read(text: &str) -> Value {
     serde_json::from_str(text)
-        .inspect_err(|reason| tracing::error!("the schema of the manifest cannot be read: {reason}"))
+        .inspect_err(|reason| tracing::error!("a schema cannot be read: {reason}"))
         .unwrap_or_default()
-});
+}
+
+/// What a file of TOML is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Schema {
+    /// The manifest of a project.
+    Manifest,
+    /// Scenario tests.
+    Scenarios,
+}
+
+impl Schema {
+    /// The root of the file.
+    pub(super) fn root(self) -> Node {
+        Node(match self {
+            Schema::Manifest => &MANIFEST,
+            Schema::Scenarios => &SCENARIOS,
+        })
+    }
+
+    /// What stands under the keys of `path`; nothing if a file has no such thing.
+    pub(super) fn at(self, path: &[String]) -> Option<Node> {
+        path.iter().try_fold(self.root(), |node, key| {
+            let properties = node.element().0.get("properties")?;
+            properties.get(key.as_str()).map(Node)
+        })
+    }
+}
 
 /// A table, a key or a value of the schema.
 #[derive(Clone, Copy)]
@@ -21,7 +54,13 @@ pub(super) enum Kind {
     /// Tables of the same name, each under its header.
     Tables,
     List,
+    /// A table in braces.
+    Inline,
+    /// Tables in braces, in a list.
+    Inlines,
     Number,
+    /// `true` or `false`.
+    Truth,
     Text,
 }
 
@@ -34,26 +73,16 @@ pub enum FileKind {
     Table,
 }
 
-/// The root of the manifest.
-pub(super) fn root() -> Node {
-    Node(&SCHEMA)
-}
-
-/// What stands under the keys of `path`; nothing if a manifest has no such thing.
-pub(super) fn at(path: &[String]) -> Option<Node> {
-    path.iter().try_fold(root(), |node, key| {
-        let properties = node.element().0.get("properties")?;
-        properties.get(key.as_str()).map(Node)
-    })
-}
-
 impl Node {
     pub fn kind(self) -> Kind {
         match self.0["type"].as_str() {
+            Some("object") if self.0["x-inline"] == true => Kind::Inline,
             Some("object") => Kind::Table,
+            Some("array") if self.0["x-inline"] == true => Kind::Inlines,
             Some("array") if self.element().0["type"] == "object" => Kind::Tables,
             Some("array") => Kind::List,
-            Some("integer") => Kind::Number,
+            Some("integer" | "number") => Kind::Number,
+            Some("boolean") => Kind::Truth,
             _ => Kind::Text,
         }
     }
@@ -76,7 +105,7 @@ impl Node {
     /// The words of which the value is one; none if it may be anything.
     pub fn words(self) -> Vec<&'static str> {
         let shared = self.0["allOf"][0]["$ref"].as_str().and_then(|place| place.strip_prefix('#'));
-        let node = shared.and_then(|place| SCHEMA.pointer(place)).unwrap_or(self.0);
+        let node = shared.and_then(|place| MANIFEST.pointer(place)).unwrap_or(self.0);
         node["enum"].as_array().into_iter().flatten().filter_map(Value::as_str).collect()
     }
 

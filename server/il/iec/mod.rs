@@ -37,6 +37,9 @@ mod call;
 mod split;
 pub use split::split;
 
+mod words;
+pub use words::{words, words_of_body};
+
 mod section;
 pub use section::{SectionEnd, section_end};
 

@@ -27,6 +27,11 @@ impl<'a> Scanner<'a> {
         Scanner { lexer, region: Region::Body, leaves: false, fresh: true, previous: None }
     }
 
+    /// A scanner of `text`, which stands in a text of this kind.
+    pub fn inside(text: &'a str, region: Region) -> Scanner<'a> {
+        Scanner { region, ..Scanner::new(text) }
+    }
+
     fn complete(&mut self, kind: TokenKind) -> TokenKind {
         use TokenKind::*;
         let start = self.lexer.span().start;

@@ -131,7 +131,6 @@ impl<'s, 'a> Reader<'s, 'a> {
                     self.leave(Deed::Return, Vec::new(), condition, item.span)?
                 }
                 ItemKind::InputOperator { input, instance } if self.frames.is_empty() => {
-                    self.settle()?;
                     self.input_operator(input.of(self.source.text), instance, item.span)?;
                 }
                 ItemKind::Call { condition, callee: Some(callee), parameters, .. } => {

@@ -1,7 +1,7 @@
 //! The notification `rungwise/monitor`: what of a program that runs is on the screen.
 
 use super::super::to_proto::Place;
-use crate::simulate::{Code, EnergisedKind, Machine, Sight, Variable, power_flow};
+use crate::simulate::{Code, EnergisedKind, Lanes, Machine, Sight, Variable, power_flow};
 use crate::target::Operand;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value as Json, json};
@@ -28,6 +28,8 @@ pub(super) struct Picture {
     pub(super) mode: &'static str,
     pub(super) scan: u64,
     pub(super) time_ms: f64,
+    pub(super) edition: u64,
+    pub(super) branch: u64,
     pub(super) elements: Vec<Json>,
     pub(super) values: Vec<Json>,
     pub(super) errors: Vec<Json>,
@@ -47,6 +49,11 @@ impl Monitor {
     /// Whether nothing is shown.
     pub(super) fn is_empty(&self) -> bool {
         self.ranges.is_empty() && self.names.is_empty()
+    }
+
+    /// Whether lines of the text are shown.
+    pub(super) fn has_text(&self) -> bool {
+        !self.ranges.is_empty()
     }
 
     /// Shows other ranges, or other names; what is not given stays.
@@ -109,8 +116,14 @@ impl Monitor {
         let names = names.as_deref().unwrap_or(&self.names).iter();
         let known = names.filter_map(|name| {
             let variable = machine.code().variable(name)?;
-            let value = machine.value(variable, 0).json();
-            Some(json!({ "device": name, "value": value, "forced": machine.is_forced(variable) }))
+            let value = machine.value(variable, 0);
+            let mut known =
+                json!({ "device": name, "value": value.json(), "forced": machine.is_forced(variable) });
+            let wired = machine.wired(variable).map(|wired| wired.lane(0));
+            if let Some(wired) = wired.filter(|wired| Some(*wired) != value.as_bit()) {
+                known["wired"] = wired.into();
+            }
+            Some(known)
         });
         known.collect()
     }

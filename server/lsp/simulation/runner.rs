@@ -1,20 +1,26 @@
 //! A simulation on a thread of its own: it runs scans when they are due, and does what it is told between two of them.
 
-use super::super::projects::Around;
+use super::super::projects::{Around, file_path};
 use super::super::to_proto::Place;
 use super::super::workspace::Workspace;
+use super::chart::{self, Wanted};
 use super::monitor::{Monitor, MonitorMethod, Picture};
+use super::panel;
+use super::why;
 use crate::check;
 use crate::document::Document;
-use crate::simulate::{Code, Error, Session, Sight, Touch, Value, Variable, compile};
-use crate::text::Message;
+use crate::scenario::{Bench, InputKind, Recording};
+use crate::simulate::{
+    Code, Drivers, Error, Inquiry, Recorder, Session, Sight, Touch, Value, Variable, compile,
+};
+use crate::text::{Language, Message};
 use serde_json::{Value as Json, json};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
 use tokio::sync::oneshot;
-use tower_lsp::ls_types::{Range, Uri};
+use tower_lsp::ls_types::{Position, Range, Uri};
 
 /// What a simulation is told to do.
 #[derive(Clone, Debug)]
@@ -30,6 +36,18 @@ pub(super) enum Order {
     Release { name: Option<String> },
     Watch { ranges: Option<Vec<Range>>, names: Option<Vec<String>> },
     State { names: Option<Vec<String>> },
+    Panel,
+    Trace { wanted: Wanted },
+    Export { wanted: Wanted, format: String },
+    Record { names: Option<Vec<String>> },
+    Why { about: About, scan: Option<u64>, is_brief: bool },
+}
+
+/// What is asked about: a name, or what stands at a position.
+#[derive(Clone, Debug)]
+pub(super) enum About {
+    Name(String),
+    At(Position),
 }
 
 type Reply = Result<Json, Message>;
@@ -91,9 +109,18 @@ struct Running {
     scan_ns: i64,
     /// A moment of real time and of simulated time that are the same.
     since: (Instant, i64),
+    /// What was done since the program began, for a scenario test.
+    recording: Recording,
     monitor: Monitor,
+    recorder: Recorder,
+    /// How often the program was made into code.
+    edition: u64,
+    /// How often scans were taken back.
+    branch: u64,
     errors: Vec<Error>,
     sights: Vec<Sight<u8>>,
+    /// What drives what, once somebody has asked why.
+    drivers: Option<Drivers>,
     shown: Instant,
     is_news: bool,
 }
@@ -148,13 +175,29 @@ impl Thread {
             running.is_paused = *is_paused;
             if let Some(before) = self.running.take() {
                 running.monitor = before.monitor;
+                (running.edition, running.branch) = (before.edition + 1, before.branch + 1);
             }
             self.running = Some(running);
         }
         let running = self.running.as_mut().ok_or_else(|| Message::new("simulate.not-running"))?;
+        match order {
+            Order::Record { names } => {
+                let language = workspace.snapshot().manner.language;
+                return running.record(&self.uri, &names.unwrap_or_default(), language);
+            }
+            Order::Why { about, scan, is_brief } => {
+                return running.why(&workspace, &self.uri, about, scan, is_brief);
+            }
+            _ => {}
+        }
+        let more = running.tell(&order, &workspace, &self.uri)?;
         let names = running.obey(order)?;
         running.locate(&workspace, &self.uri);
-        Ok(running.state(&workspace, &self.uri, names))
+        let mut state = running.state(&workspace, &self.uri, names);
+        if let (Some(state), Some(Json::Object(more))) = (state.as_object_mut(), more) {
+            state.extend(more);
+        }
+        Ok(state)
     }
 }
 
@@ -173,9 +216,14 @@ impl Running {
             speed: 1.0,
             scan_ns: 10_000_000,
             since: (Instant::now(), 0),
+            recording: Recording::default(),
             monitor: Monitor::default(),
+            recorder: Recorder::default(),
+            edition: 0,
+            branch: 0,
             errors: Vec::new(),
             sights: Vec::new(),
+            drivers: None,
             shown: Instant::now(),
             is_news: true,
         })
@@ -240,7 +288,7 @@ impl Running {
 
     fn scan(&mut self) {
         let next = self.next_ns();
-        let is_picture = !self.is_outdated && !self.monitor.is_empty() && self.shown.elapsed() >= PICTURE;
+        let is_picture = !self.is_outdated && self.monitor.has_text() && self.shown.elapsed() >= PICTURE;
         let outcome = match is_picture {
             true => {
                 let (sights, watched) = (&mut self.sights, &self.watched);
@@ -258,6 +306,7 @@ impl Running {
             }
         };
         self.is_news = true;
+        self.recorder.note(self.session.machine());
         self.note(outcome.errors);
     }
 
@@ -272,8 +321,10 @@ impl Running {
 
     /// Does what it is told; gives the names whose values are wanted.
     fn obey(&mut self, order: Order) -> Result<Option<Vec<String>>, Message> {
-        if let Order::State { names } = order {
-            return Ok(names);
+        match order {
+            Order::State { names } => return Ok(names),
+            Order::Panel | Order::Trace { .. } | Order::Export { .. } => return Ok(None),
+            _ => {}
         }
         // What was seen was of another scan, or of other lines.
         self.sights.clear();
@@ -298,6 +349,9 @@ impl Running {
             Order::Reset => {
                 self.session = Session::new(Arc::clone(self.session.machine().code()));
                 self.errors.clear();
+                self.recorder.clear();
+                self.branch += 1;
+                self.recording = Recording::default();
                 self.scan();
                 self.resume();
             }
@@ -305,14 +359,37 @@ impl Running {
             Order::Release { name: Some(name) } => {
                 let touch = self.variable(&name)?.release(self.session.machine().code());
                 touch.into_iter().for_each(|touch| self.session.touch(touch));
+                self.recording.note(self.session.machine().scans(), &name, InputKind::Release);
             }
             Order::Release { name: None } => {
+                self.recording.release_all(self.session.machine().scans());
                 self.session.touch(Touch::LetAllGo);
             }
             Order::Watch { ranges, names } => self.monitor.watch(ranges, names),
-            Order::State { .. } => {}
+            Order::State { .. }
+            | Order::Panel
+            | Order::Trace { .. }
+            | Order::Export { .. }
+            | Order::Record { .. }
+            | Order::Why { .. } => {}
         }
         Ok(None)
+    }
+
+    /// What is told besides the state.
+    fn tell(&mut self, order: &Order, workspace: &Workspace, uri: &Uri) -> Result<Option<Json>, Message> {
+        let around = || around(workspace, uri).ok_or_else(|| Message::new("simulate.not-running"));
+        Ok(match order {
+            Order::Panel => {
+                let rows = panel::rows(&around()?.view(), self.session.machine());
+                Some(json!({ "rows": rows }))
+            }
+            Order::Trace { wanted } => Some(chart::changes(&mut self.recorder, &self.session, wanted)),
+            Order::Export { wanted, format } => {
+                Some(chart::file(&self.session, &around()?.view(), wanted, format)?)
+            }
+            _ => None,
+        })
     }
 
     fn step_back(&mut self, count: u64, change_of: Option<String>) -> Result<(), Message> {
@@ -329,6 +406,9 @@ impl Running {
         };
         // Something of the first scan remains to be seen.
         self.session.back_to(to.max(self.session.first_scan()).max(1));
+        self.recorder.cut(self.session.machine());
+        self.branch += 1;
+        self.recording.back_to(self.session.machine().scans());
         self.errors.clear();
         self.resume();
         Ok(())
@@ -353,13 +433,33 @@ impl Running {
             _ => None,
         };
         let code = self.session.machine().code();
-        let touch = value.and_then(|value| match is_force {
-            true => variable.force(code, &value),
-            false => variable.set(code, &value),
+        let touch = value.as_ref().and_then(|value| match is_force {
+            true => variable.force(code, value),
+            false => variable.set(code, value),
         });
         let touch = touch.ok_or_else(|| Message::new("cli.run-no-value").with("name", name))?;
+        let kind = if is_force { InputKind::Force } else { InputKind::Set };
+        let scan = self.session.machine().scans();
+        value.into_iter().for_each(|value| self.recording.note(scan, name, kind(value)));
         self.session.touch(touch);
         Ok(())
+    }
+
+    /// What was done since the program began as a scenario test.
+    fn record(&self, uri: &Uri, names: &[String], language: Language) -> Reply {
+        if self.recording.is_empty() {
+            return Err(Message::new("scenario.recorded-nothing"));
+        }
+        let documents: Vec<&Document> = self.files.iter().map(|(_, _, document)| document).collect();
+        let bench = Bench::new(&documents).map_err(|_| Message::new("simulate.not-running"))?;
+        let path = file_path(uri);
+        let name =
+            path.as_ref().and_then(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());
+        let name =
+            name.unwrap_or_else(|| uri.path().as_str().rsplit('/').next().unwrap_or_default().to_string());
+        let length = (self.session.machine().scans(), self.scan_ns);
+        let recorded = self.recording.written((&name, &bench), length, names, language);
+        Ok(json!({ "uri": uri, "name": recorded.name, "text": recorded.text }))
     }
 
     /// Takes over what edits made of the program, if that can be run.
@@ -376,12 +476,14 @@ impl Running {
         match compiled(&files) {
             Ok((code, watched)) => {
                 self.session.adopt(code);
+                self.recorder.adopt(self.session.machine());
+                self.edition += 1;
                 (self.watched, self.is_outdated) = (watched, false);
                 self.sights.clear();
             }
             Err(_) => self.is_outdated = true,
         }
-        self.files = files;
+        (self.files, self.drivers) = (files, None);
         self.locate(workspace, uri);
     }
 
@@ -402,7 +504,7 @@ impl Running {
         }
         (self.is_news, self.shown) = (false, Instant::now());
         let scans = self.session.machine().scans();
-        if !self.is_outdated && self.sights.is_empty() {
+        if !self.is_outdated && self.sights.is_empty() && self.monitor.has_text() {
             let watched = Arc::clone(&self.watched);
             self.sights = self.session.sights(scans, &watched).unwrap_or_default();
         }
@@ -423,9 +525,43 @@ impl Running {
             mode: self.mode(),
             scan: scans.saturating_sub(1),
             time_ms: self.session.machine().now_ns() as f64 / 1e6,
+            edition: self.edition,
+            branch: self.branch,
             elements,
             values: self.monitor.values(None, self.session.machine()),
             errors: self.errors_of(place, number as u32),
+        })
+    }
+
+    /// Why a device is on or off after a scan, or now.
+    fn why(
+        &mut self,
+        workspace: &Workspace,
+        uri: &Uri,
+        about: About,
+        scan: Option<u64>,
+        is_brief: bool,
+    ) -> Reply {
+        let gone = || Message::new("simulate.not-running");
+        if self.is_outdated {
+            return Err(Message::new("why.outdated"));
+        }
+        let number = self.files.iter().position(|(file, ..)| file == uri).ok_or_else(gone)?;
+        let here = Place::new(&self.files[number].2, workspace.snapshot().manner);
+        let name = match about {
+            About::Name(name) => name,
+            About::At(position) => {
+                let name = why::name_at(here.document, here.offset(position));
+                name.ok_or_else(|| Message::new("why.no-name"))?
+            }
+        };
+        let documents: Vec<&Document> = self.files.iter().map(|(_, _, document)| document).collect();
+        let drivers = self.drivers.get_or_insert_with(|| Drivers::of(&documents));
+        let reason = Inquiry::new(&self.session, &self.watched, &documents, drivers).why(&name, scan);
+        let reason = reason.ok_or_else(|| Message::new("why.unknown").with("name", &name))?;
+        Ok(match is_brief {
+            true => why::brief(&reason, here.language).into(),
+            false => why::told(&reason, &self.files, here),
         })
     }
 
@@ -450,7 +586,10 @@ impl Running {
             "scan": machine.scans().saturating_sub(1),
             "first_scan": self.session.first_scan().saturating_sub(1),
             "time_ms": machine.now_ns() as f64 / 1e6,
+            "scan_ms": self.scan_ns as f64 / 1e6,
             "speed": self.speed,
+            "edition": self.edition,
+            "branch": self.branch,
             "forced": machine.forced(),
             "values": self.monitor.values(names, machine),
             "errors": errors,

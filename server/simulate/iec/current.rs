@@ -302,10 +302,12 @@ impl Compiler<'_> {
 /// The values with those at addresses as what the others are, or as integers where bit strings are not taken.
 fn unraw(given: Vec<Given>, own: &impl Fn(usize) -> Option<ParameterType>) -> Vec<Given> {
     let typed = given.iter().find(|given| !given.is_raw && given.literal.is_none()).map(|given| given.kind);
+    let has_real = given.iter().any(|given| given.kind.belongs_to(GenericType::AnyReal));
     let seen = |(place, given): (usize, Given)| {
         let Some(ParameterType::Generic(group)) = own(place) else { return given };
         let is_number = !group.contains(given.kind) || group == GenericType::AnyElementary;
-        let signed = GenericType::AnySigned.members().find(|kind| kind.bits() == given.kind.bits());
+        let numbers = if has_real { GenericType::AnyReal } else { GenericType::AnySigned };
+        let signed = numbers.members().find(|kind| kind.bits() == given.kind.bits());
         match typed.or(signed.filter(|_| is_number)) {
             Some(kind) if given.is_raw => given.seen_as(kind),
             _ => given,

@@ -1,6 +1,8 @@
 //! Literals: numbers, times, dates, texts (IEC 61131-3 2nd ed. 2.2, 3rd ed. 6.3).
 
 use super::{ElementaryType, GenericType, is_identifier};
+use crate::text::folded;
+use smol_str::{SmolStr, format_smolstr};
 
 mod number;
 mod spelling;
@@ -99,6 +101,25 @@ impl Literal {
                 }
                 None => Err(LiteralProblem::Form),
             },
+        }
+    }
+
+    /// One spelling of what was read from `word`, the same for all that are the same literal: `T#1s` and `t#1000ms`,
+    /// `1.0` and `1.00`, `INT#16#10` and `int#16`.
+    pub fn spelled(&self, word: &str) -> SmolStr {
+        let named = || self.named_type.map_or_else(String::new, |kind| format!("{}#", folded(kind.name())));
+        match self.value {
+            LiteralValue::Bool(value) => format_smolstr!("{value}"),
+            LiteralValue::Integer(value) => format_smolstr!("{}{value}", named()),
+            LiteralValue::Real(value) => format_smolstr!("{}{:?}", named(), value + 0.0),
+            LiteralValue::Time(value) | LiteralValue::TimeOfDay(value) => {
+                format_smolstr!("{}{value}ns", named())
+            }
+            LiteralValue::Date(value) => format_smolstr!("{}{value}d", named()),
+            LiteralValue::DateAndTime(value) => format_smolstr!("{}{value}ns", named()),
+            // Capitals count between quotes.
+            LiteralValue::Text | LiteralValue::WideText => word.into(),
+            LiteralValue::Enumerated => folded(word),
         }
     }
 

@@ -46,7 +46,7 @@ impl Helper {
             name => DeclaredType::Named(folded(name)),
         };
         let (name, section) = (self.name.clone(), SectionKind::Local);
-        Variable { name, section, constant: false, declared, address: None }
+        Variable { name, section, constant: false, declared, address: None, words: SmolStr::default() }
     }
 }
 

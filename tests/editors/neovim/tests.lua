@@ -388,6 +388,33 @@ check('the forms of a rung follow the cursor with the real server', function()
   vim.cmd('bwipeout! rungwise://forms')
 end)
 
+check('nvim-dap is told of the adapter, and the adapter answers', function()
+  -- A stub with the two tables that nvim-dap has for adapters and configurations.
+  local mine = { type = 'other', name = 'mine' }
+  local stub = { adapters = {}, configurations = { ladder = { mine } } }
+  package.loaded.dap = stub
+  local dap = require('rungwise.dap')
+  assert(dap.setup() and dap.setup(), 'nvim-dap is there')
+  package.loaded.dap = nil
+  assert(vim.deep_equal(stub.configurations.ladder[1], mine), 'what the user has configured stays')
+  for _, filetype in ipairs({ 'ladder', 'plc-il' }) do
+    local own = stub.configurations[filetype]
+    local last = own[#own]
+    assert(#own == (filetype == 'ladder' and 2 or 1), 'one configuration: ' .. vim.inspect(own))
+    assert(last.type == 'rungwise' and last.request == 'launch' and last.program == '${file}', vim.inspect(last))
+  end
+  local adapter
+  stub.adapters.rungwise(function(given)
+    adapter = given
+  end)
+  assert(adapter.type == 'executable' and adapter.command == vim.env.RUNGWISE_SERVER, vim.inspect(adapter))
+  local body = vim.json.encode({ seq = 1, type = 'request', command = 'initialize', arguments = { adapterID = 'rungwise' } })
+  local command = vim.list_extend({ adapter.command }, adapter.args)
+  local input = ('Content-Length: %d\r\n\r\n%s'):format(#body, body)
+  local answer = vim.system(command, { stdin = input, text = true, timeout = TIMEOUT_MS }):wait()
+  assert(answer.code == 0 and answer.stdout:find('"supportsStepBack":true', 1, true), vim.inspect(answer))
+end)
+
 check('a program runs, holds itself, shows its power and goes back', function()
   open('motor.lad')
   local simulation = require('rungwise.simulation')
@@ -429,6 +456,24 @@ check('a program runs, holds itself, shows its power and goes back', function()
   until_true('the motor off again, in a scan of before', function()
     return running.mode == 'paused' and not has_coil(3)
   end)
+  -- Why it is off: in a floating window, from which Enter goes to the contact.
+  vim.cmd('Rungwise simulate why Y0')
+  local function floating()
+    return vim.iter(vim.api.nvim_list_wins()):find(function(window)
+      return vim.api.nvim_win_get_config(window).relative ~= ''
+    end)
+  end
+  until_true('the reasons', floating)
+  local window = floating()
+  local reasons = vim.api.nvim_buf_get_lines(vim.api.nvim_win_get_buf(window), 0, -1, false)
+  assert(reasons[1]:find('^Y0 is off: %( %) has no power  %[line 3%]'), vim.inspect(reasons))
+  assert(reasons[2]:find('X0 is off: an input', 1, true), vim.inspect(reasons))
+  vim.api.nvim_set_current_win(window)
+  vim.api.nvim_win_set_cursor(window, { 2, 0 })
+  vim.api.nvim_feedkeys(vim.keycode('<CR>'), 'xt', false)
+  until_true('the contact', function()
+    return not floating() and vim.fn.bufname() == 'motor.lad' and vim.fn.line('.') == 3
+  end)
   local scan = running.scan
   vim.cmd('Rungwise simulate step')
   until_true('one scan more', function()
@@ -438,6 +483,58 @@ check('a program runs, holds itself, shows its power and goes back', function()
   until_true('a text without power', function()
     return #vim.api.nvim_buf_get_extmarks(0, space, 0, -1, {}) == 0
   end)
+end)
+
+check('scenario tests fill the quickfix list, and what was done becomes one', function()
+  local folder = vim.fn.tempname()
+  vim.fn.mkdir(folder)
+  vim.fn.writefile({ 'LD X0', 'OR Y0', 'ANI X1', 'OUT Y0', 'END' }, folder .. '/line.il')
+  local function scenarios(expected)
+    return {
+      '[[scenario]]', 'name = "starts"',
+      ('steps = [{ at = 50, set = { X0 = 1 }, expect = { Y0 = %d } }]'):format(expected),
+    }
+  end
+  vim.fn.writefile(scenarios(0), folder .. '/line.test.toml')
+  vim.cmd.edit(folder .. '/line.test.toml')
+  until_true('a server for the file', function()
+    return #vim.lsp.get_clients({ bufnr = 0, name = 'rungwise' }) == 1
+  end)
+  vim.fn.setqflist({}, 'f')
+  vim.cmd('Rungwise test')
+  local list
+  until_true('a failure in the list', function()
+    list = vim.fn.getqflist()
+    return #list > 1
+  end)
+  assert(vim.fn.bufname(list[1].bufnr):find('line.test.toml', 1, true), vim.inspect(list[1]))
+  assert(list[1].lnum == 3 and list[1].col == 52, vim.inspect(list[1]))
+  assert(list[1].text:find('starts: Y0 is 1 where 0 was expected', 1, true), list[1].text)
+  assert(vim.iter(list):any(function(item)
+    return item.text:find('^^^', 1, true)
+  end), vim.inspect(list))
+  -- Mended, from the program: the list is empty again.
+  vim.api.nvim_buf_set_lines(0, 0, -1, false, scenarios(1))
+  vim.cmd.write()
+  vim.cmd.edit(folder .. '/line.il')
+  vim.cmd('Rungwise test starts')
+  until_true('an empty list', function()
+    return #vim.fn.getqflist() == 0
+  end)
+  vim.cmd('Rungwise simulate')
+  local simulation = require('rungwise.simulation')
+  until_true('a simulation', function()
+    return simulation.running[vim.uri_from_bufnr(0)] ~= nil
+  end)
+  vim.cmd('Rungwise simulate set X0 1')
+  vim.cmd('Rungwise simulate step')
+  vim.cmd('Rungwise simulate record')
+  until_true('a scenario test of its own name', function()
+    return vim.api.nvim_buf_get_name(0):find('line-2.test.toml', 1, true) ~= nil
+  end)
+  assert(buffer_text():find('set = { X0 = 1 }, expect = { Y0 = 1 }', 1, true), buffer_text())
+  vim.cmd('bwipeout!')
+  vim.cmd('Rungwise simulate stop')
 end)
 
 check('two programs are compared with the real server', function()

@@ -3,9 +3,12 @@
 import { copyFileSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { openBrowser } from './browser.mjs';
+import { DEBUGGING_FILES, DEBUGGING_TESTS } from './page_debugging.mjs';
 import { DEVICE_FILES, DEVICE_TESTS } from './page_devices.mjs';
 import { DRAWING_TESTS } from './page_drawing.mjs';
+import { PANEL_FILES, PANEL_TESTS } from './page_panel.mjs';
 import { SIMULATION_FILES, SIMULATION_TESTS } from './page_simulation.mjs';
+import { TESTING_FILES, TESTING_TESTS } from './page_testing.mjs';
 import { TRANSLATION_FILES, TRANSLATION_TESTS } from './page_translation.mjs';
 import { VIEW_FILES, VIEW_TESTS } from './page_views.mjs';
 import { Workbench } from './workbench.mjs';
@@ -14,7 +17,7 @@ import { Workbench } from './workbench.mjs';
 const REPAIR_LIMIT_MS = 20_000;
 
 export async function runPageTests(server, workspace, home, report, artefacts) {
-  for (const [name, fixture] of Object.entries({ ...VIEW_FILES, ...DEVICE_FILES, ...TRANSLATION_FILES, ...SIMULATION_FILES })) {
+  for (const [name, fixture] of Object.entries({ ...VIEW_FILES, ...DEVICE_FILES, ...TRANSLATION_FILES, ...SIMULATION_FILES, ...PANEL_FILES, ...TESTING_FILES, ...DEBUGGING_FILES })) {
     copyFileSync(join(workspace, fixture), join(workspace, name));
   }
   await server.start(workspace);
@@ -23,7 +26,7 @@ export async function runPageTests(server, workspace, home, report, artefacts) {
     const workbench = new Workbench(await browser.newPage(), artefacts);
     await report.check('page: the workbench opens', () => workbench.load(`http://${server.authority}/?folder=${workspace}`));
     // The last one leaves VS Code without a server.
-    const tests = { ...FIRST_TESTS, ...DRAWING_TESTS, ...VIEW_TESTS, ...DEVICE_TESTS, ...TRANSLATION_TESTS, ...SIMULATION_TESTS, ...LAST_TESTS };
+    const tests = { ...FIRST_TESTS, ...DRAWING_TESTS, ...VIEW_TESTS, ...DEVICE_TESTS, ...TRANSLATION_TESTS, ...SIMULATION_TESTS, ...PANEL_TESTS, ...TESTING_TESTS, ...DEBUGGING_TESTS, ...LAST_TESTS };
     const chosen = new RegExp(process.env.RUNGWISE_TESTS_NAMED ?? '');
     for (const [name, test] of Object.entries(tests).filter(([name]) => chosen.test(name))) {
       await report.check(`page: ${name}`, async () => {

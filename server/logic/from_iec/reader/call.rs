@@ -35,7 +35,8 @@ impl<'a> Reader<'_, 'a> {
         self.source.tree.operand(operand).span.of(self.source.text)
     }
 
-    /// `R C1`: calls the block with this input alone. Nothing is known of the current result behind it.
+    /// `R C1`, `IN T1`: calls the block with this input alone, which power drives; `PT T1` hands over the number that
+    /// was loaded. Nothing is known of the current result behind it.
     pub(super) fn input_operator(
         &mut self,
         input: &str,
@@ -43,11 +44,23 @@ impl<'a> Reader<'_, 'a> {
         span: Span,
     ) -> Result<(), Refusal> {
         let block = self.called(instance)?;
-        self.settle()?;
-        self.invert()?;
+        let has_operator = matches!(&block, Callee::Block(block) if block.has_input_operator(input));
+        let is_bit = block.inputs().iter().any(|formal| formal.is_called(input) && formal.is_bit());
         let term = self.source.term(self.pou, instance);
-        let call = Call::new(block, input, term, std::iter::empty::<(&str, bool, Term)>());
-        let (call, terms) = call.filter(|(call, _)| call.is_input_operator()).ok_or(Refusal::NotBoolean)?;
+        let call = match self.value {
+            Value::Loaded(id, ContactKind::NormallyOpen) if !is_bit => {
+                let is_first = self.builder.is_empty();
+                let given = self.term(id)?;
+                self.value = Value::Nothing;
+                Call::new(block, EN.name, term, [(input, false, given)]).filter(|_| is_first)
+            }
+            _ => {
+                self.settle()?;
+                self.invert()?;
+                Call::new(block, input, term, std::iter::empty::<(&str, bool, Term)>())
+            }
+        };
+        let (call, terms) = call.filter(|_| has_operator).ok_or(Refusal::NotBoolean)?;
         let action = Action { deed: Deed::Call(Arc::new(call)), terms, span };
         self.note(&action, self.at);
         self.builder.drive(action);

@@ -1,0 +1,265 @@
+//! The program that is debugged: read from the disk, compiled, and its places as the protocol names them.
+
+use crate::check;
+use crate::document::{Document, Member, ProjectView, Tree};
+use crate::project::{
+    CommentsFile, MANIFEST_NAME, Manifest, Project, Stamp, is_program_file, open_document, program_files,
+    read_text,
+};
+use crate::simulate::{Code, Drivers, Place, Problem, compile};
+use crate::target::{Model, Target};
+use crate::text::{Encoding, LineColumn, Message, Span};
+use rustc_hash::FxHashSet;
+use serde_json::{Value, json};
+use std::cell::OnceCell;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A program, ready to run.
+#[derive(Debug)]
+pub(super) struct Program {
+    pub(super) files: Vec<File>,
+    /// Code that says what it sees. The same code runs without breakpoints, so that a scan that the watchdog ends is
+    /// ended at the same instruction.
+    pub(super) code: Arc<Code>,
+    /// What drives what, once somebody has asked why.
+    pub(super) drivers: OnceCell<Drivers>,
+    /// Instructions at which it can stop, in the order of the text.
+    stops: Vec<(Place, u32)>,
+    /// Where rungs begin, in the order of the text.
+    rungs: Vec<Place>,
+}
+
+/// A file of it.
+#[derive(Debug)]
+pub(super) struct File {
+    /// As the system names it.
+    pub(super) path: PathBuf,
+    pub(super) document: Document,
+    stamp: Option<Stamp>,
+    /// Whether it was said that it has changed on the disk.
+    is_outdated: bool,
+}
+
+/// A place as people count: lines and columns from 1, columns in UTF-16.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) struct Lines {
+    pub(super) line: u32,
+    pub(super) column: u32,
+    pub(super) end_line: u32,
+    pub(super) end_column: u32,
+}
+
+impl Program {
+    /// Reads and compiles what is at `path`: a program file with those of its project that are one program with it, or
+    /// a folder with one program.
+    ///
+    /// # Errors
+    /// A sentence that says why it cannot be run.
+    pub(super) fn open(path: &Path) -> Result<Program, Message> {
+        let path = path.canonicalize().map_err(|_| no_file(path))?;
+        let path = match path.file_name() {
+            Some(name) if name == MANIFEST_NAME => path.parent().unwrap_or(&path).to_path_buf(),
+            _ => path,
+        };
+        let files = files_of(&path)?;
+        let documents: Vec<&Document> = files.iter().map(|file| &file.document).collect();
+        let code = compile(&documents, true).map_err(|problems| refusal(&files, &problems))?;
+        let mut rungs: Vec<Place> =
+            (0..).zip(&documents).flat_map(|(number, document)| rungs_of(number, document)).collect();
+        rungs.sort_unstable_by_key(|place| (place.document, place.span.start));
+        let mut known = FxHashSet::default();
+        let mut stops: Vec<(Place, u32)> = code
+            .seen()
+            .filter(|(_, place)| known.insert(*place))
+            .map(|(number, place)| (place, number))
+            .collect();
+        // At one start the rung comes before its elements.
+        stops.sort_unstable_by_key(|(place, _)| {
+            (place.document, place.span.start, std::cmp::Reverse(place.span.end))
+        });
+        Ok(Program { files, code: Arc::new(code), drivers: OnceCell::new(), stops, rungs })
+    }
+
+    /// The number of the file at `path`.
+    pub(super) fn file_at(&self, path: &Path) -> Option<u32> {
+        let path = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+        self.files.iter().position(|file| file.path == path).map(|number| number as u32)
+    }
+
+    /// The document in which a place lies.
+    pub(super) fn document(&self, place: Place) -> Option<&Document> {
+        self.files.get(place.document as usize).map(|file| &file.document)
+    }
+
+    /// A place in lines and columns.
+    pub(super) fn lines(&self, place: Place) -> Lines {
+        let Some(document) = self.document(place) else {
+            return Lines { line: 1, column: 1, end_line: 1, end_column: 1 };
+        };
+        let at = |offset: u32| document.position(offset as usize, Encoding::Utf16);
+        let (start, end) = (at(place.span.start), at(place.span.end));
+        Lines {
+            line: start.line + 1,
+            column: start.column + 1,
+            end_line: end.line + 1,
+            end_column: end.column + 1,
+        }
+    }
+
+    /// The source of a place, as the protocol names it.
+    pub(super) fn source(&self, place: Place) -> Value {
+        self.files.get(place.document as usize).map_or(Value::Null, File::source)
+    }
+
+    /// The words at a place, with single blanks, up to the end of the first line.
+    pub(super) fn words(&self, place: Place) -> String {
+        let text = self.document(place).map(|document| document.slice(place.span)).unwrap_or_default();
+        let line = text.lines().next().unwrap_or_default();
+        line.split_whitespace().collect::<Vec<_>>().join(" ")
+    }
+
+    /// `motor.il:3`
+    pub(super) fn shown(&self, place: Place) -> String {
+        let name = self.files.get(place.document as usize).map(File::name).unwrap_or_default();
+        format!("{name}:{}", self.lines(place).line)
+    }
+
+    /// The number of the rung in which a place lies.
+    pub(super) fn rung(&self, place: Place) -> usize {
+        self.rungs
+            .partition_point(|rung| (rung.document, rung.span.start) <= (place.document, place.span.start))
+    }
+
+    /// The instructions of the lines `first` to `last` of a file at which it can stop.
+    pub(super) fn stops_in(&self, file: u32, first: u32, last: u32) -> Vec<Place> {
+        let own = self.stops.iter().map(|(place, _)| *place).filter(|place| place.document == file);
+        own.filter(|place| (first..=last).contains(&self.lines(*place).line)).collect()
+    }
+
+    /// The instruction at which a breakpoint of a line of a file stops: the one at the column, else the first of the
+    /// line, else the first behind it.
+    pub(super) fn stop_at(&self, file: u32, line: u32, column: Option<u32>) -> Option<(Place, u32)> {
+        let document = &self.files.get(file as usize)?.document;
+        let offset =
+            |line: u32, column: u32| document.offset(LineColumn { line, column }, Encoding::Utf16) as u32;
+        let start = offset(line.saturating_sub(1), 0);
+        let own = || self.stops.iter().filter(|(place, _)| place.document == file);
+        let is_on_line = |place: &Place| self.lines(*place).line == line;
+        if let Some(column) = column {
+            let at = offset(line.saturating_sub(1), column.saturating_sub(1));
+            let around = own().filter(|(place, _)| (place.span.start..place.span.end).contains(&at));
+            let element = around.min_by_key(|(place, _)| place.span.end - place.span.start);
+            // A rung is around all of its elements, and begins in its first line.
+            let element = element.filter(|(place, _)| is_on_line(place));
+            let behind = || own().find(|(place, _)| place.span.start >= at && is_on_line(place));
+            if let Some(stop) = element.or_else(behind) {
+                return Some(*stop);
+            }
+        }
+        own().find(|(place, _)| place.span.start >= start).copied()
+    }
+
+    /// The files that have changed on the disk since they were read and of which that was not said yet.
+    pub(super) fn newly_outdated(&mut self) -> Vec<String> {
+        let changed =
+            self.files.iter_mut().filter(|file| !file.is_outdated && Stamp::of(&file.path) != file.stamp);
+        let names = changed.map(|file| {
+            file.is_outdated = true;
+            file.name()
+        });
+        names.collect()
+    }
+}
+
+impl File {
+    pub(super) fn name(&self) -> String {
+        self.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    pub(super) fn source(&self) -> Value {
+        json!({ "name": self.name(), "path": self.path.to_string_lossy() })
+    }
+}
+
+fn no_file(path: &Path) -> Message {
+    Message::new("cli.no-such-file").with("path", path.display())
+}
+
+/// The files of the program at a path, in the order of execution.
+fn files_of(path: &Path) -> Result<Vec<File>, Message> {
+    let unread = |path: &Path| Message::new("debug.unreadable").with("path", path.display());
+    let project = Project::of(path);
+    if let Some(error) = project.as_ref().and_then(|project| project.error.as_ref()) {
+        return Err(error.message.clone());
+    }
+    let manifest = project.as_ref().map(|project| project.manifest.clone()).unwrap_or_default();
+    let own = match &project {
+        Some(project) => project.files().map_err(|_| unread(path))?,
+        None if path.is_dir() => program_files(path).map_err(|_| unread(path))?,
+        None => Vec::new(),
+    };
+    let is_member = |file: &PathBuf| file.canonicalize().is_ok_and(|file| file == path);
+    let paths = match own.iter().any(is_member) || path.is_dir() {
+        true => own,
+        false if is_program_file(path) => vec![path.to_path_buf()],
+        false => return Err(Message::new("cli.no-program-file").with("path", path.display())),
+    };
+    let comments = project.as_ref().and_then(|project| {
+        let file = project.root.join(project.manifest.comments.as_ref()?);
+        Some(CommentsFile::open(&file, manifest.target().unwrap_or(Target::of(Model::Fx2n))).comments.clone())
+    });
+    let mut files = Vec::new();
+    for path in paths {
+        let path = path.canonicalize().map_err(|_| unread(&path))?;
+        let stamp = Stamp::of(&path);
+        let text = read_text(&path).ok_or_else(|| unread(&path))?;
+        let document = open_document(&path.to_string_lossy(), &text, &manifest, None, None);
+        let document = comments.as_ref().map(|comments| document.commented(comments)).unwrap_or(document);
+        files.push(File { path, document, stamp, is_outdated: false });
+    }
+    let numbers = program_of(path, &files, &manifest)?;
+    let mut files: Vec<Option<File>> = files.into_iter().map(Some).collect();
+    Ok(numbers.into_iter().filter_map(|number| files.get_mut(number)?.take()).collect())
+}
+
+/// The numbers of the files that are one program with the one at `path`, or of the only program of a folder.
+fn program_of(path: &Path, files: &[File], manifest: &Manifest) -> Result<Vec<usize>, Message> {
+    let here = files.iter().position(|file| file.path == path);
+    let members = files.iter().map(|file| Member { name: "", document: &file.document }).collect();
+    let view = ProjectView::new(members, here.unwrap_or(0), manifest.files.is_some());
+    let view = view.ok_or_else(|| Message::new("cli.no-programs"))?;
+    if here.is_some() {
+        return Ok(check::program_around(&view));
+    }
+    let mut programs = check::programs(&view);
+    match programs.len() {
+        0 | 1 => Ok(programs.pop().unwrap_or_default()),
+        _ => Err(Message::new("debug.many-programs").with("path", path.display())),
+    }
+}
+
+/// Where the rungs of a document begin.
+fn rungs_of(number: u32, document: &Document) -> Vec<Place> {
+    let mut rungs = Vec::new();
+    for at in document.chunks() {
+        let reading = at.chunk.reading();
+        let place = |span: Span| Place { document: number, span: span.shifted(at.start) };
+        match reading.tree() {
+            Tree::Ladder(tree) => rungs.extend(tree.rungs.iter().map(|rung| place(rung.span))),
+            _ => rungs.push(place(Span::new(0, at.chunk.len()))),
+        }
+    }
+    rungs
+}
+
+/// Why programs cannot be compiled, with the place of the first problem.
+fn refusal(files: &[File], problems: &[Problem]) -> Message {
+    let Some(first) = problems.first() else { return Message::new("simulate.not-running") };
+    let file = files.get(first.place.document as usize);
+    let line = file.map_or(0, |file| file.document.line_of(first.place.span.start as usize) + 1);
+    Message::new("debug.refused")
+        .with("file", file.map(|file| file.name()).unwrap_or_default())
+        .with("line", line)
+        .with_messages("reason", vec![first.obstacle.message()])
+}

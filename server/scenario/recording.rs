@@ -1,0 +1,246 @@
+//! Writes scenario tests: of what was done to a running program, and of counterexamples.
+
+use super::driver::is_output;
+use super::suite::{Input, InputKind, Named};
+use super::{Bench, SUITE_ENDING, Scenario};
+use crate::simulate::{Code, Value, milliseconds};
+use crate::text::{Language, Message, Span};
+use crate::translate::{Counterexample, Value as Held};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// What was done to a program while it ran, scan by scan.
+#[derive(Clone, PartialEq, Debug, Default)]
+pub struct Recording {
+    /// Before which scan, from 0 on, which variable was set, forced or let go.
+    touches: Vec<(u64, String, InputKind)>,
+}
+
+/// A scenario test that was written of a recording.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Recorded {
+    /// The text of the file.
+    pub text: String,
+    /// What the file could be called.
+    pub name: String,
+}
+
+/// More lines of expectations are not recorded.
+const MOST_STEPS: usize = 1000;
+
+impl Recording {
+    /// Something is done before scan number `scan`, from 0 on.
+    pub fn note(&mut self, scan: u64, name: &str, kind: InputKind) {
+        self.touches.push((scan, name.to_string(), kind));
+    }
+
+    /// All that is forced is let go before scan number `scan`.
+    pub fn release_all(&mut self, scan: u64) {
+        let mut forced: Vec<&str> = Vec::new();
+        for (_, name, kind) in &self.touches {
+            forced.retain(|known| !known.eq_ignore_ascii_case(name));
+            if matches!(kind, InputKind::Force(_)) {
+                forced.push(name);
+            }
+        }
+        let released = forced.into_iter().map(|name| (scan, name.to_string(), InputKind::Release));
+        self.touches.extend(released.collect::<Vec<_>>());
+    }
+
+    /// Only the first `scans` scans did happen.
+    pub fn back_to(&mut self, scans: u64) {
+        self.touches.retain(|(own, ..)| *own < scans);
+    }
+
+    /// Whether nothing was done.
+    pub fn is_empty(&self) -> bool {
+        self.touches.is_empty()
+    }
+
+    /// The scenario test of what was done in the scans before number `scans`, each `scan_ns` after the other, with the
+    /// program called `program`. What is expected are the changes of `names`, of the outputs where there are no names:
+    /// as the program makes them from its start.
+    pub fn written(
+        &self,
+        (program, bench): (&str, &Bench),
+        (scans, scan_ns): (u64, i64),
+        names: &[String],
+        language: Language,
+    ) -> Recorded {
+        let code = bench.code();
+        let named = |name: &str| Named { name: name.to_string(), span: Span::default() };
+        let inputs = self.touches.iter().filter(|(scan, ..)| *scan < scans).map(|(scan, name, kind)| Input {
+            scan: *scan,
+            name: named(name),
+            kind: kind.clone(),
+        });
+        let inputs: Vec<Input> = inputs.collect();
+        let outputs = self.outputs(code, names);
+        let stem = program.rsplit_once('.').map_or(program, |(stem, _)| stem);
+        let scenario = Scenario {
+            name: String::new(),
+            span: Span::default(),
+            scan_ns,
+            last: Some(scans.saturating_sub(1)),
+            checks: Vec::new(),
+            watch: outputs.iter().map(|name| named(name)).collect(),
+            golden: None,
+            tolerance: 0,
+            deviation: 0.0,
+            allows_errors: true,
+            inputs: inputs.clone(),
+        };
+        let mut steps: BTreeMap<u64, Step> = BTreeMap::new();
+        for input in inputs {
+            let step = steps.entry(input.scan).or_default();
+            match input.kind {
+                InputKind::Set(value) => step.set.push((input.name.name, value)),
+                InputKind::Force(value) => step.force.push((input.name.name, value)),
+                InputKind::Release => step.release.push(input.name.name),
+            }
+        }
+        let mut is_truncated = false;
+        if let Ok(report) = bench.run(&scenario, None, None) {
+            let trace = report.trace;
+            let mut before: Option<&[Value]> = None;
+            for row in &trace.rows {
+                for (number, name) in
+                    trace.names.iter().enumerate().filter(|(_, name)| outputs.contains(name))
+                {
+                    let value = &row.values[number];
+                    if before.is_some_and(|before| before[number] == *value) {
+                        continue;
+                    }
+                    if steps.len() > MOST_STEPS && !steps.contains_key(&row.scan) {
+                        is_truncated = true;
+                        continue;
+                    }
+                    steps.entry(row.scan).or_default().expect.push((name.clone(), value.clone()));
+                }
+                before = Some(&row.values);
+            }
+        }
+        let mut text = format!("program = {}\n", quoted(program));
+        let _ = writeln!(text, "scan-time = \"{}ms\"\n", milliseconds(scan_ns));
+        let _ = writeln!(text, "[[scenario]]\nname = {}", quoted(stem));
+        let last_ns = (scans.saturating_sub(1) as i64).saturating_mul(scan_ns);
+        let _ = writeln!(text, "time = \"{}ms\"\nsteps = [", milliseconds(last_ns));
+        for (scan, step) in &steps {
+            let at_ns = (*scan as i64).saturating_mul(scan_ns);
+            let _ = writeln!(text, "  {{ at = \"{}ms\"{} }},", milliseconds(at_ns), step.told());
+        }
+        if is_truncated {
+            let _ = writeln!(text, "  # {}", Message::new("scenario.recorded-truncated").render(language));
+        }
+        text.push_str("]\n");
+        Recorded { text, name: format!("{stem}{SUITE_ENDING}") }
+    }
+
+    /// The variables whose changes are expected: `names`, else the outputs, else all bits that nobody set.
+    fn outputs(&self, code: &Code, names: &[String]) -> Vec<String> {
+        let is_touched =
+            |name: &String| self.touches.iter().any(|(_, own, _)| own.eq_ignore_ascii_case(name));
+        let named: Vec<String> = names.iter().filter(|name| code.variable(name).is_some()).cloned().collect();
+        let all = code.named();
+        let is_free = |name: &&String| !is_touched(name);
+        if !named.is_empty() {
+            return named;
+        }
+        let outputs: Vec<String> = all.iter().filter(|name| is_output(name)).cloned().collect();
+        if outputs.is_empty() { all.iter().filter(is_free).cloned().collect() } else { outputs }
+    }
+}
+
+/// What is done and expected at one time.
+#[derive(Default)]
+struct Step {
+    set: Vec<(String, Value)>,
+    force: Vec<(String, Value)>,
+    release: Vec<String>,
+    expect: Vec<(String, Value)>,
+}
+
+impl Step {
+    fn told(&self) -> String {
+        let mut text = String::new();
+        let lists = [("set", &self.set), ("force", &self.force), ("expect", &self.expect)];
+        for (key, values) in lists.into_iter().filter(|(_, values)| !values.is_empty()) {
+            let _ = write!(
+                text,
+                ", {key} = {{ {} }}",
+                pairs(values.iter().map(|(name, value)| (name, word(value))))
+            );
+        }
+        if !self.release.is_empty() {
+            let names: Vec<String> = self.release.iter().map(|name| quoted(name)).collect();
+            let _ = write!(text, ", release = [{}]", names.join(", "));
+        }
+        text
+    }
+}
+
+/// A value as TOML.
+fn word(value: &Value) -> String {
+    match value.json() {
+        serde_json::Value::Bool(on) => u8::from(on).to_string(),
+        serde_json::Value::Number(number) if number.is_i64() => number.to_string(),
+        _ => quoted(&value.to_string()),
+    }
+}
+
+/// `X0 = 1, "%QX0.0" = 0`. Of several values of one name the last one counts.
+fn pairs<'n>(values: impl Iterator<Item = (&'n String, String)>) -> String {
+    let mut told: Vec<(&String, String)> = Vec::new();
+    for (name, value) in values {
+        match told.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, known)) => *known = value,
+            None => told.push((name, value)),
+        }
+    }
+    told.iter().map(|(name, value)| format!("{} = {value}", key(name))).collect::<Vec<_>>().join(", ")
+}
+
+/// A name as a key of TOML: quoted where it is no bare word.
+fn key(name: &str) -> String {
+    let is_bare = !name.is_empty()
+        && name.chars().all(|letter| letter.is_ascii_alphanumeric() || "_-".contains(letter));
+    if is_bare { name.to_string() } else { quoted(name) }
+}
+
+/// A word in quotes, as TOML and JSON write it.
+fn quoted(word: &str) -> String {
+    serde_json::Value::from(word).to_string()
+}
+
+/// A scenario test that the first of two programs passes and the second fails; `names` are those of their files.
+pub fn of_counterexample(found: &Counterexample, names: &[String; 2], language: Language) -> String {
+    let told = Message::new("scenario.counterexample")
+        .with("what", &found.what)
+        .with("left", found.sides[0])
+        .with("right", found.sides[1])
+        .with("first", &names[0])
+        .with("second", &names[1]);
+    let held = |value: &Held| match value {
+        Held::Bit(value) => u8::from(*value).to_string(),
+        Held::Time(_) => quoted(&value.to_string()),
+        Held::Word(_) | Held::Real(_) => value.to_string(),
+    };
+    let scan = u64::from(!found.before.is_empty());
+    let at = |scan: u64| if scan == 1 { "1 scan".to_string() } else { format!("{scan} scans") };
+    let mut text = format!("# {}\n", told.render(language));
+    let _ = writeln!(text, "program = {}\n", quoted(&names[0].replace('\\', "/")));
+    let _ = writeln!(text, "[[scenario]]\nname = {}\nsteps = [", quoted(&found.what));
+    if scan > 0 {
+        let before = found.before.iter().map(|(name, value)| (name, u8::from(*value).to_string()));
+        let _ = writeln!(text, "  {{ at = \"{}\", set = {{ {} }} }},", at(0), pairs(before));
+    }
+    let inputs = found.inputs.iter().map(|(name, value)| (name, held(value)));
+    let expected = pairs(std::iter::once((&found.what, u8::from(found.sides[0]).to_string())));
+    let _ = writeln!(
+        text,
+        "  {{ at = \"{}\", set = {{ {} }}, expect = {{ {expected} }} }},\n]",
+        at(scan),
+        pairs(inputs)
+    );
+    text
+}

@@ -1,0 +1,652 @@
+//! Why a device is on or off: the fewest contacts that held it so in a scan, followed back through relays, timers,
+//! counters, set coils, steps and master controls.
+//!
+//! Everything is said of a scan as it was executed: a contact has the value that it saw at its place, and what it saw
+//! is followed to the instruction that had written it by then, in the same scan or an earlier one.
+
+mod cut;
+pub use cut::Condition;
+
+mod drivers;
+pub use drivers::Drivers;
+
+mod seen;
+
+use super::{Code, Machine, Place, Session, Sight, Value, Variable};
+use crate::document::Document;
+use crate::ladder::{CoilKind, ContactKind};
+use crate::logic::{Contact, Deed, Expression, Test};
+use crate::target::{Device, DeviceKind, Flow, Operand, Semantics};
+use crate::text::{Language, Message, Span};
+use drivers::{Driver, Wire};
+use seen::Seen;
+use smol_str::{SmolStr, ToSmolStr};
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// A reason, and the reasons for it.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Reason {
+    /// The sentence.
+    pub message: Message,
+    /// The instruction or contact that it is about.
+    pub place: Option<Place>,
+    /// The scan, from 0 on.
+    pub scan: u64,
+    /// When it began, in nanoseconds.
+    pub time_ns: i64,
+    /// Why that was so.
+    pub because: Vec<Reason>,
+}
+
+impl Reason {
+    /// It and the reasons behind it, each with how deep it stands.
+    pub fn flat(&self) -> Vec<(usize, &Reason)> {
+        let mut all = vec![(0, self)];
+        for reason in &self.because {
+            all.extend(reason.flat().into_iter().map(|(depth, reason)| (depth + 1, reason)));
+        }
+        all
+    }
+
+    /// A line for each of them, set in by how deep it stands; `place` says where its instruction is.
+    pub fn told(&self, language: Language, place: impl Fn(Place) -> String) -> String {
+        let line = |(depth, reason): (usize, &Reason)| {
+            let at = reason.place.map(|at| format!("  [{}]", place(at))).unwrap_or_default();
+            format!("{}{}{at}\n", "  ".repeat(depth), reason.message.render(language))
+        };
+        self.flat().into_iter().map(line).collect()
+    }
+}
+
+/// A simulation that is asked why.
+pub struct Inquiry<'a> {
+    session: &'a Session,
+    /// Code of the program that says what it sees.
+    watched: &'a Arc<Code>,
+    documents: &'a [&'a Document],
+    /// The scan that is going on: the PLC as it is there, and what was seen of it.
+    open: Option<(&'a Machine<u8>, Rc<Seen>)>,
+    drivers: &'a Drivers,
+    known: RefCell<Vec<(u64, Rc<Seen>)>>,
+    reasons: RefCell<usize>,
+}
+
+/// What is asked about.
+#[derive(Clone, PartialEq, Eq, Debug)]
+struct Subject {
+    /// As terms are compared.
+    name: SmolStr,
+    device: Option<Device>,
+    variable: Variable,
+}
+
+/// A moment of a simulation: within a scan, before so many sights.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+struct Moment {
+    scan: u64,
+    before: usize,
+}
+
+/// Something of which it is known whether it lets power through.
+#[derive(Clone, PartialEq, Debug)]
+enum Literal {
+    /// The relay of a contact, with the contact.
+    Bit(Subject, Place),
+    /// A contact that is more: an edge, a comparison.
+    Contact(Place),
+    /// A master control or a step.
+    Rail(Place),
+    /// What decides by itself.
+    Through(Place),
+}
+
+/// Reasons nest no deeper.
+const MOST_DEPTH: usize = 8;
+/// More reasons are not given at once.
+const MOST_REASONS: usize = 80;
+/// So many instructions are named that might have driven a device and did not.
+const MOST_IDLE: usize = 4;
+
+impl<'a> Inquiry<'a> {
+    /// Asks about a session; `watched` is code of `documents`, which are its program, that says what it sees, and
+    /// `drivers` are theirs.
+    pub fn new(
+        session: &'a Session,
+        watched: &'a Arc<Code>,
+        documents: &'a [&'a Document],
+        drivers: &'a Drivers,
+    ) -> Inquiry<'a> {
+        Inquiry {
+            session,
+            watched,
+            documents,
+            open: None,
+            drivers,
+            known: RefCell::default(),
+            reasons: RefCell::default(),
+        }
+    }
+
+    /// Asks within the scan behind those of the session: the PLC as it is there, and what was seen so far.
+    pub fn within(mut self, machine: &'a Machine<u8>, sights: Vec<Sight<u8>>) -> Inquiry<'a> {
+        self.open = Some((machine, Rc::new(Seen::new(sights))));
+        self
+    }
+
+    /// Why a device or variable is what it is after scan number `scan`, from 0 on, or now; nothing for a name or a scan
+    /// that is not known.
+    pub fn why(&self, name: &str, scan: Option<u64>) -> Option<Reason> {
+        let subject = self.subject(name)?;
+        let last = self.session.machine().scans() + u64::from(self.open.is_some());
+        let scan = scan.map_or(last, |scan| scan.saturating_add(1));
+        if scan > last || scan == 0 || scan <= self.session.first_scan() {
+            return None;
+        }
+        *self.reasons.borrow_mut() = 0;
+        let moment = Moment { scan, before: self.seen(scan)?.len() };
+        let value = self.value(&subject, scan)?;
+        Some(self.value_reason(&subject, &value, moment, None, &mut Vec::new()))
+    }
+
+    fn subject(&self, name: &str) -> Option<Subject> {
+        let name = name.trim();
+        let code = self.watched;
+        let device = |name: &str| match Operand::read(name, code.target.model) {
+            Operand::Device(device) if code.target.is_fx() => Some(device),
+            _ => None,
+        };
+        // TS0, TC0 and TN0 are parts of T0.
+        let whole = || {
+            let (kind, rest) = (name.get(..1)?, name.get(1..)?);
+            let rest = rest.strip_prefix(['S', 'C', 'N', 's', 'c', 'n'])?;
+            device(&format!("{kind}{rest}")).filter(|device| device.kind.has_preset())
+        };
+        match device(name).or_else(whole) {
+            Some(device) => self.device_subject(device),
+            None => {
+                let variable = code.variable(name)?;
+                Some(Subject { name: name.to_lowercase().into(), device: None, variable })
+            }
+        }
+    }
+
+    fn device_subject(&self, device: Device) -> Option<Subject> {
+        let layout = &self.watched.layout;
+        let relay = layout.cell(device).map(Variable::Relay);
+        let variable = relay.or_else(|| layout.slot(device).map(Variable::Word))?;
+        Some(Subject { name: device.to_smolstr(), device: Some(device), variable })
+    }
+
+    fn seen(&self, scan: u64) -> Option<Rc<Seen>> {
+        if let Some((_, seen)) = self.open.as_ref().filter(|_| scan > self.session.machine().scans()) {
+            return Some(Rc::clone(seen));
+        }
+        if let Some((_, seen)) = self.known.borrow().iter().find(|(known, _)| *known == scan) {
+            return Some(Rc::clone(seen));
+        }
+        let seen = Rc::new(Seen::new(self.session.sights(scan, self.watched)?));
+        self.known.borrow_mut().push((scan, Rc::clone(&seen)));
+        Some(seen)
+    }
+
+    /// The PLC after a scan, or within the one that is going on.
+    fn machine(&self, scan: u64) -> Option<Machine<u8>> {
+        match &self.open {
+            Some((machine, _)) if scan > self.session.machine().scans() => Some((*machine).clone()),
+            _ => self.session.at(scan),
+        }
+    }
+
+    fn value(&self, subject: &Subject, scan: u64) -> Option<Value> {
+        self.machine(scan).map(|machine| machine.value_inside(subject.variable, 0))
+    }
+
+    fn reason(&self, message: Message, place: Option<Place>, scan: u64, because: Vec<Reason>) -> Reason {
+        *self.reasons.borrow_mut() += 1;
+        let open = self.open.as_ref().map_or(0, |(machine, _)| machine.now_ns());
+        let time_ns = self.session.time_of(scan).unwrap_or(open);
+        Reason { message, place, scan: scan.saturating_sub(1), time_ns, because }
+    }
+
+    /// How people call it: with what the project says of it.
+    fn shown(&self, subject: &Subject) -> String {
+        let comments = self.documents.iter().filter_map(|document| {
+            let row = document.comments().of_device(subject.device?)?;
+            let words = if row.comment.is_empty() { &row.symbol } else { &row.comment };
+            (!words.is_empty()).then(|| words.clone())
+        });
+        match comments.into_iter().next() {
+            Some(words) => format!("{} ({words})", subject.name),
+            None => subject.name.to_string(),
+        }
+    }
+
+    fn words(&self, place: Place) -> String {
+        let document = self.documents.get(place.document as usize);
+        let text = document.map(|document| document.slice(place.span)).unwrap_or_default();
+        let line = text.lines().next().unwrap_or_default();
+        line.split_whitespace().collect::<Vec<_>>().join(" ")
+    }
+
+    /// What a subject is: `Y0 is on`.
+    fn state(&self, subject: &Subject, value: &Value) -> Message {
+        let name = self.shown(subject);
+        match value {
+            Value::Bit(true) => Message::new("why.on").with("name", name),
+            Value::Bit(false) => Message::new("why.off").with("name", name),
+            value => Message::new("why.is").with("name", name).with("value", value),
+        }
+    }
+
+    /// Why a subject had a value at a moment; `since` is the scan in which it got it, if that is not the one of the
+    /// question.
+    fn value_reason(
+        &self,
+        subject: &Subject,
+        value: &Value,
+        moment: Moment,
+        since: Option<u64>,
+        asked: &mut Vec<Subject>,
+    ) -> Reason {
+        let mut state = self.state(subject, value);
+        if let Some(scan) = since {
+            let time = self.session.time_of(scan).unwrap_or_default();
+            state = Message::new("why.since")
+                .with_messages("what", vec![state])
+                .with("scan", scan.saturating_sub(1))
+                .with("time", super::milliseconds(time));
+        }
+        let told = |how: Message| {
+            Message::new("why.told")
+                .with_messages("what", vec![state.clone()])
+                .with_messages("how", vec![how])
+        };
+        let is_asked = asked.contains(subject);
+        if asked.len() >= MOST_DEPTH || *self.reasons.borrow() >= MOST_REASONS {
+            return self.reason(state, None, moment.scan, Vec::new());
+        }
+        let machine = self.machine(moment.scan);
+        if machine.is_some_and(|machine| machine.is_forced(subject.variable)) {
+            return self.reason(told(Message::new("why.forced")), None, moment.scan, Vec::new());
+        }
+        if let Some(device) = subject.device
+            && (device.is_special() || device.kind == DeviceKind::X)
+            && self.drivers.named(&subject.name).is_empty()
+        {
+            return self.outside(subject, device, moment, since, &told);
+        }
+        if !is_asked && let Some((driver, at)) = self.writer(subject, value, moment) {
+            asked.push(subject.clone());
+            let reason = self.driven(subject, value, &driver, Moment { before: at, ..moment }, &told, asked);
+            asked.pop();
+            return reason;
+        }
+        self.kept(subject, value, moment, &told, asked)
+    }
+
+    /// An input, or what the PLC drives itself.
+    fn outside(
+        &self,
+        subject: &Subject,
+        device: Device,
+        moment: Moment,
+        since: Option<u64>,
+        told: &dyn Fn(Message) -> Message,
+    ) -> Reason {
+        if device.is_special() {
+            return self.reason(told(Message::new("why.special")), None, moment.scan, Vec::new());
+        }
+        let last = moment.scan.min(self.session.machine().scans());
+        let changed = self.session.last_change(last, |machine| machine.value_inside(subject.variable, 0));
+        let how = match changed.filter(|_| since.is_none()) {
+            Some(scan) => Message::new("why.input-since")
+                .with("scan", scan.saturating_sub(1))
+                .with("time", super::milliseconds(self.session.time_of(scan).unwrap_or_default())),
+            None => Message::new("why.input"),
+        };
+        self.reason(told(how), None, moment.scan, Vec::new())
+    }
+
+    /// Why something has a value that nothing wrote in this scan, or that it kept by itself.
+    fn kept(
+        &self,
+        subject: &Subject,
+        value: &Value,
+        moment: Moment,
+        told: &dyn Fn(Message) -> Message,
+        asked: &mut Vec<Subject>,
+    ) -> Reason {
+        let of = |machine: &Machine<u8>| machine.value_inside(subject.variable, 0);
+        // The scan itself is over for what was executed before this moment only.
+        let last = (moment.scan - 1).max(self.session.first_scan());
+        let is_new = self.session.at(last).is_none_or(|machine| of(&machine) != *value);
+        if is_new {
+            return self.reason(told(Message::new("why.by-hand")), None, moment.scan, Vec::new());
+        }
+        let idle = self.drivers.named(&subject.name);
+        match self.session.last_change(last, of) {
+            Some(scan) if scan < moment.scan => {
+                let at = self.seen(scan).map(|seen| Moment { scan, before: seen.len() });
+                let before = at.and_then(|at| Some((self.writer(subject, value, at)?, at)));
+                let Some(((driver, number), at)) = before else {
+                    let state = self.state(subject, value);
+                    let since = self.since(state, scan);
+                    let how = Message::new("why.by-hand");
+                    let message = Message::new("why.told")
+                        .with_messages("what", vec![since])
+                        .with_messages("how", vec![how]);
+                    return self.reason(message, None, scan, Vec::new());
+                };
+                let since = self.since(self.state(subject, value), scan);
+                let told = |how: Message| {
+                    Message::new("why.told")
+                        .with_messages("what", vec![since.clone()])
+                        .with_messages("how", vec![how])
+                };
+                asked.push(subject.clone());
+                let at = Moment { before: number, ..at };
+                let reason = self.driven(subject, value, &driver, at, &told, asked);
+                asked.pop();
+                reason
+            }
+            _ if idle.is_empty() => {
+                self.reason(told(Message::new("why.nothing-drives")), None, moment.scan, Vec::new())
+            }
+            _ if asked.contains(subject) => {
+                self.reason(told(Message::new("why.from-start")), None, moment.scan, Vec::new())
+            }
+            _ => {
+                asked.push(subject.clone());
+                let because =
+                    idle.iter().take(MOST_IDLE).map(|driver| self.idle(driver, moment, asked)).collect();
+                asked.pop();
+                self.reason(told(Message::new("why.never")), None, moment.scan, because)
+            }
+        }
+    }
+
+    fn since(&self, state: Message, scan: u64) -> Message {
+        let time = super::milliseconds(self.session.time_of(scan).unwrap_or_default());
+        Message::new("why.since")
+            .with_messages("what", vec![state])
+            .with("scan", scan.saturating_sub(1))
+            .with("time", time)
+    }
+
+    /// The instruction that wrote a value last before a moment of a scan, and the number of its sight.
+    fn writer(&self, subject: &Subject, value: &Value, moment: Moment) -> Option<(Driver, usize)> {
+        let seen = self.seen(moment.scan)?;
+        let written = self.drivers.named(&subject.name).iter().filter_map(|driver| {
+            let (at, sight) = seen.last(self.watched, driver.place, moment.before)?;
+            (writes(driver, sight.power != 0, value)).then(|| (driver.clone(), at))
+        });
+        written.max_by_key(|(_, at)| *at)
+    }
+
+    /// An instruction that might have driven something and did not.
+    fn idle(&self, driver: &Driver, moment: Moment, asked: &mut Vec<Subject>) -> Reason {
+        let instruction = self.words(driver.place);
+        let seen = self.seen(moment.scan);
+        match seen.and_then(|seen| seen.last(self.watched, driver.place, moment.before)) {
+            Some((at, sight)) => {
+                let key = if sight.power != 0 { "why.powered" } else { "why.unpowered" };
+                let because = self.power(driver, Moment { before: at, ..moment }, sight.power != 0, asked);
+                let message = Message::new(key).with("instruction", instruction);
+                self.reason(message, Some(driver.place), moment.scan, because)
+            }
+            None => {
+                let because = driver.rail.and_then(|rail| self.rail_reason(rail, moment, false, asked));
+                let message = Message::new("why.not-executed").with("instruction", instruction);
+                self.reason(message, Some(driver.place), moment.scan, because.into_iter().collect())
+            }
+        }
+    }
+
+    /// Why an instruction that was executed gave a value.
+    fn driven(
+        &self,
+        subject: &Subject,
+        value: &Value,
+        driver: &Driver,
+        at: Moment,
+        told: &dyn Fn(Message) -> Message,
+        asked: &mut Vec<Subject>,
+    ) -> Reason {
+        let seen = self.seen(at.scan);
+        let has_power = seen.and_then(|seen| seen.at(at.before)).is_some_and(|sight| sight.power != 0);
+        let because = self.power(driver, at, has_power, asked);
+        let key = if has_power { "why.powered" } else { "why.unpowered" };
+        let power = Message::new(key).with("instruction", self.words(driver.place));
+        let counts = subject.device.filter(|device| device.kind.has_preset() && is_coil(driver));
+        let how = match counts.and_then(|device| self.counted(device, driver, at.scan, value)) {
+            Some(how) => {
+                let because = vec![self.reason(power, Some(driver.place), at.scan, because)];
+                return self.reason(told(how), Some(driver.place), at.scan, because);
+            }
+            None if is_pulse(driver) && has_power && *value == Value::Bit(false) => {
+                return self.reason(
+                    told(Message::new("why.pulse-over")),
+                    Some(driver.place),
+                    at.scan,
+                    because,
+                );
+            }
+            None => power,
+        };
+        self.reason(told(how), Some(driver.place), at.scan, because)
+    }
+
+    /// How far a timer or counter is.
+    fn counted(&self, device: Device, driver: &Driver, scan: u64, value: &Value) -> Option<Message> {
+        let machine = self.machine(scan)?;
+        let layout = &self.watched.layout;
+        let now = machine.memory().word(layout.slot(device)?, 0);
+        let preset = match driver.action.terms.get(1)?.operand {
+            Operand::Device(register) => machine.memory().word(layout.slot(register)?, 0),
+            _ => match Value::read(&driver.action.terms.get(1)?.text)? {
+                Value::Number(number) => number,
+                Value::Bit(on) => i64::from(on),
+                _ => return None,
+            },
+        };
+        let is_on = *value == Value::Bit(true);
+        if device.kind == DeviceKind::C {
+            let key = if is_on { "why.counted" } else { "why.counting" };
+            return Some(Message::new(key).with("now", now).with("preset", preset));
+        }
+        let unit_ms = device.range_on(self.watched.target)?.timer_unit_ms.max(1);
+        let seconds = |units: i64| units as f64 * f64::from(unit_ms) / 1000.0;
+        let key = if is_on { "why.timed" } else { "why.timing" };
+        Some(Message::new(key).with("now", seconds(now)).with("preset", seconds(preset)))
+    }
+
+    /// The fewest contacts by which power came to an instruction, or did not.
+    fn power(&self, driver: &Driver, at: Moment, has_power: bool, asked: &mut Vec<Subject>) -> Vec<Reason> {
+        let Some(seen) = self.seen(at.scan) else { return Vec::new() };
+        let mut literals =
+            Literals { inquiry: self, seen: &seen, at, place: driver.place, known: Vec::new() };
+        let rail = driver.rail.and_then(|rail| literals.rail(rail));
+        let Some(wire) = driver.wire.as_ref().and_then(|wire| literals.wire(wire)) else { return Vec::new() };
+        let condition = Condition::And(rail.into_iter().chain([wire]).collect());
+        let known = literals.known;
+        let values: Vec<bool> = known.iter().map(|(_, value, _)| *value).collect();
+        // What was computed otherwise than is understood here is not explained.
+        if condition.holds(&values) != has_power {
+            return Vec::new();
+        }
+        let is_asked =
+            |literal: &Literal| matches!(literal, Literal::Bit(subject, _) if asked.contains(subject));
+        let costs: Vec<u32> = known.iter().map(|(literal, ..)| u32::from(is_asked(literal))).collect();
+        let deciding = condition.decisive(&values, &costs);
+        let reasons = deciding.into_iter().map(|number| {
+            let (literal, value, number) = &known[number];
+            self.literal_reason(literal, *value, Moment { before: *number, ..at }, asked)
+        });
+        reasons.collect()
+    }
+
+    fn literal_reason(&self, literal: &Literal, value: bool, at: Moment, asked: &mut Vec<Subject>) -> Reason {
+        match literal {
+            Literal::Bit(subject, place) => {
+                let reason = self.value_reason(subject, &Value::Bit(value), at, None, asked);
+                Reason { place: Some(*place), ..reason }
+            }
+            Literal::Contact(place) => {
+                let key = if value { "why.conducts" } else { "why.blocks" };
+                let message = Message::new(key).with("instruction", self.words(*place));
+                self.reason(message, Some(*place), at.scan, Vec::new())
+            }
+            Literal::Rail(place) => {
+                // What it saw itself counts.
+                let at = Moment { before: at.before + 1, ..at };
+                let reason = self.rail_reason(*place, at, value, asked);
+                reason.unwrap_or_else(|| self.through(*place, value, at.scan))
+            }
+            Literal::Through(place) => self.through(*place, value, at.scan),
+        }
+    }
+
+    fn through(&self, place: Place, value: bool, scan: u64) -> Reason {
+        let key = if value { "why.passes" } else { "why.stops" };
+        let message = Message::new(key).with("instruction", self.words(place));
+        self.reason(message, Some(place), scan, Vec::new())
+    }
+
+    /// Why a step is active or not, or a master control has power.
+    fn rail_reason(&self, place: Place, at: Moment, is_on: bool, asked: &mut Vec<Subject>) -> Option<Reason> {
+        let driver = self.drivers.rail(place)?;
+        let device = driver.action.terms.first()?.operand.device()?;
+        if matches!(&driver.action.deed, Deed::Instruction(form) if form.instruction.flow() == Flow::Step) {
+            let subject = self.device_subject(device)?;
+            let reason = self.value_reason(&subject, &Value::Bit(is_on), at, None, asked);
+            return Some(Reason { place: Some(place), ..reason });
+        }
+        let seen = self.seen(at.scan)?;
+        let (number, sight) = seen.last(self.watched, place, at.before)?;
+        let key = if sight.power != 0 { "why.powered" } else { "why.unpowered" };
+        let because = self.power(driver, Moment { before: number, ..at }, sight.power != 0, asked);
+        let message = Message::new(key).with("instruction", self.words(place));
+        Some(self.reason(message, Some(place), at.scan, because))
+    }
+}
+
+/// Whether an instruction that is executed with this power gives a device this value, or may give it one.
+fn writes(driver: &Driver, has_power: bool, value: &Value) -> bool {
+    let is_on = *value == Value::Bit(true);
+    match &driver.action.deed {
+        // Entering another step leaves this one.
+        _ if driver.leaves => has_power && !is_on,
+        Deed::Coil(CoilKind::Set) => has_power && is_on,
+        Deed::Coil(CoilKind::Reset) => has_power && !is_on,
+        // The coil of a state in a step enters it, and takes nothing away.
+        Deed::Coil(CoilKind::Plain) if is_state(driver) && driver.rail.is_some() => has_power && is_on,
+        Deed::Coil(_) => true,
+        Deed::Instruction(form) => match form.instruction.semantics {
+            Semantics::Always(_) | Semantics::Basic => true,
+            _ => has_power,
+        },
+        _ => has_power,
+    }
+}
+
+fn is_state(driver: &Driver) -> bool {
+    let first = driver.action.terms.first().and_then(|term| term.operand.device());
+    first.is_some_and(|device| device.kind == DeviceKind::S)
+}
+
+/// Whether it is the coil of a timer or counter.
+fn is_coil(driver: &Driver) -> bool {
+    matches!(driver.action.deed, Deed::Coil(CoilKind::Plain)) && driver.action.terms.len() > 1
+}
+
+fn is_pulse(driver: &Driver) -> bool {
+    matches!(driver.action.deed, Deed::Coil(CoilKind::Rising | CoilKind::Falling))
+}
+
+/// The literals of a rung, with their values and the sights in which these were seen.
+struct Literals<'i, 'a> {
+    inquiry: &'i Inquiry<'a>,
+    seen: &'i Seen,
+    at: Moment,
+    /// The instruction whose power they decide.
+    place: Place,
+    known: Vec<(Literal, bool, usize)>,
+}
+
+impl Literals<'_, '_> {
+    fn wire(&mut self, wire: &Wire) -> Option<Condition> {
+        match wire {
+            Wire::Pass(expression) => self.expression(expression),
+            Wire::Not(part) => Some(Condition::Not(Box::new(self.wire(part)?))),
+            Wire::Series(parts) => {
+                parts.iter().map(|part| self.wire(part)).collect::<Option<_>>().map(Condition::And)
+            }
+            Wire::Through(action) => {
+                let place = self.placed(action.span);
+                let (at, sight) = self.seen.last(self.inquiry.watched, place, self.at.before)?;
+                let is_rail = self.inquiry.drivers.rail(place).is_some();
+                let literal = if is_rail { Literal::Rail(place) } else { Literal::Through(place) };
+                Some(self.literal(literal, sight.power != 0, at))
+            }
+        }
+    }
+
+    fn expression(&mut self, expression: &Expression) -> Option<Condition> {
+        let mut all =
+            |parts: &[Expression]| parts.iter().map(|part| self.expression(part)).collect::<Option<Vec<_>>>();
+        Some(match expression {
+            Expression::Constant(value) => Condition::Constant(*value),
+            Expression::Not(part) => Condition::Not(Box::new(self.expression(part)?)),
+            Expression::And(parts) => Condition::And(all(parts)?),
+            Expression::Or(parts) => Condition::Or(all(parts)?),
+            Expression::Contact(contact) => self.contact(contact)?,
+        })
+    }
+
+    fn contact(&mut self, contact: &Contact) -> Option<Condition> {
+        let place = self.placed(contact.span);
+        let (at, sight) = self.seen.last(self.inquiry.watched, place, self.at.before)?;
+        let conducts = sight.conducts? != 0;
+        let term = contact.terms.first()?;
+        let subject = match term.operand {
+            Operand::Device(device) => self.inquiry.device_subject(device),
+            _ => self.inquiry.subject(&term.text),
+        };
+        let is_inverse = contact.test == Test::Bit(ContactKind::NormallyClosed);
+        let is_plain = is_inverse || contact.test == Test::Bit(ContactKind::NormallyOpen);
+        Some(match subject.filter(|_| is_plain) {
+            Some(subject) => {
+                let literal = self.literal(Literal::Bit(subject, place), conducts != is_inverse, at);
+                if is_inverse { Condition::Not(Box::new(literal)) } else { literal }
+            }
+            None => self.literal(Literal::Contact(place), conducts, at),
+        })
+    }
+
+    fn rail(&mut self, place: Place) -> Option<Condition> {
+        let (at, sight) = self.seen.last(self.inquiry.watched, place, self.at.before)?;
+        Some(self.literal(Literal::Rail(place), sight.power != 0, at))
+    }
+
+    /// The same device with the same value is one literal, wherever its contacts stand.
+    fn literal(&mut self, literal: Literal, value: bool, at: usize) -> Condition {
+        let same = |(known, other, _): &(Literal, bool, usize)| match (known, &literal) {
+            (Literal::Bit(known, _), Literal::Bit(subject, _)) => known == subject && *other == value,
+            (known, literal) => known == literal,
+        };
+        let number = self.known.iter().position(same).unwrap_or_else(|| {
+            self.known.push((literal, value, at));
+            self.known.len() - 1
+        });
+        Condition::Literal(number)
+    }
+
+    /// Spans of a rung count from where its chunk begins.
+    fn placed(&self, span: Span) -> Place {
+        let document = self.inquiry.documents.get(self.place.document as usize);
+        let start = document.and_then(|document| document.chunk_at(self.place.span.start as usize));
+        Place { document: self.place.document, span: span.shifted(start.map_or(0, |at| at.start)) }
+    }
+}

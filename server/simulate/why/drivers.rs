@@ -1,0 +1,196 @@
+//! Which instructions drive a device, under which rails.
+
+use crate::document::{ChunkRef, Document, Tree};
+use crate::logic::{self, Action, Declared, Deed, Drive, Expression, Gate, Path, Rung};
+use crate::simulate::Place;
+use crate::target::{Device, DeviceKind, Flow, Operand};
+use crate::text::Span;
+use rustc_hash::FxHashMap;
+use smol_str::{SmolStr, ToSmolStr};
+
+/// What drives each device of a program, in the order of execution.
+#[derive(Debug)]
+pub struct Drivers {
+    by_name: FxHashMap<SmolStr, Vec<Driver>>,
+    /// Master controls and steps by their places.
+    rails: FxHashMap<Place, Driver>,
+}
+
+/// An instruction that drives something.
+#[derive(Clone, Debug)]
+pub(super) struct Driver {
+    /// Where it stands.
+    pub(super) place: Place,
+    pub(super) action: Action,
+    /// The condition of its power from the rail to it; nothing if that is not known.
+    pub(super) wire: Option<Wire>,
+    /// The innermost master control or step in which it stands.
+    pub(super) rail: Option<Place>,
+    /// Whether it takes a step away that it hands on.
+    pub(super) leaves: bool,
+}
+
+/// The condition of power at an instruction.
+#[derive(Clone, Debug)]
+pub(super) enum Wire {
+    Pass(Expression),
+    Not(Box<Wire>),
+    Series(Vec<Wire>),
+    /// What decides by itself whether power goes on behind it.
+    Through(Box<Action>),
+}
+
+/// More devices are not written at once.
+const MOST_AT_ONCE: u32 = 512;
+
+impl Drivers {
+    /// Reads documents that are one program, in the order of execution.
+    pub fn of(documents: &[&Document]) -> Drivers {
+        let mut reader = Reader {
+            drivers: Drivers { by_name: FxHashMap::default(), rails: FxHashMap::default() },
+            sections: Vec::new(),
+            step: None,
+            document: 0,
+            start: 0,
+        };
+        for (number, document) in (0..).zip(documents) {
+            reader.document = number;
+            for (at, pous) in with_pous(document) {
+                reader.start = at.start;
+                let declared = Declared { scopes: document.scopes(), pous };
+                let reading = at.chunk.reading();
+                let is_drawn = matches!(reading.tree(), Tree::Ladder(_));
+                for rung in logic::rungs_with(&reading, document.target(), declared) {
+                    reader.rung(&rung, is_drawn);
+                }
+            }
+        }
+        reader.drivers
+    }
+
+    /// What drives a device or variable.
+    pub(super) fn named(&self, name: &str) -> &[Driver] {
+        self.by_name.get(name).map_or(&[], Vec::as_slice)
+    }
+
+    /// The master control or the step at a place.
+    pub(super) fn rail(&self, place: Place) -> Option<&Driver> {
+        self.rails.get(&place)
+    }
+}
+
+fn with_pous(document: &Document) -> Vec<(ChunkRef<'_>, usize)> {
+    let numbers: FxHashMap<usize, usize> = document.iec_chunks().map(|(at, pous)| (at.start, pous)).collect();
+    let all = document.chunks().map(|at| {
+        let pous = numbers.get(&at.start).copied().unwrap_or(0);
+        (at, pous)
+    });
+    all.collect()
+}
+
+struct Reader {
+    drivers: Drivers,
+    /// Master controls that are open, with their levels.
+    sections: Vec<(u32, Place)>,
+    step: Option<(Place, Device)>,
+    document: u32,
+    start: usize,
+}
+
+impl Reader {
+    fn rung(&mut self, rung: &Rung, is_drawn: bool) {
+        let Ok(Some(path)) = &rung.path else { return };
+        // Of a list that a drawing carries along the places within are not known.
+        let whole = (is_drawn && rung.is_list).then_some(rung.span);
+        self.path(path, Some(Vec::new()), whole);
+    }
+
+    fn place(&self, span: Span) -> Place {
+        Place { document: self.document, span: span.shifted(self.start) }
+    }
+
+    fn path(&mut self, path: &Path, wires: Option<Vec<Wire>>, whole: Option<Span>) {
+        let mut wires = wires.filter(|_| whole.is_none());
+        for gate in &path.gates {
+            match gate {
+                Gate::Pass(expression) => {
+                    wires.as_mut().into_iter().for_each(|wires| wires.push(Wire::Pass(expression.clone())));
+                }
+                Gate::Invert => {
+                    wires = wires.map(|wires| vec![Wire::Not(Box::new(Wire::Series(wires)))]);
+                }
+                Gate::Through(action) => {
+                    self.action(action, wires.clone(), whole);
+                    wires = wires.map(|_| vec![Wire::Through(Box::new(action.clone()))]);
+                }
+            }
+        }
+        for drive in &path.drives {
+            match drive {
+                Drive::Action(action) => self.action(action, wires.clone(), whole),
+                Drive::Path(path) => self.path(path, wires.clone(), whole),
+            }
+        }
+    }
+
+    fn action(&mut self, action: &Action, wires: Option<Vec<Wire>>, whole: Option<Span>) {
+        let place = self.place(whole.unwrap_or(action.span));
+        let step = self.step.map(|(place, _)| place);
+        let rail = step.or_else(|| self.sections.last().map(|(_, place)| *place));
+        let driver =
+            Driver { place, action: action.clone(), wire: wires.map(Wire::Series), rail, leaves: false };
+        let first = action.terms.first().and_then(|term| term.operand.device());
+        let flow = match &action.deed {
+            Deed::Instruction(form) => form.instruction.flow(),
+            _ => Flow::Straight,
+        };
+        match (flow, first) {
+            (Flow::SectionBegin, Some(level)) => {
+                self.sections.retain(|(open, _)| *open < level.number);
+                self.sections.push((level.number, place));
+                self.drivers.rails.insert(place, driver.clone());
+            }
+            (Flow::SectionEnd, Some(level)) => self.sections.retain(|(open, _)| *open < level.number),
+            (Flow::Step, Some(state)) => {
+                self.step = Some((place, state));
+                self.drivers.rails.insert(place, driver.clone());
+            }
+            (Flow::StepsEnd | Flow::MainEnd | Flow::ProgramEnd, _) => self.step = None,
+            _ => {}
+        }
+        let hands_on = matches!(action.deed, Deed::Coil(_)) && first.is_some_and(|d| d.kind == DeviceKind::S);
+        if let (Some((_, state)), true) = (self.step, hands_on) {
+            let leaving = Driver { leaves: true, ..driver.clone() };
+            self.drivers.by_name.entry(state.to_smolstr()).or_default().push(leaving);
+        }
+        for name in written(action) {
+            self.drivers.by_name.entry(name).or_default().push(driver.clone());
+        }
+    }
+}
+
+/// The names of what an action may write.
+fn written(action: &Action) -> Vec<SmolStr> {
+    let changes = action.changes();
+    let mut names: Vec<SmolStr> = Vec::new();
+    for term in &changes {
+        match term.operand {
+            Operand::Nibbles { digits, first, index: None } => {
+                let count = u32::from(digits) * 4;
+                names
+                    .extend((0..count).map(|more| Device::new(first.kind, first.number + more).to_smolstr()));
+            }
+            _ => names.push(term.key()),
+        }
+    }
+    // A range from one device to another.
+    let devices: Vec<Device> = changes.iter().filter_map(|term| term.operand.device()).collect();
+    if let ([first, last], true) = (&devices[..], changes.len() == action.terms.len())
+        && first.kind == last.kind
+        && first.number < last.number
+    {
+        let last = last.number.min(first.number + MOST_AT_ONCE);
+        names.extend((first.number + 1..last).map(|number| Device::new(first.kind, number).to_smolstr()));
+    }
+    names
+}

@@ -1,0 +1,41 @@
+//! What the instructions of one scan saw, found by their places.
+
+use crate::simulate::{Code, Place, Sight};
+use rustc_hash::FxHashMap;
+use std::cell::OnceCell;
+
+/// What was seen in a scan, in the order of execution.
+pub(super) struct Seen {
+    sights: Vec<Sight<u8>>,
+    by_place: OnceCell<FxHashMap<Place, Vec<usize>>>,
+}
+
+impl Seen {
+    pub(super) fn new(sights: Vec<Sight<u8>>) -> Seen {
+        Seen { sights, by_place: OnceCell::new() }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.sights.len()
+    }
+
+    pub(super) fn at(&self, number: usize) -> Option<Sight<u8>> {
+        self.sights.get(number).copied()
+    }
+
+    /// What the instruction at a place saw last before the sight with this number, and the number of that.
+    pub(super) fn last(&self, code: &Code, place: Place, before: usize) -> Option<(usize, Sight<u8>)> {
+        let by_place = self.by_place.get_or_init(|| {
+            let mut by_place: FxHashMap<Place, Vec<usize>> = FxHashMap::default();
+            for (number, sight) in self.sights.iter().enumerate() {
+                if let Some(place) = code.places.get(sight.instruction as usize) {
+                    by_place.entry(*place).or_default().push(number);
+                }
+            }
+            by_place
+        });
+        let own = by_place.get(&place)?;
+        let number = *own.get(own.partition_point(|number| *number < before).checked_sub(1)?)?;
+        self.at(number).map(|sight| (number, sight))
+    }
+}

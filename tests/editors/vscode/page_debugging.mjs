@@ -1,0 +1,66 @@
+// VS Code's own debugger on a drawing: F5 without a launch file, a data breakpoint, forward and back.
+
+/** The files of these checks, and the fixtures of which they are copies. */
+export const DEBUGGING_FILES = { 'debugged.lad': 'motor.lad' };
+
+export const DEBUGGING_TESTS = {
+  'F5 stops at the first rung, a change of an output is caught, and time goes back': debugging,
+};
+
+/** The number of the line at which the program stands. */
+async function stoppedAt(workbench) {
+  const shown = workbench.page.locator('.editor-instance .margin-view-overlays > div', {
+    has: workbench.page.locator('.codicon-debug-stackframe'),
+  });
+  return (await shown.count()) > 0 ? Number((await shown.first().innerText()).trim()) : undefined;
+}
+
+const untilLine = (workbench, line) =>
+  workbench.until(`line ${line} reached`, async () => (await stoppedAt(workbench)) === line);
+
+const variable = (workbench, name) =>
+  workbench.page.locator('.debug-view-content .monaco-list-row', { hasText: name }).first();
+
+async function debugging(workbench) {
+  const { page } = workbench;
+  await workbench.clear();
+  await workbench.openFile('debugged.lad');
+  await workbench.focusEditor();
+  await page.keyboard.press('F5');
+  await page.locator('.debug-toolbar').waitFor({ timeout: 90_000 });
+  await untilLine(workbench, 2);
+  try {
+    // The outputs, and the breakpoint of one of them in the menu.
+    await variable(workbench, 'Outputs').click();
+    await variable(workbench, 'Y0').click({ button: 'right' });
+    await page.locator('.context-view .action-label', { hasText: 'Break on Value Change' }).first().click();
+    await variable(workbench, 'Inputs').click();
+    // The console switches the input on.
+    await workbench.command('Debug Console: Focus on Debug Console View');
+    await page.keyboard.type('set X0=1');
+    await page.keyboard.press('Escape');
+    await page.keyboard.press('Enter');
+    await workbench.until('the input on', async () => /X0\s*=?\s*1/.test(await variable(workbench, 'X0').innerText()));
+    await page.keyboard.press('F5');
+    // Behind the rung that switched the output.
+    await untilLine(workbench, 7);
+    await workbench.until('the output on', async () => /Y0\s*=?\s*1/.test(await variable(workbench, 'Y0').innerText()));
+    await page.keyboard.type('why Y0');
+    await page.keyboard.press('Escape');
+    await page.keyboard.press('Enter');
+    await workbench.until('the reasons', async () =>
+      /X0 is on: an input/.test((await page.locator('.repl .monaco-list').innerText()).replaceAll('\u00a0', ' ')));
+    await workbench.screenshot('35-debugger');
+    // Back to before the coil was driven, where it is off.
+    await workbench.command('Debug: Step Back');
+    await untilLine(workbench, 3);
+    await workbench.until('the output off', async () => /Y0\s*=?\s*0/.test(await variable(workbench, 'Y0').innerText()));
+    await workbench.screenshot('36-debugger-back');
+  } finally {
+    await workbench.calm();
+    await page.keyboard.press('Shift+F5');
+    await page.locator('.debug-toolbar').waitFor({ state: 'hidden' });
+    await workbench.command('View: Show Explorer');
+    await workbench.clear();
+  }
+}

@@ -1,0 +1,79 @@
+//! Mutants: what is otherwise in them, and that it is nothing else.
+
+use rungwise::document::Document;
+use rungwise::project::{Manifest, open_document};
+use rungwise::scenario::Mutants;
+use rungwise::text::Language;
+use rungwise::translate::{Proof, prove};
+
+/// What each mutant of a program is called, and the lines that are otherwise in it.
+fn mutants(name: &str, text: &str) -> Vec<(String, String)> {
+    let document = open_document(name, text, &Manifest::default(), None, None);
+    let documents: [&Document; 1] = [&document];
+    let mutants = Mutants::of(&documents);
+    let told = mutants.sample(usize::MAX, 0).into_iter().map(|mutant| {
+        let made = mutants.documents(mutant).map(|made| made[0].text()).unwrap_or_default();
+        let new: Vec<&str> = made.lines().filter(|line| !text.lines().any(|old| old == *line)).collect();
+        (mutant.change.message().render(Language::English), new.join(" / "))
+    });
+    told.collect()
+}
+
+#[test]
+fn a_list_has_faults_of_all_kinds() {
+    let found = mutants(
+        "a.il",
+        "LD X0\nOR Y0\nANDP X1\nOUT Y0\nLD X2\nSET M0\nLDI X3\nRST M0\nLD M0\nOUT T0 K5\nOUT C0 K5\nEND\n",
+    );
+    let told: Vec<String> = found.iter().map(|(what, new)| format!("{what} | {new}")).collect();
+    let expected = [
+        "X0: the branch left out | LD Y0",
+        "X0: normally closed in place of normally open, or the other way round | LDI X0",
+        "Y0: the branch left out | ",
+        "Y0: normally closed in place of normally open, or the other way round | ORI Y0",
+        "X1: normally closed in place of normally open, or the other way round | ANDF X1",
+        "X1: the contact left out, power always passes | ",
+        "X2: normally closed in place of normally open, or the other way round | LDI X2",
+        "X2: the contact left out, power always passes | LD M8000",
+        "M0: reset in place of set | ",
+        "X3: normally closed in place of normally open, or the other way round | LD X3",
+        "X3: the contact left out, power always passes | LD M8000",
+        "M0: set in place of reset | ",
+        "M0: normally closed in place of normally open, or the other way round | LDI M0",
+        "M0: the contact left out, power always passes | LD M8000",
+        "T0: the preset K10 | OUT T0 K10",
+        "C0: the preset K6 | OUT C0 K6",
+    ];
+    assert_eq!(told, expected);
+}
+
+#[test]
+fn a_drawing_is_drawn_anew_where_the_fault_is() {
+    let text = "|  X0        X1     Y0  |\n+--| |---+---|/|----( )-+\n|  Y0    |              |\n+--| |---+              |\n\n|  X2               M0  |\n+--| |--------------(S)-+\n";
+    let document = open_document("a.lad", text, &Manifest::default(), None, None);
+    let documents: [&Document; 1] = [&document];
+    let mutants = Mutants::of(&documents);
+    assert_eq!(mutants.len(), 9);
+    for mutant in mutants.sample(usize::MAX, 0) {
+        let made = &mutants.documents(mutant).unwrap()[0];
+        assert!(matches!(prove(&document, made), Proof::Different(_)), "{mutant:?}\n{}", made.text());
+        // The other rung is as it was.
+        let other = if mutant.span.start < 100 {
+            "|  X2               M0  |\n+--| |--------------(S)-+\n"
+        } else {
+            &text[..100]
+        };
+        assert!(made.text().contains(other), "{mutant:?}\n{}", made.text());
+    }
+}
+
+#[test]
+fn lists_of_iec_have_faults_too() {
+    let found = mutants(
+        "a.il",
+        "PROGRAM a\nVAR\nx : BOOL;\ny : BOOL;\nz : BOOL;\nEND_VAR\nLD x\nOR y\nST z\nLD y\nS x\nEND_PROGRAM\n",
+    );
+    let told: Vec<String> = found.iter().map(|(what, new)| format!("{what} | {}", new.trim())).collect();
+    assert!(told.iter().any(|line| line.contains("x: normally closed") && line.contains("LDN")), "{told:#?}");
+    assert!(told.iter().any(|line| line.starts_with("x: reset in place of set")), "{told:#?}");
+}
