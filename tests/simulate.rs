@@ -275,3 +275,19 @@ fn forced_devices_keep_their_values() {
     plc.machine.release(device("X0"));
     plc.scans(1).check("~X0 ~Y0 ~Y1 ~Y2");
 }
+
+#[test]
+fn a_call_in_the_middle_of_a_rung_leaves_the_current_result_alone() {
+    let routine = "FEND\nP0\nLD X1\nAND X2\nORI X3\nOUT Y7\nSRET\nEND\n";
+    for rung in [
+        "LD X0\nCALL P0\nOUT Y0\n",
+        "LD X0\nMPS\nCALL P0\nMPP\nOUT Y0\n",
+        "LD X0\nOR X5\nMPS\nAND X4\nCALL P0\nMRD\nOUT Y0\nMPP\nOUT Y1\n",
+    ] {
+        for (inputs, expected) in [("X0 X3 X4", true), ("X0=0 X3=0 X4=0 X1 X2", false)] {
+            let mut plc = Plc::list(&format!("{rung}{routine}"));
+            plc.set(inputs).scan();
+            assert_eq!(plc.machine.bit(device("Y0")) != 0, expected, "{rung} {inputs}");
+        }
+    }
+}

@@ -767,7 +767,7 @@ fn what_happens_around_the_plc_belongs_to_its_history() {
     ];
     for scan in 1..60 {
         if scan == 3 {
-            around.clone().into_iter().for_each(|touch| session.touch(touch));
+            around.iter().cloned().for_each(|touch| session.touch(touch));
         }
         if scan == 50 {
             session.touch(Touch::Around(Event::Module(2, false)));

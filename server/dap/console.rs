@@ -109,7 +109,7 @@ impl<W: Write> Adapter<W> {
             "" => vec![Touch::LetAllGo],
             name => {
                 let variable = debugged.variable(name)?;
-                variable.release(debugged.debuggee.code()).into_iter().collect()
+                vec![variable.release()]
             }
         };
         touches.into_iter().try_for_each(|touch| self.touch(touch))?;

@@ -101,6 +101,7 @@ fn number(value: &Value) -> Option<i64> {
     match value {
         Value::Bit(on) => Some(i64::from(*on)),
         Value::Number(number) => Some(*number),
+        _ => None,
     }
 }
 

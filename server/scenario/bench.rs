@@ -167,7 +167,7 @@ impl Bench {
             let (touch, reason) = match &input.kind {
                 InputKind::Set(value) => (variable.set(&self.code, value), "cli.run-no-value"),
                 InputKind::Force(value) => (variable.force(&self.code, value), "cli.run-no-value"),
-                InputKind::Release => (variable.release(&self.code), "scenario.no-release"),
+                InputKind::Release => (Some(variable.release()), "scenario.no-release"),
             };
             match touch {
                 Some(touch) => touches.push((input.scan, touch)),

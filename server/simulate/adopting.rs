@@ -6,7 +6,7 @@
 
 use super::code::{Call, Code, Op};
 use super::row::Cell;
-use super::{Lanes, Machine, Memory, Slot};
+use super::{Lanes, Machine, Memory, Slot, iec};
 use crate::target::Form;
 use rustc_hash::FxHasher;
 use std::hash::{Hash, Hasher};
@@ -96,7 +96,8 @@ impl Code {
             (one.form, &one.operands, &one.texts, one.notes, one.was)
                 == (other.form, &other.operands, &other.texts, other.notes, other.was)
         };
-        self.has_layout_of(other)
+        self.target.is_fx()
+            && self.has_layout_of(other)
             && self.keepers == other.keepers
             && self.rows == other.rows
             && self.ops == other.ops
@@ -120,12 +121,16 @@ impl<L: Lanes> Machine<L> {
             *self = Machine::new(code);
             return;
         }
+        if !code.target.is_fx() {
+            self.adopt_variables(code);
+            return;
+        }
         if self.code.does_the_same_as(&code) {
             self.set_code(code);
             return;
         }
         let known = code.keepers.known_in(&self.code.keepers);
-        let mut memory = Memory::new(code.slots);
+        let mut memory = Memory::new(code.slots, 0);
         let layout = &code.layout;
         memory.cells[..layout.cells()].copy_from_slice(&self.memory.cells[..layout.cells()]);
         for slot in 0..layout.slots() {
@@ -143,6 +148,17 @@ impl<L: Lanes> Machine<L> {
         self.memory = memory;
         self.set_code(code);
         self.seed(&known);
+    }
+
+    /// Goes on with another program in IEC 61131-3: variables that have the same name and type keep their values.
+    fn adopt_variables(&mut self, code: Arc<Code>) {
+        let mut new = Machine::new(Arc::clone(&code));
+        iec::adopt((&self.code.iec, &self.memory), (&code.iec, &mut new.memory));
+        self.keep_forces(&code);
+        let blocks = iec::blocks(&self.code.iec, &code.iec);
+        let terminals = new.terminals.rewired(&self.terminals, &blocks);
+        (self.memory, self.terminals) = (new.memory, terminals);
+        self.set_code(code);
     }
 
     fn keep_slot(&self, from: usize, memory: &mut Memory<L>, to: usize) {

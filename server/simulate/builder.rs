@@ -2,6 +2,7 @@
 
 use super::adopting::{Keepers, print_of};
 use super::code::{Call, CallCode, Code, Op, Place};
+use super::iec::Parts;
 use super::row::{CELLS, Cell, Row};
 use super::{Layout, Obstacle, Slot};
 use crate::ladder::ContactKind;
@@ -63,8 +64,10 @@ pub(super) struct Builder {
     is_from_rail: bool,
     /// The left rail.
     rail: Cell,
-    /// The first cell of a rung's own, those that it has, and how many were ever needed.
+    /// The first cell of a rung's own, and the one behind those that it has.
     scratch: (usize, usize),
+    /// The one behind those that any rung has.
+    most_scratch: usize,
     /// The lowest cell that keeps something from scan to scan.
     kept: usize,
     /// Whether each instruction says what it saw.
@@ -93,6 +96,7 @@ impl Builder {
             is_from_rail: false,
             rail: Row::RAIL,
             scratch: (cells, cells),
+            most_scratch: cells,
             kept: CELLS,
             is_watched,
             is_straight: true,
@@ -136,6 +140,13 @@ impl Builder {
         self.scratch.1 = self.scratch.0;
     }
 
+    /// Goes on with cells that no rung before has, and that none behind the next such place gets: what is called in the
+    /// middle of a rung leaves its cells alone.
+    pub(super) fn routine(&mut self) {
+        self.power = Power::Nothing;
+        self.scratch = (self.most_scratch, self.most_scratch);
+    }
+
     /// The number of the next op; rows before it have run.
     pub(super) fn here(&mut self) -> u32 {
         self.flush();
@@ -149,7 +160,7 @@ impl Builder {
 
     pub(super) fn finish(mut self) -> Result<Code, Obstacle> {
         self.op(Op::End);
-        if self.kept <= self.scratch.1 {
+        if self.kept <= self.most_scratch {
             return Err(Obstacle::TooLarge);
         }
         self.keepers.end(self.kept, self.slots);
@@ -169,6 +180,7 @@ impl Builder {
             routine_timers: Vec::new(),
             keepers: self.keepers,
             instructions: self.instructions,
+            iec: Parts::default(),
             devices: self.devices,
             is_straight: self.is_straight,
         })
@@ -179,16 +191,7 @@ impl Builder {
         self.flush();
         self.op_places.push(self.places.len().saturating_sub(1) as u32);
         self.ops.push(op);
-        self.is_straight &= !matches!(
-            op,
-            Op::Jump { .. }
-                | Op::Call { .. }
-                | Op::Return
-                | Op::Interrupt
-                | Op::For { .. }
-                | Op::Next { .. }
-                | Op::Step { .. }
-        );
+        self.is_straight &= !op.leads_elsewhere();
         self.ops.len() as u32 - 1
     }
 
@@ -214,6 +217,7 @@ impl Builder {
         let cell = self.scratch.1;
         // Beyond the last cell the program is refused as too large.
         self.scratch.1 = (cell + 1).min(CELLS - 1);
+        self.most_scratch = self.most_scratch.max(self.scratch.1);
         cell as Cell
     }
 
@@ -221,6 +225,31 @@ impl Builder {
     pub(super) fn kept(&mut self) -> Cell {
         self.kept = self.kept.saturating_sub(1).max(1);
         self.kept as Cell
+    }
+
+    /// So many cells side by side that keep something from scan to scan.
+    pub(super) fn kept_row(&mut self, count: u32) -> u32 {
+        self.kept = self.kept.saturating_sub(count as usize).max(1);
+        self.kept as u32
+    }
+
+    /// So many words side by side.
+    pub(super) fn words(&mut self, count: u32) -> Slot {
+        let first = self.slots as Slot;
+        self.slots = self.slots.saturating_add(count as usize);
+        first
+    }
+
+    /// Where the present instruction stands.
+    pub(super) fn here_place(&self) -> Place {
+        self.places.last().copied().unwrap_or(Place::START)
+    }
+
+    /// Lets the calculation that was put last be done with power from a cell only.
+    pub(super) fn only_with(&mut self, cell: Cell) {
+        if let Some(Op::Compute { power, .. }) = self.ops.last_mut() {
+            *power = cell;
+        }
     }
 
     /// The cell in which the current result is, which later rows leave alone.
@@ -316,12 +345,17 @@ impl Builder {
             }
         };
         self.connect(position, cell, is_inverse);
+        self.saw_contact(cell, is_inverse);
+        Ok(())
+    }
+
+    /// Says what a contact saw that was put into the circuit.
+    pub(super) fn saw_contact(&mut self, src: Cell, invert: bool) {
         if self.is_watched {
             let power = self.power();
             let place = self.places.len() as u32 - 1;
-            self.op(Op::SeenContact { place, src: cell, invert: is_inverse, power });
+            self.op(Op::SeenContact { place, src, invert, power });
         }
-        Ok(())
     }
 
     /// The cell of the relay that a contact reads; of a bit of a word and an indexed one a copy.
@@ -383,6 +417,15 @@ impl Builder {
         self.row(Row::load(cell, false).to(before));
         self.power = saved.map_or(Power::Nothing, Power::At);
         edge
+    }
+
+    /// Finds the edge of an input: behind its cell lie what it was, and the edge.
+    pub(super) fn edge_of_input(&mut self, input: Cell, is_rising: bool) {
+        let (before, edge) = (input.saturating_add(1), input.saturating_add(2));
+        self.row(Row::load(input, !is_rising));
+        self.row(Row::and(before, is_rising).to(edge));
+        self.row(Row::load(input, false).to(before));
+        self.power = Power::Nothing;
     }
 
     /// Joins a block that was kept in a cell with the current result.

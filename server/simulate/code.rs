@@ -1,10 +1,11 @@
 //! What a program becomes before it runs: the contact table, and the steps between its pieces.
 
 use super::adopting::Keepers;
+use super::iec::Parts;
 use super::row::{Cell, Row};
 use super::{Lanes, Layout, Memory, Slot};
 use crate::target::semantics::Deed;
-use crate::target::{Device, Execution, Fault, Form, Operand, Target};
+use crate::target::{Device, DeviceKind, Execution, Fault, Form, Location, Operand, Target};
 use crate::text::Span;
 use smol_str::SmolStr;
 use std::collections::BTreeSet;
@@ -43,6 +44,8 @@ pub struct Code {
     pub(super) keepers: Keepers,
     /// Whether the order of execution is that of the text in every scan.
     pub(super) is_straight: bool,
+    /// What programs in IEC 61131-3 have besides.
+    pub(super) iec: Parts,
 }
 
 /// Where something of the program stands.
@@ -52,6 +55,11 @@ pub struct Place {
     pub document: u32,
     /// Offsets into the document.
     pub span: Span,
+}
+
+impl Place {
+    /// The start of the first document, for what has no place of its own.
+    pub(super) const START: Place = Place { document: 0, span: Span { start: 0, end: 0 } };
 }
 
 /// A step of the program. Cells named `power` tell whether power reaches it.
@@ -91,8 +99,34 @@ pub(super) enum Op {
     SeenContact { place: u32, src: Cell, invert: bool, power: Cell },
     /// A place where power in a cell is what reaches an output.
     Seen { place: u32, power: Cell },
+    /// Makes a calculation of an IEC 61131-3 program.
+    Compute { power: Cell, number: u32 },
+    /// Copies a value with parts.
+    Copy { power: Cell, number: u32 },
+    /// Calls a standard function block.
+    Block { power: Cell, number: u32 },
+    /// Gives the variables of a list their initial values.
+    Initialise(u32),
+    /// Finds whether a task runs in this scan.
+    Task(u32),
     /// Ends the scan.
     End,
+}
+
+impl Op {
+    /// Whether the next op may be another one than that behind it.
+    pub(super) fn leads_elsewhere(self) -> bool {
+        matches!(
+            self,
+            Op::Jump { .. }
+                | Op::Call { .. }
+                | Op::Return
+                | Op::Interrupt
+                | Op::For { .. }
+                | Op::Next { .. }
+                | Op::Step { .. }
+        )
+    }
 }
 
 /// The coil of a timer.
@@ -198,6 +232,24 @@ impl Code {
         let first = self.places.iter().position(is_within).unwrap_or(0);
         let end = self.places.iter().rposition(is_within).map_or(first, |last| last + 1);
         first as u32..end as u32
+    }
+
+    /// The cells of input terminals, or of outputs, in rows.
+    pub(super) fn terminals(&self, location: Location) -> Vec<Range<usize>> {
+        let kind = match location {
+            Location::Input => DeviceKind::X,
+            Location::Output => DeviceKind::Y,
+            Location::Memory => return Vec::new(),
+        };
+        match self.target.is_fx() {
+            true => vec![self.layout.terminals(kind)],
+            false => self.iec.cells(location),
+        }
+    }
+
+    /// How deep calls may nest. Units in IEC 61131-3 do not call themselves, so there nothing limits them.
+    pub(super) fn most_calls(&self) -> usize {
+        if self.target.is_fx() { self.target.limits.calls as usize } else { usize::MAX }
     }
 
     /// The instructions that say what they see, by their numbers, with their places in the order of the code.

@@ -4,7 +4,7 @@ use super::adopting::{print_of, print_of_form};
 use super::builder::Builder;
 use super::code::{CallCode, Code, Counter, Op, Place, Preset, Timer};
 use super::row::{Cell, Row};
-use super::{Layout, Obstacle, Problem, from_list, from_path};
+use super::{Layout, Obstacle, Problem, from_list, from_path, iec};
 use crate::document::{Document, Tree, coil_form};
 use crate::ladder::CoilKind;
 use crate::logic::{Deed, Term};
@@ -17,11 +17,14 @@ use rustc_hash::FxHashMap;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-/// Compiles documents that are one program for an FX, in the order of execution.
+/// Compiles documents that are one program, in the order of execution.
 ///
 /// With `is_watched` the code says what each instruction saw; it does the same, slower.
 pub fn compile(documents: &[&Document], is_watched: bool) -> Result<Code, Vec<Problem>> {
     let target = documents.first().map_or(Target::ALL[0], |document| document.target());
+    if !target.is_fx() {
+        return iec::compile(documents, target, is_watched);
+    }
     let mut compiler = Compiler::new(target, is_watched);
     for (number, document) in (0..).zip(documents) {
         for at in document.chunks() {

@@ -1,14 +1,18 @@
 //! Values that are held whatever inputs and program say, and values that a person writes.
 
+use super::iec::{self, Lies, Spot};
 use super::row::{Cell, Row};
-use super::{Lanes, Machine, Slot, Value, Variable};
-use crate::target::{Device, DeviceKind};
+use super::{Code, Lanes, Machine, Slot, Value, Variable};
+use crate::target::iec::Datum;
+use crate::target::{Device, Location};
 
 /// Something that keeps a value whatever the program does.
 #[derive(Clone, PartialEq, Debug)]
 pub(super) enum Force {
     Relay(Cell, bool),
     Word(Slot, i64),
+    /// A variable of IEC 61131-3 that is no BOOL.
+    Typed(Spot, Datum),
 }
 
 impl Force {
@@ -18,6 +22,9 @@ impl Force {
             (Force::Relay(forced, _), Variable::Relay(cell)) => *forced == cell,
             (Force::Word(forced, _), Variable::Word(slot)) => *forced == slot,
             (Force::Word(forced, _), Variable::Pair(lower, upper)) => *forced == lower || *forced == upper,
+            (Force::Typed(forced, _), Variable::Typed(spot) | Variable::Enumerated(spot, _)) => {
+                *forced == spot
+            }
             _ => false,
         }
     }
@@ -42,9 +49,8 @@ impl<L: Lanes> Machine<L> {
 
     /// Lets a forced device go; it keeps its value until something writes it.
     pub fn release(&mut self, device: Device) {
-        let layout = &self.code.layout;
-        let relay = layout.cell(device).map(Variable::Relay);
-        let word = layout.slot(device).map(Variable::Word);
+        let relay = self.code.layout.cell(device).map(Variable::Relay);
+        let word = self.code.layout.slot(device).map(Variable::Word);
         relay.into_iter().chain(word).for_each(|variable| self.let_go(variable));
     }
 
@@ -59,6 +65,10 @@ impl<L: Lanes> Machine<L> {
             (Variable::Pair(lower, upper), Value::Number(number)) => {
                 let halves = halves(*number);
                 self.forces.extend([Force::Word(lower, halves.0), Force::Word(upper, halves.1)]);
+            }
+            (Variable::Typed(spot) | Variable::Enumerated(spot, _), _) => {
+                let datum = variable.datum(&self.code, value);
+                self.forces.extend(datum.map(|datum| Force::Typed(spot, datum)));
             }
             _ => {}
         }
@@ -107,35 +117,79 @@ impl<L: Lanes> Machine<L> {
                     self.memory.set_word(upper, lane, halves.1);
                 }
             }
+            (Variable::Typed(spot) | Variable::Enumerated(spot, _), _) => {
+                let Some(datum) = variable.datum(&self.code, value) else { return };
+                iec::put(&mut self.memory, &self.code.iec, spot, &datum);
+                if let Lies::Bits(first, count) = spot.lies {
+                    for cell in first..first + Cell::from(count) {
+                        let on = self.memory.cell(cell);
+                        self.write_cell(cell, on);
+                    }
+                }
+            }
             _ => {}
         }
     }
 
+    /// What is forced stays so in other code, as far as that has a variable of this name.
+    pub(super) fn keep_forces(&mut self, code: &Code) {
+        let own = &self.code.iec;
+        let moved = |force: &Force| match force {
+            Force::Word(..) => Some(force.clone()),
+            Force::Relay(cell, on) => match own.name_of(Spot::of_cell(*cell)) {
+                None => Some(force.clone()),
+                Some(name) => match code.variable(&name)? {
+                    Variable::Relay(cell) => Some(Force::Relay(cell, *on)),
+                    _ => None,
+                },
+            },
+            Force::Typed(spot, value) => match code.variable(&own.name_of(*spot)?)? {
+                Variable::Typed(to) | Variable::Enumerated(to, _) if to.kind == spot.kind => {
+                    Some(Force::Typed(to, value.clone()))
+                }
+                _ => None,
+            },
+        };
+        self.forces = self.forces.iter().filter_map(moved).collect();
+    }
+
     /// The names of what is forced.
     pub fn forced(&self) -> Vec<String> {
-        let layout = &self.code.layout;
         let name = |force: &Force| match force {
-            Force::Relay(cell, _) => {
-                layout.device_of_cell(*cell).map(|device| match device.kind.has_preset() {
-                    true => format!("{}S{}", device.kind.letter(), device.number),
-                    false => device.to_string(),
-                })
-            }
-            Force::Word(slot, _) => layout.device_of_slot(*slot).map(|device| device.to_string()),
+            Force::Relay(cell, _) => self.name_of_relay(*cell),
+            Force::Word(slot, _) => self.code.layout.device_of_slot(*slot).map(|device| device.to_string()),
+            Force::Typed(spot, _) => self.code.iec.name_of(*spot),
         };
         self.forces.iter().filter_map(name).collect()
     }
 
+    fn name_of_relay(&self, cell: Cell) -> Option<String> {
+        match self.code.layout.device_of_cell(cell) {
+            Some(timer) if timer.kind.has_preset() => {
+                Some(format!("{}S{}", timer.kind.letter(), timer.number))
+            }
+            Some(relay) => Some(relay.to_string()),
+            None => self.code.iec.name_of(Spot::of_cell(cell)),
+        }
+    }
+
     /// What is wired to inputs, and what is forced, by name; with whether it is forced.
     pub(super) fn standing(&self) -> Vec<(String, Value, bool)> {
-        let layout = &self.code.layout;
-        let wired = layout.terminals(DeviceKind::X).filter_map(|cell| {
-            let on = self.terminals.input(cell as Cell)?.lane(0);
-            on.then(|| Some((layout.device_of_cell(cell as Cell)?.to_string(), Value::Bit(true), false)))?
+        let inputs = self.code.terminals(Location::Input).into_iter().flatten();
+        let wired = inputs.filter_map(|cell| {
+            let is_on = self.terminals.input(cell as Cell)?.lane(0);
+            is_on.then(|| Some((self.name_of_relay(cell as Cell)?, Value::Bit(true), false)))?
         });
-        let forced = self.forced().into_iter().zip(&self.forces).map(|(name, force)| match force {
-            Force::Relay(_, on) => (name, Value::Bit(*on), true),
-            Force::Word(_, number) => (name, Value::Number(*number), true),
+        let forced = self.forces.iter().filter_map(|force| {
+            Some(match force {
+                Force::Relay(cell, on) => (self.name_of_relay(*cell)?, Value::Bit(*on), true),
+                Force::Word(slot, number) => {
+                    (self.code.layout.device_of_slot(*slot)?.to_string(), Value::Number(*number), true)
+                }
+                Force::Typed(spot, datum) => {
+                    (self.code.iec.name_of(*spot)?, Value::of_datum(datum.clone(), spot.kind), true)
+                }
+            })
         });
         wired.chain(forced).collect()
     }
@@ -152,7 +206,7 @@ impl<L: Lanes> Machine<L> {
             .iter()
             .filter_map(|force| match force {
                 Force::Relay(cell, _) => Some(*cell),
-                Force::Word(..) => None,
+                Force::Word(..) | Force::Typed(..) => None,
             })
             .collect();
         self.forced_rows = (!forced.is_empty()).then(|| {
@@ -164,11 +218,12 @@ impl<L: Lanes> Machine<L> {
     /// Puts what is forced back to its value.
     pub(super) fn hold(&mut self) {
         for force in &self.forces {
-            match *force {
-                Force::Relay(cell, on) => self.memory.set_cell(cell, L::all(on)),
+            match force {
+                Force::Relay(cell, on) => self.memory.set_cell(*cell, L::all(*on)),
                 Force::Word(slot, value) => {
-                    (0..L::COUNT).for_each(|lane| self.memory.set_word(slot, lane, value));
+                    (0..L::COUNT).for_each(|lane| self.memory.set_word(*slot, lane, *value));
                 }
+                Force::Typed(spot, value) => iec::put(&mut self.memory, &self.code.iec, *spot, value),
             }
         }
     }

@@ -6,12 +6,20 @@ use super::compile::Compiler;
 use super::row::Cell;
 use crate::il::fx::{FxLine, FxTree, LineKind};
 use crate::logic::{Deed, Term, Test};
-use crate::target::{Form, Role};
+use crate::target::{Flow, Form, Role};
 
 /// Compiles a chunk.
 pub(super) fn compile(compiler: &mut Compiler, text: &str, tree: &FxTree) {
     let mut list = List { compiler, text, tree, blocks: Vec::new(), branches: Vec::new() };
-    list.compiler.builder.rung();
+    let calls = |line: &FxLine| match line.kind {
+        LineKind::Instruction(form) => form.instruction.flow() == Flow::Call,
+        _ => false,
+    };
+    let is_calling = tree.lines.iter().any(calls);
+    match is_calling {
+        true => list.compiler.builder.routine(),
+        false => list.compiler.builder.rung(),
+    }
     let joined = joined(tree);
     for (line, is_block) in tree.lines.iter().zip(joined) {
         list.compiler.at(line.span);
@@ -26,6 +34,9 @@ pub(super) fn compile(compiler: &mut Compiler, text: &str, tree: &FxTree) {
         if let Err(obstacle) = done {
             list.compiler.refuse(line.span, obstacle);
         }
+    }
+    if is_calling {
+        list.compiler.builder.routine();
     }
 }
 

@@ -62,7 +62,7 @@ pub(super) fn index_register(register: Device) -> Option<Device> {
 impl Layout {
     /// The memory of `target`.
     pub fn new(target: &Target) -> Layout {
-        let cells = usize::from(Row::RAIL) + 1;
+        let cells = usize::from(Row::OFF) + 1;
         let mut layout = Layout { kinds: Default::default(), cells, slots: 0, clock: 0 };
         for range in target.devices {
             let count = (range.last - range.first + 1) as usize;

@@ -2,6 +2,7 @@
 
 use super::row::{CELLS, Cell};
 use super::{Lanes, Slot};
+use smol_str::SmolStr;
 
 /// Relays and words of all scenarios that run side by side.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -9,15 +10,17 @@ pub struct Memory<L> {
     pub(super) cells: Box<[L; CELLS]>,
     /// The words of slot 0 in all scenarios, then those of slot 1.
     words: Vec<i64>,
+    /// The texts, likewise.
+    texts: Vec<SmolStr>,
 }
 
 impl<L: Lanes> Memory<L> {
-    /// Memory in which all is off and 0, of `slots` words in each scenario.
-    pub fn new(slots: usize) -> Memory<L> {
+    /// Memory in which all is off, 0 and empty, of `slots` words and `texts` texts in each scenario.
+    pub fn new(slots: usize, texts: usize) -> Memory<L> {
         let cells = vec![L::NONE; CELLS].into_boxed_slice();
         // The length is right, so nothing is lost.
         let cells = cells.try_into().unwrap_or_else(|_| Box::new([L::NONE; CELLS]));
-        Memory { cells, words: vec![0; slots * L::COUNT] }
+        Memory { cells, words: vec![0; slots * L::COUNT], texts: vec![SmolStr::default(); texts * L::COUNT] }
     }
 
     /// The relay in all scenarios.
@@ -56,6 +59,19 @@ impl<L: Lanes> Memory<L> {
     pub fn set_word(&mut self, slot: Slot, lane: usize, value: i64) {
         if let Some(word) = self.words.get_mut(slot as usize * L::COUNT + lane) {
             *word = value;
+        }
+    }
+
+    /// The text in one scenario; empty for a slot that there is not.
+    pub fn text(&self, slot: Slot, lane: usize) -> &SmolStr {
+        static EMPTY: SmolStr = SmolStr::new_static("");
+        self.texts.get(slot as usize * L::COUNT + lane).unwrap_or(&EMPTY)
+    }
+
+    /// Writes the text in one scenario.
+    pub fn set_text(&mut self, slot: Slot, lane: usize, value: SmolStr) {
+        if let Some(text) = self.texts.get_mut(slot as usize * L::COUNT + lane) {
+            *text = value;
         }
     }
 

@@ -50,6 +50,15 @@ mod pulses;
 
 mod interrupts;
 
+mod iec;
+pub use iec::{Lies, Spot};
+
+mod special;
+
+mod instruct;
+
+mod run;
+
 mod machine;
 pub use machine::{Error, ErrorKind, Machine, Outcome, Sight};
 

@@ -6,7 +6,7 @@
 
 use super::code::Code;
 use super::layout::{NS_BEYOND, WRITTEN};
-use super::machine::Run;
+use super::run::Run;
 use super::timing::{self, Moment};
 use super::{ErrorKind, Lanes, Machine, Slot};
 use crate::target::{Device, DeviceKind, Model};
@@ -75,8 +75,11 @@ impl<L: Lanes> Machine<L> {
         Moment { scan: self.scans as i64, elapsed_ns: self.scan_ns }
     }
 
-    /// Ops that a scan may run before the watchdog stops it, by D8000.
+    /// Ops that a scan may run before the watchdog stops it, of an FX by D8000.
     pub(super) fn most_ops(&self) -> u64 {
+        if !self.code.target.is_fx() {
+            return Self::MOST_OPS;
+        }
         let ms = self.word(Device::new(DeviceKind::D, WATCHDOG), 0).clamp(1, WATCHDOG_MS.1);
         Self::MOST_OPS / WATCHDOG_MS.0 as u64 * ms as u64
     }

@@ -37,6 +37,8 @@ pub enum Obstacle {
     NoPreset,
     /// The simulator does not know what this instruction does.
     NoSimulation(Form),
+    /// Something of a program in IEC 61131-3, said by this sentence.
+    Iec(Message),
     /// The program has more contacts that remember something than fit into memory.
     TooLarge,
 }
@@ -57,6 +59,7 @@ impl Obstacle {
             Obstacle::NoSimulation(form) => {
                 Message::new("simulate.no-simulation").with("word", form.mnemonic())
             }
+            Obstacle::Iec(message) => message.clone(),
             Obstacle::TooLarge => Message::new("simulate.too-large"),
         }
     }

@@ -27,6 +27,8 @@ impl Row {
     pub const SINK: Cell = 0;
     /// The cell that is always on: the left rail.
     pub const RAIL: Cell = 1;
+    /// The cell that is always off.
+    pub const OFF: Cell = 2;
 
     const fn new(src: Cell, invert: bool, [and, keep, take]: [u8; 3]) -> Row {
         let invert = if invert { 0xFF } else { 0 };

@@ -75,7 +75,13 @@ impl Trace {
         let mut codes = Vec::new();
         for (number, name) in self.names.iter().enumerate() {
             let bits = self.rows.iter().map(|row| width(&row.values[number])).max().unwrap_or(1);
-            let kind = if bits == 1 { VarType::Wire } else { VarType::Integer };
+            let first = self.rows.first().map(|row| &row.values[number]);
+            let kind = match first {
+                Some(Value::Bit(_)) | None => VarType::Wire,
+                Some(Value::Number(_) | Value::Unsigned(_)) => VarType::Integer,
+                Some(Value::Real(_) | Value::Time(_)) => VarType::Real,
+                Some(Value::Text(_) | Value::Name(_)) => VarType::String,
+            };
             let code = IdCode::from(number as u32);
             // Blanks would end a name.
             writer.var_def(kind, bits, code, &name.replace(char::is_whitespace, "_"), None)?;
@@ -91,12 +97,18 @@ impl Trace {
                 if before.is_some_and(|before| before.values[number] == *value) {
                     continue;
                 }
+                let vector = |value: u64| {
+                    let bit = move |bit: u32| vcd::Value::from(value >> bit & 1 == 1);
+                    (0..*bits).rev().map(bit).collect::<Vec<_>>()
+                };
                 match value {
                     Value::Bit(on) => writer.change_scalar(*code, *on)?,
-                    Value::Number(value) => {
-                        let bit = |bit: &u32| vcd::Value::from(value >> bit & 1 == 1);
-                        let pattern: Vec<u32> = (0..*bits).rev().collect();
-                        writer.change_vector(*code, pattern.iter().map(bit))?;
+                    Value::Number(number) => writer.change_vector(*code, vector(*number as u64))?,
+                    Value::Unsigned(number) => writer.change_vector(*code, vector(*number))?,
+                    Value::Real(number) => writer.change_real(*code, *number)?,
+                    Value::Time(time) => writer.change_real(*code, *time as f64 / 1e6)?,
+                    Value::Text(text) | Value::Name(text) => {
+                        writer.change_string(*code, &text.replace(char::is_whitespace, "_"))?
                     }
                 }
             }
@@ -113,7 +125,8 @@ fn width(value: &Value) -> u32 {
         Value::Bit(_) => 1,
         Value::Number(value) if i16::try_from(*value).is_ok() => 16,
         Value::Number(value) if i32::try_from(*value).is_ok() => 32,
-        Value::Number(_) => 64,
+        Value::Number(_) | Value::Unsigned(_) | Value::Real(_) | Value::Time(_) => 64,
+        Value::Text(_) | Value::Name(_) => 8,
     }
 }
 

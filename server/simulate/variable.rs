@@ -4,10 +4,12 @@ use super::code::Code;
 use super::machine::Machine;
 use super::row::Cell;
 use super::session::Touch;
-use super::{Lanes, Slot};
-use crate::target::{Device, DeviceKind, Operand};
+use super::{Lanes, Lies, Slot, Spot, iec};
+use crate::target::iec::{Datum, ElementaryType, Literal, LiteralValue, characters_of, spelled};
+use crate::target::{Device, DeviceKind, Model, Operand};
 use crate::text::Message;
 use serde_json::Value as Json;
+use smol_str::SmolStr;
 use std::fmt;
 use std::ops::RangeInclusive;
 
@@ -20,6 +22,10 @@ pub enum Variable {
     Word(Slot),
     /// A register and the one behind it.
     Pair(Slot, Slot),
+    /// A variable of IEC 61131-3 that is no BOOL.
+    Typed(Spot),
+    /// A variable of an enumerated type, with the number of the type.
+    Enumerated(Spot, u32),
 }
 
 /// What a variable has.
@@ -27,8 +33,18 @@ pub enum Variable {
 pub enum Value {
     /// On or off.
     Bit(bool),
-    /// A signed number.
+    /// A number, signed as its type says.
     Number(i64),
+    /// A number beyond those of 64 bits with a sign.
+    Unsigned(u64),
+    /// A real number.
+    Real(f64),
+    /// A duration, in nanoseconds.
+    Time(i64),
+    /// A text, and a value of an enumerated type by its name.
+    Text(SmolStr),
+    /// A date or a character as a literal.
+    Name(SmolStr),
 }
 
 impl Code {
@@ -36,8 +52,18 @@ impl Code {
     ///
     /// `T0` is the current value of the timer, `TS0` its contact, `TC0` its coil, and so with counters (`CN0`, `CS0`,
     /// `CC0`), as in the maker's tools. `D0:32` is a pair of registers.
+    ///
+    /// In IEC 61131-3 it is `Motor.Timer.ET`, `Resource.Main.Levels[3]` or `%IX0.0`; what stands around a name may be
+    /// left out where only one variable is called so.
     pub fn variable(&self, name: &str) -> Option<Variable> {
         let name = name.trim();
+        if !self.target.is_fx() {
+            return self.iec.find(name).map(|leaf| match (leaf.spot.lies, leaf.enumeration) {
+                (_, Some(enumeration)) => Variable::Enumerated(leaf.spot, enumeration),
+                (Lies::Cell(cell), None) => Variable::Relay(cell),
+                _ => Variable::Typed(leaf.spot),
+            });
+        }
         if let Some(register) = name.strip_suffix(":32") {
             let device = self.device(register).filter(|device| has_pairs(device.kind))?;
             let behind = Device::new(device.kind, device.number + 1);
@@ -61,12 +87,16 @@ impl Code {
         }
     }
 
-    /// What the program uses, as names for [`Code::variable`]: relays, contacts of timers and counters, registers.
+    /// What the program uses, as names for [`Code::variable`]: relays, contacts of timers and counters, registers; the
+    /// variables of an IEC 61131-3 program that are worth watching.
     pub fn named(&self) -> Vec<String> {
         let name = |device: &Device| match device.kind.has_preset() {
             true => format!("{}S{}", device.kind.letter(), device.number),
             false => device.to_string(),
         };
+        if !self.target.is_fx() {
+            return self.iec.watched();
+        }
         self.devices.iter().map(name).collect()
     }
 
@@ -82,9 +112,12 @@ impl Variable {
     /// What setting it to `value` does; nothing if that is no value of it.
     pub fn set(self, code: &Code, value: &Value) -> Option<Touch> {
         match (self, value) {
-            (Variable::Relay(cell), _) => {
-                let device = code.layout.device_of_cell(cell).filter(|_| !self.is_coil(code));
-                device.zip(value.as_bit()).map(|(_, on)| Touch::Write(self, Value::Bit(on)))
+            (Variable::Relay(_), _) => {
+                let is_free = !self.is_coil(code);
+                value.as_bit().filter(|_| is_free).map(|on| Touch::Write(self, Value::Bit(on)))
+            }
+            (Variable::Typed(_) | Variable::Enumerated(..), _) => {
+                self.datum(code, value).map(|_| Touch::Write(self, value.clone()))
             }
             (_, Value::Number(number)) if self.range(code)?.contains(number) => {
                 Some(Touch::Write(self, value.clone()))
@@ -98,7 +131,12 @@ impl Variable {
         let narrow = i64::from(i16::MIN)..=i64::from(i16::MAX);
         let wide = i64::from(i32::MIN)..=i64::from(i32::MAX);
         match self {
-            Variable::Relay(_) => None,
+            Variable::Relay(_) | Variable::Enumerated(..) => None,
+            Variable::Typed(spot) => {
+                let range = spot.kind.integers()?;
+                let bound = |bound: i128| i64::try_from(bound).unwrap_or(i64::MAX);
+                Some(bound(*range.start())..=bound(*range.end()))
+            }
             Variable::Word(slot) => {
                 let device = code.layout.device_of_slot(slot)?;
                 Some(if code.layout.is_wide(device) { wide } else { narrow })
@@ -133,12 +171,24 @@ impl Variable {
     }
 
     /// What letting it go does.
-    pub fn release(self, code: &Code) -> Option<Touch> {
-        let device = match self {
-            Variable::Relay(cell) => code.layout.device_of_cell(cell),
-            Variable::Word(slot) | Variable::Pair(slot, _) => code.layout.device_of_slot(slot),
+    pub fn release(self) -> Touch {
+        Touch::LetGo(self)
+    }
+
+    /// The value as a variable of IEC 61131-3 takes it; nothing if it is none of its type.
+    pub(super) fn datum(self, code: &Code, value: &Value) -> Option<Datum> {
+        let kind = match (self, value) {
+            (Variable::Enumerated(_, enumeration), Value::Text(name) | Value::Name(name)) => {
+                return code.iec.value_named(enumeration, name).map(Datum::Whole);
+            }
+            (Variable::Enumerated(_, enumeration), Value::Number(number)) => {
+                let number = i128::from(*number);
+                return code.iec.name_of_value(enumeration, number).map(|_| Datum::Whole(number));
+            }
+            (Variable::Typed(spot), _) => spot.kind,
+            _ => return None,
         };
-        device.map(|_| Touch::LetGo(self))
+        value.datum(kind)
     }
 }
 
@@ -148,7 +198,24 @@ fn has_pairs(kind: DeviceKind) -> bool {
 }
 
 impl Value {
-    /// A value as people write it: `1`, `on`, `TRUE`, `-5`, `H1F`, `16#1F`.
+    /// What a variable of an elementary type has.
+    pub(super) fn of_datum(datum: Datum, kind: ElementaryType) -> Value {
+        use ElementaryType::*;
+        match (datum, kind) {
+            (Datum::Real(number), _) => Value::Real(number),
+            (Datum::Whole(number), Bool) => Value::Bit(number != 0),
+            (Datum::Whole(number), Time | Ltime) => Value::Time(number as i64),
+            (Datum::Whole(number), _) if kind.integers().is_some() => match i64::try_from(number) {
+                Ok(number) => Value::Number(number),
+                Err(_) => Value::Unsigned(number as u64),
+            },
+            (Datum::Text(text), _) => Value::Text(text),
+            (datum, _) => Value::Name(spelled(&datum, kind)),
+        }
+    }
+
+    /// A value as people write it: `1`, `on`, `TRUE`, `-5`, `H1F`, `16#1F`, `1.5`, `T#2s`, `'text'`, `D#2024-01-31`,
+    /// `Colour#Red`.
     pub fn read(word: &str) -> Option<Value> {
         let word = word.trim();
         match word.to_ascii_lowercase().as_str() {
@@ -157,14 +224,66 @@ impl Value {
             _ => {}
         }
         let upper = word.to_ascii_uppercase();
-        let hexadecimal = upper.strip_prefix('H').or_else(|| upper.strip_prefix("16#"));
-        if let Some(digits) = hexadecimal {
+        if let Some(digits) = upper.strip_prefix('H')
+            && let Ok(bits) = u32::from_str_radix(digits, 16)
+        {
             // A pattern of 16 bits is a signed number, as everywhere on these PLCs.
-            let bits = u32::from_str_radix(digits, 16).ok()?;
             let number = u16::try_from(bits).map_or(i64::from(bits as i32), |word| i64::from(word as i16));
             return Some(Value::Number(number));
         }
-        upper.strip_prefix('K').unwrap_or(&upper).parse().ok().map(Value::Number)
+        if let Ok(number) = upper.strip_prefix('K').unwrap_or(&upper).parse() {
+            return Some(Value::Number(number));
+        }
+        match Operand::read(word, Model::Iec) {
+            Operand::Literal(literal) => match literal.value {
+                LiteralValue::Bool(on) => Some(Value::Bit(on)),
+                LiteralValue::Integer(number) => match i64::try_from(number) {
+                    Ok(number) => Some(Value::Number(number)),
+                    Err(_) => u64::try_from(number).ok().map(Value::Unsigned),
+                },
+                LiteralValue::Real(number) => Some(Value::Real(number)),
+                LiteralValue::Time(time) => Some(Value::Time(time)),
+                LiteralValue::Text | LiteralValue::WideText => characters_of(word).map(Value::Text),
+                _ => Some(Value::Name(word.into())),
+            },
+            _ => None,
+        }
+    }
+
+    /// The value in a variable of type `kind`; nothing if that does not hold it. A number alone is milliseconds where a
+    /// time is wanted.
+    fn datum(&self, kind: ElementaryType) -> Option<Datum> {
+        use ElementaryType::*;
+        let is_real = matches!(kind, Real | Lreal);
+        let datum = match self {
+            Value::Bit(on) => Datum::from(*on),
+            Value::Number(number) if is_real => Datum::Real(*number as f64),
+            Value::Number(number) if matches!(kind, Time | Ltime) => {
+                Datum::Whole(i128::from(*number) * 1_000_000)
+            }
+            Value::Number(number) => Datum::Whole(i128::from(*number)),
+            Value::Unsigned(number) => Datum::Whole(i128::from(*number)),
+            Value::Real(number) if is_real => Datum::Real(*number),
+            Value::Real(ms) if matches!(kind, Time | Ltime) => Datum::Whole((ms * 1e6).round() as i128),
+            Value::Time(time) if matches!(kind, Time | Ltime) => Datum::Whole(i128::from(*time)),
+            Value::Text(text) | Value::Name(text) if matches!(kind, String | Wstring) => {
+                Datum::Text(text.clone())
+            }
+            Value::Text(text) | Value::Name(text) => match Literal::read(text) {
+                Ok(literal) => return Datum::of_literal(literal.value, kind),
+                Err(_) => return None,
+            },
+            Value::Real(_) | Value::Time(_) => return None,
+        };
+        let is_number = kind.integers().is_some() || is_real || matches!(kind, Time | Ltime);
+        match &datum {
+            Datum::Whole(_) | Datum::Real(_) if !is_number => None,
+            Datum::Whole(_) if is_real => None,
+            _ => {
+                let (held, is_same) = datum.held(kind);
+                is_same.then_some(held)
+            }
+        }
     }
 
     /// As programs that read results want it.
@@ -172,6 +291,12 @@ impl Value {
         match self {
             Value::Bit(on) => Json::Bool(*on),
             Value::Number(number) => Json::from(*number),
+            Value::Unsigned(number) => Json::from(*number),
+            Value::Real(number) => Json::from(*number),
+            // Milliseconds, as a whole number where they are one.
+            Value::Time(time) if time % 1_000_000 == 0 => Json::from(time / 1_000_000),
+            Value::Time(time) => Json::from(*time as f64 / 1e6),
+            Value::Text(text) | Value::Name(text) => Json::from(text.as_str()),
         }
     }
 
@@ -181,7 +306,7 @@ impl Value {
             Value::Bit(on) => Some(*on),
             Value::Number(0) => Some(false),
             Value::Number(1) => Some(true),
-            Value::Number(_) => None,
+            _ => None,
         }
     }
 }
@@ -191,6 +316,13 @@ impl fmt::Display for Value {
         match self {
             Value::Bit(on) => f.write_str(if *on { "1" } else { "0" }),
             Value::Number(number) => number.fmt(f),
+            Value::Unsigned(number) => number.fmt(f),
+            Value::Real(number) => write!(f, "{number:?}"),
+            Value::Time(time) => {
+                f.write_str(&spelled(&Datum::Whole(i128::from(*time)), ElementaryType::Time))
+            }
+            Value::Text(text) => write!(f, "'{}'", text.replace('$', "$$").replace('\'', "$'")),
+            Value::Name(name) => f.write_str(name),
         }
     }
 }
@@ -201,10 +333,34 @@ impl<L: Lanes> Machine<L> {
         match variable {
             Variable::Relay(cell) => Value::Bit(self.relay(cell).lane(lane)),
             Variable::Word(slot) => Value::Number(self.memory().word(slot, lane)),
+            Variable::Typed(spot) => Value::of_datum(self.datum_at(spot, lane), spot.kind),
+            Variable::Enumerated(spot, enumeration) => {
+                let number = self.datum_at(spot, lane).whole();
+                let name = self.code.iec.name_of_value(enumeration, number).cloned();
+                name.map_or(Value::Number(number as i64), Value::Text)
+            }
             Variable::Pair(lower, upper) => {
                 let (lower, upper) = (self.memory().word(lower, lane), self.memory().word(upper, lane));
                 Value::Number(i64::from((upper as i32) << 16 | i32::from(lower as u16)))
             }
+        }
+    }
+
+    /// The value at a place; of an output what is at its terminals.
+    fn datum_at(&self, spot: Spot, lane: usize) -> Datum {
+        let published = match spot.lies {
+            Lies::Bits(first, count) => {
+                let bits: Option<Vec<L>> =
+                    (first..first + Cell::from(count)).map(|cell| self.terminals.output(cell)).collect();
+                bits
+            }
+            _ => None,
+        };
+        let pattern = published
+            .map(|bits| bits.iter().rev().fold(0, |pattern, bit| pattern << 1 | u64::from(bit.lane(lane))));
+        match pattern {
+            Some(pattern) => iec::of_pattern(pattern, spot.kind),
+            None => iec::read(self.memory(), &self.code.iec, spot, lane).unwrap_or(Datum::Whole(0)),
         }
     }
 }

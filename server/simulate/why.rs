@@ -446,6 +446,7 @@ impl<'a> Inquiry<'a> {
             _ => match Value::read(&driver.action.terms.get(1)?.text)? {
                 Value::Number(number) => number,
                 Value::Bit(on) => i64::from(on),
+                _ => return None,
             },
         };
         let is_on = *value == Value::Bit(true);

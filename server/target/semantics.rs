@@ -48,6 +48,8 @@ pub enum Fault {
     NoModule,
     /// A parameter of PID that the instruction does not take, or what it computes grows too large, with the error code.
     Pid(u16),
+    /// A subscript of an array is outside of its bounds (IEC 61131-3 only).
+    Index,
     /// The simulator does not do what the operand at this place asks for, though a PLC does.
     NotSimulated(u8),
 }
@@ -59,7 +61,11 @@ impl Fault {
     pub fn code(self) -> i64 {
         match self {
             Fault::NoDevice(_) => 6705,
-            Fault::DivisionByZero | Fault::Value(_) | Fault::Overflow | Fault::NotSimulated(_) => 6706,
+            Fault::DivisionByZero
+            | Fault::Value(_)
+            | Fault::Overflow
+            | Fault::Index
+            | Fault::NotSimulated(_) => 6706,
             Fault::NoModule => 6708,
             Fault::Pid(code) => i64::from(code),
         }

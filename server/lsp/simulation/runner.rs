@@ -474,8 +474,7 @@ impl Running {
             }
             Order::Set { name, value, is_force } => self.set(&name, &value, is_force)?,
             Order::Release { name: Some(name) } => {
-                let touch = self.variable(&name)?.release(self.session.machine().code());
-                touch.into_iter().for_each(|touch| self.session.touch(touch));
+                self.session.touch(self.variable(&name)?.release());
                 self.recording.note(self.session.machine().scans(), &name, InputKind::Release);
             }
             Order::Release { name: None } => {
@@ -543,7 +542,12 @@ impl Running {
         let variable = self.variable(name)?;
         let value = match value {
             Json::Bool(on) => Some(Value::Bit(*on)),
-            Json::Number(number) => number.as_i64().map(Value::Number),
+            Json::Number(number) => {
+                let whole = number.as_i64().map(Value::Number);
+                whole
+                    .or_else(|| number.as_u64().map(Value::Unsigned))
+                    .or_else(|| number.as_f64().map(Value::Real))
+            }
             Json::String(word) => Value::read(word),
             _ => None,
         };

@@ -1,7 +1,7 @@
 //! The standard function blocks (IEC 61131-3 2nd ed. tables 34 to 37; RTC and SEMA are the first edition's).
 
-use super::Parameter;
 use super::page::Page;
+use super::{Parameter, Working};
 use crate::text::{self, Book, Language};
 use rustc_hash::FxHashMap;
 use std::sync::LazyLock;
@@ -23,6 +23,8 @@ pub struct FunctionBlock {
     pub outputs: &'static [Parameter],
     /// The inputs that are also operators of Instruction List (`CU C10`), table 54.
     pub input_operators: &'static [&'static str],
+    /// What a call does to the instance.
+    pub working: Working,
     pub(super) page: Page,
 }
 

@@ -9,6 +9,8 @@ use crate::text::Language;
 use rustc_hash::FxHashMap;
 use std::sync::LazyLock;
 
+mod formulas;
+
 mod words;
 
 /// A conversion, by how it is named.
@@ -146,6 +148,7 @@ impl Conversion {
             inputs: Box::leak(Box::new([input])),
             extensible: false,
             result: self.result(),
+            formula: self.formula(),
             page: FunctionPage::Conversion(self),
         }
     }

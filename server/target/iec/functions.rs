@@ -3,7 +3,7 @@
 
 use super::conversions::{self, Conversion};
 use super::page::Page;
-use super::{ElementaryType, GenericType};
+use super::{ElementaryType, Formula, GenericType};
 use crate::text::{Book, Language, page as translated, phrase};
 use rustc_hash::FxHashMap;
 use std::borrow::Cow;
@@ -29,6 +29,8 @@ pub struct Function {
     pub extensible: bool,
     /// The result.
     pub result: ParameterType,
+    /// What it makes of its inputs.
+    pub formula: Formula,
     pub(super) page: FunctionPage,
 }
 

@@ -5,6 +5,8 @@ use crate::text::folded;
 use smol_str::{SmolStr, format_smolstr};
 
 mod number;
+mod spelling;
+pub use spelling::{characters_of, spelled};
 mod text;
 mod time;
 

@@ -7,7 +7,7 @@ mod names;
 pub use names::{KEYWORDS, is_identifier, is_keyword};
 
 mod literal;
-pub use literal::{Literal, LiteralProblem, LiteralValue};
+pub use literal::{Literal, LiteralProblem, LiteralValue, characters_of, spelled};
 
 mod operand;
 pub(super) use operand::read_operand;
@@ -24,6 +24,9 @@ mod conversions;
 
 mod blocks;
 pub use blocks::FunctionBlock;
+
+pub mod semantics;
+pub use semantics::{Datum, Formula, Inputs, Instance, Working};
 
 mod suggest;
 pub use suggest::{nearest, suggestions};

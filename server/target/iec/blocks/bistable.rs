@@ -1,6 +1,7 @@
 //! Bistables, edge detection and the semaphore.
 
 use super::FunctionBlock;
+use crate::target::iec::Instance;
 use crate::target::iec::page::Page;
 use crate::target::iec::{ElementaryType, Parameter};
 
@@ -15,6 +16,7 @@ pub const ROWS: &[FunctionBlock] = &[
         ],
         outputs: &[Parameter::of("Q1", ElementaryType::Bool, "state")],
         input_operators: &["S1", "R"],
+        working: set_dominant,
         page: Page {
             about: "Keeps one bit: S1 sets Q1, R resets it, and with both on S1 wins, because Q1 becomes \
                     S1 OR (Q1 AND NOT R). Use it where on is the safe state, such as a ventilation; \
@@ -38,6 +40,7 @@ pub const ROWS: &[FunctionBlock] = &[
         ],
         outputs: &[Parameter::of("Q1", ElementaryType::Bool, "state")],
         input_operators: &["S", "R1"],
+        working: reset_dominant,
         page: Page {
             about: "Keeps one bit: S sets Q1, R1 resets it, and with both on R1 wins, because Q1 becomes \
                     NOT R1 AND (S OR Q1). The usual choice for drives, where off is the safe state. All \
@@ -58,6 +61,7 @@ pub const ROWS: &[FunctionBlock] = &[
         inputs: &[Parameter::of("CLK", ElementaryType::Bool, "signal")],
         outputs: &[Parameter::of("Q", ElementaryType::Bool, "on for one call after a rising edge")],
         input_operators: &["CLK"],
+        working: rising,
         page: Page {
             about: "Q is on for one call when CLK, a BOOL, has gone from 0 to 1 since the call before. \
                     Call each instance exactly once in every scan: one that is skipped misses edges, and \
@@ -83,6 +87,7 @@ pub const ROWS: &[FunctionBlock] = &[
         inputs: &[Parameter::of("CLK", ElementaryType::Bool, "signal")],
         outputs: &[Parameter::of("Q", ElementaryType::Bool, "on for one call after a falling edge")],
         input_operators: &["CLK"],
+        working: falling,
         page: Page {
             about: "Q is on for one call when CLK, a BOOL, has gone from 1 to 0 since the call before. \
                     Call each instance exactly once in every scan. Its memory starts at 0, so if CLK is \
@@ -108,6 +113,7 @@ pub const ROWS: &[FunctionBlock] = &[
         ],
         outputs: &[Parameter::of("BUSY", ElementaryType::Bool, "the resource was taken already")],
         input_operators: &[],
+        working: semaphore,
         page: Page {
             about: "Guards a resource that only one part of a program may use at a time. CLAIM takes it; \
                     BUSY tells whether it had been taken before this call, so a claim has succeeded when \
@@ -130,3 +136,36 @@ pub const ROWS: &[FunctionBlock] = &[
         },
     },
 ];
+
+fn set_dominant(instance: &mut dyn Instance) {
+    let on = instance.is_on(0) || instance.output(0) != 0 && !instance.is_on(1);
+    instance.switch(0, on);
+}
+
+fn reset_dominant(instance: &mut dyn Instance) {
+    let on = !instance.is_on(1) && (instance.is_on(0) || instance.output(0) != 0);
+    instance.switch(0, on);
+}
+
+fn rising(instance: &mut dyn Instance) {
+    let has_risen = instance.has_risen(0, 0);
+    instance.switch(0, has_risen);
+}
+
+/// The memory holds the inverse of CLK and is off at first, so that a CLK that is off at the first call is an edge.
+fn falling(instance: &mut dyn Instance) {
+    let (is_off, was_off) = (!instance.is_on(0), instance.noted(0) != 0);
+    instance.note(0, i64::from(is_off));
+    instance.switch(0, is_off && !was_off);
+}
+
+fn semaphore(instance: &mut dyn Instance) {
+    let is_taken = instance.noted(0) != 0;
+    instance.switch(0, is_taken);
+    if instance.is_on(0) {
+        instance.note(0, 1);
+    } else if instance.is_on(1) {
+        instance.note(0, 0);
+        instance.switch(0, false);
+    }
+}

@@ -2,8 +2,8 @@
 
 use super::FunctionBlock;
 use crate::target::iec::ElementaryType::{self, *};
-use crate::target::iec::Parameter;
 use crate::target::iec::page::Page;
+use crate::target::iec::{Instance, Parameter};
 
 /// CTU CTD CTUD, each with its typed variants.
 pub const ROWS: &[FunctionBlock] = &[
@@ -168,6 +168,7 @@ const fn up(
         inputs,
         outputs,
         input_operators: &["CU", "R", "PV"],
+        working: count_up,
         page: Page {
             about: "Counts rising edges of CU in CV; Q is on while CV is PV or more, and R, which has \
             precedence, clears CV. PV and CV are of the type that the name ends in, as with `CTU_DINT`, \
@@ -200,6 +201,7 @@ const fn down(
         inputs,
         outputs,
         input_operators: &["CD", "PV"],
+        working: count_down,
         page: Page {
             about: "Counts CV down on rising edges of CD; Q is on while CV is 0 or less, and LD, which has \
             precedence, loads PV into CV. PV and CV are of the type that the name ends in, as with \
@@ -232,6 +234,7 @@ const fn up_down(
         inputs,
         outputs,
         input_operators: &["CU", "CD", "R", "PV"],
+        working: count_up_down,
         page: Page {
             about: "Counts up on rising edges of CU and down on those of CD; both at once change nothing. R \
             clears CV and goes before LD, which loads PV, and both go before counting. QU is on while CV \
@@ -252,4 +255,44 @@ const fn up_down(
             ],
         },
     }
+}
+
+/// CU, R, PV to Q, CV. Counting ends at the greatest number that CV holds.
+fn count_up(instance: &mut dyn Instance) {
+    let is_edge = instance.has_risen(0, 0);
+    let count = match () {
+        () if instance.is_on(1) => 0,
+        () if is_edge => (instance.output(1) + 1).min(*instance.range(1).end()),
+        () => instance.output(1),
+    };
+    instance.set_output(1, count);
+    instance.switch(0, count >= instance.input(2));
+}
+
+/// CD, LD, PV to Q, CV. Counting ends at the least number that CV holds.
+fn count_down(instance: &mut dyn Instance) {
+    let is_edge = instance.has_risen(0, 0);
+    let count = match () {
+        () if instance.is_on(1) => instance.input(2),
+        () if is_edge => (instance.output(1) - 1).max(*instance.range(1).start()),
+        () => instance.output(1),
+    };
+    instance.set_output(1, count);
+    instance.switch(0, count <= 0);
+}
+
+/// CU, CD, R, LD, PV to QU, QD, CV.
+fn count_up_down(instance: &mut dyn Instance) {
+    let (up, down) = (instance.has_risen(0, 0), instance.has_risen(1, 1));
+    let (count, range) = (instance.output(2), instance.range(2));
+    let count = match (up, down) {
+        _ if instance.is_on(2) => 0,
+        _ if instance.is_on(3) => instance.input(4),
+        (true, false) => (count + 1).min(*range.end()),
+        (false, true) => (count - 1).max(*range.start()),
+        _ => count,
+    };
+    instance.set_output(2, count);
+    instance.switch(0, count >= instance.input(4));
+    instance.switch(1, count <= 0);
 }

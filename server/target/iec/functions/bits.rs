@@ -1,8 +1,10 @@
 //! Shifts and bit logic.
 
 use super::{Function, FunctionPage, Parameter, ParameterType};
+use crate::target::Fault;
 use crate::target::iec::GenericType;
 use crate::target::iec::page::Page;
+use crate::target::iec::{Datum, Inputs};
 
 const SHIFT: &[Parameter] = &[
     Parameter::any("IN", GenericType::AnyBit, "bit string"),
@@ -21,6 +23,7 @@ pub const ROWS: &[Function] = &[
         inputs: SHIFT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyBit),
+        formula: |inputs| shifted(inputs, |bits, by, width| if by < width { bits << by } else { 0 }),
         page: FunctionPage::Own(Page {
             about: "Shifts a bit string left by N places; zeros come in on the right and the bits pushed \
                     out on the left are lost. The current result is IN, the operand is N. With N as \
@@ -35,6 +38,7 @@ pub const ROWS: &[Function] = &[
         inputs: SHIFT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyBit),
+        formula: |inputs| shifted(inputs, |bits, by, width| if by < width { bits >> by } else { 0 }),
         page: FunctionPage::Own(Page {
             about: "Shifts a bit string right by N places; zeros come in on the left, so this is no \
                     division of a negative number. The current result is IN, the operand is N. With N as \
@@ -49,6 +53,9 @@ pub const ROWS: &[Function] = &[
         inputs: SHIFT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyBit),
+        formula: |inputs| {
+            shifted(inputs, |bits, by, width| bits << (by % width) | bits >> (width - by % width))
+        },
         page: FunctionPage::Own(Page {
             about: "Turns a bit string left by N places; bits pushed out on the left come in again on \
                     the right. The current result is IN, the operand is N. Rotating by the full width \
@@ -63,6 +70,9 @@ pub const ROWS: &[Function] = &[
         inputs: SHIFT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyBit),
+        formula: |inputs| {
+            shifted(inputs, |bits, by, width| bits >> (by % width) | bits << (width - by % width))
+        },
         page: FunctionPage::Own(Page {
             about: "Turns a bit string right by N places; bits pushed out on the right come in again on \
                     the left. The current result is IN, the operand is N. Rotating by the full width \
@@ -77,6 +87,7 @@ pub const ROWS: &[Function] = &[
         inputs: BITS,
         extensible: true,
         result: ParameterType::Generic(GenericType::AnyBit),
+        formula: |inputs| each_bit(inputs, |left, right| left & right),
         page: FunctionPage::Own(Page {
             about: "The bitwise AND of two or more bit strings of one type, BOOL included. In \
                     Instruction List the operator AND does the same with one operand; with more \
@@ -97,6 +108,7 @@ pub const ROWS: &[Function] = &[
         inputs: BITS,
         extensible: true,
         result: ParameterType::Generic(GenericType::AnyBit),
+        formula: |inputs| each_bit(inputs, |left, right| left | right),
         page: FunctionPage::Own(Page {
             about: "The bitwise OR of two or more bit strings of one type, BOOL included. In Instruction \
                     List the operator OR does the same with one operand; with more operands, separated \
@@ -116,6 +128,7 @@ pub const ROWS: &[Function] = &[
         inputs: BITS,
         extensible: true,
         result: ParameterType::Generic(GenericType::AnyBit),
+        formula: |inputs| each_bit(inputs, |left, right| left ^ right),
         page: FunctionPage::Own(Page {
             about: "The bitwise exclusive OR of two or more bit strings of one type, BOOL included. With \
                     more than two inputs a bit of the result is 1 where an odd number of inputs has it, \
@@ -135,6 +148,7 @@ pub const ROWS: &[Function] = &[
         inputs: &[Parameter::any("IN", GenericType::AnyBit, "bit string")],
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyBit),
+        formula: complement,
         page: FunctionPage::Own(Page {
             about: "The complement of a bit string: every bit turns over, so NOT of WORD 16#F0F0 is \
                     16#0F0F and NOT of TRUE is FALSE. In Instruction List it works on the current result \
@@ -144,3 +158,24 @@ pub const ROWS: &[Function] = &[
         }),
     },
 ];
+
+/// Moves bits by a number of places, which is not negative; what leaves the bit string is lost.
+fn shifted(inputs: &Inputs<'_>, by: fn(u128, u32, u32) -> u128) -> Result<Datum, Fault> {
+    let width = inputs.result.bits().ok_or(Fault::Value(0))?;
+    let places = inputs.whole(1);
+    if places < 0 {
+        return Err(Fault::Value(1));
+    }
+    // No shift is longer than a few turns of the longest bit string.
+    let places = if places < 128 { places as u32 } else { 128 + (places % i128::from(width)) as u32 };
+    let shifted = by(inputs.whole(0) as u128, places, width) & ((1 << width) - 1);
+    Ok(Datum::Whole(shifted as i128))
+}
+
+fn each_bit(inputs: &Inputs<'_>, join: fn(i128, i128) -> i128) -> Result<Datum, Fault> {
+    inputs.values.iter().map(Datum::whole).reduce(join).map(Datum::Whole).ok_or(Fault::Value(0))
+}
+
+fn complement(inputs: &Inputs<'_>) -> Result<Datum, Fault> {
+    Ok(Datum::Whole(!inputs.whole(0)).within(inputs.result))
+}

@@ -1,8 +1,11 @@
 //! Comparison.
 
 use super::{Function, FunctionPage, Parameter, ParameterType};
+use crate::target::Fault;
 use crate::target::iec::page::Page;
+use crate::target::iec::{Datum, Inputs};
 use crate::target::iec::{ElementaryType, GenericType};
+use std::cmp::Ordering;
 
 const IN1_IN2: &[Parameter] = &[
     Parameter::any("IN1", GenericType::AnyElementary, "first value"),
@@ -17,6 +20,7 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2,
         extensible: true,
         result: ParameterType::Elementary(ElementaryType::Bool),
+        formula: |inputs| chained(inputs, Ordering::is_gt),
         page: FunctionPage::Own(Page {
             about: "1 if each value is greater than the next, else 0; two or more values of one \
                     elementary type. With three inputs it says whether IN1 > IN2 and IN2 > IN3. In \
@@ -38,6 +42,7 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2,
         extensible: true,
         result: ParameterType::Elementary(ElementaryType::Bool),
+        formula: |inputs| chained(inputs, Ordering::is_ge),
         page: FunctionPage::Own(Page {
             about: "1 if no value is less than the next, else 0; two or more values of one elementary \
                     type. With three inputs it says whether IN1 >= IN2 and IN2 >= IN3. In Instruction \
@@ -58,6 +63,7 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2,
         extensible: true,
         result: ParameterType::Elementary(ElementaryType::Bool),
+        formula: |inputs| chained(inputs, Ordering::is_eq),
         page: FunctionPage::Own(Page {
             about: "1 if all values are equal, else 0; two or more values of one elementary type. With \
                     three inputs it says whether IN1 = IN2 and IN2 = IN3. In Instruction List the \
@@ -78,6 +84,7 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2,
         extensible: true,
         result: ParameterType::Elementary(ElementaryType::Bool),
+        formula: |inputs| chained(inputs, Ordering::is_le),
         page: FunctionPage::Own(Page {
             about: "1 if no value is greater than the next, else 0; two or more values of one elementary \
                     type. With three inputs it says whether IN1 <= IN2 and IN2 <= IN3. In Instruction \
@@ -98,6 +105,7 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2,
         extensible: true,
         result: ParameterType::Elementary(ElementaryType::Bool),
+        formula: |inputs| chained(inputs, Ordering::is_lt),
         page: FunctionPage::Own(Page {
             about: "1 if each value is less than the next, else 0; two or more values of one elementary \
                     type. With three inputs it says whether IN1 < IN2 and IN2 < IN3. In Instruction List \
@@ -118,6 +126,9 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2,
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Bool),
+        formula: |inputs| {
+            chained(inputs, Ordering::is_eq).map(|same| Datum::from(same == Datum::from(false)))
+        },
         page: FunctionPage::Own(Page {
             about: "1 if the two values differ, else 0; both of one elementary type. Unlike the other \
                     comparisons it takes two inputs only, because a chain of unequal values would say \
@@ -127,3 +138,9 @@ pub const ROWS: &[Function] = &[
         }),
     },
 ];
+
+/// Whether each value stands so to the next.
+fn chained(inputs: &Inputs<'_>, holds: fn(Ordering) -> bool) -> Result<Datum, Fault> {
+    let pairs = inputs.values.windows(2);
+    Ok(Datum::from(pairs.into_iter().all(|pair| pair[0].order(&pair[1]).is_some_and(holds))))
+}

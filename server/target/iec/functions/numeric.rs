@@ -1,8 +1,11 @@
 //! Functions of one number, and arithmetic.
 
 use super::{Function, FunctionPage, Parameter, ParameterType};
+use crate::target::Fault;
 use crate::target::iec::GenericType;
 use crate::target::iec::page::Page;
+use crate::target::iec::semantics::NS_OF_DAY;
+use crate::target::iec::{Datum, ElementaryType, Inputs};
 
 const REAL_INPUT: &[Parameter] = &[Parameter::any("IN", GenericType::AnyReal, "number")];
 const IN1_IN2_NUM: &[Parameter] = &[
@@ -18,6 +21,7 @@ pub const ROWS: &[Function] = &[
         inputs: &[Parameter::any("IN", GenericType::AnyNum, "number")],
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyNum),
+        formula: absolute,
         page: FunctionPage::Own(Page {
             about: "The absolute value of a number of any type, in the same type. The most negative \
                     signed integer has none: ABS of INT -32768 does not fit and is an error, or -32768 \
@@ -32,6 +36,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
+        formula: |inputs| defined(inputs, f64::sqrt),
         page: FunctionPage::Own(Page {
             about: "The square root of a REAL or an LREAL, in the same type. A negative input is an \
                     error. A flow from a differential pressure is the usual case; cut the pressure off \
@@ -46,6 +51,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
+        formula: |inputs| defined(inputs, f64::ln),
         page: FunctionPage::Own(Page {
             about: "The logarithm to base e of a REAL or an LREAL, in the same type. The input must be \
                     greater than 0, or the result is an error.",
@@ -59,6 +65,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
+        formula: |inputs| defined(inputs, f64::log10),
         page: FunctionPage::Own(Page {
             about: "The logarithm to base 10 of a REAL or an LREAL, in the same type. The input must be \
                     greater than 0, or the result is an error. Mind the name: in many programming \
@@ -73,6 +80,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
+        formula: |inputs| defined(inputs, f64::exp),
         page: FunctionPage::Own(Page {
             about: "e to the power of a REAL or an LREAL, in the same type. The result grows out of a \
                     REAL's range above 88.7, which is an error.",
@@ -86,6 +94,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
+        formula: |inputs| defined(inputs, f64::sin),
         page: FunctionPage::Own(Page {
             about: "The sine of an angle in radians, REAL or LREAL, in the same type. Multiply degrees \
                     by 0.01745329 first. Large angles lose accuracy, so keep them within a turn.",
@@ -99,6 +108,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
+        formula: |inputs| defined(inputs, f64::cos),
         page: FunctionPage::Own(Page {
             about: "The cosine of an angle in radians, REAL or LREAL, in the same type. Multiply degrees \
                     by 0.01745329 first.",
@@ -112,6 +122,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
+        formula: |inputs| defined(inputs, f64::tan),
         page: FunctionPage::Own(Page {
             about: "The tangent of an angle in radians, REAL or LREAL, in the same type. Near a quarter \
                     turn, 1.570796, it grows beyond every bound and the result is of no use.",
@@ -125,6 +136,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
+        formula: |inputs| defined(inputs, f64::asin),
         page: FunctionPage::Own(Page {
             about: "The angle in radians, from -1.570796 to 1.570796, whose sine is the input, REAL or \
                     LREAL, in the same type. An input outside -1.0 to 1.0 is an error, so limit a \
@@ -139,6 +151,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
+        formula: |inputs| defined(inputs, f64::acos),
         page: FunctionPage::Own(Page {
             about: "The angle in radians, from 0.0 to 3.141593, whose cosine is the input, REAL or \
                     LREAL, in the same type. An input outside -1.0 to 1.0 is an error, so limit a \
@@ -153,6 +166,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
+        formula: |inputs| defined(inputs, f64::atan),
         page: FunctionPage::Own(Page {
             about: "The angle in radians, from -1.570796 to 1.570796, whose tangent is the input, REAL \
                     or LREAL, in the same type. Every input is allowed. For the direction of a point use \
@@ -170,6 +184,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
+        formula: |inputs| Ok(Datum::Real(inputs.real(0).atan2(inputs.real(1)))),
         page: FunctionPage::Own(Page {
             about: "The angle in radians between the X axis and the point (X, Y), from -3.141593 to \
                     3.141593; REAL or LREAL, all of one type. Y comes first, so in a non-formal call the \
@@ -184,6 +199,7 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2_NUM,
         extensible: true,
         result: ParameterType::Generic(GenericType::AnyNum),
+        formula: sum,
         page: FunctionPage::Own(Page {
             about: "The sum of two or more numbers of one type. In Instruction List the operator ADD \
                     does the same with the current result and one operand; with more operands after it, \
@@ -203,6 +219,7 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2_NUM,
         extensible: true,
         result: ParameterType::Generic(GenericType::AnyNum),
+        formula: product,
         page: FunctionPage::Own(Page {
             about: "The product of two or more numbers of one type, in that type and not in a wider one. \
                     In Instruction List the operator MUL does the same with one operand; with more \
@@ -222,6 +239,7 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2_NUM,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyNum),
+        formula: difference,
         page: FunctionPage::Own(Page {
             about: "IN1 minus IN2, numbers of one type. In Instruction List the current result is IN1, \
                     as with the operator of the same name. An unsigned type cannot go below 0.",
@@ -235,6 +253,7 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2_NUM,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyNum),
+        formula: quotient,
         page: FunctionPage::Own(Page {
             about: "IN1 divided by IN2, numbers of one type; in Instruction List the current result is \
                     IN1. Integers are truncated towards zero: -7 divided by 2 gives -3. Division by zero \
@@ -253,6 +272,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyInt),
+        formula: remainder,
         page: FunctionPage::Own(Page {
             about: "The remainder of IN1 divided by IN2, integers of one type; in Instruction List the \
                     current result is IN1. It has the sign of IN1, and with IN2 = 0 the standard gives \
@@ -270,6 +290,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
+        formula: power,
         page: FunctionPage::Own(Page {
             about: "IN1 to the power of IN2; in Instruction List the current result is the base, a REAL \
                     or an LREAL, and the result has its type. The exponent may be of any numeric type. A \
@@ -284,6 +305,7 @@ pub const ROWS: &[Function] = &[
         inputs: &[Parameter::any("IN", GenericType::Any, "value")],
         extensible: false,
         result: ParameterType::Generic(GenericType::Any),
+        formula: copy,
         page: FunctionPage::Own(Page {
             about: "Gives its input unchanged, of any type. In Instruction List it does nothing that \
                     `LD` and `ST` do not do; in ladder it is the block that copies a value while its EN \
@@ -293,3 +315,94 @@ pub const ROWS: &[Function] = &[
         }),
     },
 ];
+
+/// A function of one real number. Where it has none, the input is what is wrong; where it grows too large, the result.
+fn defined(inputs: &Inputs<'_>, function: fn(f64) -> f64) -> Result<Datum, Fault> {
+    finite(function(inputs.real(0)), inputs)
+}
+
+/// The result, if there is one; one that grows too large is infinite.
+fn finite(result: f64, inputs: &Inputs<'_>) -> Result<Datum, Fault> {
+    // The logarithm of 0 is no overflow: there is none.
+    let is_none = result.is_nan() || result == f64::NEG_INFINITY && inputs.real(0) == 0.0;
+    let is_told = inputs.values.iter().any(|value| !value.real().is_finite());
+    if is_none && !is_told { Err(Fault::Value(0)) } else { Ok(Datum::Real(result)) }
+}
+
+fn absolute(inputs: &Inputs<'_>) -> Result<Datum, Fault> {
+    Ok(match &inputs.values[0] {
+        Datum::Real(number) => Datum::Real(number.abs()),
+        other => Datum::Whole(other.whole().abs()),
+    })
+}
+
+/// Puts the inputs together from left to right: all of them as reals, or all as whole numbers.
+fn joined(
+    inputs: &Inputs<'_>,
+    whole: fn(i128, i128) -> Option<i128>,
+    real: fn(f64, f64) -> f64,
+) -> Result<Datum, Fault> {
+    let Some((first, rest)) = inputs.values.split_first() else { return Err(Fault::Value(0)) };
+    if inputs.result.belongs_to(GenericType::AnyReal) {
+        // Each step has the digits of the type.
+        let step =
+            |left: f64, right: &Datum| Datum::Real(real(left, right.real())).held(inputs.result).0.real();
+        return finite(rest.iter().fold(first.real(), step), inputs);
+    }
+    let joined = rest.iter().try_fold(first.whole(), |left, right| whole(left, right.whole()));
+    joined.map(Datum::Whole).ok_or(Fault::Overflow)
+}
+
+pub(super) fn sum(inputs: &Inputs<'_>) -> Result<Datum, Fault> {
+    joined(inputs, i128::checked_add, |left, right| left + right)
+}
+
+pub(super) fn difference(inputs: &Inputs<'_>) -> Result<Datum, Fault> {
+    match (inputs.kind(0), inputs.kind(1)) {
+        // Days become a duration.
+        (ElementaryType::Date, ElementaryType::Date) | (ElementaryType::Ldate, ElementaryType::Ldate) => {
+            Ok(Datum::Whole((inputs.whole(0) - inputs.whole(1)) * NS_OF_DAY))
+        }
+        _ => joined(inputs, i128::checked_sub, |left, right| left - right),
+    }
+}
+
+pub(super) fn product(inputs: &Inputs<'_>) -> Result<Datum, Fault> {
+    // A duration times a real number is a duration again.
+    let is_scaled = inputs.has_real() && !inputs.result.belongs_to(GenericType::AnyReal);
+    match is_scaled {
+        true => scaled(inputs.real(0) * inputs.real(1)),
+        false => joined(inputs, i128::checked_mul, |left, right| left * right),
+    }
+}
+
+pub(super) fn quotient(inputs: &Inputs<'_>) -> Result<Datum, Fault> {
+    if inputs.real(1) == 0.0 {
+        return Err(Fault::DivisionByZero);
+    }
+    let is_scaled = inputs.has_real() && !inputs.result.belongs_to(GenericType::AnyReal);
+    match is_scaled {
+        true => scaled(inputs.real(0) / inputs.real(1)),
+        false => joined(inputs, i128::checked_div, |left, right| left / right),
+    }
+}
+
+fn scaled(nanoseconds: f64) -> Result<Datum, Fault> {
+    match nanoseconds.is_finite() {
+        true => Ok(Datum::Whole(nanoseconds.round_ties_even() as i128)),
+        false => Err(Fault::Overflow),
+    }
+}
+
+/// By the standard's definition nothing is left of a division by 0.
+fn remainder(inputs: &Inputs<'_>) -> Result<Datum, Fault> {
+    Ok(Datum::Whole(inputs.whole(0).checked_rem(inputs.whole(1)).unwrap_or(0)))
+}
+
+fn power(inputs: &Inputs<'_>) -> Result<Datum, Fault> {
+    finite(inputs.real(0).powf(inputs.real(1)), inputs)
+}
+
+fn copy(inputs: &Inputs<'_>) -> Result<Datum, Fault> {
+    inputs.values.first().cloned().ok_or(Fault::Value(0))
+}

@@ -1,8 +1,11 @@
 //! Selection.
 
 use super::{Function, FunctionPage, Parameter, ParameterType};
+use crate::target::Fault;
 use crate::target::iec::page::Page;
+use crate::target::iec::{Datum, Inputs};
 use crate::target::iec::{ElementaryType, GenericType};
+use std::cmp::Ordering;
 
 const IN1_IN2: &[Parameter] = &[
     Parameter::any("IN1", GenericType::AnyElementary, "first value"),
@@ -21,6 +24,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Generic(GenericType::Any),
+        formula: |inputs| picked(inputs, 1 + inputs.whole(0)),
         page: FunctionPage::Own(Page {
             about: "One of two values of the same type: IN0 while the selector G is 0, IN1 while it is \
                     1. In a non-formal call the current result is G. Mind the order: the value for FALSE \
@@ -40,6 +44,7 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2,
         extensible: true,
         result: ParameterType::Generic(GenericType::AnyElementary),
+        formula: |inputs| outermost(inputs, Ordering::is_gt),
         page: FunctionPage::Own(Page {
             about: "The greatest of two or more values of one elementary type. The current result is the \
                     first of them. `MAX` with a constant is a lower limit: `MAX 0` lets nothing below 0 \
@@ -59,6 +64,7 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2,
         extensible: true,
         result: ParameterType::Generic(GenericType::AnyElementary),
+        formula: |inputs| outermost(inputs, Ordering::is_lt),
         page: FunctionPage::Own(Page {
             about: "The smallest of two or more values of one elementary type. The current result is the \
                     first of them. `MIN` with a constant is an upper limit: `MIN 100` lets nothing above \
@@ -82,6 +88,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyElementary),
+        formula: limited,
         page: FunctionPage::Own(Page {
             about: "IN, but no less than MN and no more than MX; all of one elementary type. The trap is \
                     the order: MN is declared first, so in a non-formal call the current result is the \
@@ -101,6 +108,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: true,
         result: ParameterType::Generic(GenericType::Any),
+        formula: |inputs| picked(inputs, 1 + inputs.whole(0)),
         page: FunctionPage::Own(Page {
             about: "One of several values of the same type: IN0 for K = 0, IN1 for K = 1 and so on, \
                     counted from zero. In a non-formal call the current result is K. A selector below 0 \
@@ -110,3 +118,23 @@ pub const ROWS: &[Function] = &[
         }),
     },
 ];
+
+/// The input at a place, if the selector names one behind itself.
+fn picked(inputs: &Inputs<'_>, place: i128) -> Result<Datum, Fault> {
+    let place = usize::try_from(place).ok().filter(|place| *place > 0);
+    place.and_then(|place| inputs.values.get(place)).cloned().ok_or(Fault::Value(0))
+}
+
+fn outermost(inputs: &Inputs<'_>, is_beyond: fn(Ordering) -> bool) -> Result<Datum, Fault> {
+    let beyond = |best: &'_ Datum, value: &Datum| value.order(best).is_some_and(is_beyond);
+    let best = inputs.values.iter().reduce(|best, value| if beyond(best, value) { value } else { best });
+    best.cloned().ok_or(Fault::Value(0))
+}
+
+/// The lesser of the upper limit and of the greater of the value and the lower limit: limits the wrong way round give
+/// the upper one.
+fn limited(inputs: &Inputs<'_>) -> Result<Datum, Fault> {
+    let [least, value, greatest] = inputs.values else { return Err(Fault::Value(0)) };
+    let value = if least.order(value).is_some_and(Ordering::is_gt) { least } else { value };
+    Ok(if value.order(greatest).is_some_and(Ordering::is_gt) { greatest } else { value }.clone())
+}

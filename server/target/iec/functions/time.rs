@@ -1,7 +1,10 @@
 //! Durations, dates and times of day.
 
+use super::numeric::{difference, product, quotient, sum};
 use super::{Function, FunctionPage, Parameter, ParameterType};
+use crate::target::iec::Datum;
 use crate::target::iec::page::Page;
+use crate::target::iec::semantics::NS_OF_DAY;
 use crate::target::iec::{ElementaryType, GenericType};
 
 /// ADD_TIME to CONCAT_DATE_TOD.
@@ -15,6 +18,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Time),
+        formula: sum,
         page: FunctionPage::Own(Page {
             about: "The sum of two TIMEs. The operator `ADD` with two TIMEs does the same; the name says \
                     what is added where that is not plain to see.",
@@ -31,6 +35,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::TimeOfDay),
+        formula: sum,
         page: FunctionPage::Own(Page {
             about: "A time of day moved on by a TIME. The current result is the TOD. The standard does \
                     not say what comes after midnight; most controllers start again at 00:00:00.",
@@ -47,6 +52,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::DateAndTime),
+        formula: sum,
         page: FunctionPage::Own(Page {
             about: "A date and time moved on by a TIME. The current result is the DT.",
             variables: &["Begin : DT := DT#2024-01-31-22:00:00", "Duration : TIME := T#8h", "Finish : DT"],
@@ -62,6 +68,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Time),
+        formula: difference,
         page: FunctionPage::Own(Page {
             about: "IN1 minus IN2, two TIMEs. The current result is IN1. The difference may be negative \
                     where the controller's TIME has a sign.",
@@ -78,6 +85,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Time),
+        formula: difference,
         page: FunctionPage::Own(Page {
             about: "The TIME from IN2 to IN1, two DATEs, in whole days. The current result is IN1, the \
                     later date for a positive result.",
@@ -94,6 +102,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::TimeOfDay),
+        formula: difference,
         page: FunctionPage::Own(Page {
             about: "A time of day moved back by a TIME. The current result is the TOD. The standard does \
                     not say what comes before midnight.",
@@ -110,6 +119,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Time),
+        formula: difference,
         page: FunctionPage::Own(Page {
             about: "The TIME from IN2 to IN1, two times of day. The current result is IN1. Across \
                     midnight the result is negative; add T#24h then.",
@@ -126,6 +136,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::DateAndTime),
+        formula: difference,
         page: FunctionPage::Own(Page {
             about: "A date and time moved back by a TIME. The current result is the DT.",
             variables: &[
@@ -145,6 +156,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Time),
+        formula: difference,
         page: FunctionPage::Own(Page {
             about: "The TIME from IN2 to IN1, two dates with times. The current result is IN1. A TIME of \
                     32 bits in milliseconds holds some 24 days only, so a longer distance may not fit.",
@@ -165,6 +177,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Time),
+        formula: product,
         page: FunctionPage::Own(Page {
             about: "A TIME multiplied by a number of any type. The current result is the TIME. This is \
                     the third edition's name; the second calls it `MULTIME`.",
@@ -181,6 +194,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Time),
+        formula: product,
         page: FunctionPage::Own(Page {
             about: "A TIME multiplied by a number of any type. The current result is the TIME. This is \
                     the second edition's name; the third calls it `MUL_TIME`.",
@@ -197,6 +211,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Time),
+        formula: quotient,
         page: FunctionPage::Own(Page {
             about: "A TIME divided by a number of any type. The current result is the TIME; a divisor of \
                     0 is an error. This is the third edition's name; the second calls it `DIVTIME`.",
@@ -213,6 +228,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Time),
+        formula: quotient,
         page: FunctionPage::Own(Page {
             about: "A TIME divided by a number of any type. The current result is the TIME; a divisor of \
                     0 is an error. This is the second edition's name; the third calls it `DIV_TIME`.",
@@ -229,6 +245,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::DateAndTime),
+        formula: |inputs| Ok(Datum::Whole(inputs.whole(0) * NS_OF_DAY + inputs.whole(1))),
         page: FunctionPage::Own(Page {
             about: "A date and a time of day joined to a DT. The current result is the DATE. \
                     `DT_TO_DATE` and `DT_TO_TOD` take it apart again.",

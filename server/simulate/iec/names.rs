@@ -1,0 +1,279 @@
+//! Names of variables, and what they lead to.
+
+use super::image::Image;
+use super::kind::{Enumeration, Kind, RecordKind};
+use super::parts::{Lies, Spot};
+use super::place::{At, Place as Variable};
+use crate::il::iec::SectionKind;
+use crate::target::iec::ElementaryType;
+use crate::target::iec::semantics::NOTES;
+use crate::target::{Model, Operand};
+use crate::text::folded;
+use smol_str::SmolStr;
+use std::sync::Arc;
+
+/// The variables of a program by name.
+#[derive(Debug, Default)]
+pub(in crate::simulate) struct Names {
+    roots: Vec<Root>,
+    enumerations: Vec<Arc<Enumeration>>,
+    pub(in crate::simulate) image: Image,
+}
+
+/// A global variable, a program, or a variable that lies at an address.
+#[derive(Debug)]
+struct Root {
+    /// As declared, with what stands around it: `Resource`, `Main`.
+    path: Vec<SmolStr>,
+    variable: Variable,
+}
+
+/// An elementary value with a name.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(in crate::simulate) struct Leaf {
+    pub(in crate::simulate) spot: Spot,
+    /// The number of its enumerated type, if it is of one.
+    pub(in crate::simulate) enumeration: Option<u32>,
+}
+
+/// A step of a path.
+#[derive(PartialEq, Debug)]
+enum Step {
+    Member(SmolStr),
+    Element(Vec<i64>),
+}
+
+/// More elements of an array are not watched of themselves.
+const WATCHED_ELEMENTS: u64 = 16;
+/// More elements of an array are not found one by one.
+const MOST_ELEMENTS: u64 = 1 << 16;
+
+impl Names {
+    pub(super) fn add(&mut self, path: Vec<SmolStr>, variable: &Variable) {
+        self.roots.push(Root { path, variable: variable.clone() });
+    }
+
+    pub(super) fn finish(&mut self, image: Image) {
+        self.image = image;
+        let mut found = Vec::new();
+        self.roots.iter().for_each(|root| enumerations(&root.variable.kind, &mut found));
+        self.enumerations = found;
+    }
+
+    /// What a name leads to, letter case aside. What stands around a program may be left out, and the program, too,
+    /// where the rest is the name of one variable only.
+    pub(in crate::simulate) fn find(&self, name: &str) -> Option<Leaf> {
+        if let Operand::Direct(address) = Operand::read(name, Model::Iec) {
+            return self.image.find(address).map(|spot| Leaf { spot, enumeration: None });
+        }
+        let steps = steps(name)?;
+        let mut best: Option<(usize, Leaf)> = None;
+        let mut is_unique = true;
+        for root in &self.roots {
+            for skipped in 0..=root.path.len() {
+                let suffix = &root.path[skipped..];
+                let is_here = suffix.len() <= steps.len()
+                    && suffix.iter().zip(&steps).all(|(own, step)| *step == Step::Member(folded(own)));
+                let leaf = is_here.then(|| self.leaf(&root.variable, &steps[suffix.len()..])).flatten();
+                let Some(leaf) = leaf else { continue };
+                match best {
+                    Some((length, known)) if length == suffix.len() => is_unique &= known == leaf,
+                    Some((length, _)) if length > suffix.len() => {}
+                    _ => (best, is_unique) = (Some((suffix.len(), leaf)), true),
+                }
+            }
+        }
+        best.filter(|_| is_unique).map(|(_, leaf)| leaf)
+    }
+
+    fn leaf(&self, variable: &Variable, steps: &[Step]) -> Option<Leaf> {
+        let Some((step, rest)) = steps.split_first() else {
+            let enumeration = match &variable.kind {
+                Kind::Enumeration(own) => {
+                    self.enumerations.iter().position(|other| Arc::ptr_eq(own, other)).map(|at| at as u32)
+                }
+                _ => None,
+            };
+            return Some(Leaf { spot: variable.spot()?, enumeration });
+        };
+        let part = match (step, &variable.kind) {
+            (Step::Member(name), Kind::Record(record)) => {
+                let field = record.fields.iter().find(|field| folded(&field.name) == *name)?;
+                field.has_place().then(|| variable.part(field.kind.clone(), field.at))??
+            }
+            (Step::Element(subscripts), Kind::Array(bounds, element)) if subscripts.len() == bounds.len() => {
+                let mut number = 0;
+                for (subscript, (least, greatest)) in subscripts.iter().zip(bounds.iter()) {
+                    if !(least..=greatest).contains(&subscript) {
+                        return None;
+                    }
+                    number = number * (greatest - least + 1) as u64 + (subscript - least) as u64;
+                }
+                variable.part((**element).clone(), element.size().times(number))?
+            }
+            _ => return None,
+        };
+        self.leaf(&part, rest)
+    }
+
+    /// The name of a value of an enumerated type.
+    pub(in crate::simulate) fn name_of(&self, enumeration: u32, value: i128) -> Option<&SmolStr> {
+        self.enumerations.get(enumeration as usize)?.values.get(usize::try_from(value).ok()?)
+    }
+
+    /// The value of an enumerated type with a name.
+    pub(in crate::simulate) fn value_of(&self, enumeration: u32, name: &str) -> Option<i128> {
+        let values = &self.enumerations.get(enumeration as usize)?.values;
+        let name = folded(name.rsplit('#').next().unwrap_or(name));
+        values.iter().position(|own| folded(own) == name).map(|place| place as i128)
+    }
+
+    /// The names of variables that are worth watching, as short as they lead to one.
+    pub(in crate::simulate) fn watched(&self) -> Vec<String> {
+        let mut names = Vec::new();
+        for root in &self.roots {
+            let mut leaves = Vec::new();
+            walk(&root.variable, String::new(), &mut leaves, true);
+            for (name, spot) in leaves {
+                names.push(self.shortest(root, &name, spot));
+            }
+        }
+        let direct =
+            self.image.named.iter().filter(|address| {
+                self.image.find(**address).is_some_and(|spot| self.named_at(spot).is_none())
+            });
+        names.extend(direct.map(ToString::to_string));
+        names.sort();
+        names.dedup();
+        names
+    }
+
+    /// A variable that is declared at an address, or anywhere else.
+    fn named_at(&self, spot: Spot) -> Option<&Root> {
+        self.roots.iter().find(|root| root.variable.spot().is_some_and(|own| own.lies == spot.lies))
+    }
+
+    fn shortest(&self, root: &Root, name: &str, spot: Spot) -> String {
+        let path = |from: usize| {
+            let around = root.path[from..].join(".");
+            match (around.is_empty(), name.is_empty() || name.starts_with('[')) {
+                (true, _) => name.to_string(),
+                (false, true) => format!("{around}{name}"),
+                (false, false) => format!("{around}.{name}"),
+            }
+        };
+        let least = root.path.len() - usize::from(name.is_empty() && !root.path.is_empty());
+        let leads = |name: &String| self.find(name).is_some_and(|leaf| leaf.spot == spot);
+        (0..=least).rev().map(path).find(leads).unwrap_or_else(|| path(0))
+    }
+
+    /// The name of what lies at a place.
+    pub(in crate::simulate) fn name_at(&self, wanted: Spot) -> Option<String> {
+        for root in &self.roots {
+            let mut leaves = Vec::new();
+            walk(&root.variable, String::new(), &mut leaves, false);
+            if let Some((name, spot)) = leaves.into_iter().find(|(_, spot)| *spot == wanted) {
+                return Some(self.shortest(root, &name, spot));
+            }
+        }
+        let direct = self.image.named.iter();
+        direct.filter(|address| self.image.find(**address) == Some(wanted)).map(ToString::to_string).next()
+    }
+
+    /// All values with their whole names, also what instances of blocks note.
+    pub(in crate::simulate) fn all(&self) -> Vec<(String, Spot)> {
+        let mut all = Vec::new();
+        for root in &self.roots {
+            walk(&root.variable, folded(&root.path.join(".")).to_string(), &mut all, false);
+        }
+        all
+    }
+}
+
+/// The steps of a name: members, and subscripts that are numbers.
+fn steps(name: &str) -> Option<Vec<Step>> {
+    let mut steps = Vec::new();
+    for part in name.trim().split('.') {
+        let (member, mut rest) = part.split_at(part.find('[').unwrap_or(part.len()));
+        if member.is_empty() {
+            return None;
+        }
+        steps.push(Step::Member(folded(member)));
+        while let Some(inside) = rest.strip_prefix('[') {
+            let (subscripts, after) = inside.split_once(']')?;
+            let numbers: Result<Vec<i64>, _> =
+                subscripts.split(',').map(|number| number.trim().parse()).collect();
+            steps.push(Step::Element(numbers.ok()?));
+            rest = after;
+        }
+        if !rest.is_empty() {
+            return None;
+        }
+    }
+    Some(steps)
+}
+
+fn enumerations(kind: &Kind, found: &mut Vec<Arc<Enumeration>>) {
+    match kind {
+        Kind::Elementary(..) => {}
+        Kind::Enumeration(own) => {
+            if !found.iter().any(|other| Arc::ptr_eq(own, other)) {
+                found.push(Arc::clone(own));
+            }
+        }
+        Kind::Array(_, element) => enumerations(element, found),
+        Kind::Record(record) => record.fields.iter().for_each(|field| enumerations(&field.kind, found)),
+    }
+}
+
+/// Finds the elementary parts of a variable. Those that are worth watching are its own, what blocks give, and the first
+/// elements of arrays.
+fn walk(variable: &Variable, name: String, found: &mut Vec<(String, Spot)>, is_watched: bool) {
+    match &variable.kind {
+        Kind::Elementary(..) | Kind::Enumeration(_) => {
+            if let (Some(spot), false) = (variable.spot(), is_watched && variable.is_constant) {
+                found.push((name, spot));
+            }
+        }
+        Kind::Array(bounds, element) => {
+            let most = if is_watched { WATCHED_ELEMENTS } else { MOST_ELEMENTS };
+            for number in 0..super::kind::count(bounds).min(most) {
+                let mut rest = number;
+                let mut subscripts: Vec<String> = Vec::new();
+                for (least, greatest) in bounds.iter().rev() {
+                    let length = (greatest - least + 1) as u64;
+                    subscripts.insert(0, (least + (rest % length) as i64).to_string());
+                    rest /= length;
+                }
+                let Some(part) = variable.part((**element).clone(), element.size().times(number)) else {
+                    return;
+                };
+                walk(&part, format!("{name}[{}]", subscripts.join(",")), found, is_watched);
+            }
+        }
+        Kind::Record(record) => {
+            let is_block = matches!(record.what, RecordKind::Block(_));
+            for field in &record.fields {
+                let is_shown =
+                    !is_watched || !field.is_constant && (!is_block || field.section == SectionKind::Output);
+                if !is_shown || !field.has_place() {
+                    continue;
+                }
+                let Some(part) = variable.part(field.kind.clone(), field.at) else { continue };
+                let shown = if is_watched { field.name.clone() } else { folded(&field.name) };
+                let name = if name.is_empty() { shown.to_string() } else { format!("{name}.{shown}") };
+                walk(&part, name, found, is_watched);
+            }
+            if let (At::Memory(at), true, false) = (variable.at, is_block, is_watched) {
+                let first = at.plus(record.size).words - NOTES as u32;
+                for note in 0..NOTES as u32 {
+                    let lies = Lies::Word(first + note);
+                    found.push((
+                        format!("{name}.#{note}"),
+                        Spot { kind: ElementaryType::Lint, lies, index: 0 },
+                    ));
+                }
+            }
+        }
+    }
+}

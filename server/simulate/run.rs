@@ -1,0 +1,239 @@
+//! One scan of the program, op by op.
+
+use super::code::{Code, Op};
+use super::interrupts::{self, Interrupts};
+use super::machine::{Error, Outcome};
+use super::row::{self, Row};
+use super::{ErrorKind, Glimpse, Lanes, Machine, Sight, iec, timing};
+use crate::target::Fault;
+
+/// A scan that runs.
+#[derive(Default)]
+pub(super) struct Run {
+    pub(super) outcome: Outcome,
+    /// Where calls go back to.
+    calls: Vec<usize>,
+    /// Behind which calls the routines of interrupts run.
+    routines: Vec<usize>,
+    /// Where loops begin, and how many rounds are left.
+    loops: Vec<(usize, i64)>,
+    ops: u64,
+    /// How often WDT has given the scan more time.
+    renewals: u32,
+}
+
+/// More often WDT does not help: a loop without end is stopped all the same.
+const MOST_RENEWALS: u32 = 8;
+
+impl Run {
+    /// Whether the watchdog begins again, as WDT has been executed.
+    fn renew(&mut self, interrupts: &mut Interrupts) -> bool {
+        let is_renewed = interrupts.is_watchdog_restarted && self.renewals < MOST_RENEWALS;
+        if is_renewed {
+            interrupts.is_watchdog_restarted = false;
+            self.renewals += 1;
+            self.ops = 0;
+        }
+        is_renewed
+    }
+
+    fn glimpse<'m, L>(&'m self, machine: &'m Machine<L>, sight: Sight<L>) -> Glimpse<'m, L> {
+        Glimpse { machine, sight, calls: &self.calls, routines: &self.routines }
+    }
+
+    /// The loop that begins at an op, if it runs. A jump may have left loops within it, which are done with.
+    fn inner_loop(&mut self, begin: usize) -> Option<&mut (usize, i64)> {
+        let own = self.loops.iter().rposition(|(op, _)| *op == begin)?;
+        self.loops.truncate(own + 1);
+        self.loops.last_mut()
+    }
+
+    /// A loop that begins again was left by a jump, if it runs.
+    fn leave_loop(&mut self, begin: usize) {
+        if self.inner_loop(begin).is_some() {
+            self.loops.pop();
+        }
+    }
+
+    pub(super) fn error(&mut self, code: &Code, at: usize, kind: ErrorKind, lane: usize) {
+        if self.outcome.errors.len() < Outcome::MOST_ERRORS {
+            self.outcome.errors.push(Error { place: code.place(at), kind, lane });
+        }
+    }
+}
+
+impl<L: Lanes> Machine<L> {
+    pub(super) fn run(
+        &mut self,
+        code: &Code,
+        rows: &[Row],
+        run: &mut Run,
+        watch: &mut impl FnMut(Glimpse<'_, L>) -> bool,
+    ) {
+        let (mut at, most_ops) = (0, self.most_ops());
+        while let Some(op) = code.ops.get(at) {
+            run.ops += 1;
+            if run.ops > most_ops && !run.renew(&mut self.interrupts) {
+                return run.error(code, at, ErrorKind::Watchdog, 0);
+            }
+            let next = match *op {
+                Op::Rows(from, to) => {
+                    row::run(&rows[from as usize..to as usize], &mut self.memory.cells);
+                    // The watchdog counts instructions, whatever they became.
+                    run.ops += u64::from(to - from);
+                    at += 1;
+                    continue;
+                }
+                Op::Seen { .. } | Op::SeenContact { .. } => {
+                    let sight = self.sight(*op);
+                    if !sight.is_none_or(|sight| watch(run.glimpse(self, sight))) {
+                        run.outcome.is_broken_off = true;
+                        return;
+                    }
+                    at += 1;
+                    continue;
+                }
+                Op::End => return,
+                op if op.leads_elsewhere() => match self.flow(code, at, op, run) {
+                    Ok(next) => next,
+                    Err(kind) => return run.error(code, at, kind, 0),
+                },
+                op => {
+                    self.change(code, at, op, run);
+                    at + 1
+                }
+            };
+            if !self.forces.is_empty() {
+                self.hold();
+            }
+            at = next;
+        }
+    }
+
+    /// What an op says that it saw.
+    fn sight(&self, op: Op) -> Option<Sight<L>> {
+        match op {
+            Op::Seen { place, power } => {
+                Some(Sight { instruction: place, conducts: None, power: self.memory.cell(power) })
+            }
+            Op::SeenContact { place, src, invert, power } => {
+                let conducts = self.memory.cell(src) ^ L::all(invert);
+                Some(Sight { instruction: place, conducts: Some(conducts), power: self.memory.cell(power) })
+            }
+            _ => None,
+        }
+    }
+
+    /// Does what an op does to the memory.
+    fn change(&mut self, code: &Code, at: usize, op: Op, run: &mut Run) {
+        match op {
+            Op::Timer { power, timer } => {
+                let power = self.memory.cell(power);
+                let moment = self.moment();
+                timing::timer(&mut self.memory, timer, power, moment);
+            }
+            Op::Counter { power, counter } => {
+                let power = self.memory.cell(power);
+                timing::counter(&mut self.memory, counter, power);
+            }
+            Op::HighSpeed { power, counter } => {
+                let power = self.memory.cell(power);
+                timing::high_speed(&mut self.memory, counter, power);
+            }
+            Op::Clear { power, device } => self.clear(code, self.memory.cell(power), device),
+            Op::Execute { power, call } => self.execute(code, at, power, call, run),
+            Op::Test { to, call } => self.test(code, at, to, call, run),
+            Op::Transfer { power, state, list } => self.transfer(code, self.memory.cell(power), state, list),
+            Op::Compute { power, number } => {
+                let power = self.memory.cell(power);
+                iec::compute(&mut self.memory, &code.iec, number, power, |fault, lane| {
+                    run.error(code, at, ErrorKind::Calculation(fault), lane);
+                });
+            }
+            Op::Copy { power, number } => {
+                let power = self.memory.cell(power);
+                if !iec::copy(&mut self.memory, &code.iec, number, power) {
+                    run.error(code, at, ErrorKind::Calculation(Fault::Index), 0);
+                }
+            }
+            Op::Block { power, number } => {
+                let power = self.memory.cell(power);
+                if !iec::call_block(&mut self.memory, &code.iec, number, power, self.now_ns) {
+                    run.error(code, at, ErrorKind::Calculation(Fault::Index), 0);
+                }
+            }
+            Op::Initialise(list) => iec::initialise(&mut self.memory, &code.iec, list),
+            Op::Task(number) => iec::schedule(&mut self.memory, &code.iec, number, self.now_ns),
+            _ => {}
+        }
+    }
+
+    /// Finds where the program goes on behind an op that may lead elsewhere.
+    fn flow(&mut self, code: &Code, at: usize, op: Op, run: &mut Run) -> Result<usize, ErrorKind> {
+        let next = at + 1;
+        Ok(match op {
+            Op::Step { rail, was, state, above, end } => {
+                let active = self.memory.cell(state) & self.memory.cell(above);
+                let is_left = active == L::NONE && self.memory.cell(was) == L::NONE;
+                self.memory.set_cell(rail, active);
+                self.memory.set_cell(was, active);
+                if is_left { end as usize } else { next }
+            }
+            Op::Jump { power, to } if self.memory.bit(power, 0) => to as usize,
+            Op::Call { power, to } if self.memory.bit(power, 0) => {
+                if run.calls.len() >= code.most_calls() + run.routines.len() {
+                    return Err(ErrorKind::TooDeep);
+                }
+                run.calls.push(next);
+                to as usize
+            }
+            Op::Interrupt => self.interrupt(code, run, next),
+            Op::Return => {
+                let back = run.calls.pop().ok_or(ErrorKind::NothingToReturnTo)?;
+                match run.routines.pop_if(|depth| *depth > run.calls.len()) {
+                    Some(_) => {
+                        self.interrupts.are_allowed = true;
+                        self.interrupt(code, run, back)
+                    }
+                    None => back,
+                }
+            }
+            Op::For { call, next: behind } => {
+                let rounds = self.rounds(code, at, call, run);
+                run.leave_loop(next);
+                if rounds < 1 {
+                    behind as usize
+                } else if run.loops.len() >= code.target.limits.loops as usize {
+                    return Err(ErrorKind::TooDeep);
+                } else {
+                    run.loops.push((next, rounds));
+                    next
+                }
+            }
+            Op::Next { first } => {
+                let (begin, rounds) = run.inner_loop(first as usize).ok_or(ErrorKind::NothingToReturnTo)?;
+                *rounds -= 1;
+                if *rounds > 0 {
+                    *begin
+                } else {
+                    run.loops.pop();
+                    next
+                }
+            }
+            _ => next,
+        })
+    }
+
+    /// Where the program goes on if an interrupt may run here: at its routine, and behind that at `back`.
+    fn interrupt(&mut self, code: &Code, run: &mut Run, back: usize) -> usize {
+        if run.routines.len() >= interrupts::MOST_NESTED {
+            return back;
+        }
+        let (layout, memory) = (&code.layout, &self.memory);
+        let is_on = |device| layout.cell(device).is_some_and(|cell| memory.bit(cell, 0));
+        let Some(routine) = self.interrupts.take(code, is_on) else { return back };
+        run.calls.push(back);
+        run.routines.push(run.calls.len());
+        routine
+    }
+}
