@@ -11,7 +11,7 @@ RUNGWISE := target/release/rungwise
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
-demo: $(RUNGWISE) ## build, check the example project, and show what mistakes look like
+demo: $(RUNGWISE) ## build, check, translate, run and test the example project, and show what mistakes look like
 	@echo
 	@echo "== rungwise check examples/motor"
 	@$(RUNGWISE) check examples/motor
@@ -24,6 +24,11 @@ demo: $(RUNGWISE) ## build, check the example project, and show what mistakes lo
 	@$(RUNGWISE) fmt --stdout --style unicode examples/motor/motor.lad
 	@echo "== rungwise translate examples/motor/motor.lad --to fx --prove"
 	@$(RUNGWISE) translate examples/motor/motor.lad --to fx --prove
+	@echo "== rungwise run examples/motor/motor.lad: X0 is pressed for a moment, then the stop X2"
+	@$(RUNGWISE) run examples/motor/motor.lad --set X2=1 --set X3=1 --set X0=1@100ms --set X0=0@150ms --set X2=0@500ms \
+	  --watch X0,X2,Y0,Y1 --why Y0@300ms
+	@echo "== rungwise test examples/motor"
+	@$(RUNGWISE) test examples/motor
 	@echo "Next: make vscode, then open the folder examples/ in VS Code."
 
 test: lint test-rust test-editors ## everything that has to pass before a change lands

@@ -466,7 +466,8 @@ fn scan_times_and_speeds_that_make_no_sense_are_refused() {
 #[test]
 fn settings_that_cannot_be_read_are_told_with_their_reason() {
     for (setting, said) in [
-        ("D0=1.5", "`1.5` is no value for `D0`"),
+        ("D0=?", "`?` is no value for `D0`"),
+        ("D0=1.5", "`D0` cannot be set to this value"),
         ("X0=1@-5", "`-5` is no time"),
         ("X0=2", "`X0` cannot be set to this value"),
     ] {

@@ -153,7 +153,7 @@ fn to_bcd(inputs: &Inputs<'_>) -> Result<Datum, Fault> {
     }
     let (mut digits, mut shift) = (0_i128, 0);
     while number != 0 {
-        digits |= number % 10 << shift;
+        digits |= (number % 10) << shift;
         (number, shift) = (number / 10, shift + 4);
     }
     match range_of(inputs.result).contains(&digits) {

@@ -1,0 +1,43 @@
+//! The files of a program as the editor has them, and its code.
+
+use super::super::super::projects::Around;
+use super::super::super::workspace::Workspace;
+use crate::check;
+use crate::document::Document;
+use crate::simulate::{Code, compile};
+use crate::text::Message;
+use std::sync::Arc;
+use tower_lsp::ls_types::Uri;
+
+/// The files around the document at `uri` as they are now.
+pub(super) fn around(workspace: &Workspace, uri: &Uri) -> Option<Around> {
+    let snapshot = workspace.snapshot();
+    let open = snapshot.program(uri)?;
+    Some(snapshot.around(open))
+}
+
+/// The files that are one program with the one that is looked at, in the order of execution.
+pub(super) fn files(around: &Around) -> Vec<(Uri, i32, Document)> {
+    let numbers = check::program_around(&around.view());
+    let files = numbers.into_iter().filter_map(|number| around.file(number));
+    files.map(|open| (open.uri.clone(), open.version, open.document.clone())).collect()
+}
+
+/// Code that is fast, and code that says what it sees.
+pub(super) fn compiled(files: &[(Uri, i32, Document)]) -> Result<(Arc<Code>, Arc<Code>), Message> {
+    let documents: Vec<&Document> = files.iter().map(|(_, _, document)| document).collect();
+    let make = |is_watched| {
+        compile(&documents, is_watched).map(Arc::new).map_err(|problems| {
+            let first = problems.first();
+            let place = first.and_then(|problem| {
+                let document = documents.get(problem.place.document as usize)?;
+                Some(document.line_of(problem.place.span.start as usize) + 1)
+            });
+            let reason = first.map(|problem| problem.obstacle.message());
+            Message::new("simulate.refused")
+                .with("line", place.unwrap_or(0))
+                .with_messages("reason", reason.into_iter().collect())
+        })
+    };
+    Ok((make(false)?, make(true)?))
+}

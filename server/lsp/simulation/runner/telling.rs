@@ -1,0 +1,165 @@
+//! What a simulation tells of the program that it runs.
+
+use super::super::super::projects::file_path;
+use super::super::super::to_proto::Place;
+use super::super::super::workspace::Workspace;
+use super::super::monitor::Picture;
+use super::super::{chart, panel, why};
+use super::program::around;
+use super::{About, Order, PICTURE, Reply, Running};
+use crate::document::Document;
+use crate::scenario::Bench;
+use crate::simulate::{Drivers, Inquiry};
+use crate::text::{Language, Message};
+use serde_json::{Value as Json, json};
+use std::sync::Arc;
+use std::time::Instant;
+use tower_lsp::ls_types::Uri;
+
+impl Running {
+    /// What is told besides the state.
+    pub(super) fn tell(
+        &mut self,
+        order: &Order,
+        workspace: &Workspace,
+        uri: &Uri,
+    ) -> Result<Option<Json>, Message> {
+        let around = || around(workspace, uri).ok_or_else(|| Message::new("simulate.not-running"));
+        Ok(match order {
+            Order::Panel => {
+                let rows = panel::rows(&around()?.view(), self.session.machine());
+                Some(json!({ "rows": rows }))
+            }
+            Order::Trace { wanted } => Some(chart::changes(&mut self.recorder, &self.session, wanted)),
+            Order::Export { wanted, format } => {
+                Some(chart::file(&self.session, &around()?.view(), wanted, format)?)
+            }
+            _ => None,
+        })
+    }
+
+    /// What was done since the program began as a scenario test.
+    pub(super) fn record(&self, uri: &Uri, names: &[String], language: Language) -> Reply {
+        if self.recording.is_empty() {
+            return Err(Message::new("scenario.recorded-nothing"));
+        }
+        let documents: Vec<&Document> = self.files.iter().map(|(_, _, document)| document).collect();
+        let bench = Bench::new(&documents).map_err(|_| Message::new("simulate.not-running"))?;
+        let path = file_path(uri);
+        let name =
+            path.as_ref().and_then(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());
+        let name =
+            name.unwrap_or_else(|| uri.path().as_str().rsplit('/').next().unwrap_or_default().to_string());
+        let length = (self.session.machine().scans(), self.scan_ns);
+        let recorded = self.recording.written((&name, &bench), length, names, language);
+        Ok(json!({ "uri": uri, "name": recorded.name, "text": recorded.text }))
+    }
+
+    pub(super) fn mode(&self) -> &'static str {
+        match (self.is_over, self.is_paused) {
+            (true, _) => "stopped",
+            (false, true) => "paused",
+            (false, false) => "running",
+        }
+    }
+
+    /// What the client is to show, if it is time for that.
+    pub(super) fn picture(&mut self, workspace: &Workspace, uri: &Uri) -> Option<Picture> {
+        let is_time = self.is_over || self.shown.elapsed() >= PICTURE;
+        if !self.is_news || !is_time || self.monitor.is_empty() {
+            return None;
+        }
+        (self.is_news, self.shown) = (false, Instant::now());
+        let scans = self.session.machine().scans();
+        if !self.is_outdated && self.sights.is_empty() && self.monitor.has_text() {
+            let watched = Arc::clone(&self.watched);
+            self.sights = self.session.sights(scans, &watched).unwrap_or_default();
+        }
+        let number = self.files.iter().position(|(file, ..)| file == uri)?;
+        let (_, version, document) = &self.files[number];
+        let place = Place::new(document, workspace.snapshot().manner);
+        let elements = match self.is_outdated {
+            true => Vec::new(),
+            false => {
+                let machine = self.session.machine();
+                self.monitor.elements(place, &self.watched, &self.sights, machine)
+            }
+        };
+        Some(Picture {
+            uri: uri.clone(),
+            version: *version,
+            source: "simulator",
+            mode: self.mode(),
+            scan: scans.saturating_sub(1),
+            time_ms: self.session.machine().now_ns() as f64 / 1e6,
+            edition: self.edition,
+            branch: self.branch,
+            elements,
+            values: self.monitor.values(None, self.session.machine()),
+            errors: self.errors_of(place, number as u32),
+        })
+    }
+
+    /// Why a device is on or off after a scan, or now.
+    pub(super) fn why(
+        &mut self,
+        workspace: &Workspace,
+        uri: &Uri,
+        about: About,
+        scan: Option<u64>,
+        is_brief: bool,
+    ) -> Reply {
+        let gone = || Message::new("simulate.not-running");
+        if self.is_outdated {
+            return Err(Message::new("why.outdated"));
+        }
+        let number = self.files.iter().position(|(file, ..)| file == uri).ok_or_else(gone)?;
+        let here = Place::new(&self.files[number].2, workspace.snapshot().manner);
+        let name = match about {
+            About::Name(name) => name,
+            About::At(position) => {
+                let name = why::name_at(here.document, here.offset(position));
+                name.ok_or_else(|| Message::new("why.no-name"))?
+            }
+        };
+        let documents: Vec<&Document> = self.files.iter().map(|(_, _, document)| document).collect();
+        let drivers = self.drivers.get_or_insert_with(|| Drivers::of(&documents));
+        let reason = Inquiry::new(&self.session, &self.watched, &documents, drivers).why(&name, scan);
+        let reason = reason.ok_or_else(|| Message::new("why.unknown").with("name", &name))?;
+        Ok(match is_brief {
+            true => why::brief(&reason, here.language).into(),
+            false => why::told(&reason, &self.files, here),
+        })
+    }
+
+    pub(super) fn errors_of(&self, place: Place<'_>, number: u32) -> Vec<Json> {
+        let own = self.errors.iter().filter_map(|error| {
+            let at = error.place.filter(|at| at.document == number)?;
+            let message = error.kind.message().render(place.language);
+            Some(json!({ "range": place.range(at.span), "message": message }))
+        });
+        own.collect()
+    }
+
+    pub(super) fn state(&self, workspace: &Workspace, uri: &Uri, names: Option<Vec<String>>) -> Json {
+        let machine = self.session.machine();
+        let number = self.files.iter().position(|(file, ..)| file == uri).unwrap_or(0);
+        let errors = self.files.get(number).map(|(_, _, document)| {
+            self.errors_of(Place::new(document, workspace.snapshot().manner), number as u32)
+        });
+        json!({
+            "uri": uri,
+            "mode": self.mode(),
+            "scan": machine.scans().saturating_sub(1),
+            "first_scan": self.session.first_scan().saturating_sub(1),
+            "time_ms": machine.now_ns() as f64 / 1e6,
+            "scan_ms": self.scan_ns as f64 / 1e6,
+            "speed": self.speed,
+            "edition": self.edition,
+            "branch": self.branch,
+            "forced": machine.forced(),
+            "values": self.monitor.values(names, machine),
+            "errors": errors,
+        })
+    }
+}
