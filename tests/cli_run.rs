@@ -104,3 +104,44 @@ fn what_goes_wrong_in_a_scan_is_said_once_at_its_instruction() {
     assert_eq!(code, 1);
     assert_eq!(err.matches("does not end").count(), 1, "{err}");
 }
+
+#[test]
+fn a_program_of_iec_61131_runs_with_its_names_and_types() {
+    let program = "PROGRAM Main\nVAR\n  Start AT %IX0.0 : BOOL;\n  Motor AT %QX0.0 : BOOL;\n  Delay : TON;\n  \
+                   Level : REAL := 1.5;\n  Count : UINT := 65535;\nEND_VAR\nLD Start\nOR Motor\nST Motor\nLD Motor\nST Delay.IN\n\
+                   LD T#20ms\nST Delay.PT\nCAL Delay\nLD Level\nMUL 2.0\nST Level\nEND_PROGRAM\n";
+    let folder = folder(&[("main.il", program)]);
+    let watched = "Motor,Main.Delay.ET,delay.q,Level,Count,%QX0.0";
+    let arguments =
+        ["run", "main.il", "--set", "start=1@10ms", "--set", "Start=FALSE@20ms", "--watch", watched];
+    let (code, out, err) = run(&folder, &[&arguments[..], &["--scans", "4", "--format", "json"]].concat());
+    assert_eq!((code, err.as_str()), (0, ""));
+    let answer: Value = serde_json::from_str(&out).unwrap();
+    let last = answer["scans"].as_array().unwrap().last().unwrap();
+    assert_eq!(
+        last["values"],
+        json!({ "Motor": true, "Main.Delay.ET": 20, "delay.q": true, "Level": 24.0, "Count": 65535, "%QX0.0": true })
+    );
+    let (code, _, err) = run(&folder, &["run", "main.il", "--set", "Count=-1"]);
+    assert!(code == 2 && err.contains("`Count` cannot be set to -1"), "{err}");
+    let (code, _, err) = run(&folder, &["run", "main.il", "--watch", "Speed"]);
+    assert!(code == 2 && err.contains("Speed"), "{err}");
+}
+
+#[test]
+fn a_file_of_a_project_runs_with_the_others() {
+    let files = [
+        ("rungwise.toml", "target = \"fx2n\"\nfiles = [\"main.il\", \"sub.il\"]\n"),
+        ("main.il", "LD X0\nCALL P1\nFEND\n"),
+        ("sub.il", "P1\nLD X1\nOUT Y1\nSRET\nEND\n"),
+    ];
+    let folder = folder(&files);
+    let arguments = ["--set", "X0=1", "--set", "X1=1", "--scans", "2", "--watch", "M8000,Y1"];
+    let picture = "scan  0   1\nms    0  10\nM8000 ▆▆▆▆▆\nY1    ▆▆▆▆▆\n";
+    for asked in ["main.il", "sub.il", "."] {
+        let (code, out, err) = run(&folder, &[&["run", asked], &arguments[..]].concat());
+        assert_eq!((code, err.as_str()), (0, ""), "{asked}");
+        assert_eq!(out.replace(' ', ""), picture.replace(' ', ""), "{asked}");
+        assert!(out.contains("M8000 ▆") && out.contains("Y1    ▆"), "{out}");
+    }
+}

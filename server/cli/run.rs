@@ -1,8 +1,8 @@
 //! `rungwise run`
 
 use super::Outcome;
-use super::across::checked;
-use super::input::{Program, caution, complain, programs, put, say};
+use super::across::{checked, whole_program};
+use super::input::{Program, caution, complain, put, say};
 use super::why;
 use crate::document::Document;
 use crate::scenario::picture;
@@ -93,7 +93,7 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         complain("unknown-format", &reason, &help, language);
         return Outcome::Unusable;
     }
-    let Some(programs) = programs(std::slice::from_ref(&arguments.file), None, language) else {
+    let Some(programs) = whole_program(&arguments.file, language) else {
         return Outcome::Unusable;
     };
     let documents: Vec<&Document> = programs.iter().map(|program| &program.document).collect();

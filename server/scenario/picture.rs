@@ -110,8 +110,10 @@ impl<'t> Lines<'t> {
         let names = &trace.names[..];
         let is_marked: Vec<bool> =
             names.iter().map(|name| marks.iter().any(|mark| mark.name == *name)).collect();
-        let all = heads.iter().chain(names).chain(is_marked.contains(&true).then_some(&expected));
-        let margin = all.map(|name| text_width(name)).max().unwrap_or(0);
+        let told = heads.iter().chain(is_marked.contains(&true).then_some(&expected));
+        // A blank parts a name from its line, which may begin at once.
+        let widths = names.iter().map(|name| text_width(name) + 1);
+        let margin = widths.chain(told.map(|word| text_width(word))).max().unwrap_or(0);
         Lines { names, heads, expected, margin, is_marked }
     }
 

@@ -1,9 +1,8 @@
 //! Finds files with scenario tests, and the programs that they are about.
 
-use super::super::across::linked;
+use super::super::across::{linked, whole_program};
 use super::super::input::{Program, complain, folder_of, programs};
-use crate::check;
-use crate::document::{Document, Member, ProjectView};
+use crate::document::Document;
 use crate::project::{
     MANIFEST_NAME, Project, encoding, is_program_file, is_suite_file, suite_files, suites_in,
 };
@@ -178,7 +177,7 @@ impl Subjects {
         }
         let programs = match path.is_dir() {
             true => programs(std::slice::from_ref(&path), None, language),
-            false => around(&path, language),
+            false => whole_program(&path, language),
         };
         let programs = programs.filter(|programs| !programs.is_empty());
         let Some(programs) = programs else {
@@ -194,30 +193,4 @@ impl Subjects {
         self.all.push(Subject::of(programs.into_iter().map(linked).collect(), self.has_coverage));
         Ok(Some(self.all.len() - 1))
     }
-}
-
-/// The files that are one program with the one at `path`.
-fn around(path: &Path, language: Language) -> Option<Vec<Program>> {
-    let own = programs(&[path.to_path_buf()], None, language)?;
-    let Some(root) = folder_of(path) else { return Some(own) };
-    let project = Project::read(&root);
-    let files = project.files_in_reach();
-    let wanted = path.canonicalize().ok();
-    let here = files.iter().position(|file| wanted.is_some() && file.canonicalize().ok() == wanted);
-    let Some(here) = here.filter(|_| files.len() > 1) else { return Some(own) };
-    let base = path.parent().unwrap_or(Path::new(""));
-    let relative = |file: &PathBuf| match (file.strip_prefix(&root), folder_of(path)) {
-        // As the user would write it, where the project begins in the folder of the program.
-        (Ok(below), Some(_)) if base.canonicalize().is_ok_and(|base| base == root) => base.join(below),
-        _ => file.clone(),
-    };
-    let all = programs(&files.iter().map(relative).collect::<Vec<_>>(), None, language)?;
-    let members = all.iter().map(|program| Member { name: "", document: &program.document }).collect();
-    let numbers = ProjectView::new(members, here, project.manifest.files.is_some())
-        .map(|view| check::program_around(&view))
-        .unwrap_or_default();
-    let mut all: Vec<Option<Program>> = all.into_iter().map(Some).collect();
-    let chosen: Vec<Program> =
-        numbers.into_iter().filter_map(|number| all.get_mut(number).and_then(Option::take)).collect();
-    Some(if chosen.is_empty() { own } else { chosen })
 }
