@@ -111,7 +111,7 @@ fn a_program_of_iec_61131_runs_with_its_names_and_types() {
                    Level : REAL := 1.5;\n  Count : UINT := 65535;\nEND_VAR\nLD Start\nOR Motor\nST Motor\nLD Motor\nST Delay.IN\n\
                    LD T#20ms\nST Delay.PT\nCAL Delay\nLD Level\nMUL 2.0\nST Level\nEND_PROGRAM\n";
     let folder = folder(&[("main.il", program)]);
-    let watched = "Motor,Main.Delay.ET,delay.q,Level,Count,%QX0.0";
+    let watched = "Motor,Main.Delay.ET,delay.q,Level,Count,%IX0.0";
     let arguments =
         ["run", "main.il", "--set", "start=1@10ms", "--set", "Start=FALSE@20ms", "--watch", watched];
     let (code, out, err) = run(&folder, &[&arguments[..], &["--scans", "4", "--format", "json"]].concat());
@@ -120,7 +120,7 @@ fn a_program_of_iec_61131_runs_with_its_names_and_types() {
     let last = answer["scans"].as_array().unwrap().last().unwrap();
     assert_eq!(
         last["values"],
-        json!({ "Motor": true, "Main.Delay.ET": 20, "delay.q": true, "Level": 24.0, "Count": 65535, "%QX0.0": true })
+        json!({ "Motor": true, "Main.Delay.ET": 20, "delay.q": true, "Level": 24.0, "Count": 65535, "%IX0.0": false })
     );
     let (code, _, err) = run(&folder, &["run", "main.il", "--set", "Count=-1"]);
     assert!(code == 2 && err.contains("`Count` cannot be set to -1"), "{err}");
@@ -137,7 +137,7 @@ fn a_file_of_a_project_runs_with_the_others() {
     ];
     let folder = folder(&files);
     let arguments = ["--set", "X0=1", "--set", "X1=1", "--scans", "2", "--watch", "M8000,Y1"];
-    let picture = "scan  0   1\nms    0  10\nM8000 ▆▆▆▆▆\nY1    ▆▆▆▆▆\n";
+    let picture = "scan  0   1\nms    0  10\nM8000 ▆▆▆▆▆▆▆\nY1    ▆▆▆▆▆▆▆\n";
     for asked in ["main.il", "sub.il", "."] {
         let (code, out, err) = run(&folder, &[&["run", asked], &arguments[..]].concat());
         assert_eq!((code, err.as_str()), (0, ""), "{asked}");

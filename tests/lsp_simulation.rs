@@ -150,6 +150,24 @@ fn what_is_shown_belongs_to_the_scan_and_the_lines_that_are_shown() {
 }
 
 #[test]
+fn orders_are_obeyed_in_the_order_in_which_they_come() {
+    let mut plc = Simulated::open(URI, "plc-il", "LD X0\nINCP D0\nEND\n");
+    plc.tell("start", json!({ "paused": true }));
+    let rounds = 200;
+    let mut last = 0;
+    for _ in 0..rounds {
+        for (verb, value) in [("set", 1), ("step", 1), ("set", 0), ("step", 1)] {
+            let argument = json!({ "uri": URI, "name": "X0", "value": value });
+            let params = json!({ "command": format!("rungwise.simulate.{verb}"), "arguments": [argument] });
+            last = plc.client.ask("workspace/executeCommand", params);
+        }
+    }
+    let answer = plc.client.answer(last);
+    assert_eq!(answer["result"]["scan"], json!(2 * rounds), "{answer}");
+    assert_eq!(plc.values(&["D0"]), [json!(rounds)]);
+}
+
+#[test]
 fn an_edit_is_taken_over_and_devices_keep_their_values() {
     let mut plc = Simulated::open(URI, "plc-il", LIST);
     plc.tell("start", json!({ "paused": true }));

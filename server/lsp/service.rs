@@ -3,13 +3,15 @@
 //! The protocol library polls all handlers on one task and starts them in any order once one awaits. Here
 //! notifications that change documents are applied while the message is taken in, before the next is read; a request
 //! gets the snapshot of that moment and runs beside all others, so neither stale answers nor a slow neighbour occur.
+//! What a simulation is told is handed over before the next message is read, too, and answered when it is done.
 
+use super::simulation;
 use super::workspace::{SNAPSHOT, Workspace};
 use super::written::Written;
 use std::future::Future;
 use std::pin::Pin;
 use std::sync::Arc;
-use std::task::{Context, Poll};
+use std::task::{Context, Poll, Waker};
 use tower::Service;
 use tower_lsp::ExitedError;
 use tower_lsp::jsonrpc::{Error, Request, Response};
@@ -54,13 +56,18 @@ where
             return Box::pin(std::future::ready(Ok(None)));
         }
         let is_lifecycle = matches!(request.method(), "initialize" | "initialized" | "shutdown" | "exit");
+        let is_order = is_order(&request);
         let id = request.id().cloned();
         let answer = self.inner.call(request);
         if is_lifecycle {
             return Box::pin(answer);
         }
         let snapshot = self.workspace.snapshot();
-        let task = tokio::spawn(SNAPSHOT.scope(snapshot, self.written.clone().scope(answer)));
+        let mut answer = Box::pin(SNAPSHOT.scope(snapshot, self.written.clone().scope(answer)));
+        if is_order && let Poll::Ready(done) = answer.as_mut().poll(&mut Context::from_waker(Waker::noop())) {
+            return Box::pin(std::future::ready(done));
+        }
+        let task = tokio::spawn(answer);
         Box::pin(async move {
             task.await.unwrap_or_else(|failure| {
                 tracing::error!("a request failed: {failure}");
@@ -68,6 +75,13 @@ where
             })
         })
     }
+}
+
+/// Whether a request tells a simulation something, which its handler does before it first waits.
+fn is_order(request: &Request) -> bool {
+    let command = || request.params()?.get("command")?.as_str();
+    request.method() == "workspace/executeCommand"
+        && command().is_some_and(|command| command.starts_with(simulation::PREFIX))
 }
 
 #[cfg(test)]

@@ -195,7 +195,7 @@ M.verbs = {
   end,
   --- What was done so far as a scenario test, in a new buffer.
   record = function(buffer)
-    tell(buffer, 'record', {}, function(recorded)
+    M.tell(buffer, 'record', {}, function(recorded)
       local folder = vim.fs.dirname(vim.api.nvim_buf_get_name(buffer))
       local stem, name, number = recorded.name:gsub('%.test%.toml$', ''), recorded.name, 1
       while vim.uv.fs_stat(vim.fs.joinpath(folder, name)) or vim.fn.bufexists(vim.fs.joinpath(folder, name)) == 1 do
@@ -214,7 +214,7 @@ M.verbs = {
     if server then
       local encoding = server.offset_encoding
       local here = vim.lsp.util.make_position_params(0, encoding).position
-      tell(buffer, 'why', words[1] and { name = words[1] } or { position = here }, function(reason)
+      M.tell(buffer, 'why', words[1] and { name = words[1] } or { position = here }, function(reason)
         require('rungwise.why').show(reason, encoding)
       end)
     end

@@ -18,9 +18,18 @@ export class Workbench {
     await this.page.waitForSelector('.explorer-folders-view .monaco-list-row', { timeout: LONG_MS });
   }
 
-  /** Opens a file by a double click in the explorer. */
+  /** Opens a file by a double click in the explorer, or by its name if that would have to be scrolled. */
   async openFile(name) {
-    await this.page.locator('.explorer-folders-view .monaco-list-row', { hasText: name }).first().dblclick();
+    const row = this.page.locator('.explorer-folders-view .monaco-list-row', { hasText: name }).first();
+    if (await row.waitFor({ timeout: 1_500 }).then(() => true, () => false)) {
+      await row.dblclick();
+    } else {
+      await this.page.keyboard.press('Control+p');
+      await this.page.waitForSelector('.quick-input-widget:visible', { timeout: SHORT_MS });
+      await this.page.keyboard.type(name);
+      await this.page.locator('.quick-input-list .monaco-list-row', { hasText: name }).first().waitFor({ timeout: SHORT_MS });
+      await this.page.keyboard.press('Enter');
+    }
     await this.page.waitForSelector(`.tab.active[data-resource-name="${name}"]`, { timeout: SHORT_MS });
     await this.page.waitForSelector('.editor-instance .view-line', { timeout: SHORT_MS });
   }
