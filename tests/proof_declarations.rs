@@ -2,9 +2,9 @@
 //! it in another way are.
 
 use crate::binary::{folder, run};
+use crate::proof_values::word;
 use rungwise::document::{Document, Notation};
 use rungwise::target::{Model, Target};
-use rungwise::translate::{Proof, prove};
 
 fn iec(text: &str) -> Document {
     Document::new(text, Notation::IecIl, Target::of(Model::Iec))
@@ -14,17 +14,6 @@ fn iec(text: &str) -> Document {
 fn program(types: &str, variables: &str, body: &str) -> Document {
     let body = body.replace(';', "\n");
     iec(&format!("{types}\nPROGRAM p\nVAR\n{variables} y : BOOL;\nEND_VAR\n{body}\nEND_PROGRAM\n"))
-}
-
-fn word(left: &Document, right: &Document) -> &'static str {
-    let verdict = |left, right| match prove(left, right) {
-        Proof::Equal { .. } => "equal",
-        Proof::Different(_) => "different",
-        Proof::Undecided { .. } => "undecided",
-    };
-    let found = verdict(left, right);
-    assert_eq!(found, verdict(right, left), "{}\n{}", left.text(), right.text());
-    found
 }
 
 #[test]

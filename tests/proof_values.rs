@@ -16,7 +16,8 @@ fn fx(body: &str) -> Document {
     Document::new(&text, Notation::FxIl, Target::of(Model::Fx3u))
 }
 
-fn word(left: &Document, right: &Document) -> &'static str {
+/// What is said of two programs, whichever is named first.
+pub fn word(left: &Document, right: &Document) -> &'static str {
     let verdict = |left, right| match prove(left, right) {
         Proof::Equal { .. } => "equal",
         Proof::Different(_) => "different",

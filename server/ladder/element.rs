@@ -248,6 +248,18 @@ pub enum CompareOperator {
 }
 
 impl CompareOperator {
+    /// The operator and function of IEC 61131-3 that compares so.
+    pub const fn iec_name(self) -> &'static str {
+        match self {
+            CompareOperator::Equal { .. } => "EQ",
+            CompareOperator::NotEqual { .. } => "NE",
+            CompareOperator::Greater { .. } => "GT",
+            CompareOperator::Less { .. } => "LT",
+            CompareOperator::GreaterOrEqual { .. } => "GE",
+            CompareOperator::LessOrEqual { .. } => "LE",
+        }
+    }
+
     /// All of them, each in both widths.
     pub const ALL: [CompareOperator; 12] = {
         use CompareOperator::*;

@@ -10,7 +10,7 @@
 mod helpers;
 pub use helpers::{Helper, Helpers};
 
-use crate::ladder::{CoilKind, CompareOperator, ContactKind};
+use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{
     Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test,
 };
@@ -243,7 +243,7 @@ impl Writer<'_> {
                 Place::Load => format!("LD {left}"),
                 _ => format!("{}( {left}", operator(place, false)),
             };
-            self.lines.extend([load, format!("{} {right}", comparison(compared))]);
+            self.lines.extend([load, format!("{} {right}", compared.iec_name())]);
             self.lines.extend((place != Place::Load).then(|| ")".into()));
             return Ok(());
         }
@@ -427,17 +427,6 @@ fn operator(place: Place, negated: bool) -> &'static str {
         (Place::And, true) => "ANDN",
         (Place::Or, false) => "OR",
         (Place::Or, true) => "ORN",
-    }
-}
-
-fn comparison(operator: CompareOperator) -> &'static str {
-    match operator {
-        CompareOperator::Equal { .. } => "EQ",
-        CompareOperator::NotEqual { .. } => "NE",
-        CompareOperator::Greater { .. } => "GT",
-        CompareOperator::Less { .. } => "LT",
-        CompareOperator::GreaterOrEqual { .. } => "GE",
-        CompareOperator::LessOrEqual { .. } => "LE",
     }
 }
 

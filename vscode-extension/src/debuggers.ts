@@ -1,4 +1,4 @@
-/** Debugging a program with VS Code's own debugger: F5 without a launch file, forcing, and why a device is on or off. */
+/** Debugging a program with VS Code's own debugger: F5 without a launch file, a lens, forcing, why a device is on or off. */
 
 import * as vscode from 'vscode';
 import { currentLanguage } from './configuration';
@@ -18,7 +18,11 @@ interface ReasonItem extends vscode.QuickPickItem {
 }
 
 export class Debuggers
-  implements vscode.DebugConfigurationProvider, vscode.DebugAdapterDescriptorFactory, vscode.Disposable
+  implements
+    vscode.DebugConfigurationProvider,
+    vscode.DebugAdapterDescriptorFactory,
+    vscode.CodeLensProvider,
+    vscode.Disposable
 {
   private readonly subscriptions: vscode.Disposable[];
 
@@ -30,6 +34,8 @@ export class Debuggers
       registerDebugConfigurationProvider(DEBUG_TYPE, this),
       registerDebugConfigurationProvider(DEBUG_TYPE, this, dynamic),
       registerDebugAdapterDescriptorFactory(DEBUG_TYPE, this),
+      vscode.languages.registerCodeLensProvider([...DEBUG_LANGUAGES], this),
+      registerCommand('rungwise.debug.start', (program?: vscode.Uri) => this.start(program)),
       registerCommand('rungwise.debug.force', (context?: VariableContext) => this.force(context)),
       registerCommand('rungwise.debug.release', (context?: VariableContext) => this.release(context)),
       registerCommand('rungwise.simulation.why', () => this.why()),
@@ -63,6 +69,24 @@ export class Debuggers
 
   createDebugAdapterDescriptor(): vscode.DebugAdapterDescriptor {
     return new vscode.DebugAdapterExecutable(this.server.program() ?? 'rungwise', ['dap', '--lang', currentLanguage()]);
+  }
+
+  /** The way into the debugger stands above a program, beside what the server has there. */
+  provideCodeLenses({ uri }: vscode.TextDocument): vscode.CodeLens[] {
+    if (uri.scheme !== 'file' || !vscode.workspace.getConfiguration('rungwise', uri).get('codeLens.run', true)) {
+      return [];
+    }
+    const command = { title: vscode.l10n.t('Debug'), command: 'rungwise.debug.start', arguments: [uri] };
+    return [new vscode.CodeLens(new vscode.Range(0, 0, 0, 0), command)];
+  }
+
+  /** Starts the debugger with a program, that of the editor if none is named. */
+  private async start(program = vscode.window.activeTextEditor?.document.uri): Promise<void> {
+    if (program !== undefined) {
+      const configuration = configurationOf(program.fsPath, vscode.l10n.t('Debug the program in the editor'));
+      const folder = vscode.workspace.getWorkspaceFolder(program);
+      await vscode.debug.startDebugging(folder, configuration as vscode.DebugConfiguration);
+    }
   }
 
   /** Holds a variable of the debugger at a value. */

@@ -6,7 +6,7 @@ use super::current::Given;
 use super::operand::{cell_spot, said};
 use super::place::Place as Variable;
 use crate::document::{ChunkRef, Scopes};
-use crate::ladder::{CoilKind, CompareOperator, ContactKind};
+use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{self, Action, Call, Computation, Contact, Declared, Deed, Term, Test};
 use crate::simulate::builder::{Builder, Position};
 use crate::simulate::code::{Op, Place};
@@ -93,7 +93,7 @@ impl Dialect for Drawing<'_, '_> {
                 }
             }
             (Test::Compare(operator), [left, right]) => {
-                let function = Function::named(comparison(operator)).ok_or(Obstacle::Unreadable)?;
+                let function = Function::named(operator.iec_name()).ok_or(Obstacle::Unreadable)?;
                 let given = vec![self.compiler.given(&left.text)?, self.compiler.given(&right.text)?];
                 let to = self.compiler.builder.scratch();
                 self.compiler.applied(function, given, None, |_, _| cell_spot(to))?;
@@ -310,17 +310,5 @@ impl Drawing<'_, '_> {
         let here = self.compiler.builder.here();
         self.compiler.send(skip, here);
         Ok(())
-    }
-}
-
-/// The function that a comparison is.
-fn comparison(operator: CompareOperator) -> &'static str {
-    match operator {
-        CompareOperator::Equal { .. } => "EQ",
-        CompareOperator::NotEqual { .. } => "NE",
-        CompareOperator::Greater { .. } => "GT",
-        CompareOperator::Less { .. } => "LT",
-        CompareOperator::GreaterOrEqual { .. } => "GE",
-        CompareOperator::LessOrEqual { .. } => "LE",
     }
 }
