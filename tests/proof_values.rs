@@ -192,3 +192,21 @@ fn a_jump_makes_no_difference_where_the_scan_ends_alike() {
         assert_eq!(word(&fx(left), &fx(right)), expected, "{left} | {right}");
     }
 }
+
+#[test]
+fn a_difference_is_shown_only_where_running_with_plain_values_is_what_a_plc_does() {
+    let variables = "a : BOOL; m : BOOL; i : INT; bar : ARRAY[0..3] OF BOOL; x1 AT %QX0.0 : BOOL; w1 AT %QW0 : WORD; \
+                     s : STRING[3]; c : (re, gr, bl);";
+    for (left, right) in [
+        ("LD TRUE;ST m;LD a;ST bar[i];LD m;ST y", "LD TRUE;ST m;LD a;ST bar[i];LD TRUE;ST y"),
+        (
+            "LD TRUE;ST bar[0];LD FALSE;ST bar[1];LD bar[0];ST y",
+            "LD TRUE;ST bar[0];LD FALSE;ST bar[1];LD TRUE;ST y",
+        ),
+        ("LD 16#1;ST w1;LD x1;ST y", "LD 16#1;ST w1;LD TRUE;ST y"),
+        ("LD c;GT re;ST y", "LD c;GE gr;ST y"),
+        ("LD s;EQ 'abcd';ST y", "LD FALSE;ST y"),
+    ] {
+        assert_ne!(word(&iec(variables, left), &iec(variables, right)), "different", "{left} / {right}");
+    }
+}

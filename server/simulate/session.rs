@@ -258,6 +258,21 @@ impl Session {
         true
     }
 
+    /// Whether a variable was set or forced before a scan.
+    pub fn is_touched(&self, scan: u64, variable: Variable) -> bool {
+        let layout = &self.machine.code().layout;
+        self.touches_before(scan).any(|touch| match *touch {
+            Touch::Write(own, _) | Touch::Hold(own, _) | Touch::LetGo(own) => own == variable,
+            Touch::Set(device, _) | Touch::Force(device, _) => {
+                layout.cell(device).map(Variable::Relay) == Some(variable)
+            }
+            Touch::SetWord(device, _) | Touch::ForceWord(device, _) => {
+                layout.slot(device).map(Variable::Word) == Some(variable)
+            }
+            _ => false,
+        })
+    }
+
     fn touches_before(&self, scan: u64) -> impl Iterator<Item = &Touch> {
         let first = self.touches.partition_point(|(before, _)| *before < scan);
         let touches = self.touches.get(first..).unwrap_or_default().iter();

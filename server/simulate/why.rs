@@ -307,6 +307,13 @@ impl<'a> Inquiry<'a> {
         self.reason(told(how), None, moment.scan, Vec::new())
     }
 
+    /// Who gave something its value before or in a scan, where no instruction is known for it: a person, or a part of
+    /// the program that is not followed.
+    fn hand(&self, subject: &Subject, scan: u64) -> Message {
+        let is_touched = self.session.is_touched(scan, subject.variable);
+        Message::new(if is_touched { "why.by-hand" } else { "why.by-program" })
+    }
+
     /// Why something has a value that nothing wrote in this scan, or that it kept by itself.
     fn kept(
         &self,
@@ -321,7 +328,7 @@ impl<'a> Inquiry<'a> {
         let last = (moment.scan - 1).max(self.session.first_scan());
         let is_new = self.session.at(last).is_none_or(|machine| of(&machine) != *value);
         if is_new {
-            return self.reason(told(Message::new("why.by-hand")), None, moment.scan, Vec::new());
+            return self.reason(told(self.hand(subject, moment.scan)), None, moment.scan, Vec::new());
         }
         let idle = self.drivers.named(&subject.name);
         match self.session.last_change(last, of) {
@@ -331,7 +338,7 @@ impl<'a> Inquiry<'a> {
                 let Some(((driver, number), at)) = before else {
                     let state = self.state(subject, value);
                     let since = self.since(state, scan);
-                    let how = Message::new("why.by-hand");
+                    let how = self.hand(subject, scan);
                     let message = Message::new("why.told")
                         .with_messages("what", vec![since])
                         .with_messages("how", vec![how]);

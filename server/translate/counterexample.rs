@@ -2,12 +2,12 @@
 //! programs with them.
 
 use crate::logic::{
-    Atom, Bounds, Formulas, Moment, Path, Place, Real, Scan, State, Step, WIDE, evaluate, real_at,
+    Atom, Bounds, Formulas, Moment, Path, Place, Real, Scan, State, Step, Term, WIDE, evaluate, real_at,
 };
 use crate::target::iec::ElementaryType;
 use crate::target::{Device, DirectAddress, Model, Operand, Width};
 use crate::text::Span;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -139,13 +139,41 @@ fn confirmed(state: &State, paths: [&[&Path]; 2], place: &Place) -> Option<[bool
     (bits.len() <= GUESSES_MAX && (0..1 << bits.len()).all(differs)).then_some(found)
 }
 
-/// Whether each number is one that a variable of its type can have; `type_of` tells that of a key.
+/// Whether each number is one that a variable of its type can have; `type_of` tells that of a key. Texts, dates and
+/// values of enumerated types have none.
 pub(super) fn is_possible(state: &State, type_of: &dyn Fn(&str) -> Option<ElementaryType>) -> bool {
+    use ElementaryType::{Ltime, Time};
     let left = state.left_behind.values().flat_map(|left| &left.words);
     state.words.iter().chain(left).all(|(key, value)| {
-        let range = type_of(key.trim_start_matches(WIDE)).and_then(ElementaryType::integers);
-        range.is_none_or(|range| range.contains(&i128::from(*value)))
+        let key = key.trim_start_matches(WIDE);
+        match type_of(key) {
+            Some(Time | Ltime) => true,
+            Some(kind) => kind.integers().is_some_and(|range| range.contains(&i128::from(*value))),
+            // Names of variables are in small letters, those of devices are not.
+            None => {
+                let is_name = key.starts_with(|letter: char| letter.is_lowercase() || letter == '_');
+                !is_name || !matches!(Operand::read(key, Model::Iec), Operand::Variable)
+            }
+        }
     })
+}
+
+/// Whether running these with plain values is what a PLC does: nothing is stored into elements of arrays, of which
+/// nobody knows which are the same, and no two variables of different sizes share memory.
+pub(super) fn is_plain(paths: &[&Path]) -> bool {
+    let mut stores = paths.iter().flat_map(|path| path.actions()).flat_map(|action| &action.terms);
+    if stores.any(|term| term.text.contains('[')) {
+        return false;
+    }
+    let terms = paths.iter().flat_map(|path| path.terms());
+    let addresses: FxHashSet<DirectAddress> = terms.filter_map(Term::address).collect();
+    let (bits, words): (Vec<_>, Vec<_>) = addresses.into_iter().partition(|at| at.width == Width::Bit);
+    let is_shared = |word: &DirectAddress| {
+        let has_other =
+            words.iter().any(|other| other.location == word.location && other.width != word.width);
+        has_other || bits.iter().any(|bit| may_hold(*word, *bit))
+    };
+    !words.iter().any(is_shared)
 }
 
 /// All values of so many guessed bits are tried.

@@ -500,8 +500,9 @@ impl Prover<'_> {
         if matches!(place, Place::Event(_)) && sides.iter().any(|side| side.iter().any(jumps)) {
             return None;
         }
-        let (state, values) = counterexample::confirmed_near(state, paths, &place)?;
         let units = [0, 1].map(|side| self.unit_around(side, sides[side]));
+        self.is_plain(&units).then_some(())?;
+        let (state, values) = counterexample::confirmed_near(state, paths, &place)?;
         reached::is_reached(&units, &state, &place).then_some(())?;
         let at = sides.map(|side| rung_of(side, &what));
         let (inputs, before) = counterexample::inputs(&state, paths, &type_of);
@@ -520,6 +521,7 @@ impl Prover<'_> {
         let type_of = |key: &str| types.get(key).copied();
         let state = state.filter(|state| counterexample::is_possible(state, &type_of))?;
         let units = [0, 1].map(|side| self.unit_around(side, sides[side]));
+        self.is_plain(&units).then_some(())?;
         let (bit, state, values) = reached::found(&units, &state)?;
         let key = bit.key();
         let is_again = (0..2).any(|side| {
@@ -534,6 +536,14 @@ impl Prover<'_> {
         let at = sides.map(|side| rung_of(side, &what));
         let (inputs, before) = counterexample::inputs(&state, paths, &type_of);
         Some(Proof::Different(Box::new(Counterexample { inputs, before, what, sides: values, at })))
+    }
+
+    /// Whether running what is executed in one scan with plain values is what a PLC does.
+    fn is_plain(&self, units: &[reached::Unit<'_>; 2]) -> bool {
+        (0..2).all(|side| {
+            let own = self.all[side].get(units[side].numbers.clone()).unwrap_or_default();
+            counterexample::is_plain(&own.iter().filter_map(Source::path).collect::<Vec<_>>())
+        })
     }
 
     /// The rungs around those of a side that are executed in one scan.
