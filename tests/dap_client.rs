@@ -1,8 +1,8 @@
 //! A scripted client of the debug adapter: the real binary over standard input and output.
 
-use crate::lsp_client::PATIENCE;
+use crate::lsp_client::{PATIENCE, read_body};
 use serde_json::{Value, json};
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
@@ -40,7 +40,8 @@ impl Debugger {
         let (sender, messages) = channel();
         std::thread::spawn(move || {
             let mut output = BufReader::new(output);
-            while let Some(message) = read(&mut output) {
+            while let Some(body) = read_body(&mut output) {
+                let Ok(message) = serde_json::from_slice(&body) else { return };
                 if sender.send(message).is_err() {
                     return;
                 }
@@ -191,21 +192,4 @@ impl Drop for Debugger {
         let _ = self.adapter.kill();
         let _ = self.adapter.wait();
     }
-}
-
-fn read(output: &mut impl BufRead) -> Option<Value> {
-    let mut length = 0;
-    loop {
-        let mut line = String::new();
-        if output.read_line(&mut line).ok()? == 0 {
-            return None;
-        }
-        match line.trim().split_once(": ") {
-            Some((_, value)) => length = value.parse().ok()?,
-            None => break,
-        }
-    }
-    let mut body = vec![0; length];
-    output.read_exact(&mut body).ok()?;
-    serde_json::from_slice(&body).ok()
 }

@@ -255,7 +255,8 @@ pub fn codes(diagnostics: &[Value]) -> Vec<String> {
     diagnostics.iter().map(|diagnostic| diagnostic["code"].as_str().unwrap_or("?").to_string()).collect()
 }
 
-fn read_body(output: &mut impl BufRead) -> Option<Vec<u8>> {
+/// The next message of a program that writes as language servers and debug adapters do; nothing at its end.
+pub fn read_body(output: &mut impl BufRead) -> Option<Vec<u8>> {
     let mut length = 0;
     loop {
         let mut line = String::new();

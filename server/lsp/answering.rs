@@ -87,6 +87,11 @@ pub(super) async fn beside<T: Send + 'static>(
     })
 }
 
+/// What is wrong with the argument of a command.
+pub(super) fn wrong_argument(command: &str, reason: impl ToString) -> Message {
+    Message::new("translating.argument").with("command", command).with("reason", reason.to_string())
+}
+
 /// A refusal that the editor shows to the user.
 pub(super) fn refused(message: Message) -> Error {
     let language = SNAPSHOT.with(|snapshot| snapshot.manner.language);

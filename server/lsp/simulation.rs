@@ -97,7 +97,7 @@ mod runner;
 
 mod why;
 
-use super::answering::{refused, snapshot};
+use super::answering::{refused, snapshot, wrong_argument};
 use super::workspace::Workspace;
 use crate::text::Message;
 use chart::Wanted;
@@ -147,10 +147,7 @@ impl Simulations {
         argument: Option<&Value>,
         workspace: &Arc<Workspace>,
     ) -> Result<Option<LSPAny>> {
-        let wrong = |reason: String| {
-            let message = Message::new("translating.argument").with("command", command);
-            refused(message.with("reason", reason))
-        };
+        let wrong = |reason: String| refused(wrong_argument(command, reason));
         let argument = argument.ok_or_else(|| wrong("arguments[0]".to_string()))?;
         let asked = Asked::deserialize(argument).map_err(|reason| wrong(reason.to_string()))?;
         let uri = asked.uri.clone();
@@ -194,10 +191,7 @@ impl Simulations {
 
 fn order(command: &str, asked: Asked) -> std::result::Result<Order, Message> {
     let verb = command.strip_prefix(PREFIX).unwrap_or_default();
-    let missing = |member: &'static str| {
-        let message = Message::new("translating.argument").with("command", command);
-        message.with("reason", member)
-    };
+    let missing = |member: &str| wrong_argument(command, member);
     let name = asked.name.clone().ok_or_else(|| missing("name"));
     let value = asked.value.clone().ok_or_else(|| missing("value"));
     let wanted = Wanted {

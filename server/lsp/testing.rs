@@ -26,7 +26,7 @@ mod subject;
 
 mod told;
 
-use super::answering::{beside, refused, snapshot};
+use super::answering::{beside, refused, snapshot, wrong_argument};
 use super::manifests;
 use super::projects::{Around, file_path};
 use super::settings::Settings;
@@ -71,10 +71,7 @@ pub(super) async fn answer(
     argument: Option<&Value>,
     workspace: &Arc<Workspace>,
 ) -> Result<Option<LSPAny>> {
-    let wrong = |reason: String| {
-        let message = Message::new("translating.argument").with("command", command);
-        refused(message.with("reason", reason))
-    };
+    let wrong = |reason: String| refused(wrong_argument(command, reason));
     let none = json!({});
     let asked = Asked::deserialize(argument.unwrap_or(&none)).map_err(|reason| wrong(reason.to_string()))?;
     let snapshot = snapshot();

@@ -8,7 +8,8 @@ use crate::simulate::{
     Code, ErrorKind, Machine, Place, Problem, Session, Touch, Trace, Value, Variable, compile, milliseconds,
 };
 use crate::target::iec::nearest;
-use crate::text::{Message, Span};
+use crate::text::{Language, Message, Span};
+use serde_json::{Value as Json, json};
 use std::sync::Arc;
 
 /// A program that scenarios are run with.
@@ -68,6 +69,23 @@ pub struct Failure {
     pub expected: Option<String>,
     /// What it was.
     pub actual: Option<String>,
+}
+
+impl Failure {
+    /// As programs that read results want it; `range` is where it is expected, `program` what of the program is to
+    /// blame, as who asks counts places.
+    pub fn json(&self, range: Json, program: Option<Json>, language: Language) -> Json {
+        json!({
+            "message": self.message.render(language),
+            "range": range,
+            "scan": self.scan,
+            "time_ms": self.time_ns as f64 / 1e6,
+            "name": self.name,
+            "expected": self.expected,
+            "actual": self.actual,
+            "program": program,
+        })
+    }
 }
 
 /// A scenario whose names are known.

@@ -108,16 +108,7 @@ fn file(suite: &SuiteFile, subject: Option<&Subject>, results: &[Ran], language:
                     let path = super::subject::shown(&program.path);
                     Some(json!({ "path": path, "range": range(&program.document, place.span) }))
                 });
-                json!({
-                    "message": failure.message.render(language),
-                    "range": range_in(suite, failure.span),
-                    "scan": failure.scan,
-                    "time_ms": failure.time_ns as f64 / 1e6,
-                    "name": failure.name,
-                    "expected": failure.expected,
-                    "actual": failure.actual,
-                    "program": blamed,
-                })
+                failure.json(range_in(suite, failure.span), blamed, language)
             });
             told["failures"] = failures.collect();
             let marks = report.marks();

@@ -189,16 +189,7 @@ impl Run {
                 let (uri, document) = self.files.get(at.document as usize)?;
                 Some(json!({ "uri": uri, "range": Place::new(document, place.manner()).range(at.span) }))
             });
-            json!({
-                "message": failure.message.render(place.language),
-                "range": place.range(failure.span),
-                "scan": failure.scan,
-                "time_ms": failure.time_ns as f64 / 1e6,
-                "name": failure.name,
-                "expected": failure.expected,
-                "actual": failure.actual,
-                "program": program,
-            })
+            failure.json(json!(place.range(failure.span)), program, place.language)
         });
         told["failures"] = failures.collect();
         let marks = report.marks();
