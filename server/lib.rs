@@ -27,6 +27,8 @@ pub mod scenario;
 
 pub mod project;
 
+pub mod link;
+
 pub mod ide;
 
 pub mod lsp;

@@ -15,6 +15,7 @@ const FLOORS: &[(&str, u8)] = &[
     ("simulate", 6),
     ("scenario", 7),
     ("project", 7),
+    ("link", 7),
     ("ide", 8),
     ("lsp", 9),
     ("dap", 9),
@@ -24,10 +25,10 @@ const FLOORS: &[(&str, u8)] = &[
 /// Words that only some rooms may know.
 const RESERVED: &[(&str, &[&str])] = &[
     ("tower_lsp::", &["lsp"]),
-    ("std::time::Instant", &["lsp", "dap", "cli"]),
+    ("std::time::Instant", &["lsp", "dap", "cli", "link"]),
     ("std::time::SystemTime", &["lsp", "cli"]),
     ("std::fs", &["project", "cli"]),
-    ("std::net", &[]),
+    ("std::net", &["link"]),
     ("serialport", &["link"]),
     ("std::env", &["cli"]),
     ("tokio", &["lsp", "cli"]),

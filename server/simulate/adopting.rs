@@ -5,9 +5,11 @@
 //! now, so that nothing happens merely because of an edit.
 
 use super::code::{Call, Code, Op};
+use super::clock::CLOCK_SLOTS;
+use super::layout::SCAN_SEEN;
 use super::row::Cell;
 use super::{Lanes, Machine, Memory, Slot, iec};
-use crate::target::Form;
+use crate::target::{DeviceKind, Form};
 use rustc_hash::FxHasher;
 use std::hash::{Hash, Hasher};
 use std::ops::Range;
@@ -148,6 +150,31 @@ impl<L: Lanes> Machine<L> {
         self.memory = memory;
         self.set_code(code);
         self.seed(&known);
+    }
+
+    /// The PLC as it comes to RUN with this program: latched devices, special registers, the clock and what is wired to
+    /// inputs stay as they are; the rest is off and 0. Of another model nothing stays.
+    pub fn restarted(&self, code: Arc<Code>) -> Machine<L> {
+        let mut new = Machine::new(Arc::clone(&code));
+        if !self.code.has_layout_of(&code) || !code.target.is_fx() {
+            return new;
+        }
+        let layout = &code.layout;
+        let registers = layout.devices().filter(|device| device.kind == DeviceKind::D && device.is_special());
+        for device in layout.latched().chain(registers) {
+            let (cells, slots) = layout.whole(device);
+            new.memory.cells[cells.clone()].copy_from_slice(&self.memory.cells[cells]);
+            slots.clone().for_each(|slot| self.keep_slot(slot, &mut new.memory, slot));
+            if device.kind == DeviceKind::T {
+                // Scans are counted from 0 again.
+                let seen = slots.start as Slot + SCAN_SEEN;
+                (0..L::COUNT).for_each(|lane| new.memory.set_word(seen, lane, 0));
+            }
+        }
+        let clock = layout.clock() as usize;
+        (clock..clock + CLOCK_SLOTS).for_each(|slot| self.keep_slot(slot, &mut new.memory, slot));
+        new.terminals = new.terminals.wired_as(&self.terminals);
+        new
     }
 
     /// Goes on with another program in IEC 61131-3: variables that have the same name and type keep their values.

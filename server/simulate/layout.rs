@@ -3,6 +3,7 @@
 use super::clock::CLOCK_SLOTS;
 use super::row::{CELLS, Cell, Row};
 use crate::target::{Device, DeviceKind, Target};
+use std::ops::Range;
 
 /// A place in the memory of words.
 pub type Slot = u32;
@@ -146,8 +147,17 @@ impl Layout {
         if self.is_wide(device) { i64::from(value as i32) } else { i64::from(value as i16) }
     }
 
+    /// All cells and all slots of a device, also those of which only the simulator knows.
+    pub(super) fn whole(&self, device: Device) -> (Range<usize>, Range<usize>) {
+        let is_counted = device.kind.has_preset();
+        let (cells, slots) = if is_counted { (CELLS_OF_COUNTER, SLOTS_OF_TIMER) } else { (1, 1) };
+        let cell = self.cell(device).map_or(0..0, |cell| usize::from(cell)..usize::from(cell) + cells);
+        let slot = self.slot(device).map_or(0..0, |slot| slot as usize..slot as usize + slots);
+        (cell, slot)
+    }
+
     /// The cells of inputs, or of outputs, one behind the other in the order of their numbers.
-    pub fn terminals(&self, kind: DeviceKind) -> std::ops::Range<usize> {
+    pub fn terminals(&self, kind: DeviceKind) -> Range<usize> {
         match self.kinds[kind as usize].first() {
             Some(run) => run.cells..run.cells + (run.last - run.first + 1) as usize,
             None => 0..0,
@@ -183,7 +193,7 @@ impl Layout {
     }
 
     /// The devices that keep them.
-    pub(super) fn latched(&self) -> impl Iterator<Item = Device> {
+    pub fn latched(&self) -> impl Iterator<Item = Device> {
         self.all(|run| run.latched)
     }
 

@@ -41,18 +41,16 @@ const WATCHDOG_MS: (i64, i64) = (200, 2_000);
 const ANNUNCIATORS: std::ops::RangeInclusive<u32> = 900..=999;
 
 impl<L: Lanes> Machine<L> {
-    /// What the CPU says of itself when it starts.
-    pub(super) fn identify(&mut self) {
-        if self.scans != 1 {
-            return;
-        }
+    /// What the CPU says of itself when it gets power, in special registers.
+    pub fn identify(&mut self) {
         let target = self.code.target;
         let steps = i64::from(target.limits.steps / 1000);
+        // An FX3U says first that it is an FX2N, for tools that know no other.
         let (first, other) = match target.model {
-            Model::Fx1s => (22_210, 0),
-            Model::Fx1n => (26_210, 0),
+            Model::Fx1s => (22_210, 22_210),
+            Model::Fx1n => (26_210, 26_210),
             Model::Fx3u => (24_232, 16_232),
-            _ => (24_310, 0),
+            _ => (24_310, 24_310),
         };
         let known = [
             (WATCHDOG, WATCHDOG_MS.0),
@@ -64,7 +62,7 @@ impl<L: Lanes> Machine<L> {
         for (number, value) in known {
             let register = Device::new(DeviceKind::D, number);
             // What was set before the start stays.
-            if value != 0 && self.word(register, 0) == 0 {
+            if self.word(register, 0) == 0 {
                 self.set_word(register, value);
             }
         }

@@ -25,7 +25,9 @@ impl<L: Lanes> Machine<L> {
                 self.memory.set_cell(cell, L::all(on));
             }
         }
-        self.identify();
+        if is_first && layout.has(Device::new(DeviceKind::D, 8001)) {
+            self.identify();
+        }
         clock::advance(&mut self.memory, &layout, self.scans, self.scan_ns);
         annunciators::monitor(&mut self.memory, &layout);
         // In tenths of a millisecond: the present scan time, the least and the greatest so far.

@@ -38,6 +38,12 @@ impl<L: Lanes> Terminals<L> {
         self
     }
 
+    /// The same, with what is wired to the terminals of a PLC of the same model.
+    pub(super) fn wired_as(mut self, other: &Terminals<L>) -> Terminals<L> {
+        self.inputs.clone_from(&other.inputs);
+        self
+    }
+
     /// The images of inputs become what is wired, also through keypads.
     pub(super) fn sample(&self, memory: &mut Memory<L>, outside: &[Outside]) {
         let mut first = 0;

@@ -206,6 +206,7 @@ macro_rules! catalogue_in {
                 include_str!(concat!("messages/", $tag, "/proof.toml")),
                 include_str!(concat!("messages/", $tag, "/simulate.toml")),
                 include_str!(concat!("messages/", $tag, "/scenario.toml")),
+                include_str!(concat!("messages/", $tag, "/link.toml")),
                 include_str!(concat!("messages/", $tag, "/debug.toml")),
                 include_str!(concat!("messages/", $tag, "/ide.toml")),
                 include_str!(concat!("messages/", $tag, "/devices.toml")),

@@ -1,0 +1,181 @@
+//! Why something with a PLC did not work, and what helps.
+
+use crate::text::Message;
+use std::io;
+
+/// Why something with a PLC did not work.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub enum LinkError {
+    /// There is no such port.
+    NoPort {
+        /// Its name.
+        port: String,
+    },
+    /// The user may not open it.
+    Forbidden {
+        /// Its name.
+        port: String,
+    },
+    /// Somebody else has it.
+    InUse {
+        /// Its name.
+        port: String,
+    },
+    /// It cannot be opened or reached.
+    Unreachable {
+        /// Its name.
+        port: String,
+        /// What the system says.
+        reason: String,
+    },
+    /// Nothing arrives.
+    NoAnswer,
+    /// Something arrives, but no answers that can be read.
+    Noise,
+    /// The line was there and is gone.
+    Gone {
+        /// What the system says.
+        reason: String,
+    },
+    /// The PLC says no to a request, again and again.
+    Refused {
+        /// The request, as it is on the line.
+        request: String,
+    },
+    /// Another host has the virtual PLC.
+    Occupied,
+    /// The user has ended it.
+    Cancelled,
+    /// What answers is no PLC that is known.
+    UnknownType {
+        /// What D8001 has.
+        code: u16,
+    },
+    /// The PLC is another one than the program is for.
+    WrongModel {
+        /// That of the program.
+        wanted: &'static str,
+        /// That of the PLC.
+        found: &'static str,
+    },
+    /// The program does not fit.
+    TooLarge {
+        /// Steps of the program.
+        steps: usize,
+        /// Steps that fit.
+        capacity: usize,
+    },
+    /// The PLC is protected by a keyword.
+    Keyword,
+    /// The PLC does not stop.
+    StillRunning,
+    /// What was written reads otherwise.
+    Mismatch {
+        /// The first step that differs; parameters are before step 0.
+        step: Option<usize>,
+    },
+    /// The PLC's sum of the program is another.
+    Sum {
+        /// That of the program that was meant.
+        wanted: u16,
+        /// That of the PLC.
+        found: u16,
+    },
+    /// This model cannot do that, or nobody knows how.
+    NotOnThisModel,
+    /// The PLC has no such device, or none that the port reaches.
+    NoDevice {
+        /// Its name.
+        device: String,
+    },
+}
+
+impl LinkError {
+    /// What a failure of the system means on a line that was open.
+    pub fn of_io(error: &io::Error) -> LinkError {
+        LinkError::Gone { reason: error.to_string() }
+    }
+
+    /// The word by which scripts know it.
+    pub fn code(&self) -> &'static str {
+        match self {
+            LinkError::NoPort { .. } => "no-port",
+            LinkError::Forbidden { .. } => "port-forbidden",
+            LinkError::InUse { .. } => "port-in-use",
+            LinkError::Unreachable { .. } => "unreachable",
+            LinkError::NoAnswer => "no-answer",
+            LinkError::Noise => "line-noise",
+            LinkError::Gone { .. } => "line-gone",
+            LinkError::Refused { .. } => "refused",
+            LinkError::Occupied => "plc-occupied",
+            LinkError::Cancelled => "cancelled",
+            LinkError::UnknownType { .. } => "unknown-plc",
+            LinkError::WrongModel { .. } => "wrong-model",
+            LinkError::TooLarge { .. } => "too-large",
+            LinkError::Keyword => "keyword",
+            LinkError::StillRunning => "still-running",
+            LinkError::Mismatch { .. } => "mismatch",
+            LinkError::Sum { .. } => "sum",
+            LinkError::NotOnThisModel => "not-on-this-model",
+            LinkError::NoDevice { .. } => "no-device",
+        }
+    }
+
+    /// The sentence that says it.
+    pub fn message(&self) -> Message {
+        match self {
+            LinkError::NoPort { port } => Message::new("link.no-port").with("port", port),
+            LinkError::Forbidden { port } => Message::new("link.forbidden").with("port", port),
+            LinkError::InUse { port } => Message::new("link.in-use").with("port", port),
+            LinkError::Unreachable { port, reason } => {
+                Message::new("link.unreachable").with("port", port).with("reason", reason)
+            }
+            LinkError::NoAnswer => Message::new("link.no-answer"),
+            LinkError::Noise => Message::new("link.noise"),
+            LinkError::Gone { reason } => Message::new("link.gone").with("reason", reason),
+            LinkError::Refused { request } => Message::new("link.refused").with("request", request),
+            LinkError::Occupied => Message::new("link.occupied"),
+            LinkError::Cancelled => Message::new("link.cancelled"),
+            LinkError::UnknownType { code } => Message::new("link.unknown-type").with("code", code),
+            LinkError::WrongModel { wanted, found } => {
+                Message::new("link.wrong-model").with("wanted", wanted).with("found", found)
+            }
+            LinkError::TooLarge { steps, capacity } => {
+                Message::new("link.too-large").with("steps", steps).with("capacity", capacity)
+            }
+            LinkError::Keyword => Message::new("link.keyword"),
+            LinkError::StillRunning => Message::new("link.still-running"),
+            LinkError::Mismatch { step: Some(step) } => Message::new("link.mismatch").with("step", step),
+            LinkError::Mismatch { step: None } => Message::new("link.mismatch-parameters"),
+            LinkError::Sum { wanted, found } => Message::new("link.sum")
+                .with("wanted", format!("{wanted:04X}"))
+                .with("found", format!("{found:04X}")),
+            LinkError::NotOnThisModel => Message::new("link.not-on-this-model"),
+            LinkError::NoDevice { device } => Message::new("link.no-device").with("device", device),
+        }
+    }
+
+    /// What helps.
+    pub fn help(&self) -> Message {
+        Message::new(match self {
+            LinkError::NoPort { .. } => "link.help-no-port",
+            LinkError::Forbidden { .. } => "link.help-forbidden",
+            LinkError::InUse { .. } => "link.help-in-use",
+            LinkError::Unreachable { .. } => "link.help-unreachable",
+            LinkError::NoAnswer => "link.help-no-answer",
+            LinkError::Noise => "link.help-noise",
+            LinkError::Gone { .. } => "link.help-gone",
+            LinkError::Refused { .. } => "link.help-refused",
+            LinkError::Occupied => "link.help-occupied",
+            LinkError::Cancelled => "link.help-cancelled",
+            LinkError::UnknownType { .. } => "link.help-unknown-type",
+            LinkError::WrongModel { .. } => "link.help-wrong-model",
+            LinkError::TooLarge { .. } => "link.help-too-large",
+            LinkError::Keyword => "link.help-keyword",
+            LinkError::StillRunning => "link.help-still-running",
+            LinkError::Mismatch { .. } | LinkError::Sum { .. } => "link.help-mismatch",
+            LinkError::NotOnThisModel => "link.help-not-on-this-model",
+            LinkError::NoDevice { .. } => "link.help-no-device",
+        })
+    }
+}

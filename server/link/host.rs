@@ -1,0 +1,71 @@
+//! What a host does with a PLC, each in many requests: who it is, what it has, what it is to do.
+
+mod identity;
+pub use identity::Identity;
+
+mod point;
+pub use point::Point;
+
+mod devices;
+
+mod watch;
+pub use watch::Watch;
+
+mod control;
+
+mod program;
+
+mod download;
+pub use download::{DownloadFailure, Fate, Plan, Progress, Report, Stage};
+
+use super::{Line, LinkError, Transport};
+use crate::target::Model;
+
+/// A host that knows which PLC is at the other end of its line.
+pub struct Host<T> {
+    line: Line<T>,
+    identity: Identity,
+}
+
+/// Which commands a PLC knows.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Dialect {
+    /// Those of every FX alone.
+    Plain,
+    /// The extended ones too.
+    Extended,
+}
+
+impl<T: Transport> Host<T> {
+    /// Greets the PLC and asks who it is.
+    ///
+    /// # Errors
+    /// If nobody answers, or somebody who is no FX.
+    pub fn connect(mut line: Line<T>) -> Result<Host<T>, LinkError> {
+        line.greet()?;
+        let identity = Identity::ask(&mut line)?;
+        Ok(Host { line, identity })
+    }
+
+    /// Who it is.
+    pub fn identity(&self) -> Identity {
+        self.identity
+    }
+
+    /// The line.
+    pub fn line(&mut self) -> &mut Line<T> {
+        &mut self.line
+    }
+
+    /// The line, when the host has done what it had to.
+    pub fn into_line(self) -> Line<T> {
+        self.line
+    }
+
+    fn dialect(&self) -> Dialect {
+        match self.identity.target.model {
+            Model::Fx1s => Dialect::Plain,
+            _ => Dialect::Extended,
+        }
+    }
+}

@@ -1,0 +1,278 @@
+//! Downloading: the PLC stops, gets what has changed, and is read back word for word before it may run.
+
+use super::program::Teller;
+use super::{Dialect, Host};
+use crate::link::frame::MOST_DATA;
+use crate::link::{Command, LinkError, Mode, Transport};
+use crate::machine_code::{Image, PARAMETER_ADDRESS, PROGRAM_ADDRESS, ParameterBlock};
+use crate::target::Target;
+use crate::text::Message;
+use std::time::Duration;
+
+/// What is going on.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Stage {
+    /// The program in the PLC is read.
+    Reading,
+    /// What has changed is written.
+    Writing,
+    /// What was written is read back and compared.
+    Comparing,
+}
+
+/// How far it is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Progress {
+    /// What is going on.
+    pub stage: Stage,
+    /// Bytes so far.
+    pub done: usize,
+    /// Bytes of this stage in all.
+    pub total: usize,
+    /// How long this stage will take from here, if it goes on as before.
+    pub remaining: Duration,
+}
+
+/// A download that has not begun: what is in the PLC, and what shall be.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Plan {
+    /// What was read from the PLC.
+    pub before: Image,
+    /// What shall be there.
+    pub wanted: Image,
+}
+
+/// A download that has ended well.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Report {
+    /// Bytes that were written.
+    pub written: usize,
+    /// Bytes that were read back and compared.
+    pub compared: usize,
+    /// What the CPU does now.
+    pub mode: Mode,
+}
+
+/// What has become of the program in the PLC.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Fate {
+    /// It is the old one, and the CPU does what it did.
+    Untouched,
+    /// It is the old one; the CPU was told to stop.
+    Stopped,
+    /// Part of it has been written. The PLC stands still.
+    Partial,
+    /// All of it has been written, but not found to be right. The PLC stands still.
+    Unverified,
+    /// It is the new one, word for word. The PLC stands still.
+    Verified,
+}
+
+/// A download that has not ended well.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct DownloadFailure {
+    /// Why.
+    pub cause: LinkError,
+    /// What has become of the program.
+    pub fate: Fate,
+}
+
+impl DownloadFailure {
+    /// The sentence that says in which state the PLC is.
+    pub fn state(&self) -> Message {
+        Message::new(match self.fate {
+            Fate::Untouched => "link.fate-untouched",
+            Fate::Stopped => "link.fate-stopped",
+            Fate::Partial => "link.fate-partial",
+            Fate::Unverified => "link.fate-unverified",
+            Fate::Verified => "link.fate-verified",
+        })
+    }
+}
+
+/// Lets a host write the program; the maker's tools switch it on before and off behind.
+const WRITE_ENABLE: u32 = 8118;
+/// How often what reads otherwise is written again.
+const MOST_MENDS: usize = 2;
+
+impl Plan {
+    /// Bytes that are written.
+    pub fn bytes(&self) -> usize {
+        self.wanted.changed_chunks(&self.before, MOST_DATA).iter().map(|chunk| chunk.bytes.len()).sum()
+    }
+
+    /// The plan that undoes this one.
+    pub fn undone(&self) -> Plan {
+        Plan { before: self.wanted.clone(), wanted: self.before.clone() }
+    }
+}
+
+impl<T: Transport> Host<T> {
+    /// Reads what is in the PLC and sees whether `program` may take its place. Nothing is changed.
+    ///
+    /// The parameters of the PLC stay as they are: which devices are latched, its title, its memory.
+    ///
+    /// # Errors
+    /// If the PLC is another one than `target`, has a keyword or too little memory, or if the line fails.
+    pub fn plan(
+        &mut self,
+        program: &[u16],
+        target: &'static Target,
+        tell: &mut dyn FnMut(Progress),
+    ) -> Result<Plan, LinkError> {
+        let found = self.identity.target;
+        if found.model != target.model {
+            return Err(LinkError::WrongModel { wanted: target.title, found: found.title });
+        }
+        let before = self.upload(tell)?;
+        let parameters = *before.parameters();
+        if parameters.has_keyword() {
+            return Err(LinkError::Keyword);
+        }
+        let capacity = parameters.program_steps() as usize;
+        let wanted = Image::new(parameters, program).filter(|_| program.len() <= capacity);
+        let wanted = wanted.ok_or(LinkError::TooLarge { steps: program.len(), capacity })?;
+        Ok(Plan { before, wanted })
+    }
+
+    /// Carries a plan out: stop, write what has changed, read all of it back, compare the sum, and start if `is_started`
+    /// says so.
+    ///
+    /// # Errors
+    /// With what has become of the program. The PLC stands still, and the same
+    /// download, planned again, finishes the job.
+    pub fn download(
+        &mut self,
+        plan: &Plan,
+        is_started: bool,
+        tell: &mut dyn FnMut(Progress),
+    ) -> Result<Report, DownloadFailure> {
+        let mut fate = Fate::Untouched;
+        self.carry_out(plan, is_started, &mut fate, tell).map_err(|cause| DownloadFailure { cause, fate })
+    }
+
+    fn carry_out(
+        &mut self,
+        plan: &Plan,
+        is_started: bool,
+        fate: &mut Fate,
+        tell: &mut dyn FnMut(Progress),
+    ) -> Result<Report, LinkError> {
+        *fate = Fate::Stopped;
+        self.stop()?;
+        let mut held = plan.before.clone();
+        let mut written = 0;
+        let mut compared = 0;
+        for round in 0..=MOST_MENDS {
+            written += self.write_changes(&held, &plan.wanted, fate, tell)?;
+            // What was sent may have come otherwise, and with a sum that is right by chance.
+            *fate = Fate::Unverified;
+            held = self.read_back(plan, &mut compared, tell)?;
+            match first_difference(&held, &plan.wanted) {
+                None => break,
+                Some(step) if round == MOST_MENDS => return Err(LinkError::Mismatch { step }),
+                Some(_) => {}
+            }
+        }
+        self.compare_sum(plan, fate, &mut written, tell)?;
+        *fate = Fate::Verified;
+        let is_running = is_started && self.start()?;
+        Ok(Report { written, compared, mode: if is_running { Mode::Run } else { Mode::Stop } })
+    }
+
+    fn write_changes(
+        &mut self,
+        held: &Image,
+        wanted: &Image,
+        fate: &mut Fate,
+        tell: &mut dyn FnMut(Progress),
+    ) -> Result<usize, LinkError> {
+        let chunks = wanted.changed_chunks(held, MOST_DATA);
+        let total = chunks.iter().map(|chunk| chunk.bytes.len()).sum();
+        if chunks.is_empty() && *fate == Fate::Stopped {
+            return Ok(0);
+        }
+        let is_guarded = self.dialect() == Dialect::Extended;
+        if is_guarded {
+            self.order(WRITE_ENABLE, true)?;
+        }
+        let since = self.line.now();
+        let mut teller = Teller::new(Stage::Writing, total, since, tell);
+        for chunk in &chunks {
+            *fate = Fate::Partial;
+            self.write_program(chunk.address, &chunk.bytes)?;
+            teller.add(chunk.bytes.len(), self.line.now());
+        }
+        if is_guarded {
+            self.order(WRITE_ENABLE, false)?;
+        }
+        self.line.ask(&Command::Commit)?;
+        Ok(total)
+    }
+
+    /// What is in the PLC where the old or the new program is.
+    fn read_back(
+        &mut self,
+        plan: &Plan,
+        compared: &mut usize,
+        tell: &mut dyn FnMut(Progress),
+    ) -> Result<Image, LinkError> {
+        let steps = plan.before.program().len().max(plan.wanted.program().len());
+        let parameters = 2 * ParameterBlock::WORDS;
+        let since = self.line.now();
+        let mut block = self.read_program(PARAMETER_ADDRESS, parameters, &mut |_, _| {})?;
+        let mut teller = Teller::new(Stage::Comparing, 2 * steps, since, tell);
+        let mut done = |bytes, now| teller.add(bytes, now);
+        let program = self.read_program(PROGRAM_ADDRESS, 2 * steps, &mut done)?;
+        *compared = block.len() + program.len();
+        block.extend(program);
+        Image::from_bytes(&block).ok_or(LinkError::Mismatch { step: None })
+    }
+
+    /// The PLC adds up all of its memory, also what was neither written nor read. If that is not what it should be,
+    /// something lies behind the program: then the rest is cleared too.
+    fn compare_sum(
+        &mut self,
+        plan: &Plan,
+        fate: &mut Fate,
+        written: &mut usize,
+        tell: &mut dyn FnMut(Progress),
+    ) -> Result<(), LinkError> {
+        let wanted = plan.wanted.parameters().sum();
+        if self.sum()? == wanted {
+            return Ok(());
+        }
+        let all = 2 * (ParameterBlock::WORDS + plan.wanted.memory().len());
+        let bytes = self.read_program(PARAMETER_ADDRESS, all, &mut |_, _| {})?;
+        let held = Image::from_bytes(&bytes).ok_or(LinkError::Mismatch { step: None })?;
+        *written += self.write_changes(&held, &plan.wanted, fate, tell)?;
+        *fate = Fate::Unverified;
+        let bytes = self.read_program(PARAMETER_ADDRESS, all, &mut |_, _| {})?;
+        let held = Image::from_bytes(&bytes).ok_or(LinkError::Mismatch { step: None })?;
+        if let Some(step) = first_difference(&held, &plan.wanted) {
+            return Err(LinkError::Mismatch { step });
+        }
+        match self.sum()? {
+            found if found == wanted => Ok(()),
+            found => Err(LinkError::Sum { wanted, found }),
+        }
+    }
+
+    /// The sum that the PLC has computed.
+    fn sum(&mut self) -> Result<u16, LinkError> {
+        match self.read_program(PARAMETER_ADDRESS + 2, 2, &mut |_, _| {})?[..] {
+            [low, high] => Ok(u16::from_le_bytes([low, high])),
+            _ => Err(LinkError::Noise),
+        }
+    }
+}
+
+/// The first step in which two images differ, or nothing for the parameters; nothing at all where they do not.
+fn first_difference(held: &Image, wanted: &Image) -> Option<Option<usize>> {
+    let parameters = |image: &Image| image.parameters().with_sum(0);
+    if parameters(held) != parameters(wanted) {
+        return Some(None);
+    }
+    let steps = held.memory().iter().zip(wanted.memory());
+    steps.enumerate().find(|(_, (held, wanted))| held != wanted).map(|(step, _)| Some(step))
+}
