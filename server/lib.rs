@@ -13,6 +13,8 @@ pub mod il;
 
 pub mod ladder;
 
+pub mod machine_code;
+
 pub mod document;
 
 pub mod logic;

@@ -60,6 +60,8 @@ mod lsp_test;
 mod lsp_tokens;
 mod lsp_translate;
 mod lsp_within;
+mod machine_code;
+mod machine_code_rows;
 mod manifest_help;
 mod manifest_schema;
 mod markdown;

@@ -8,6 +8,7 @@ const FLOORS: &[(&str, u8)] = &[
     ("target", 1),
     ("il", 2),
     ("ladder", 2),
+    ("machine_code", 3),
     ("document", 3),
     ("logic", 4),
     ("translate", 5),

@@ -33,7 +33,7 @@ pub enum Flow {
     ProgramEnd,
     /// REF, REFF: reads inputs, or sends outputs, in the middle of the scan.
     Refresh,
-    /// NOP: does nothing and may stand anywhere.
+    /// NOP: does nothing and may stand anywhere; a word that is no instruction is taken for one.
     Nothing,
     /// Everything else: executed in its turn.
     Straight,
@@ -57,7 +57,7 @@ impl Instruction {
             Opcode::Contact { class: 15, .. } => Flow::Step,
             Opcode::Word(0xF7FF) => Flow::StepsEnd,
             Opcode::Word(0x000F) => Flow::ProgramEnd,
-            Opcode::Word(0xFFFF) => Flow::Nothing,
+            Opcode::Word(0xFFFF) | Opcode::Itself => Flow::Nothing,
             _ => Flow::Straight,
         }
     }

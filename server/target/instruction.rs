@@ -175,13 +175,41 @@ pub enum Opcode {
     /// The opcode in a word of its own, then a word `8000h` + bits for each operand: LDP `01CA`, PLS `0008`, MC `000A`.
     Device(u16),
     /// One of several codes, by the device: OUT, SET, RST.
-    ByDevice,
+    ByDevice(DeviceCodes),
     /// Applied instruction by its function number: `(number + 8) * 2`, +1 for 32 bit, +1000h for pulse.
     Function(u16),
     /// A label, `B000h` + number.
     Label,
+    /// The operand is the word itself: a word of program memory that is no instruction.
+    Itself,
     /// No source tells; a program with it cannot be assembled.
     Unknown,
+}
+
+/// The codes of an instruction that has one for each kind of device.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub struct DeviceCodes {
+    /// Upper four bits of the one-word form, whose lower twelve name an output or one of M0 to M1535.
+    pub class: u8,
+    /// Before the word of any other auxiliary relay.
+    pub relay: u16,
+    /// Before the word of a state.
+    pub state: u16,
+    /// Timers and counters.
+    pub counting: Counting,
+    /// Before the words of a register, if it takes one.
+    pub register: Option<u16>,
+}
+
+/// How a timer or a counter is coded behind OUT, SET and RST.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Counting {
+    /// Not at all.
+    Never,
+    /// It is the first word itself, the class being 0, and the words of its preset follow.
+    Preset,
+    /// By this word and one for the device.
+    Reset(u16),
 }
 
 /// An instruction in one of its written forms.

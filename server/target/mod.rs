@@ -19,7 +19,9 @@ mod accepts;
 pub use accepts::Accepts;
 
 mod instruction;
-pub use instruction::{Access, Drive, Extent, Form, Instruction, Opcode, OperandSpec, Role, Steps, Wide};
+pub use instruction::{
+    Access, Counting, DeviceCodes, Drive, Extent, Form, Instruction, Opcode, OperandSpec, Role, Steps, Wide,
+};
 
 mod flow;
 pub use flow::Flow;

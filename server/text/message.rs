@@ -200,6 +200,7 @@ macro_rules! catalogue_in {
                 include_str!(concat!("messages/", $tag, "/drawing.toml")),
                 include_str!(concat!("messages/", $tag, "/hand.toml")),
                 include_str!(concat!("messages/", $tag, "/words.toml")),
+                include_str!(concat!("messages/", $tag, "/machine-code.toml")),
                 include_str!(concat!("messages/", $tag, "/order.toml")),
                 include_str!(concat!("messages/", $tag, "/declarations.toml")),
                 include_str!(concat!("messages/", $tag, "/sense.toml")),

@@ -15,6 +15,7 @@ pub(super) enum Token {
     Colon,
     /// A mnemonic without its comparison sign, an operand, a label, a step number.
     #[regex(r"[A-Za-z0-9_$%#@.+\\-]+")]
+    #[regex(r"[A-Za-z]+\?")]
     Word,
     /// The sign of a comparing contact: `=`, `<>`, `>=` …
     #[regex("[=<>]+")]

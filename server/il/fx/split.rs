@@ -1,6 +1,6 @@
 //! Cuts a program into chunks, which are rungs, by the first word of each line alone.
 
-use crate::target::{Form, Opcode, Role};
+use crate::target::{Flow, Form, Role};
 
 /// The ends of the chunks of `text` as byte offsets, increasing; the last is `text.len()`. Empty text has none.
 ///
@@ -73,7 +73,7 @@ impl Effect {
             Role::BranchPush | Role::BranchRead | Role::BranchPop => Effect::Contact,
             Role::Output => Effect::Output,
             // FFFFh is unwritten program memory, which may lie between a contact and its output.
-            Role::Standalone if form.instruction.opcode == Opcode::Word(0xFFFF) => Effect::Nothing,
+            Role::Standalone if form.instruction.flow() == Flow::Nothing => Effect::Nothing,
             Role::Standalone => Effect::Alone,
         }
     }

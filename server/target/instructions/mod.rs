@@ -25,7 +25,7 @@ mod outputs;
 mod control;
 
 mod program;
-pub use program::LABEL;
+pub use program::{LABEL, UNREAD};
 
 mod flow;
 
@@ -133,7 +133,7 @@ const WITHOUT_W: &[(&str, &str)] = &[("WAND", "DAND"), ("WOR", "DOR"), ("WXOR", 
 /// Written names and their forms. The regular names of the irregular forms, such as `DWAND`, are understood as well.
 static FORMS: LazyLock<FxHashMap<u64, Form>> = LazyLock::new(|| {
     let mut forms = FxHashMap::default();
-    for form in all().flat_map(forms_of) {
+    for form in all().chain([&UNREAD]).flat_map(forms_of) {
         forms.extend(key(&form.mnemonic()).map(|key| (key, form)));
         if form.wide && WITHOUT_W.iter().any(|(name, _)| *name == form.instruction.mnemonic) {
             let pulse = if form.pulse { "P" } else { "" };

@@ -1,7 +1,10 @@
 //! Outputs: OUT, SET, RST, PLS, PLF.
 
 use super::specs::{ALL_FX, operand, source};
-use crate::target::{Accepts, Access, Drive, Instruction, Opcode, OperandSpec, Role, Semantics, Steps, Wide};
+use crate::target::{
+    Accepts, Access, Counting, DeviceCodes, Drive, Instruction, Opcode, OperandSpec, Role, Semantics, Steps,
+    Wide,
+};
 
 const PRESET: OperandSpec = source("K", "preset of a timer or counter")
     .accepting(Accepts::K.or(Accepts::D).or(Accepts::R))
@@ -15,10 +18,23 @@ const RESET: Accepts = Accepts::BIT_DESTINATION
     .or(Accepts::V)
     .or(Accepts::Z);
 
+const OUT: DeviceCodes =
+    DeviceCodes { class: 0xC, relay: 0x0002, state: 0x0005, counting: Counting::Preset, register: None };
+const SET: DeviceCodes =
+    DeviceCodes { class: 0xD, relay: 0x0003, state: 0x0006, counting: Counting::Never, register: None };
+const RST: DeviceCodes = DeviceCodes {
+    class: 0xE,
+    relay: 0x0004,
+    state: 0x0007,
+    counting: Counting::Reset(0x000C),
+    register: Some(0x000D),
+};
+
 const PULSED: &[OperandSpec] =
     &[operand("D", "relay", Access::Write, Accepts::Y.or(Accepts::M)).driven(Drive::Pulse)];
 
 const fn output(
+    opcode: Opcode,
     mnemonic: &'static str,
     title: &'static str,
     operands: &'static [OperandSpec],
@@ -32,7 +48,7 @@ const fn output(
         pulse: false,
         operands,
         steps: Steps::ByDevice,
-        opcode: Opcode::ByDevice,
+        opcode,
         semantics: Semantics::Basic,
         models: ALL_FX,
         page,
@@ -42,6 +58,7 @@ const fn output(
 /// OUT SET RST PLS PLF.
 pub const ROWS: &[Instruction] = &[
     output(
+        Opcode::ByDevice(OUT),
         "OUT",
         "coil",
         &[
@@ -70,6 +87,7 @@ pub const ROWS: &[Instruction] = &[
          ```\n",
     ),
     output(
+        Opcode::ByDevice(SET),
         "SET",
         "set and hold",
         &[operand("D", "bit device", Access::Write, Accepts::BIT_DESTINATION).driven(Drive::Set)],
@@ -86,6 +104,7 @@ pub const ROWS: &[Instruction] = &[
          ```\n",
     ),
     output(
+        Opcode::ByDevice(RST),
         "RST",
         "reset",
         &[operand("D", "device", Access::Write, RESET).driven(Drive::Reset)],
@@ -103,6 +122,7 @@ pub const ROWS: &[Instruction] = &[
          ```\n",
     ),
     output(
+        Opcode::Device(0x0008),
         "PLS",
         "pulse at the rising edge",
         PULSED,
@@ -119,9 +139,9 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
-    .taking(2)
-    .coded(Opcode::Device(0x0008)),
+    .taking(2),
     output(
+        Opcode::Device(0x0009),
         "PLF",
         "pulse at the falling edge",
         PULSED,
@@ -137,6 +157,5 @@ pub const ROWS: &[Instruction] = &[
          END\n\
          ```\n",
     )
-    .taking(2)
-    .coded(Opcode::Device(0x0009)),
+    .taking(2),
 ];

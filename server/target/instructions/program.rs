@@ -62,3 +62,19 @@ pub static LABEL: Instruction = Instruction {
          ```\n",
     )
 };
+
+/// The row of a word of program memory that is no instruction, as reading a PLC can find it: `NOP? H1234`. It is
+/// written back as it is. People do not write it, so it is not among the instructions of the models.
+pub static UNREAD: Instruction = Instruction {
+    operands: &[operand("n", "word of program memory", Access::Read, Accepts::K).within(0, 0xFFFF)],
+    opcode: Opcode::Itself,
+    ..plain(
+        0,
+        "NOP?",
+        "unread word",
+        Role::Standalone,
+        "Stands for a word of program memory that is no instruction of the model, as far as is known. It is \
+         found where a program was read from a PLC or a file, and goes back there as it is. What the PLC \
+         does with it is not known, so it cannot be simulated or translated.\n",
+    )
+};

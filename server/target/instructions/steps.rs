@@ -26,7 +26,7 @@ fn by_device(form: Form, operand: Option<&Operand>) -> u32 {
         _ => return 1,
     };
     match (form.instruction.opcode, form.instruction.role) {
-        (Opcode::ByDevice, Role::Output) => match device.kind {
+        (Opcode::ByDevice(_), Role::Output) => match device.kind {
             DeviceKind::T | DeviceKind::C if form.instruction.operands.len() < 2 => 2,
             DeviceKind::C if device.number >= 200 => 5,
             DeviceKind::T | DeviceKind::C => 3,
