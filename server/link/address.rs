@@ -53,7 +53,7 @@ pub struct BitAddress<M> {
 }
 
 /// What of a device a bit tells.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum Part {
     /// The relay itself; of timers and counters the contact.
     Contact,

@@ -215,9 +215,7 @@ impl Expected {
     pub fn reply(self, body: &[u8]) -> Option<Reply> {
         match self {
             Expected::Acknowledge => None,
-            Expected::Data(length) => {
-                unhex(body).filter(|data| data.len() == length).map(Reply::Data)
-            }
+            Expected::Data(length) => unhex(body).filter(|data| data.len() == length).map(Reply::Data),
             Expected::Found => match body {
                 b"" => Some(Reply::Found(None)),
                 [b'1', address @ ..] => match unhex(address)?[..] {

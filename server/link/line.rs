@@ -8,7 +8,10 @@
 use super::command::{Command, Expected, Reply};
 use super::frame::{Arrival, BITS_PER_BYTE, ENQ, Frames, framed};
 use super::transport::{BAUD, Transport};
-use super::{LinkError, address::{Address, Plain}};
+use super::{
+    LinkError,
+    address::{Address, Plain},
+};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -25,8 +25,6 @@ mod mode;
 pub use mode::{Mode, Switch};
 
 mod host;
-pub use host::{
-    DownloadFailure, Fate, Host, Identity, Plan, Point, Progress, Report, Stage, Watch,
-};
+pub use host::{DownloadFailure, Fate, Host, Identity, Plan, Point, Progress, Report, Stage, Watch};
 
 pub mod plc;

@@ -4,8 +4,8 @@
 //! that stand before and behind the edit what they remember: edges, steps, notes. What is new remembers what it finds
 //! now, so that nothing happens merely because of an edit.
 
-use super::code::{Call, Code, Op};
 use super::clock::CLOCK_SLOTS;
+use super::code::{Call, Code, Op};
 use super::layout::SCAN_SEEN;
 use super::row::Cell;
 use super::{Lanes, Machine, Memory, Slot, iec};

@@ -25,7 +25,8 @@ impl Point {
             _ => None,
         };
         if let Some(register) = name.strip_suffix(":32") {
-            let is_fit = |device: &Device| device.kind == DeviceKind::D && device.next_in_range(target).is_some();
+            let is_fit =
+                |device: &Device| device.kind == DeviceKind::D && device.next_in_range(target).is_some();
             return device(register).filter(is_fit).map(Point::Pair);
         }
         if let Some(device) = device(name) {

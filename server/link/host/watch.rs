@@ -5,10 +5,10 @@
 
 use super::devices::Place;
 use super::{Dialect, Host, Point};
+use crate::link::Map;
 use crate::link::address::{Extended, Part};
 use crate::link::frame::MOST_DATA;
 use crate::link::{LinkError, Transport};
-use crate::link::Map;
 use crate::target::Device;
 
 /// Devices that a host watches.

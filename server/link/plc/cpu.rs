@@ -1,13 +1,14 @@
 //! The CPU of the virtual PLC: its program, its mode, and the scans that it runs.
 
-use crate::link::{Mode, Switch};
 use crate::document::{Document, Notation};
+use crate::link::{Mode, Switch};
+use crate::machine_code::{END, Image, ParameterBlock, decode, sum};
 use crate::simulate::{Code, Machine, compile};
 use crate::target::{Device, DeviceKind, Target};
 use std::sync::Arc;
 
 /// A PLC without hardware.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Plc {
     pub(super) target: &'static Target,
     /// Parameters and program as they lie from 8000 on.
@@ -38,7 +39,7 @@ const CIRCUIT_ERROR: u32 = 8066;
 /// The memory of what went wrong first.
 const ERROR: u32 = 8004;
 /// Bytes of the parameters before the program.
-pub(super) const PARAMETER_BYTES: usize = 92;
+pub(super) const PARAMETER_BYTES: usize = 2 * ParameterBlock::WORDS;
 /// Where the sum of the program stands in the parameters.
 pub(super) const SUM: usize = 2;
 /// Behind a gap of so many scans those that were missed are left out.
@@ -54,14 +55,11 @@ impl Plc {
     /// A new PLC with nothing in its memory, its switch at RUN.
     pub fn new(target: &'static Target, scan_ns: i64) -> Plc {
         let steps = (target.limits.steps as usize).min(MOST_STEPS);
-        let mut program = vec![0; PARAMETER_BYTES];
-        program.resize(PARAMETER_BYTES + steps * 2, 0xFF);
-        program[0] = (steps / 1000) as u8;
-        // The keyword and the title are blank.
-        program[8..48].fill(b' ');
+        let parameters = ParameterBlock::new(target.model).with_capacity((steps / 1000) as u16);
+        let image = Image::new(parameters, &[END]);
         let mut plc = Plc {
             target,
-            program,
+            program: image.map(|image| image.to_bytes()).unwrap_or_default(),
             is_open: false,
             machine: Machine::new(Arc::new(nothing(target))),
             watch_list: Vec::new(),
@@ -207,7 +205,7 @@ impl Plc {
 
     /// The sum of all words of the program, unused ones too, stands in the parameters.
     fn add_up(&mut self) {
-        let sum = self.words().iter().fold(0u16, |sum, word| sum.wrapping_add(*word));
+        let sum = sum(&self.words());
         self.program[SUM..SUM + 2].copy_from_slice(&sum.to_le_bytes());
     }
 
@@ -218,10 +216,12 @@ impl Plc {
         self.take_over();
     }
 
-    /// The code of the program, if it can be run.
+    /// The code of the program up to END, if it has one and can be run.
     fn code(&self) -> Option<Code> {
-        let text = String::from("END\n");
-        let document = Document::new(&text, Notation::FxIl, self.target);
+        let words = self.words();
+        let end = words.iter().position(|word| *word == END)?;
+        let list = decode(&words[..=end], self.target.model).text;
+        let document = Document::new(&list, Notation::FxIl, self.target);
         compile(&[&document], false).ok()
     }
 }

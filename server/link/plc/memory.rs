@@ -1,8 +1,8 @@
 //! What a host finds at the addresses of the virtual PLC.
 
 use super::cpu::{PARAMETER_BYTES, Plc, WRITE_ENABLE};
-use crate::link::address::{Extended, Lying, Map, Part, Plain};
 use crate::link::Mode;
+use crate::link::address::{Extended, Lying, Map, Part, Plain};
 use crate::link::command::{Command, Reply, Space};
 use crate::simulate::{Value, Variable};
 use crate::target::{Device, DeviceKind, Model};
@@ -89,7 +89,7 @@ impl Plc {
                     Part::Contact => layout.cell(device),
                     Part::Coil => layout.coil(device),
                 };
-                cell.is_some_and(|cell| self.machine.relay(cell) != 0)
+                cell.is_some_and(|cell| self.machine.memory().cell(cell) != 0)
             }
         }
     }

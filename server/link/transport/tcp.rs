@@ -22,7 +22,8 @@ impl TcpTransport {
     /// # Errors
     /// If the address is none, or nobody accepts there.
     pub fn connect(address: &str) -> Result<TcpTransport, LinkError> {
-        let fail = |error: io::Error| LinkError::Unreachable { port: address.into(), reason: error.to_string() };
+        let fail =
+            |error: io::Error| LinkError::Unreachable { port: address.into(), reason: error.to_string() };
         let mut last = io::Error::from(io::ErrorKind::AddrNotAvailable);
         for address in address.to_socket_addrs().map_err(fail)? {
             match TcpStream::connect_timeout(&address, PATIENCE) {

@@ -1,0 +1,305 @@
+//! The programming port: frames as they were recorded, both maps, and what a host does with a virtual PLC.
+
+use crate::loopback::{Loopback, words};
+use rungwise::link::frame::{ACK, ENQ, NAK, framed};
+use rungwise::link::plc::Plc;
+use rungwise::link::{
+    Address, BitAddress, Command, Extended, LinkError, Lying, Map, Mode, Part, Plain, Point, Program, Watch,
+};
+use rungwise::machine_code::{Image, ParameterBlock};
+use rungwise::target::{Device, DeviceKind, Model, Target};
+
+const MODELS: [Model; 4] = [Model::Fx1s, Model::Fx1n, Model::Fx2n, Model::Fx3u];
+
+fn device(kind: DeviceKind, number: u32) -> Device {
+    Device::new(kind, number)
+}
+
+fn bit<M: Map>(kind: DeviceKind, number: u32) -> BitAddress<M> {
+    M::bit(device(kind, number), Part::Contact).unwrap()
+}
+
+/// The frame of a request, without its control bytes: body and sum.
+fn check_frame(command: &Command, body: &str, sum: &str) {
+    let frame = framed(&command.body());
+    let wanted = [b"\x02", body.as_bytes(), b"\x03", sum.as_bytes()].concat();
+    assert_eq!(frame, wanted, "{command:?}: {}", String::from_utf8_lossy(&frame));
+    assert_eq!(Command::of_body(body.as_bytes()).as_ref(), Some(command), "{body}");
+}
+
+#[test]
+fn requests_are_those_that_were_recorded() {
+    use DeviceKind::{D, M, X, Y};
+    let word = |number| Plain::word(device(D, number)).unwrap().0;
+    check_frame(&word(123).read(4), "010F604", "74");
+    check_frame(&word(123).write(&[1, 0]), "110F6020100", "34");
+    check_frame(&bit::<Plain>(X, 2).force(true), "70204", "00");
+    check_frame(&bit::<Plain>(Y, 0).force(true), "70005", "FF");
+    check_frame(&bit::<Plain>(M, 8).force(false), "80808", "0B");
+    check_frame(&word(8001).read(2), "00E0202", "6C");
+    check_frame(&word(8101).read(2), "00ECA02", "8E");
+    check_frame(&Program::START.read(0x40), "E01800040", "D5");
+    check_frame(&Address::<Program>::new(0x8040).read(0x1C), "E0180401C", "E9");
+    check_frame(&Address::<Program>::new(0x805C).write(&[0, 0x24]), "E11805C020024", "B2");
+    check_frame(&bit::<Extended>(M, 8118).force(true), "E7760E", "61");
+    check_frame(&bit::<Extended>(M, 8118).force(false), "E8760E", "62");
+    check_frame(&bit::<Extended>(M, 8037).force(true), "E7250E", "5B");
+    check_frame(&bit::<Extended>(M, 8037).force(false), "E8250E", "5C");
+    check_frame(&bit::<Extended>(M, 8000).byte().0.read(1), "E0001C001", "DD");
+    check_frame(&Command::Search { from: 0x805C, word: [0x0F, 0] }, "E41805C0F00", "63");
+    check_frame(&Command::Commit, "B", "45");
+    check_frame(&Command::Clear(1), "E61", "AF");
+}
+
+#[test]
+fn each_device_is_found_where_it_lies() {
+    fn check<M: Map>(target: &Target) -> usize {
+        let mut found = 0;
+        let devices = target.devices.iter();
+        for device in devices.flat_map(|range| (range.first..=range.last).map(|n| Device::new(range.kind, n)))
+        {
+            for part in [Part::Contact, Part::Coil] {
+                let Some(address) = M::bit(device, part) else { continue };
+                assert_eq!(M::at_bit(address.bit()), Some(Lying::Bit(device, part)));
+                assert_eq!(M::at_byte(address.byte().0.byte()), None, "{device} is no word");
+                found += 1;
+            }
+            let Some((address, width)) = M::word(device) else { continue };
+            for byte in 0..width {
+                assert_eq!(M::at_byte(address.byte() + byte), Some(Lying::Byte(device, byte)));
+            }
+            found += 1;
+        }
+        found
+    }
+    // S, X, Y, T, M, C and special M, contacts and coils; then the words of T, C, special D and D.
+    let words = 256 + 256 + 256 + 8000;
+    assert_eq!(check::<Plain>(Target::of(Model::Fx2n)), 1000 + 512 + 512 + 1536 + 512 + 256 + words);
+    assert_eq!(check::<Extended>(Target::of(Model::Fx2n)), 1000 + 512 + 512 + 3072 + 512 + 256 + words);
+}
+
+#[test]
+fn a_plc_says_who_it_is() {
+    for model in MODELS {
+        let line = Loopback::new(model);
+        let mut host = line.host().unwrap();
+        assert_eq!(host.identity().target.model, model);
+        assert_eq!(host.mode().unwrap(), Mode::Stop);
+        assert_eq!(line.ends().sent[0], ENQ, "the host greets first");
+    }
+}
+
+/// What a PLC answers to bytes.
+fn answers(line: &Loopback, bytes: &[u8]) -> Vec<u8> {
+    let mut ends = line.ends();
+    bytes.iter().filter_map(|byte| ends.server.take(*byte, 0)).flat_map(|answer| answer.bytes).collect()
+}
+
+#[test]
+fn a_plc_answers_as_recorded() {
+    let line = Loopback::new(Model::Fx2n);
+    let asks = |body: &str| answers(&line, &framed(body.as_bytes()));
+    assert_eq!(answers(&line, &[ENQ]), [ACK]);
+    assert_eq!(asks("00E0202"), framed(b"F65E"), "D8001 of an FX2N 3.10");
+    assert_eq!(asks("00ECA02"), framed(b"F65E"));
+    assert_eq!(asks("E0001C001"), framed(b"0A"), "STOP");
+    assert_eq!(asks("E000E0602"), framed(b"1000"), "D8003");
+    assert_eq!(asks("E000ECC02"), framed(b"0800"), "D8102");
+    assert_eq!(asks("E01800808"), framed(b"2020202020202020"), "no keyword");
+    assert_eq!(asks("E01800204"), framed(b"D0E00000"), "the sum of a blank memory");
+    // A program in a short download, and where its END is.
+    assert_eq!(asks("E7760E"), [ACK]);
+    assert_eq!(asks("E11805C06002400C50F00"), [ACK]);
+    assert_eq!(asks("E8760E"), [ACK]);
+    assert_eq!(asks("B"), [ACK]);
+    assert_eq!(asks("E41805C0F00"), framed(b"18060"));
+    assert_eq!(asks("E41805C3412"), framed(b""));
+    assert_eq!(asks("E01805C06"), framed(b"002400C50F00"));
+    assert_eq!(asks("E8250E"), [ACK]);
+    line.ends().server.advance(20_000_000);
+    assert_eq!(asks("E0001C001"), framed(b"09"), "RUN");
+    for wrong in
+        ["", "X", "0", "00E02", "00E0200", "00E0241", "00E02G2", "E01FFF040", "1100002FF", "EC12345678"]
+    {
+        assert_eq!(asks(wrong), [NAK], "{wrong}");
+    }
+    let mut damaged = framed(b"00E0202");
+    damaged[3] ^= 1;
+    assert_eq!(answers(&line, &damaged), [NAK]);
+    assert_eq!(answers(&line, b"noise \x03\x06\x15"), Vec::<u8>::new(), "nobody is asked outside a frame");
+    // A new start ends what had begun, and nothing is kept of a frame without end.
+    assert_eq!(answers(&line, &[b"\x0200E0", &framed(b"00E0202")[..]].concat()), framed(b"F65E"));
+    assert_eq!(answers(&line, &[&b"\x02"[..], &[b'0'; 1000]].concat()), [NAK]);
+}
+
+/// A program with a bit of everything that can be seen from outside.
+const MOTOR: &str = "LD X0\nOR Y0\nANI X1\nOUT Y0\nLD Y0\nOUT T0 K5\nLD T0\nOUT Y1\nLD X2\nOUT C0 K3\nLD M8000\nMOV D0 D1\nEND\n";
+
+#[test]
+fn what_was_downloaded_is_there_word_for_word_and_runs() {
+    for model in MODELS {
+        let line = Loopback::new(model);
+        let mut host = line.host().unwrap();
+        let program = words(MOTOR, model);
+        let plan = host.plan(&program, Target::of(model), &mut |_| {}).unwrap();
+        let mut stages = Vec::new();
+        let report = host.download(&plan, true, &mut |progress| stages.push(progress)).unwrap();
+        assert_eq!(report.mode, Mode::Run, "{model:?}");
+        assert_eq!(host.upload(&mut |_| {}).unwrap().program(), program, "{model:?}");
+        let last = stages.last().unwrap();
+        assert_eq!(last.done, last.total, "{stages:?}");
+        let point = |name: &str| Point::named(name, Target::of(model)).unwrap();
+        host.write(point("X0"), 1).unwrap();
+        host.write(point("D0"), -7).unwrap();
+        let seen = host.read(&["X0", "Y0", "D1", "M8000"].map(point)).unwrap();
+        assert_eq!(seen, [1, 1, -7, 1], "{model:?}");
+        // The timer runs in the time of the line.
+        while host.read(&[point("Y1")]).unwrap() == [0] {}
+        assert!(line.ends().now_ns > 500_000_000);
+        host.stop().unwrap();
+        assert_eq!(host.read(&["Y0", "Y1"].map(point)).unwrap(), [0, 0], "outputs are off in STOP");
+    }
+}
+
+#[test]
+fn only_what_has_changed_is_written() {
+    let line = Loopback::new(Model::Fx2n);
+    let mut host = line.host().unwrap();
+    let long: String = (0..2000).map(|n| format!("LD M{}\nOUT M{}\n", n % 1000, n % 1000 + 1)).collect();
+    let before = words(&format!("{long}END\n"), Model::Fx2n);
+    let after = words(&format!("{}END\n", long.replacen("LD M500\n", "LDI M500\n", 1)), Model::Fx2n);
+    let plan = host.plan(&before, Target::of(Model::Fx2n), &mut |_| {}).unwrap();
+    host.download(&plan, false, &mut |_| {}).unwrap();
+    let plan = host.plan(&after, Target::of(Model::Fx2n), &mut |_| {}).unwrap();
+    assert_eq!(plan.bytes(), 2, "one word");
+    let report = host.download(&plan, false, &mut |_| {}).unwrap();
+    assert_eq!((report.written, report.compared), (2, 2 * (after.len() + ParameterBlock::WORDS)));
+    assert_eq!(host.upload(&mut |_| {}).unwrap().program(), after);
+    // A shorter program leaves nothing of the longer one behind it.
+    let short = words("LD X0\nOUT Y0\nEND\n", Model::Fx2n);
+    let plan = host.plan(&short, Target::of(Model::Fx2n), &mut |_| {}).unwrap();
+    host.download(&plan, false, &mut |_| {}).unwrap();
+    assert_eq!(Image::from_bytes(&memory(&line)).unwrap(), Image::of(&short, Model::Fx2n).unwrap());
+    // And what was there before comes back.
+    host.download(&plan.undone(), false, &mut |_| {}).unwrap();
+    assert_eq!(host.upload(&mut |_| {}).unwrap().program(), after);
+}
+
+/// All of the program memory, as a host that reads all of it sees it.
+fn memory(line: &Loopback) -> Vec<u8> {
+    let block = ParameterBlock::new(Model::Fx2n).to_words();
+    let words = line.ends().server.plc().words();
+    block.iter().chain(&words).flat_map(|word| word.to_le_bytes()).collect()
+}
+
+#[test]
+fn what_does_not_belong_into_a_plc_is_refused_before_anything_is_changed() {
+    let line = Loopback::new(Model::Fx1s);
+    let mut host = line.host().unwrap();
+    let plan = |host: &mut rungwise::link::Host<Loopback>, list: &str, model| {
+        host.plan(&words(list, model), Target::of(model), &mut |_| {}).map(|_| ())
+    };
+    let wrong = LinkError::WrongModel { wanted: "FX2N", found: "FX1S" };
+    assert_eq!(plan(&mut host, "LD X0\nOUT Y0\nEND\n", Model::Fx2n), Err(wrong));
+    let large = vec![0x2400; 2001];
+    let found = host.plan(&large, Target::of(Model::Fx1s), &mut |_| {}).map(|_| ());
+    assert_eq!(found, Err(LinkError::TooLarge { steps: 2001, capacity: 2000 }));
+    // A keyword in the parameters.
+    assert_eq!(answers(&line, &framed(b"18008021234")), [ACK]);
+    assert_eq!(answers(&line, &framed(b"B")), [ACK]);
+    assert_eq!(plan(&mut host, "LD X0\nOUT Y0\nEND\n", Model::Fx1s), Err(LinkError::Keyword));
+}
+
+#[test]
+fn a_running_plc_takes_no_program() {
+    let line = Loopback::new(Model::Fx2n);
+    let mut host = line.host().unwrap();
+    let plan = host.plan(&words(MOTOR, Model::Fx2n), Target::of(Model::Fx2n), &mut |_| {}).unwrap();
+    host.download(&plan, true, &mut |_| {}).unwrap();
+    let asks = |body: &str| answers(&line, &framed(body.as_bytes()));
+    assert_eq!(asks("E7760E"), [ACK]);
+    assert_eq!(asks("E11805C020024"), [NAK]);
+    assert_eq!(asks("E11800002FFFF"), [NAK]);
+    assert_eq!(asks("B"), [NAK]);
+    // Half a program does not run.
+    assert_eq!(asks("E7250E"), [ACK]);
+    assert_eq!(asks("E11805C020034"), [NAK], "not enabled");
+    assert_eq!(asks("E7760E"), [ACK]);
+    assert_eq!(asks("E11805C020034"), [ACK]);
+    assert_eq!(asks("E8250E"), [ACK]);
+    assert_eq!(asks("E0001C001"), framed(b"1A"), "STOP, and the error lamp");
+    assert!(!host.start().unwrap());
+    let error = Point::named("M8066", Target::of(Model::Fx2n)).unwrap();
+    assert_eq!(host.read(&[error]).unwrap(), [1]);
+}
+
+#[test]
+fn watched_devices_come_in_one_exchange() {
+    for model in MODELS {
+        let line = Loopback::new(model);
+        let mut host = line.host().unwrap();
+        let target = Target::of(model);
+        let names = ["X3", "D5", "M10", "T3", "TS3", "Y7", "D7:32", "C9", "CS9", "M8001"];
+        let mut points: Vec<Point> = names.iter().map(|name| Point::named(name, target).unwrap()).collect();
+        if model != Model::Fx1s {
+            points.push(Point::named("C200", target).unwrap());
+        }
+        let mut watch = Watch::new(points.clone());
+        let values = [1, -5, 1, 77, 1, 1, 100_000, 9, 0, 1, -70_000];
+        for (point, value) in points.iter().zip(values).filter(|(_, value)| *value != 0) {
+            host.write(*point, value).unwrap();
+        }
+        assert_eq!(host.poll(&mut watch).unwrap(), values[..points.len()], "{model:?}");
+        line.ends().sent.clear();
+        host.poll(&mut watch).unwrap();
+        let requests = line.ends().sent.iter().filter(|byte| **byte == 2).count();
+        assert!(model == Model::Fx1s || requests <= 2, "{requests} requests: {model:?}");
+    }
+}
+
+#[test]
+fn a_host_that_is_refused_or_not_answered_says_so() {
+    let line = Loopback::new(Model::Fx2n);
+    let mut host = line.host().unwrap();
+    let refused = host.line().ask(&Address::<Program>::new(0xFFF0).read(8));
+    assert_eq!(refused, Err(LinkError::Refused { request: "E01FFF008".into() }));
+    let far = Point::named("D100", Target::of(Model::Fx2n)).unwrap();
+    assert_eq!(host.read(&[far]).unwrap(), [0], "and goes on");
+    let silent = rungwise::link::plc::Faults { drop: 1.0, ..Default::default() };
+    line.reconnect(silent);
+    assert_eq!(host.mode(), Err(LinkError::NoAnswer));
+    assert!(matches!(line.host().err(), Some(LinkError::NoAnswer)));
+    let dead = rungwise::link::plc::Faults { disconnect: 1.0, ..Default::default() };
+    line.reconnect(dead);
+    assert!(matches!(host.mode(), Err(LinkError::Gone { .. })));
+}
+
+#[test]
+fn a_plc_keeps_its_program_and_latched_devices_without_power() {
+    let mut plc = Plc::new(Target::of(Model::Fx2n), 10_000_000);
+    plc.load(&words(MOTOR, Model::Fx2n));
+    for (command, _) in [
+        (bit::<Extended>(DeviceKind::M, 600).force(true), ()),
+        (bit::<Extended>(DeviceKind::M, 5).force(true), ()),
+        (Extended::word(device(DeviceKind::D, 300)).unwrap().0.write(&[7, 0]), ()),
+        (Extended::word(device(DeviceKind::C, 220)).unwrap().0.write(&[1, 2, 3, 0]), ()),
+        (bit::<Extended>(DeviceKind::C, 100).force(true), ()),
+    ] {
+        plc.obey_host(&command, 0).unwrap();
+    }
+    let saved = plc.save().expect("something has changed");
+    let text = serde_json::to_string(&saved).unwrap();
+    let saved = serde_json::from_str(&text).unwrap();
+    let mut again = Plc::restored(&saved, 10_000_000).unwrap();
+    assert_eq!(again.words(), plc.words());
+    let machine = again.machine();
+    assert_eq!(machine.bit(device(DeviceKind::M, 600)), 0xFF);
+    assert_eq!(machine.bit(device(DeviceKind::C, 100)), 0xFF);
+    assert_eq!(machine.bit(device(DeviceKind::M, 5)), 0, "M5 is not latched");
+    assert_eq!(machine.word(device(DeviceKind::D, 300), 0), 7);
+    assert_eq!(machine.word(device(DeviceKind::C, 220), 0), 0x30201);
+    assert_eq!(again.save(), None, "nothing has changed since");
+    again.power_on(rungwise::link::Switch::Run, 0);
+    assert_eq!(again.mode(), Mode::Run);
+    assert_eq!(again.machine().word(device(DeviceKind::D, 300), 0), 7);
+}

@@ -1,0 +1,171 @@
+//! Downloads over lines with faults: what the host says of the PLC is true, and when the faults stop the job is finished.
+
+use crate::loopback::{Loopback, words};
+use rungwise::link::plc::{Faults, Plc, Server};
+use rungwise::link::{Fate, Mode, Switch};
+use rungwise::machine_code::{END, Image};
+use rungwise::target::{Model, Target};
+use std::ops::Range;
+
+/// Two programs that differ in many places, long enough for several frames.
+fn programs(model: Model) -> [Vec<u16>; 2] {
+    let list = |shift: usize| -> String {
+        (0..40).map(|n| format!("LD X{}\nOUT M{}\n", n % 8, (n * shift) % 100)).collect::<String>() + "END\n"
+    };
+    let longer = format!("LD M8000\nMOV K5 D0\n{}", list(3));
+    [words(&list(7), model), words(&longer, model)]
+}
+
+/// Faults of one script: each kind alone, or several, rare to frequent.
+fn faults_of(seed: u64) -> Faults {
+    let mut random = fastrand::Rng::with_seed(seed);
+    let mut share = |most: f64| if random.bool() { 0.0 } else { most * random.f64().powi(4) };
+    Faults {
+        drop: share(0.02),
+        flip: share(0.02),
+        duplicate: share(0.02),
+        delay: share(0.02),
+        disconnect: share(0.002),
+        nak: share(0.5),
+        delay_ms: 1 + seed % 3000,
+        seed,
+    }
+}
+
+fn program_in(line: &Loopback) -> Vec<u16> {
+    let words = line.ends().server.plc().words();
+    let end = words.iter().position(|word| *word == END).map_or(words.len(), |end| end + 1);
+    words[..end].to_vec()
+}
+
+/// What came of scripts, to see that they are neither all harmless nor all deadly.
+#[derive(Default, Debug)]
+struct Tally {
+    done: usize,
+    untouched: usize,
+    partial: usize,
+    unverified: usize,
+    wrong: Vec<String>,
+}
+
+/// A PLC that runs the first of two programs, which a host wants to replace by the second.
+struct Case {
+    target: &'static Target,
+    programs: [Vec<u16>; 2],
+    plc: Plc,
+}
+
+impl Case {
+    fn new(model: Model) -> Case {
+        let (target, programs) = (Target::of(model), programs(model));
+        let mut plc = Plc::new(target, 200_000_000);
+        plc.load(&programs[0]);
+        plc.power_on(Switch::Run, 0);
+        Case { target, programs, plc }
+    }
+
+    fn is_running(line: &Loopback) -> bool {
+        line.ends().server.plc().mode() == Mode::Run
+    }
+
+    /// Carries out the script of a seed; what the host says is compared with the PLC.
+    fn script(&self, seed: u64, tally: &mut Tally) {
+        let line = Loopback::with(Server::new(self.plc.clone()), Faults::default());
+        // Every other script has its faults from the beginning; the others when the plan is made.
+        let is_early = seed.is_multiple_of(2);
+        let start = || line.reconnect(faults_of(seed));
+        let [before, after] = &self.programs;
+        let mut wrong = Vec::new();
+        if is_early {
+            start();
+        }
+        let planned = line.host().and_then(|mut host| {
+            let plan = host.plan(after, self.target, &mut |_| {})?;
+            Ok((host, plan))
+        });
+        match planned {
+            Err(_) => {
+                tally.untouched += 1;
+                if program_in(&line) != *before || !Case::is_running(&line) {
+                    wrong.push("something has changed before the download".to_string());
+                }
+            }
+            Ok((_, plan)) if plan.before.program() != *before => {
+                wrong.push("not what is there was read".into())
+            }
+            Ok((mut host, plan)) => {
+                if !is_early {
+                    start();
+                }
+                let end = host.download(&plan, true, &mut |_| {});
+                let program = program_in(&line);
+                let (fate, is_true) = match &end {
+                    Ok(report) => {
+                        let is_running = report.mode == Mode::Run;
+                        (Fate::Verified, program == *after && Case::is_running(&line) == is_running)
+                    }
+                    Err(failure) => match failure.fate {
+                        Fate::Untouched | Fate::Stopped => (failure.fate, program == *before),
+                        Fate::Partial | Fate::Unverified => (failure.fate, !Case::is_running(&line)),
+                        Fate::Verified => (failure.fate, program == *after),
+                    },
+                };
+                if !is_true {
+                    wrong.push(format!("{end:?} is not true"));
+                }
+                match fate {
+                    Fate::Untouched | Fate::Stopped => tally.untouched += 1,
+                    Fate::Partial => tally.partial += 1,
+                    Fate::Unverified => tally.unverified += 1,
+                    Fate::Verified => tally.done += 1,
+                }
+            }
+        }
+        // The faults stop, and the same download finishes the job.
+        line.reconnect(Faults::default());
+        let again = line.host().and_then(|mut host| {
+            let plan = host.plan(after, self.target, &mut |_| {})?;
+            host.download(&plan, true, &mut |_| {}).map_err(|failure| failure.cause)
+        });
+        if !again.as_ref().is_ok_and(|report| report.mode == Mode::Run) || program_in(&line) != *after {
+            wrong.push(format!("the second try: {again:?}"));
+        }
+        let whole = Image::of(after, self.target.model).map(|image| image.memory().to_vec());
+        if Some(line.ends().server.plc().words()) != whole {
+            wrong.push("something is left behind the program".into());
+        }
+        tally.wrong.extend(wrong.into_iter().map(|what| format!("seed {seed}: {what}")));
+    }
+}
+
+fn check(model: Model, seeds: Range<u64>) {
+    let case = Case::new(model);
+    let mut tally = Tally::default();
+    let count = (seeds.end - seeds.start) as usize;
+    seeds.for_each(|seed| case.script(seed, &mut tally));
+    println!("{model:?}: {tally:?}");
+    assert!(tally.wrong.is_empty(), "{}", tally.wrong.join("\n"));
+    for (what, times) in [("done", tally.done), ("untouched", tally.untouched), ("partial", tally.partial)] {
+        assert!(times > count / 50, "{what}: {times}");
+    }
+}
+
+#[test]
+fn downloads_to_an_fx2n_are_told_truly_and_can_be_mended() {
+    check(Model::Fx2n, 0..2500);
+}
+
+#[test]
+fn downloads_to_an_fx2n_are_told_truly_and_can_be_mended_too() {
+    check(Model::Fx2n, 2500..5000);
+}
+
+#[test]
+fn downloads_to_an_fx1n_are_told_truly_and_can_be_mended() {
+    check(Model::Fx1n, 5000..7500);
+}
+
+#[test]
+fn downloads_to_an_fx1s_are_told_truly_and_can_be_mended() {
+    check(Model::Fx1s, 7500..10_000);
+}

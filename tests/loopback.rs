@@ -1,0 +1,154 @@
+//! A line to a virtual PLC without a computer between: its time is that of its bytes.
+
+use rungwise::link::frame::BITS_PER_BYTE;
+use rungwise::link::plc::{Faults, Plc, Server, Wire};
+use rungwise::link::{Host, Line, LinkError, Patience, Transport};
+use rungwise::machine_code::encode;
+use rungwise::target::{Model, Target};
+use std::io;
+use std::sync::{Arc, Mutex, MutexGuard};
+use std::time::Duration;
+
+/// Both ends of a line, shared by the host and the test.
+#[derive(Clone)]
+pub struct Loopback(Arc<Mutex<Ends>>);
+
+pub struct Ends {
+    pub server: Server,
+    to_plc: Wire,
+    to_host: Wire,
+    pub now_ns: i64,
+    byte_ns: i64,
+    busy_ns: [i64; 2],
+    /// Whether each answer is refused.
+    pub sent: Vec<u8>,
+    pub received: Vec<u8>,
+}
+
+/// From one scan to the next.
+pub const SCAN_NS: i64 = 10_000_000;
+
+impl Loopback {
+    pub fn new(model: Model) -> Loopback {
+        Loopback::with(Server::new(Plc::new(Target::of(model), SCAN_NS)), Faults::default())
+    }
+
+    pub fn with(server: Server, faults: Faults) -> Loopback {
+        let byte_ns = (BITS_PER_BYTE * 1_000_000_000 / 9600) as i64;
+        Loopback(Arc::new(Mutex::new(Ends {
+            server,
+            to_plc: Wire::new(faults, 0),
+            to_host: Wire::new(faults, 1),
+            now_ns: 0,
+            byte_ns,
+            busy_ns: [0; 2],
+            sent: Vec::new(),
+            received: Vec::new(),
+        })))
+    }
+
+    pub fn ends(&self) -> MutexGuard<'_, Ends> {
+        self.0.lock().unwrap()
+    }
+
+    /// A host at the other end.
+    pub fn host(&self) -> Result<Host<Loopback>, LinkError> {
+        Host::connect(Line::new(self.clone(), Patience::default(), Arc::default()))
+    }
+
+    /// The line is put together again, and goes on with these faults.
+    pub fn reconnect(&self, faults: Faults) {
+        let mut ends = self.ends();
+        ends.server.greet();
+        for wire in 0..2 {
+            let wire = if wire == 0 { &mut ends.to_plc } else { &mut ends.to_host };
+            wire.reconnect();
+            wire.set_faults(faults);
+        }
+    }
+}
+
+impl Ends {
+    fn arrival(&mut self, direction: usize) -> i64 {
+        self.busy_ns[direction] = self.now_ns.max(self.busy_ns[direction]) + self.byte_ns;
+        self.busy_ns[direction]
+    }
+
+    /// Lets everything happen that does so up to now.
+    fn settle(&mut self) {
+        while let Some(byte) = self.to_plc.receive(self.now_ns) {
+            self.server.advance(self.now_ns);
+            let Some(answer) = self.server.take(byte, self.now_ns) else { continue };
+            let bytes = if self.to_host.is_refused() { vec![0x15] } else { answer.bytes };
+            for byte in bytes {
+                let due = self.arrival(1);
+                self.to_host.send(byte, due);
+            }
+            if let Some(baud) = answer.baud {
+                self.byte_ns = (BITS_PER_BYTE * 1_000_000_000 / u64::from(baud)) as i64;
+            }
+        }
+        self.server.advance(self.now_ns);
+    }
+
+    fn is_dead(&self) -> bool {
+        self.to_plc.is_dead() || self.to_host.is_dead()
+    }
+}
+
+impl Transport for Loopback {
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        let mut ends = self.ends();
+        for byte in bytes {
+            ends.sent.push(*byte);
+            let due = ends.arrival(0);
+            ends.to_plc.send(*byte, due);
+        }
+        if ends.is_dead() { Err(io::ErrorKind::BrokenPipe.into()) } else { Ok(()) }
+    }
+
+    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
+        let mut ends = self.ends();
+        let end = ends.now_ns + wait.as_nanos() as i64;
+        loop {
+            ends.settle();
+            let now = ends.now_ns;
+            let mut count = 0;
+            while let Some(place) = buffer.get_mut(count)
+                && let Some(byte) = ends.to_host.receive(now)
+            {
+                *place = byte;
+                ends.received.push(byte);
+                count += 1;
+            }
+            if count > 0 {
+                return Ok(count);
+            }
+            if ends.is_dead() {
+                return Err(io::ErrorKind::BrokenPipe.into());
+            }
+            let next = [ends.to_plc.next_ns(), ends.to_host.next_ns()].into_iter().flatten().min();
+            match next {
+                Some(next) if next <= end => ends.now_ns = next.max(now),
+                _ => {
+                    ends.now_ns = end;
+                    ends.settle();
+                    return Ok(0);
+                }
+            }
+        }
+    }
+
+    fn set_baud(&mut self, _baud: u32) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn now(&self) -> Duration {
+        Duration::from_nanos(self.ends().now_ns as u64)
+    }
+}
+
+/// The words of an instruction list.
+pub fn words(list: &str, model: Model) -> Vec<u16> {
+    encode(list, Target::of(model)).unwrap_or_else(|found| panic!("{list}: {found:?}")).words
+}
