@@ -94,7 +94,7 @@ fn arguments_that_are_words_follow_the_language() {
 /// The English words of all tables.
 fn table_phrases() -> BTreeSet<&'static str> {
     let mut words: BTreeSet<&str> = BTreeSet::new();
-    for row in instructions::all() {
+    for row in instructions::all().chain([&instructions::UNREAD]) {
         words.insert(row.title);
         words.extend(row.operands.iter().map(|operand| operand.meaning));
     }
@@ -190,7 +190,8 @@ fn no_phrase_is_left_over() {
 
 fn english_pages() -> Vec<(Book, &'static str, String)> {
     let rules = RULES.iter().map(|rule| (Book::Rules, rule.code, rule.page()));
-    let rows = instructions::all().map(|row| (Book::Instructions, row.mnemonic, row.page.to_string()));
+    let rows = instructions::all().chain([&instructions::UNREAD]);
+    let rows = rows.map(|row| (Book::Instructions, row.mnemonic, row.page.to_string()));
     let operators = Operator::all().map(|row| (Book::Operators, row.name, row.page()));
     let functions = Function::families().map(|row| (Book::Functions, row.name, row.page()));
     let blocks = FunctionBlock::all().map(|row| (Book::Blocks, row.name, row.page()));

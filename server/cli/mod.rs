@@ -5,7 +5,9 @@ mod check;
 mod colour;
 mod comments;
 mod completions;
+mod decode;
 mod diff;
+mod encode;
 mod explain;
 mod fmt;
 mod help;
@@ -73,6 +75,10 @@ enum Verb {
     Test(test::Arguments),
     /// List the devices that programs use: where read, where written, comment.
     Usage(usage::Arguments),
+    /// Make machine code of a program: the words of a PLC's program memory.
+    Encode(encode::Arguments),
+    /// Write machine code as instruction list.
+    Decode(decode::Arguments),
     /// Show the page of a rule, an instruction, a function or a function block.
     Explain(explain::Arguments),
     /// Carry a program of LDmicro over: its own file (.ld) or its text export.
@@ -129,6 +135,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Verb::Run(verb) => run::run(&verb, language).into(),
         Verb::Test(verb) => test::run(&verb, language).into(),
         Verb::Usage(verb) => usage::run(&verb, language).into(),
+        Verb::Encode(verb) => encode::run(&verb, language).into(),
+        Verb::Decode(verb) => decode::run(&verb, language).into(),
         Verb::Explain(arguments) => explain::run(&arguments, language).into(),
         Verb::Import(arguments) => import::run(&arguments, language).into(),
         Verb::Completions(arguments) => completions::run(&arguments).into(),

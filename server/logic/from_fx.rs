@@ -4,7 +4,7 @@ use super::block::Block;
 use super::builder::Builder;
 use super::{Action, Contact, Deed, Gate, Path, Refusal, Rung, Term, Test};
 use crate::il::fx::{FxLine, FxTree, LineKind};
-use crate::target::{Flow, Form, Operand, Role};
+use crate::target::{Flow, Form, Opcode, Operand, Role};
 use crate::text::{Span, Spanned};
 
 /// The rung that a chunk of FX instruction list is.
@@ -59,6 +59,9 @@ impl Reader<'_> {
     fn instruction(&mut self, form: Form, line: &FxLine) -> Result<(), Refusal> {
         let is_fresh = self.builder.is_empty() && self.blocks.is_empty();
         let role = form.instruction.role;
+        if form.instruction.opcode == Opcode::Itself {
+            return Err(Refusal::Unreadable);
+        }
         if is_fresh && !matches!(role, Role::Load | Role::StepLoad | Role::Standalone) {
             return Err(Refusal::NoCurrentResult);
         }

@@ -302,7 +302,9 @@ fn level_or_bit(operand: &Operand, target: &Target) -> Result<u16, Uncoded> {
 fn label(operand: &Operand, target: &Target) -> Result<u16, Uncoded> {
     const FIRST: u16 = 0xB000;
     match device(operand, target)? {
-        Device { kind: DeviceKind::P, number: number @ 0..=127 } => Ok(FIRST + number as u16),
+        Device { kind: DeviceKind::P, number: number @ 0..=operands::LAST_POINTER } => {
+            Ok(FIRST + number as u16)
+        }
         Device { kind: DeviceKind::I, number } => Ok(guesses::INTERRUPT_LABEL + number as u16),
         _ => Err(Uncoded::Unknown),
     }

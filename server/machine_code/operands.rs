@@ -43,6 +43,9 @@ const INDEXED: u16 = 0x2000;
 /// The bits of a value that an index register leaves.
 const VALUE_BITS: u32 = 14;
 
+/// The last pointer of the first models.
+pub const LAST_POINTER: u32 = 127;
+
 /// Word devices: kind, first device, how many, area.
 const AREAS: [(DeviceKind, u32, u32, u8); 5] = [
     (DeviceKind::D, 8000, 256, 0),
@@ -67,6 +70,11 @@ pub fn write(operand: &Operand, is_wide: bool, target: &Target, words: &mut Vec<
         Operand::Indexed { device, index } => (of_device(device, target)?, Some(index)),
         Operand::Nibbles { digits, first, index } => {
             on(first, target)?;
+            let is_group =
+                matches!(first.kind, DeviceKind::X | DeviceKind::Y | DeviceKind::M | DeviceKind::S);
+            if !is_group || !(1..=8).contains(&digits) {
+                return Err(Uncoded::Unreadable);
+            }
             let value = bits::number(first).ok_or(Uncoded::Unknown)?;
             (Coded { kind: BIT, area: 2 * digits, value: u32::from(value) }, index)
         }
@@ -151,6 +159,10 @@ fn on(device: Device, target: &Target) -> Result<(), Uncoded> {
 fn of_device(device: Device, target: &Target) -> Result<Coded, Uncoded> {
     on(device, target)?;
     if device.kind == DeviceKind::P {
+        // No capture has a pointer that only the FX3U has.
+        if device.number > LAST_POINTER {
+            return Err(Uncoded::Unknown);
+        }
         return Ok(Coded { kind: POINTER, area: 0, value: 2 * device.number });
     }
     let device = register(device);

@@ -10,7 +10,7 @@ use crate::ladder::CoilKind;
 use crate::logic::{Deed, Term};
 use crate::target::outside::FIRST_HIGH_SPEED;
 use crate::target::{
-    Constant, Device, DeviceKind, Fault, Flow, Form, Model, Operand, Role, Semantics, Target,
+    Constant, Device, DeviceKind, Fault, Flow, Form, Model, Opcode, Operand, Role, Semantics, Target,
 };
 use crate::text::Span;
 use rustc_hash::FxHashMap;
@@ -349,6 +349,7 @@ impl Compiler {
         let flow = form.instruction.flow();
         match flow {
             Flow::Straight | Flow::Refresh => self.applied(form, terms),
+            Flow::Nothing if form.instruction.opcode == Opcode::Itself => Err(Obstacle::NoSimulation(form)),
             Flow::Nothing => Ok(()),
             Flow::InterruptsAllowed => {
                 self.applied(form, terms)?;

@@ -43,6 +43,8 @@ pub mod to_ladder;
 
 pub mod to_boolean;
 
+pub mod to_machine_code;
+
 pub mod from_boolean;
 
 use crate::document::{Document, Notation};

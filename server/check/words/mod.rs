@@ -6,6 +6,8 @@ pub(super) mod plain;
 
 mod unknown_instruction;
 
+mod unread_word;
+
 mod instruction_not_on_target;
 
 mod operand_count;
@@ -41,6 +43,7 @@ mod device_comments;
 /// The rules of this group.
 pub(super) const RULES: &[&Rule] = &[
     &unknown_instruction::RULE,
+    &unread_word::RULE,
     &instruction_not_on_target::RULE,
     &operand_count::RULE,
     &operand_kind::RULE,

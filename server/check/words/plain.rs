@@ -1,7 +1,7 @@
 //! Instructions that are right at one look, which most are. The rules about words look at the others only.
 
 use crate::document::Operation;
-use crate::target::{Access, Constant, Device, DeviceKind, Form, Operand, OperandSpec, Target};
+use crate::target::{Access, Constant, Device, DeviceKind, Form, Opcode, Operand, OperandSpec, Target};
 use crate::text::Spanned;
 
 /// Whether no rule about words and operands has anything to say about `operation`: a form that the model has, with as
@@ -11,6 +11,9 @@ pub(in crate::check) fn is_plain(operation: &Operation<'_>, target: &Target) -> 
     let Some(form) = operation.form.filter(|form| target.is_fx() && form.is_on(target.model)) else {
         return false;
     };
+    if form.instruction.opcode == Opcode::Itself {
+        return false;
+    }
     let operands = operation.operands;
     let first = operands.first().map(|first| first.value);
     let specs = match (form.instruction.operands, first.and_then(|first| first.device())) {

@@ -75,6 +75,12 @@ pub static UNREAD: Instruction = Instruction {
         Role::Standalone,
         "Stands for a word of program memory that is no instruction of the model, as far as is known. It is \
          found where a program was read from a PLC or a file, and goes back there as it is. What the PLC \
-         does with it is not known, so it cannot be simulated or translated.\n",
+         does with it is not known, so it cannot be simulated or translated.\n\n\
+         ```il\n\
+         LD X0\n\
+         NOP? H01FF\n\
+         OUT Y0\n\
+         END\n\
+         ```\n",
     )
 };

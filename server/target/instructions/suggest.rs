@@ -1,7 +1,7 @@
 //! The mnemonics that an unknown word may have meant.
 
 use super::FORMS;
-use crate::target::Model;
+use crate::target::{Model, Opcode};
 use std::cmp::Reverse;
 
 /// What other makers and IEC 61131-3 call the basic instructions.
@@ -43,7 +43,7 @@ pub fn suggestions(word: &str, model: Model) -> Vec<String> {
     let allowed = if word.len() <= 3 { 1 } else { 2 };
     let mut near: Vec<(usize, Reverse<usize>, String)> = FORMS
         .iter()
-        .filter(|(_, form)| form.is_on(model))
+        .filter(|(_, form)| form.is_on(model) && form.instruction.opcode != Opcode::Itself)
         .filter_map(|(key, form)| {
             let letters = key.to_be_bytes();
             let name = &letters[key.leading_zeros() as usize / 8..];
