@@ -14,6 +14,8 @@ mod help;
 mod import;
 mod input;
 mod language;
+mod link;
+mod plc;
 mod prove;
 mod render;
 mod run;
@@ -83,6 +85,30 @@ enum Verb {
     Explain(explain::Arguments),
     /// Carry a program of LDmicro over: its own file (.ld) or its text export.
     Import(import::Arguments),
+    /// Run a virtual PLC, which answers on TCP or a pseudo terminal as an FX does on its programming port.
+    Plc(plc::Arguments),
+    /// List the serial ports of this computer.
+    Ports,
+    /// Tell which PLC is there, what it does, and what has gone wrong in it.
+    Status(link::status::Arguments),
+    /// Write a program into a PLC: show what changes, ask, keep what was there, write, read back, compare.
+    Download(link::download::Arguments),
+    /// Read the program of a PLC into a file.
+    Upload(link::upload::Arguments),
+    /// Compare the program of a PLC with a file.
+    Verify(link::verify::Arguments),
+    /// Let a PLC run.
+    Start(link::control::Start),
+    /// Let a PLC stop.
+    Stop(link::control::Stop),
+    /// Clear the program or the devices of a PLC that stands still.
+    Clear(link::control::Clear),
+    /// Watch devices of a PLC.
+    Monitor(link::monitor::Arguments),
+    /// Write registers, current values and relays of a PLC.
+    Write(link::devices::Arguments),
+    /// Switch relays of a PLC; what the program writes is as it says after the next scan.
+    Force(link::devices::Arguments),
     /// Write a completion script for a shell to standard output.
     Completions(completions::Arguments),
 }
@@ -107,6 +133,8 @@ enum Outcome {
     Findings,
     /// Wrong usage or unreadable input: 2.
     Unusable,
+    /// The line to a PLC failed: 3.
+    LinkFailed,
 }
 
 /// Runs the command that `arguments` say, the program's name first, and returns the exit code.
@@ -139,6 +167,18 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Verb::Decode(verb) => decode::run(&verb, language).into(),
         Verb::Explain(arguments) => explain::run(&arguments, language).into(),
         Verb::Import(arguments) => import::run(&arguments, language).into(),
+        Verb::Plc(verb) => plc::run(&verb, language).into(),
+        Verb::Ports => link::ports::run(language).into(),
+        Verb::Status(verb) => link::status::run(&verb, language).into(),
+        Verb::Download(verb) => link::download::run(&verb, arguments.color, language).into(),
+        Verb::Upload(verb) => link::upload::run(&verb, language).into(),
+        Verb::Verify(verb) => link::verify::run(&verb, arguments.color, language).into(),
+        Verb::Start(verb) => link::control::start(&verb, language).into(),
+        Verb::Stop(verb) => link::control::stop(&verb, language).into(),
+        Verb::Clear(verb) => link::control::clear(&verb, language).into(),
+        Verb::Monitor(verb) => link::monitor::run(&verb, language).into(),
+        Verb::Write(verb) => link::devices::write(&verb, language).into(),
+        Verb::Force(verb) => link::devices::force(&verb, language).into(),
         Verb::Completions(arguments) => completions::run(&arguments).into(),
     }
 }
@@ -157,6 +197,7 @@ impl From<Outcome> for ExitCode {
             Outcome::Clean => ExitCode::from(0),
             Outcome::Findings => ExitCode::from(1),
             Outcome::Unusable => ExitCode::from(2),
+            Outcome::LinkFailed => ExitCode::from(3),
         }
     }
 }

@@ -82,7 +82,7 @@ pub(super) fn duration(word: &str) -> Result<i64, String> {
 }
 
 /// A time from one scan to the next, in nanoseconds.
-fn distance(word: &str) -> Result<i64, String> {
+pub(super) fn distance(word: &str) -> Result<i64, String> {
     duration(word).and_then(|time_ns| if time_ns > 0 { Ok(time_ns) } else { Err(word.to_string()) })
 }
 

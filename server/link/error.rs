@@ -83,6 +83,11 @@ pub enum LinkError {
     },
     /// This model cannot do that, or nobody knows how.
     NotOnThisModel,
+    /// A line has no such speed.
+    NoSpeed {
+        /// Bits a second.
+        baud: u32,
+    },
     /// The PLC has no such device, or none that the port reaches.
     NoDevice {
         /// Its name.
@@ -94,6 +99,18 @@ impl LinkError {
     /// What a failure of the system means on a line that was open.
     pub fn of_io(error: &io::Error) -> LinkError {
         LinkError::Gone { reason: error.to_string() }
+    }
+
+    /// Whether the line, or what is at its other end, has failed, and not what the user wants of a PLC that answers.
+    pub fn is_of_line(&self) -> bool {
+        !matches!(
+            self,
+            LinkError::Cancelled
+                | LinkError::NotOnThisModel
+                | LinkError::NoSpeed { .. }
+                | LinkError::NoDevice { .. }
+                | LinkError::StillRunning
+        )
     }
 
     /// The word by which scripts know it.
@@ -117,6 +134,7 @@ impl LinkError {
             LinkError::Mismatch { .. } => "mismatch",
             LinkError::Sum { .. } => "sum",
             LinkError::NotOnThisModel => "not-on-this-model",
+            LinkError::NoSpeed { .. } => "no-speed",
             LinkError::NoDevice { .. } => "no-device",
         }
     }
@@ -151,6 +169,7 @@ impl LinkError {
                 .with("wanted", format!("{wanted:04X}"))
                 .with("found", format!("{found:04X}")),
             LinkError::NotOnThisModel => Message::new("link.not-on-this-model"),
+            LinkError::NoSpeed { baud } => Message::new("link.no-speed").with("baud", baud),
             LinkError::NoDevice { device } => Message::new("link.no-device").with("device", device),
         }
     }
@@ -175,6 +194,7 @@ impl LinkError {
             LinkError::StillRunning => "link.help-still-running",
             LinkError::Mismatch { .. } | LinkError::Sum { .. } => "link.help-mismatch",
             LinkError::NotOnThisModel => "link.help-not-on-this-model",
+            LinkError::NoSpeed { .. } => "link.help-no-speed",
             LinkError::NoDevice { .. } => "link.help-no-device",
         })
     }

@@ -13,6 +13,9 @@ pub use watch::Watch;
 
 mod control;
 
+mod status;
+pub use status::{Status, StatusError};
+
 mod program;
 
 mod download;

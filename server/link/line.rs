@@ -143,6 +143,11 @@ impl<T: Transport> Line<T> {
         Ok(())
     }
 
+    /// Its speed in bits a second.
+    pub fn baud(&self) -> u32 {
+        self.baud
+    }
+
     /// How often something was not as it should be.
     pub fn troubles(&self) -> u32 {
         self.troubles

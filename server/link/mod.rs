@@ -25,6 +25,8 @@ mod mode;
 pub use mode::{Mode, Switch};
 
 mod host;
-pub use host::{DownloadFailure, Fate, Host, Identity, Plan, Point, Progress, Report, Stage, Watch};
+pub use host::{
+    DownloadFailure, Fate, Host, Identity, Plan, Point, Progress, Report, Stage, Status, StatusError, Watch,
+};
 
 pub mod plc;

@@ -36,10 +36,19 @@ impl Trace {
         Trace { names, variables, ..Trace::default() }
     }
 
+    /// A trace of what is noted by [`Trace::push`] alone.
+    pub fn of_names(names: Vec<String>) -> Trace {
+        Trace { names, ..Trace::default() }
+    }
+
     /// Notes what the variables are after a scan.
     pub fn note(&mut self, machine: &Machine<u8>) {
         let values = self.variables.iter().map(|variable| machine.value(*variable, 0)).collect();
-        let row = Row { scan: machine.scans().saturating_sub(1), time_ns: machine.now_ns(), values };
+        self.push(Row { scan: machine.scans().saturating_sub(1), time_ns: machine.now_ns(), values });
+    }
+
+    /// Notes values that come from elsewhere, in the order of the names.
+    pub fn push(&mut self, row: Row) {
         let is_news = self.rows.last().is_none_or(|before| before.values != row.values);
         match is_news {
             true => {

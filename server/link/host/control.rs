@@ -1,6 +1,7 @@
 //! Orders to the CPU: run, stop, forget.
 
 use super::{Dialect, Host, Point};
+use crate::link::command::Speed;
 use crate::link::{Command, LinkError, Mode, Part, Transport};
 use crate::target::{Device, DeviceKind};
 use std::time::Duration;
@@ -75,6 +76,23 @@ impl<T: Transport> Host<T> {
         let steps: &[u8] = if is_program { &CLEAR_PROGRAM } else { &CLEAR_DEVICES };
         for step in steps {
             self.line.ask(&Command::Clear(*step))?;
+        }
+        Ok(())
+    }
+
+    /// Switches the line to another speed, in bits a second: 19200, 38400, 57600 or 115200. If the PLC does not answer
+    /// there, the line is left as it was.
+    ///
+    /// # Errors
+    /// If there is no such speed, the PLC does not know it, or the line fails.
+    pub fn set_speed(&mut self, baud: u32) -> Result<(), LinkError> {
+        let speed = Speed::of_baud(baud).ok_or(LinkError::NoSpeed { baud })?;
+        let before = self.line.baud();
+        self.line.ask(&Command::Speed(speed))?;
+        self.line.set_baud(baud)?;
+        if let Err(error) = self.mode() {
+            self.line.set_baud(before)?;
+            return Err(error);
         }
         Ok(())
     }

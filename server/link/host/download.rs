@@ -5,7 +5,7 @@ use super::{Dialect, Host};
 use crate::link::frame::MOST_DATA;
 use crate::link::{Command, LinkError, Mode, Transport};
 use crate::machine_code::{Image, PARAMETER_ADDRESS, PROGRAM_ADDRESS, ParameterBlock};
-use crate::target::Target;
+use crate::target::{Model, Target};
 use crate::text::Message;
 use std::time::Duration;
 
@@ -18,6 +18,17 @@ pub enum Stage {
     Writing,
     /// What was written is read back and compared.
     Comparing,
+}
+
+impl Stage {
+    /// The word for it.
+    pub fn message(self) -> Message {
+        Message::new(match self {
+            Stage::Reading => "link.stage-reading",
+            Stage::Writing => "link.stage-writing",
+            Stage::Comparing => "link.stage-comparing",
+        })
+    }
 }
 
 /// How far it is.
@@ -36,6 +47,8 @@ pub struct Progress {
 /// A download that has not begun: what is in the PLC, and what shall be.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Plan {
+    /// The model of the PLC.
+    pub model: Model,
     /// What was read from the PLC.
     pub before: Image,
     /// What shall be there.
@@ -103,7 +116,7 @@ impl Plan {
 
     /// The plan that undoes this one.
     pub fn undone(&self) -> Plan {
-        Plan { before: self.wanted.clone(), wanted: self.before.clone() }
+        Plan { model: self.model, before: self.wanted.clone(), wanted: self.before.clone() }
     }
 }
 
@@ -132,7 +145,7 @@ impl<T: Transport> Host<T> {
         let capacity = parameters.program_steps() as usize;
         let wanted = Image::new(parameters, program).filter(|_| program.len() <= capacity);
         let wanted = wanted.ok_or(LinkError::TooLarge { steps: program.len(), capacity })?;
-        Ok(Plan { before, wanted })
+        Ok(Plan { model: target.model, before, wanted })
     }
 
     /// Carries a plan out: stop, write what has changed, read all of it back, compare the sum, and start if `is_started`

@@ -3,6 +3,7 @@
 use crate::link::address::Part;
 use crate::target::{Device, DeviceKind, Operand, Target};
 use std::fmt;
+use std::ops::RangeInclusive;
 
 /// Something with a value in a PLC.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -45,6 +46,17 @@ impl Point {
             'C' => Some(Point::Bit(device, Part::Coil)),
             'N' => Some(Point::Word(device)),
             _ => None,
+        }
+    }
+
+    /// The numbers that it takes.
+    pub fn range(self) -> RangeInclusive<i64> {
+        let wide = i64::from(i32::MIN)..=i64::from(i32::MAX);
+        match self {
+            Point::Bit(..) => 0..=1,
+            Point::Pair(_) => wide,
+            Point::Word(device) if device.kind == DeviceKind::C && device.number >= 200 => wide,
+            Point::Word(_) => i64::from(i16::MIN)..=i64::from(i16::MAX),
         }
     }
 

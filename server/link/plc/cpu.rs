@@ -3,7 +3,7 @@
 use crate::document::{Document, Notation};
 use crate::link::{Mode, Switch};
 use crate::machine_code::{END, Image, ParameterBlock, decode, sum};
-use crate::simulate::{Code, Machine, compile};
+use crate::simulate::{Code, Machine, Value, Variable, compile};
 use crate::target::{Device, DeviceKind, Target};
 use std::sync::Arc;
 
@@ -119,9 +119,10 @@ impl Plc {
         }
     }
 
-    /// Switches what is wired to an input.
-    pub fn wire(&mut self, input: Device, on: bool) {
-        self.machine.set(input, if on { 0xFF } else { 0 });
+    /// Somebody switches what is wired to an input, or writes a device as if with a panel.
+    pub fn put(&mut self, variable: Variable, value: &Value) {
+        self.machine.write(variable, value);
+        self.is_changed = true;
     }
 
     /// Runs the scans that are due; gives when the next one is, if the CPU runs.

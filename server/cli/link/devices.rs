@@ -1,0 +1,75 @@
+//! `rungwise write` and `rungwise force`
+
+use super::Connection;
+use super::connection::failed;
+use crate::cli::Outcome;
+use crate::cli::input::complain;
+use crate::link::Point;
+use crate::simulate::{Setting, Value};
+use crate::target::Target;
+use crate::text::{Language, Message};
+use std::path::Path;
+
+#[derive(clap::Args)]
+pub(in crate::cli) struct Arguments {
+    /// What gets which value: D0=5, D2:32=100000, T0=0, M5=on.
+    #[arg(required = true, value_name = "DEVICE=VALUE")]
+    settings: Vec<String>,
+    #[command(flatten)]
+    connection: Connection,
+}
+
+/// Writes registers, current values and relays.
+pub(in crate::cli) fn write(arguments: &Arguments, language: Language) -> Outcome {
+    carry_out(arguments, false, language).unwrap_or_else(|outcome| outcome)
+}
+
+/// Switches relays.
+pub(in crate::cli) fn force(arguments: &Arguments, language: Language) -> Outcome {
+    carry_out(arguments, true, language).unwrap_or_else(|outcome| outcome)
+}
+
+fn carry_out(arguments: &Arguments, is_forced: bool, language: Language) -> Result<Outcome, Outcome> {
+    let refused = |reason: Message| {
+        complain(
+            "bad-value",
+            &reason.render(language),
+            &Message::new("link.help-values").render(language),
+            language,
+        );
+        Outcome::Unusable
+    };
+    let settings: Vec<Setting> = arguments
+        .settings
+        .iter()
+        .map(|word| Setting::read(word).map_err(refused))
+        .collect::<Result<_, _>>()?;
+    let mut host = arguments.connection.open(Path::new("."), language)?;
+    let target = host.identity().target;
+    // All are looked at before one is written.
+    let points = settings
+        .iter()
+        .map(|setting| written(setting, is_forced, target).map_err(refused))
+        .collect::<Result<Vec<_>, _>>()?;
+    for (point, value) in points {
+        host.write(point, value).map_err(|error| failed(&error, language))?;
+    }
+    Ok(Outcome::Clean)
+}
+
+/// Which point gets which number.
+fn written(setting: &Setting, is_forced: bool, target: &Target) -> Result<(Point, i64), Message> {
+    let name = &setting.name;
+    let unknown = || Message::new("link.no-device").with("device", name);
+    let point = Point::named(name, target).ok_or_else(unknown)?;
+    if is_forced && !point.is_bit() {
+        return Err(Message::new("link.no-relay").with("device", name));
+    }
+    let value = match (point.is_bit(), &setting.value) {
+        (true, value) => value.as_bit().map(i64::from),
+        (false, Value::Number(number)) => Some(*number).filter(|number| point.range().contains(number)),
+        _ => None,
+    };
+    let wrong = || Message::new("link.no-value").with("device", name).with("value", &setting.value);
+    value.map(|value| (point, value)).ok_or_else(wrong)
+}

@@ -1,0 +1,113 @@
+//! `rungwise download`
+
+use super::Connection;
+use super::connection::{Bar, confirmed, failed};
+use super::contents::{keep, latest, words_at};
+use crate::cli::Outcome;
+use crate::cli::colour::Colour;
+use crate::cli::diff::unified;
+use crate::cli::input::{complain, remark, say};
+use crate::link::{Identity, Mode, Plan};
+use crate::machine_code::decode;
+use crate::text::{Language, Message};
+use std::path::{Path, PathBuf};
+
+#[derive(clap::Args)]
+pub(in crate::cli) struct Arguments {
+    /// A program, a project, or a backup; the current project if left out.
+    file: Option<PathBuf>,
+    #[command(flatten)]
+    connection: Connection,
+    /// Do not ask before the PLC is stopped and written.
+    #[arg(long)]
+    yes: bool,
+    /// Start the PLC when the program is in it and was found to be right.
+    #[arg(long)]
+    start: bool,
+    /// Show what would change, and change nothing.
+    #[arg(long)]
+    dry_run: bool,
+    /// Write what was in the PLC before the last download.
+    #[arg(long, conflicts_with = "file")]
+    rollback: bool,
+}
+
+pub(in crate::cli) fn run(arguments: &Arguments, colour: Colour, language: Language) -> Outcome {
+    carry_out(arguments, colour, language).unwrap_or_else(|outcome| outcome)
+}
+
+fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Result<Outcome, Outcome> {
+    let here = PathBuf::from(".");
+    let beside = arguments.file.as_deref().unwrap_or(&here);
+    let backup = if arguments.rollback { latest(beside) } else { None };
+    if arguments.rollback && backup.is_none() {
+        let reason = Message::new("link.no-backup").render(language);
+        complain("no-backup", &reason, &Message::new("link.help-backup").render(language), language);
+        return Err(Outcome::Unusable);
+    }
+    let (words, target) = words_at(backup.as_deref().unwrap_or(beside), language)?;
+    let mut host = arguments.connection.open(beside, language)?;
+    let mut bar = Bar::new(language);
+    let plan = host.plan(&words, target, &mut |progress| bar.show(progress));
+    bar.clear();
+    let plan = plan.map_err(|error| failed(&error, language))?;
+    say(&changes(&plan, colour, language));
+    if plan.bytes() == 0 {
+        remark(&Message::new("link.same").render(language));
+    }
+    if arguments.dry_run {
+        return Ok(if plan.bytes() == 0 { Outcome::Clean } else { Outcome::Findings });
+    }
+    let question =
+        Message::new(if arguments.start { "link.ask-download-start" } else { "link.ask-download" })
+            .with("bytes", plan.bytes())
+            .with("model", host.identity().target.title);
+    if !confirmed(&question, arguments.yes, language) {
+        return Err(Outcome::Findings);
+    }
+    back_up(beside, host.identity(), &plan, language)?;
+    let report = host.download(&plan, arguments.start, &mut |progress| bar.show(progress));
+    bar.clear();
+    match report {
+        Ok(report) => {
+            let done = Message::new("link.downloaded")
+                .with("steps", words.len())
+                .with("written", report.written)
+                .with("compared", report.compared);
+            remark(&done.render(language));
+            let mode = if report.mode == Mode::Run { "link.runs" } else { "link.stands-still" };
+            remark(&Message::new(mode).render(language));
+            let is_as_asked = !arguments.start || report.mode == Mode::Run;
+            Ok(if is_as_asked { Outcome::Clean } else { Outcome::Findings })
+        }
+        Err(failure) => {
+            let outcome = failed(&failure.cause, language);
+            remark(&failure.state().render(language));
+            Err(outcome)
+        }
+    }
+}
+
+/// What changes in the PLC, as a diff of instruction lists.
+pub(super) fn changes(plan: &Plan, colour: Colour, language: Language) -> String {
+    let list = |words: &[u16]| decode(words, plan.model).text;
+    let (before, after) = (list(plan.before.program()), list(plan.wanted.program()));
+    if before == after {
+        return String::new();
+    }
+    unified(&Message::new("link.program-in-plc").render(language), &before, &after, colour)
+}
+
+fn back_up(beside: &Path, identity: Identity, plan: &Plan, language: Language) -> Result<(), Outcome> {
+    match keep(beside, identity, &plan.before) {
+        Ok(path) => {
+            remark(&Message::new("link.backed-up").with("path", path.display()).render(language));
+            Ok(())
+        }
+        Err(error) => {
+            let reason = Message::new("link.cannot-back-up").with("reason", error).render(language);
+            complain("no-backup", &reason, &Message::new("cli.make-room").render(language), language);
+            Err(Outcome::Unusable)
+        }
+    }
+}

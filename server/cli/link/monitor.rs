@@ -1,0 +1,112 @@
+//! `rungwise monitor`
+
+use super::Connection;
+use super::connection::failed;
+use super::status::StatusFormat;
+use crate::cli::Outcome;
+use crate::cli::input::{complain, put, say};
+use crate::cli::run::duration;
+use crate::link::{Point, Watch};
+use crate::simulate::{Trace, TraceRow, Value, milliseconds};
+use crate::text::{Language, Message};
+use serde_json::{Map, Value as Json, json};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+#[derive(clap::Args)]
+pub(in crate::cli) struct Arguments {
+    /// What is watched: X0, D10, D0:32, T0 (current value), TS0 (contact), TC0 (coil).
+    #[arg(required = true, value_name = "DEVICE")]
+    devices: Vec<String>,
+    #[command(flatten)]
+    connection: Connection,
+    /// Time from one look to the next; as fast as the line is if left out.
+    #[arg(long, value_name = "TIME", value_parser = duration, default_value = "0ms")]
+    interval: i64,
+    /// So many looks; until Ctrl-C if left out.
+    #[arg(long, value_name = "N")]
+    count: Option<u64>,
+    /// Writes the values over time to a file, as a value change dump (.vcd) or a table (.csv).
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
+    /// The shape of the result: a line for each look in which something changed.
+    #[arg(long, value_enum, default_value = "text")]
+    format: StatusFormat,
+}
+
+pub(in crate::cli) fn run(arguments: &Arguments, language: Language) -> Outcome {
+    carry_out(arguments, language).unwrap_or_else(|outcome| outcome)
+}
+
+fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outcome> {
+    let mut host = arguments.connection.open(Path::new("."), language)?;
+    let target = host.identity().target;
+    let point = |name: &String| {
+        Point::named(name, target).ok_or_else(|| {
+            let reason = Message::new("link.no-device").with("device", name).render(language);
+            complain("no-device", &reason, &Message::new("link.help-no-device").render(language), language);
+            Outcome::Unusable
+        })
+    };
+    let points = arguments.devices.iter().map(point).collect::<Result<Vec<_>, _>>()?;
+    let mut watch = Watch::new(points.clone());
+    let mut trace = Trace::of_names(arguments.devices.clone());
+    let start = host.line().now();
+    let mut look = 0;
+    let end = loop {
+        let values = match host.poll(&mut watch) {
+            Ok(values) => values,
+            Err(error) => break Err(error),
+        };
+        let typed = |(point, value): (&Point, i64)| match point.is_bit() {
+            true => Value::Bit(value != 0),
+            false => Value::Number(value),
+        };
+        let values = points.iter().zip(values).map(typed).collect();
+        let time_ns = host.line().now().saturating_sub(start).as_nanos() as i64;
+        let rows = trace.rows.len();
+        trace.push(TraceRow { scan: look, time_ns, values });
+        if trace.rows.len() > rows {
+            tell(&trace, arguments.format);
+        }
+        look += 1;
+        if arguments.count.is_some_and(|count| look >= count) {
+            break Ok(());
+        }
+        std::thread::sleep(Duration::from_nanos(arguments.interval.max(0) as u64));
+    };
+    trace.end();
+    if let Some(path) = &arguments.trace {
+        let is_dump = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vcd"));
+        let text = match is_dump {
+            true => trace.vcd().map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).unwrap_or_default(),
+            false => trace.csv(),
+        };
+        if !put(&text, Some(path), language) {
+            return Err(Outcome::Unusable);
+        }
+    }
+    match end {
+        // Whoever watches ends it this way.
+        Ok(()) | Err(crate::link::LinkError::Cancelled) => Ok(Outcome::Clean),
+        Err(error) => Err(failed(&error, language)),
+    }
+}
+
+/// A line with the values of the last look.
+fn tell(trace: &Trace, format: StatusFormat) {
+    let Some(row) = trace.rows.last() else { return };
+    let values = trace.names.iter().zip(&row.values);
+    let text = match format {
+        StatusFormat::Json => {
+            let values: Map<String, Json> =
+                values.map(|(name, value)| (name.clone(), value.json())).collect();
+            json!({ "time_ms": row.time_ns / 1_000_000, "values": values }).to_string()
+        }
+        StatusFormat::Text => {
+            let words: Vec<String> = values.map(|(name, value)| format!("{name}={value}")).collect();
+            format!("{} ms  {}", milliseconds(row.time_ns), words.join("  "))
+        }
+    };
+    say(&format!("{text}\n"));
+}

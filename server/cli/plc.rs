@@ -1,0 +1,266 @@
+//! `rungwise plc`: the virtual PLC.
+
+use super::Outcome;
+use super::check::target_named;
+use super::encode::encoded;
+use super::input::{caution, complain, remark, say};
+use super::run::distance;
+use crate::link::Switch;
+use crate::link::plc::{Faults, Plc, Saved, Server, Service};
+use crate::link::transport::pty;
+use crate::simulate::Setting;
+use crate::target::{Model, Target};
+use crate::text::{Language, Message};
+use clap::ValueEnum;
+use std::io::{BufRead, Write};
+use std::net::TcpListener;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    /// The address to listen on; port 0 is any that is free.
+    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:5551", conflicts_with = "pty")]
+    listen: String,
+    /// Listen on a pseudo terminal, which hosts open as a serial port.
+    #[arg(long)]
+    pty: bool,
+    /// The model [default: that of the program, else fx2n].
+    #[arg(long, value_name = "MODEL", value_parser = target_named)]
+    model: Option<&'static Target>,
+    /// A program that is in the memory from the beginning.
+    #[arg(long, value_name = "FILE")]
+    program: Option<PathBuf>,
+    /// Where program and latched devices are kept from one run to the next.
+    #[arg(long, value_name = "FILE")]
+    state: Option<PathBuf>,
+    /// The switch on the PLC.
+    #[arg(long, value_enum, default_value = "run")]
+    switch: SwitchWord,
+    /// Time from one scan to the next.
+    #[arg(long, value_name = "TIME", value_parser = distance, default_value = "10ms")]
+    scan_time: i64,
+    /// Run one scan for each request, so that what a host sees depends on nothing but what it asked.
+    #[arg(long)]
+    stepped: bool,
+    /// The speed of the line in bits a second; as fast as can be if left out.
+    #[arg(long, value_name = "BAUD", value_parser = clap::value_parser!(u32).range(300..=1_000_000))]
+    baud: Option<u32>,
+    /// Faults on the line: drop=0.01,flip=0.001,duplicate=0.01,delay=0.1:200ms,disconnect=0.001,nak=0.05,seed=7.
+    #[arg(long, value_name = "FAULTS", default_value = "")]
+    faults: String,
+}
+
+/// The switch on the PLC.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum SwitchWord {
+    /// The PLC runs.
+    Run,
+    /// The PLC waits for orders.
+    Stop,
+}
+
+impl From<SwitchWord> for Switch {
+    fn from(word: SwitchWord) -> Switch {
+        match word {
+            SwitchWord::Run => Switch::Run,
+            SwitchWord::Stop => Switch::Stop,
+        }
+    }
+}
+
+/// How often the memory is kept while the program changes it.
+const KEEPING_NS: i64 = 1_000_000_000;
+
+pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
+    let faults = match Faults::read(&arguments.faults) {
+        Ok(faults) => faults,
+        Err(reason) => return unusable("bad-faults", &reason, "link.help-faults", language),
+    };
+    let Some(mut plc) = plc_of(arguments, language) else { return Outcome::Unusable };
+    plc.power_on(arguments.switch.into(), 0);
+    let model = plc.target().title;
+    let server = match arguments.stepped {
+        true => Server::stepped(plc, arguments.scan_time),
+        false => Server::new(plc),
+    };
+    let mut person =
+        Person { words: words_from_input(), kept_ns: 0, state: arguments.state.clone(), language };
+    let mut attend = |server: &mut Server, now_ns: i64| person.attend(server, now_ns);
+    let service = Service::new(server, faults, arguments.baud, &mut attend);
+    let ready = |port: &str| {
+        say(&Message::new("link.listening").with("model", model).with("port", port).render(language));
+        say("\n");
+    };
+    if arguments.pty {
+        let (mut transport, name, _other_end) = match pty() {
+            Ok(ends) => ends,
+            Err(error) => {
+                let reason = Message::new("link.no-pty").with("reason", error);
+                return unusable("no-pty", &reason, "link.help-no-pty", language);
+            }
+        };
+        ready(&name);
+        service.on_line(&mut transport);
+        return Outcome::Clean;
+    }
+    let bound =
+        TcpListener::bind(&arguments.listen).and_then(|listener| Ok((listener.local_addr()?, listener)));
+    let (address, listener) = match bound {
+        Ok(bound) => bound,
+        Err(error) => {
+            let reason =
+                Message::new("link.cannot-listen").with("address", &arguments.listen).with("reason", error);
+            return unusable("cannot-listen", &reason, "link.help-cannot-listen", language);
+        }
+    };
+    if !address.ip().is_loopback() {
+        let reason = Message::new("link.open-to-all").with("address", address).render(language);
+        caution("open-to-all", &reason, &Message::new("link.help-open-to-all").render(language), language);
+    }
+    ready(&format!("tcp://{address}"));
+    match service.on_tcp(&listener) {
+        Ok(()) => Outcome::Clean,
+        Err(error) => {
+            let reason = Message::new("link.gone").with("reason", error);
+            unusable("line-gone", &reason, "link.help-gone", language)
+        }
+    }
+}
+
+fn unusable(code: &str, reason: &Message, help: &'static str, language: Language) -> Outcome {
+    complain(code, &reason.render(language), &Message::new(help).render(language), language);
+    Outcome::Unusable
+}
+
+/// The PLC as it was left, or a new one, with the program that it is to have; nothing after complaints.
+fn plc_of(arguments: &Arguments, language: Language) -> Option<Plc> {
+    let program = match &arguments.program {
+        Some(path) => Some(encoded(path, arguments.model, language).ok()?),
+        None => None,
+    };
+    let saved = match arguments.state.as_deref().filter(|path| path.exists()) {
+        Some(path) => Some(restored(path, arguments.scan_time, language)?),
+        None => None,
+    };
+    let of_program = program.as_ref().map(|program| program.target);
+    let target = arguments.model.or(of_program).unwrap_or(Target::of(Model::Fx2n));
+    if !target.is_fx() {
+        let reason = Message::new("link.no-model").with("target", target.name);
+        unusable("target-refused", &reason, "link.help-unknown-type", language);
+        return None;
+    }
+    // A model that is asked for is another PLC than the one that was left.
+    let is_asked =
+        |plc: &Plc| arguments.model.or(of_program).is_none_or(|target| target.model == plc.target().model);
+    let mut plc = saved.filter(is_asked).unwrap_or_else(|| Plc::new(target, arguments.scan_time));
+    if let Some(program) = program {
+        plc.load(&program.words());
+    }
+    Some(plc)
+}
+
+fn restored(path: &Path, scan_ns: i64, language: Language) -> Option<Plc> {
+    let read = || -> Result<Plc, Message> {
+        let wrong = |reason: String| Message::new("link.state-unreadable").with("reason", reason);
+        let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
+        let saved: Saved = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+        Plc::restored(&saved, scan_ns)
+    };
+    match read() {
+        Ok(plc) => Some(plc),
+        Err(reason) => {
+            let reason = format!("{}: {}", path.display(), reason.render(language));
+            complain("bad-state", &reason, &Message::new("link.help-state").render(language), language);
+            None
+        }
+    }
+}
+
+/// The person in front of the PLC: switches inputs, turns its switch, looks at it.
+struct Person {
+    words: Receiver<String>,
+    kept_ns: i64,
+    state: Option<PathBuf>,
+    language: Language,
+}
+
+/// The lines of standard input.
+fn words_from_input() -> Receiver<String> {
+    let (sender, words) = channel();
+    std::thread::spawn(move || {
+        for line in std::io::stdin().lock().lines().map_while(Result::ok) {
+            if sender.send(line).is_err() {
+                return;
+            }
+        }
+    });
+    words
+}
+
+impl Person {
+    /// Does what was typed; whether to go on.
+    fn attend(&mut self, server: &mut Server, now_ns: i64) -> bool {
+        loop {
+            match self.words.try_recv() {
+                Ok(line) if matches!(line.trim(), "quit" | "exit") => {
+                    self.keep(server);
+                    return false;
+                }
+                Ok(line) => {
+                    let answer = self.obey(server, line.trim(), now_ns);
+                    say(&answer.map_or(String::new(), |answer| format!("{answer}\n")));
+                }
+                // A PLC without anybody in front of it goes on.
+                Err(TryRecvError::Empty | TryRecvError::Disconnected) => break,
+            }
+        }
+        if now_ns - self.kept_ns >= KEEPING_NS {
+            self.kept_ns = now_ns;
+            self.keep(server);
+        }
+        true
+    }
+
+    /// Does what a line says; gives what is answered.
+    fn obey(&self, server: &mut Server, line: &str, now_ns: i64) -> Option<String> {
+        let code = std::sync::Arc::clone(server.plc().machine().code());
+        match line {
+            "" => return None,
+            "run" => server.plc_mut().turn(Switch::Run, now_ns),
+            "stop" => server.plc_mut().turn(Switch::Stop, now_ns),
+            _ => {
+                let set = Setting::read(line).ok().and_then(|setting| {
+                    let variable = code.variable(&setting.name)?;
+                    server.plc_mut().put(variable, &setting.value);
+                    Some(String::new())
+                });
+                let shown = set.or_else(|| {
+                    let machine = server.plc().machine();
+                    Some(format!("{} = {}", line, machine.value(code.variable(line)?, 0)))
+                });
+                let unknown = || Message::new("link.plc-words").with("line", line).render(self.language);
+                return Some(shown.unwrap_or_else(unknown)).filter(|answer| !answer.is_empty());
+            }
+        }
+        None
+    }
+
+    fn keep(&self, server: &mut Server) {
+        let Some(path) = &self.state else { return };
+        let Some(saved) = server.plc_mut().save() else { return };
+        if let Err(error) = written(path, &saved) {
+            remark(&format!("{}: {error}", path.display()));
+        }
+    }
+}
+
+/// Puts the memory into a file that is whole at any time, for nobody else to read.
+fn written(path: &Path, saved: &Saved) -> std::io::Result<()> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut file = tempfile::NamedTempFile::new_in(folder)?;
+    serde_json::to_writer(&mut file, saved)?;
+    file.flush()?;
+    file.persist(path)?;
+    Ok(())
+}
