@@ -4,6 +4,7 @@ use super::{BAUD, Transport};
 use crate::link::LinkError;
 use serialport::{DataBits, ErrorKind, Parity, SerialPort, SerialPortType, StopBits};
 use std::io::{self, Read, Write};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// A serial port of this computer.
@@ -70,11 +71,16 @@ fn refusal(name: &str, error: &serialport::Error) -> LinkError {
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => LinkError::Forbidden { port },
         ErrorKind::Io(io::ErrorKind::NotFound) => LinkError::NoPort { port },
         ErrorKind::Io(io::ErrorKind::WouldBlock | io::ErrorKind::ResourceBusy) => LinkError::InUse { port },
-        // Some systems say so of a port that is open elsewhere; one that is not listed is not there.
-        ErrorKind::NoDevice if ports().iter().any(|port| port.name == name) => LinkError::InUse { port },
+        // Systems say so of a port that is open elsewhere, too.
+        ErrorKind::NoDevice if is_there(name) => LinkError::InUse { port },
         ErrorKind::NoDevice => LinkError::NoPort { port },
         _ => LinkError::Unreachable { port, reason: error.to_string() },
     }
+}
+
+/// Whether there is such a port, be it open elsewhere; pseudo terminals are on no list.
+fn is_there(name: &str) -> bool {
+    Path::new(name).exists() || ports().iter().any(|port| port.name == name)
 }
 
 impl Transport for SerialTransport {
