@@ -286,6 +286,21 @@ impl Value {
         }
     }
 
+    /// The value that a program has sent: true, 25, 2.5, or a word as people write it.
+    pub fn of_json(value: &Json) -> Option<Value> {
+        match value {
+            Json::Bool(on) => Some(Value::Bit(*on)),
+            Json::Number(number) => {
+                let whole = number.as_i64().map(Value::Number);
+                whole
+                    .or_else(|| number.as_u64().map(Value::Unsigned))
+                    .or_else(|| number.as_f64().map(Value::Real))
+            }
+            Json::String(word) => Value::read(word),
+            _ => None,
+        }
+    }
+
     /// As programs that read results want it.
     pub fn json(&self) -> Json {
         match self {

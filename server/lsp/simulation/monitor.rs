@@ -10,7 +10,7 @@ use tower_lsp::ls_types::notification::Notification;
 use tower_lsp::ls_types::{Range, Uri};
 
 /// The method.
-pub(super) enum MonitorMethod {}
+pub(in crate::lsp) enum MonitorMethod {}
 
 impl Notification for MonitorMethod {
     type Params = Picture;
@@ -19,25 +19,25 @@ impl Notification for MonitorMethod {
 
 /// The parameters.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
-pub(super) struct Picture {
-    pub(super) uri: Uri,
-    pub(super) version: i32,
+pub(in crate::lsp) struct Picture {
+    pub(in crate::lsp) uri: Uri,
+    pub(in crate::lsp) version: i32,
     #[serde(skip_deserializing)]
-    pub(super) source: &'static str,
+    pub(in crate::lsp) source: &'static str,
     #[serde(skip_deserializing)]
-    pub(super) mode: &'static str,
-    pub(super) scan: u64,
-    pub(super) time_ms: f64,
-    pub(super) edition: u64,
-    pub(super) branch: u64,
-    pub(super) elements: Vec<Json>,
-    pub(super) values: Vec<Json>,
-    pub(super) errors: Vec<Json>,
+    pub(in crate::lsp) mode: &'static str,
+    pub(in crate::lsp) scan: u64,
+    pub(in crate::lsp) time_ms: f64,
+    pub(in crate::lsp) edition: u64,
+    pub(in crate::lsp) branch: u64,
+    pub(in crate::lsp) elements: Vec<Json>,
+    pub(in crate::lsp) values: Vec<Json>,
+    pub(in crate::lsp) errors: Vec<Json>,
 }
 
 /// What the client shows.
 #[derive(Default)]
-pub(super) struct Monitor {
+pub(in crate::lsp) struct Monitor {
     ranges: Vec<Range>,
     names: Vec<String>,
     /// The ranges as bytes of the document, whole chunks each.
@@ -47,23 +47,23 @@ pub(super) struct Monitor {
 
 impl Monitor {
     /// Whether nothing is shown.
-    pub(super) fn is_empty(&self) -> bool {
+    pub(in crate::lsp) fn is_empty(&self) -> bool {
         self.ranges.is_empty() && self.names.is_empty()
     }
 
     /// Whether lines of the text are shown.
-    pub(super) fn has_text(&self) -> bool {
+    pub(in crate::lsp) fn has_text(&self) -> bool {
         !self.ranges.is_empty()
     }
 
     /// Shows other ranges, or other names; what is not given stays.
-    pub(super) fn watch(&mut self, ranges: Option<Vec<Range>>, names: Option<Vec<String>>) {
+    pub(in crate::lsp) fn watch(&mut self, ranges: Option<Vec<Range>>, names: Option<Vec<String>>) {
         self.ranges = ranges.unwrap_or_else(|| std::mem::take(&mut self.ranges));
         self.names = names.unwrap_or_else(|| std::mem::take(&mut self.names));
     }
 
     /// Finds the bytes that are shown.
-    pub(super) fn place(&mut self, number: u32, place: Place<'_>) {
+    pub(in crate::lsp) fn place(&mut self, number: u32, place: Place<'_>) {
         let document = place.document;
         self.document = number;
         let windows = self.ranges.iter().map(|range| {
@@ -76,14 +76,19 @@ impl Monitor {
         self.windows = windows.collect();
     }
 
+    /// Whether something of these bytes is shown.
+    pub(in crate::lsp) fn shows(&self, bytes: &Bytes<usize>) -> bool {
+        self.windows.iter().any(|window| bytes.start < window.end && window.start < bytes.end)
+    }
+
     /// The instructions that are shown.
-    pub(super) fn instructions(&self, code: &Code) -> Bytes<u32> {
+    pub(in crate::lsp) fn instructions(&self, code: &Code) -> Bytes<u32> {
         let all = self.windows.iter().map(|window| code.instructions_in(self.document, window.clone()));
         all.reduce(|one, other| one.start.min(other.start)..one.end.max(other.end)).unwrap_or(0..0)
     }
 
     /// Power, and the values of registers, timers and counters, in what is shown.
-    pub(super) fn elements(
+    pub(in crate::lsp) fn elements(
         &self,
         place: Place<'_>,
         code: &Code,
@@ -112,7 +117,7 @@ impl Monitor {
     }
 
     /// The values of these names, or of those that are watched.
-    pub(super) fn values(&self, names: Option<Vec<String>>, machine: &Machine<u8>) -> Vec<Json> {
+    pub(in crate::lsp) fn values(&self, names: Option<Vec<String>>, machine: &Machine<u8>) -> Vec<Json> {
         let names = names.as_deref().unwrap_or(&self.names).iter();
         let known = names.filter_map(|name| {
             let variable = machine.code().variable(name)?;
