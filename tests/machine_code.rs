@@ -283,7 +283,8 @@ fn what_has_no_machine_code_is_told_at_its_place() {
 fn every_reason_has_a_test() {
     let source = include_str!("machine_code.rs");
     for (key, _) in catalogue_keys(Language::English) {
-        if let Some(reason) = key.strip_prefix("machine-code.") {
+        // Rungs that are not translated are a matter of documents, see `cli_machine_code`.
+        if let Some(reason) = key.strip_prefix("machine-code.").filter(|reason| *reason != "not-translated") {
             assert!(source.contains(&format!("\"{reason}\"")), "{key}");
         }
     }

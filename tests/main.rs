@@ -12,6 +12,7 @@ mod binary;
 mod box_pins;
 mod chinese;
 mod cli;
+mod cli_machine_code;
 mod cli_run;
 mod cli_test;
 mod cli_translate;

@@ -23,6 +23,8 @@ mod interleaved;
 
 mod translation;
 
+mod machine_code;
+
 mod cursor;
 
 mod simulation;
@@ -58,6 +60,7 @@ fn main() {
     start(&table);
     interleaved::measure(&table);
     translation::measure(&table);
+    machine_code::measure(&table);
     cursor::measure(&table);
     simulation::measure(&table);
     command_line::measure(&table);
