@@ -469,7 +469,7 @@ fn found_different(left: &str, right: &str) {
         bits
     });
     assert_ne!(ends[0], ends[1], "{found:?}\n{left}\nand\n{right}");
-    assert_eq!(ends.map(|bits| bits[&found.what]), found.sides, "{found:?}");
+    assert_eq!(ends.map(|bits| Value::Bit(bits[&found.what])), found.sides, "{found:?}");
 }
 
 #[test]
