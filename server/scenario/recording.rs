@@ -239,7 +239,7 @@ pub fn of_counterexample(
             steps.entry(scan).or_default().push(format!("{key} = {{ {values} }}"));
         }
     };
-    let before = found.before.iter().map(|(name, value)| (name, u8::from(*value).to_string()));
+    let before = found.before.iter().map(|(name, value)| (name, held(value)));
     add(run.lead, "set", pairs(before));
     let inputs = found.inputs.iter().filter(|(name, _)| is_first_scan(name).is_none());
     add(first, "set", pairs(inputs.map(|(name, value)| (name, held(value)))));

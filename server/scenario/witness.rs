@@ -87,11 +87,15 @@ struct Seen {
 }
 
 impl Trial {
-    fn of(found: &Counterexample, documents: [&Document; 2], names: &[String; 2]) -> Result<Trial, Message> {
+    fn of(
+        found: &Counterexample,
+        documents: [&Document; 2],
+        programs: &[String; 2],
+    ) -> Result<Trial, Message> {
         let code = |side: usize| {
             let reason = |problems: Vec<crate::simulate::Problem>| {
                 let reasons = problems.first().map(|problem| problem.obstacle.message());
-                let message = Message::new("prove.not-run").with("program", &names[side]);
+                let message = Message::new("prove.not-run").with("program", &programs[side]);
                 message.with_messages("reason", reasons.into_iter().collect())
             };
             compile(&[documents[side]], false).map(Arc::new).map_err(reason)
@@ -115,9 +119,14 @@ impl Trial {
         let handles: Vec<Handle> =
             handles.into_iter().map(|(name, sides)| Handle { name, sides }).collect();
         let (own, others) = wanted(found, &handles, &finder[0]);
+        let key = found.keys.get(&found.what).map_or(found.what.as_str(), SmolStr::as_str);
+        let lacking = (0..2).find(|side| finder[*side].find(&found.what, key).is_none());
+        let error = lacking.filter(|_| own.is_empty()).map(|side| {
+            Message::new("prove.not-there").with("name", &found.what).with("program", &programs[side])
+        });
         let numbers = numbers_in(&documents[0].text());
         let (wanted, own) = (own.iter().chain(&others).copied().collect(), own.len());
-        Ok(Trial { codes, handles, wanted, own, numbers, work: WORK, error: None })
+        Ok(Trial { codes, handles, wanted, own, numbers, work: WORK, error })
     }
 
     /// The difference as it is seen.
@@ -140,7 +149,7 @@ impl Trial {
                 inputs.insert(name.clone(), Held::Bit(on_at_first == is_first));
             }
         }
-        let before = attempt.before.iter().filter_map(|(handle, value)| Some((name(*handle), value.as_bit()?)));
+        let before = attempt.before.iter().map(|(handle, value)| (name(*handle), held(value)));
         Ok(Counterexample {
             inputs,
             before: before.collect(),
@@ -156,9 +165,14 @@ impl Trial {
     /// later, or with other values.
     fn search(&mut self, found: &Counterexample) -> Option<(Attempt, Seen)> {
         let at = |name: &String| self.handles.iter().position(|handle| handle.name.eq_ignore_ascii_case(name));
-        let bits = found.before.iter().filter_map(|(name, value)| Some((at(name)?, Value::Bit(*value))));
-        let values = found.inputs.iter().filter_map(|(name, value)| Some((at(name)?, given(value))));
-        let (before, now): (Values, Values) = (bits.collect(), values.collect());
+        let values = |of: &BTreeMap<String, Held>| -> Values {
+            of.iter().filter_map(|(name, value)| Some((at(name)?, given(value)))).collect()
+        };
+        let (mut before, now) = (values(&found.before), values(&found.inputs));
+        // What did not change needs no scan before.
+        if before.iter().all(|(handle, value)| now.get(handle) == Some(value)) {
+            before.clear();
+        }
         let mut full = now.clone();
         for (number, current) in self.currents() {
             if now.get(&number).and_then(Value::as_bit) == Some(true) {
@@ -225,14 +239,25 @@ impl Trial {
             before: before.clone(),
             now: now.clone(),
         };
-        let has_before = draw(3) % 2 == 1;
+        let has_before = match draw(3) % 3 {
+            0 => {
+                attempt.before.clear();
+                false
+            }
+            // A scan with the same values, where nothing else is said.
+            kind => {
+                let words = now.iter().filter(|_| kind == 2);
+                let missing = words.filter(|(handle, _)| !before.contains_key(handle));
+                attempt.before.extend(missing.map(|(handle, value)| (*handle, value.clone())));
+                true
+            }
+        };
         for handle in 0..self.handles.len() {
             let place = 8 * handle as u64 + 8;
             if !is_kept(place) {
                 attempt.now.insert(handle, self.value(handle, draw(place + 1)));
             }
-            let is_bit = matches!(self.handles[handle].sides[0], Variable::Relay(_));
-            if has_before && is_bit && !is_kept(place + 2) {
+            if has_before && !is_kept(place + 2) {
                 attempt.before.insert(handle, self.value(handle, draw(place + 3)));
             }
         }

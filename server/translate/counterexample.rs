@@ -17,8 +17,8 @@ use std::fmt;
 pub struct Counterexample {
     /// Inputs and states at its start, by name.
     pub inputs: BTreeMap<String, Value>,
-    /// Bits as they were one scan before, where it matters that they changed.
-    pub before: BTreeMap<String, bool>,
+    /// What was otherwise one scan before, where that matters.
+    pub before: BTreeMap<String, Value>,
     /// What differs: a variable, or an action that only one does.
     pub what: String,
     /// What it is on either side.
@@ -95,7 +95,7 @@ impl fmt::Display for Value {
 /// What a counterexample says of a state.
 pub(super) struct Inputs {
     pub inputs: BTreeMap<String, Value>,
-    pub before: BTreeMap<String, bool>,
+    pub before: BTreeMap<String, Value>,
     pub keys: BTreeMap<String, SmolStr>,
 }
 
@@ -130,7 +130,7 @@ pub(super) fn inputs(
         inputs.insert(named(key, false), if is_time { Value::Time(*value) } else { Value::Word(*value) });
     }
     inputs.extend(state.reals.iter().map(|(key, real)| (named(key, false), Value::Real(real.value))));
-    let before = state.before.iter().map(|(key, value)| (named(key, true), *value)).collect();
+    let before = state.before.iter().map(|(key, value)| (named(key, true), Value::Bit(*value))).collect();
     Inputs { inputs, before, keys }
 }
 

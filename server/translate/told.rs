@@ -4,6 +4,7 @@ use super::{Counterexample, Proof, Shown, Value};
 use crate::document::Document;
 use crate::text::{Encoding, Language, Message, Span, text_width};
 use serde_json::{Map, Value as Json, json};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The JSON of `prove`: `{"equal", "counterexample": {"inputs", "before", "left", "right", "lines", "run", "reason"}}`.
 /// `run` says how the simulated PLC shows the difference: `{"scan_ms", "first", "last"}`, the time of a scan, the
@@ -20,8 +21,9 @@ pub fn json(proof: &Proof, sides: [&Document; 2], language: Language) -> Json {
             json!({ "equal": null, "reason": reason.render(language), "lines": place(at) })
         }
         Proof::Different(found) => {
-            let inputs: Map<_, _> =
-                found.inputs.iter().map(|(name, value)| (name.clone(), value_json(value))).collect();
+            let values = |of: &BTreeMap<String, Value>| -> Map<String, Json> {
+                of.iter().map(|(name, value)| (name.clone(), value_json(value))).collect()
+            };
             let [left, right] =
                 found.sides.each_ref().map(|value| json!({ found.what.clone(): value_json(value) }));
             let run = found.run().map(|run| {
@@ -35,8 +37,8 @@ pub fn json(proof: &Proof, sides: [&Document; 2], language: Language) -> Json {
             json!({
                 "equal": false,
                 "counterexample": {
-                    "inputs": inputs,
-                    "before": found.before,
+                    "inputs": values(&found.inputs),
+                    "before": values(&found.before),
                     "left": left,
                     "right": right,
                     "lines": place(&found.at),
@@ -83,14 +85,20 @@ pub fn text(proof: &Proof, sides: [&Document; 2], names: &[String; 2], language:
 fn picture(found: &Counterexample, names: &[String; 2], language: Language) -> String {
     let level = |on: bool| if on { "▆▆" } else { "__" };
     let mut rows: Vec<(String, String)> = Vec::new();
-    for (name, value) in &found.inputs {
-        rows.push(match value {
-            Value::Bit(value) => {
-                let before = found.before.get(name).copied().unwrap_or(*value);
-                (name.clone(), format!("{}{}", level(before), level(*value)))
-            }
-            value => (name.clone(), value.to_string()),
-        });
+    let named: BTreeSet<&String> = found.inputs.keys().chain(found.before.keys()).collect();
+    for name in named {
+        let (before, now) = (found.before.get(name), found.inputs.get(name));
+        rows.push((
+            name.clone(),
+            match (before.or(now), now) {
+                (Some(Value::Bit(before)), Some(Value::Bit(now))) => {
+                    format!("{}{}", level(*before), level(*now))
+                }
+                (Some(Value::Bit(before)), None) => level(*before).to_string(),
+                (Some(before), Some(now)) if before != now => format!("{before} → {now}"),
+                (before, _) => before.map(Value::to_string).unwrap_or_default(),
+            },
+        ));
     }
     for (name, value) in names.iter().zip(&found.sides) {
         let shown = match value {
