@@ -358,13 +358,16 @@ fn what_is_shown_of_both_families_runs() {
             continue;
         }
         count.note(&left, &right, |text| {
-            let text = text.replace("TS0", "\"T0.Q\"").replace("CS0", "\"C0.Q\"");
-            let text = text.replace(" C0 =", " \"C0.CV\" =");
+            let (head, steps) = text.split_once("steps").unwrap();
+            let mut steps = steps.replace("TS0 =", "\"T0.Q\" =").replace("CS0 =", "\"C0.Q\" =");
+            steps = steps.replace(" C0 =", " \"C0.CV\" =").replace("\"D0:32\" =", "\"%MD500\" =");
             // What is only a part of what it declares has no name there.
-            (0..6).fold(text, |text, number| match bench.code().variable(&format!("D{number}")) {
-                Some(_) => text,
-                None => text.replace(&format!(" D{number} ="), &format!(" \"%MW{}\" =", 1000 + number)),
-            })
+            for number in 0..6 {
+                if bench.code().variable(&format!("D{number}")).is_none() {
+                    steps = steps.replace(&format!(" D{number} ="), &format!(" \"%MW{}\" =", 1000 + number));
+                }
+            }
+            format!("{head}steps{steps}")
         });
     }
     count.judge();

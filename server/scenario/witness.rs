@@ -134,12 +134,13 @@ impl Trial {
     /// # Errors
     /// With the reason, if it is not seen.
     fn shown(&mut self, found: &Counterexample) -> Result<Counterexample, Message> {
-        let Some((mut attempt, seen)) = self.search(found) else {
+        let Some((mut attempt, mut seen)) = self.search(found) else {
             return Err(self.error.take().unwrap_or(Message::new("prove.not-reached")));
         };
         attempt.run.hold = seen.hold;
         self.simplify(&mut attempt, &seen);
         self.complete(&mut attempt, &seen);
+        seen.values = self.last(&attempt, &seen).unwrap_or(seen.values);
         let name = |handle: usize| self.handles[handle].name.clone();
         let mut inputs: BTreeMap<String, Held> =
             attempt.now.iter().map(|(handle, value)| (name(*handle), held(value))).collect();
@@ -333,20 +334,26 @@ impl Trial {
         [0, 1].map(|side| machines[side].value(sides[side], 0))
     }
 
-    /// Whether an attempt shows the same as another one did.
+    /// Whether an attempt shows the same as another one did: that value in the first program, another in the second.
     fn shows(&mut self, attempt: &Attempt, seen: &Seen) -> bool {
         self.is_same(attempt, seen) == Some(true)
     }
 
     /// The same; nothing if something goes wrong on the way.
     fn is_same(&mut self, attempt: &Attempt, seen: &Seen) -> Option<bool> {
+        let [left, right] = self.last(attempt, seen)?;
+        Some(left == seen.values[0] && left != right)
+    }
+
+    /// What the variable that differs is in the last scan of an attempt; nothing if something goes wrong.
+    fn last(&mut self, attempt: &Attempt, seen: &Seen) -> Option<[Value; 2]> {
         let last = attempt.first() + seen.hold;
         let mut values = None;
         self.scans(attempt, &mut |trial, scan, machines| {
             values = (scan == last).then(|| trial.values(seen.handle, machines));
             values.is_some()
         })?;
-        Some(values.as_ref() == Some(&seen.values))
+        values
     }
 
     /// Leaves out what does not matter: what shows the same when it is not set, and when it is set to something else.
