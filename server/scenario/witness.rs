@@ -6,14 +6,14 @@
 //! work that no clock gives. What is shown in the end has been seen.
 
 use super::mutant::lot;
-use crate::document::Document;
+use crate::document::{Document, Scopes};
 use crate::il::iec::PouKind;
 use crate::logic::is_helper_name;
 use crate::simulate::{Code, Machine, Outcome, Value, Variable, compile};
 use crate::target::{Device, DeviceKind};
 use crate::text::{Message, folded};
-use crate::translate::{Counterexample, Proof, Run, Shown, Value as Held, device_called};
-use smol_str::SmolStr;
+use crate::translate::{Counterexample, Proof, Run, Shown, Value as Held, device_called, variable_called};
+use smol_str::{SmolStr, ToSmolStr};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -103,12 +103,15 @@ impl Trial {
         let codes = [code(0)?, code(1)?];
         let finder = [0, 1].map(|side| Finder::new(&codes[side], documents[side], found, side));
         let mut handles: BTreeMap<String, [Variable; 2]> = BTreeMap::new();
-        let shared = codes[0].named().into_iter().chain(codes[1].named());
+        let shared = [0, 1].map(|side| {
+            let names = codes[side].named().into_iter().flat_map(|name| parts_of(&name));
+            names.map(|name| (finder[side].key(&name), name)).collect::<Vec<_>>()
+        });
         let told = found.inputs.keys().chain(found.before.keys()).chain([&found.what]);
-        let names = shared.flat_map(|name| parts_of(&name)).chain(told.cloned());
-        for name in names.filter(|name| is_first_scan(name).is_none()) {
-            let key = found.keys.get(&name).map_or(name.as_str(), SmolStr::as_str);
-            let sides = finder.each_ref().map(|finder| finder.find(&name, key));
+        let told = told.map(|name| (found.keys.get(name).unwrap_or(&SmolStr::from(name)).clone(), name.clone()));
+        let names = told.chain(shared.into_iter().flatten());
+        for (key, name) in names.filter(|(_, name)| is_first_scan(name).is_none()) {
+            let sides = finder.each_ref().map(|finder| finder.find(&name, &key));
             let [Some((own, first)), Some((_, second))] = sides else { continue };
             let is_relay = |variable| matches!(variable, Variable::Relay(_));
             let is_alike = is_relay(first) == is_relay(second) && first.range(&codes[0]) == second.range(&codes[1]);
@@ -447,16 +450,18 @@ impl Attempt {
 /// Finds the variables of a program by the names of a proof.
 struct Finder<'c> {
     code: &'c Code,
+    scopes: &'c Scopes,
+    /// The unit of the rungs that differ.
+    unit: Option<usize>,
     /// What may stand around a name: the program of the rungs that differ, or the instances of their block.
     around: Vec<String>,
 }
 
 impl<'c> Finder<'c> {
-    fn new(code: &'c Code, document: &Document, found: &Counterexample, side: usize) -> Finder<'c> {
+    fn new(code: &'c Code, document: &'c Document, found: &Counterexample, side: usize) -> Finder<'c> {
         let scopes = document.scopes();
-        let unit = found.at[side].and_then(|span| document.unit_at(span.start as usize).number);
-        let unit = unit.and_then(|number| scopes.pous.get(number));
-        let around = match unit {
+        let number = found.at[side].and_then(|span| document.unit_at(span.start as usize).number);
+        let around = match number.and_then(|number| scopes.pous.get(number)) {
             Some(unit) if unit.kind == PouKind::Program => vec![unit.name.to_string()],
             Some(unit) => {
                 let name = folded(&unit.name);
@@ -469,17 +474,29 @@ impl<'c> Finder<'c> {
             }
             None => Vec::new(),
         };
-        Finder { code, around }
+        Finder { code, scopes, unit: number, around }
+    }
+
+    /// What a proof calls the variable with this name.
+    fn key(&self, name: &str) -> SmolStr {
+        let address = self.scopes.variable(self.unit, name).and_then(|variable| variable.address);
+        match address.filter(|_| !self.code.target.is_fx()) {
+            Some(address) => address.to_smolstr(),
+            None if self.code.target.is_fx() => name.into(),
+            None => folded(name),
+        }
     }
 
     /// The variable that a proof calls `name`, or in the words of the other family `key`, with what it is called here.
+    /// A pair of registers is no register.
     fn find(&self, name: &str, key: &str) -> Option<(String, Variable)> {
-        let is_fx = self.code.target.is_fx();
         let around = self.around.iter().map(|around| format!("{around}.{name}"));
-        let device = device_called(key).filter(|_| is_fx);
-        let names = [name.to_string()].into_iter().chain(around).chain(device);
-        let direct = (!is_fx || name == key).then(|| key.to_string());
-        names.chain(direct).find_map(|name| self.code.variable(&name).map(|variable| (name, variable)))
+        let [first, last] = match self.code.target.is_fx() {
+            true => [device_called(key), None],
+            false => [None, variable_called(key).or(Some(key.to_string()))],
+        };
+        let names = first.into_iter().chain([name.to_string()]).chain(around).chain(last);
+        names.into_iter().find_map(|name| self.code.variable(&name).map(|variable| (name, variable)))
     }
 }
 

@@ -318,6 +318,21 @@ pub fn device_called(key: &str) -> Option<String> {
     }
 }
 
+/// What people call the variable that stands for the device which they call `name`, if nothing else has that name: the
+/// way back from [`device_called`].
+pub fn variable_called(name: &str) -> Option<String> {
+    if let Some(first) = name.strip_suffix(":32") {
+        let Operand::Device(device) = Operand::read(first, Model::Fx3u) else { return None };
+        return pair_address(device).map(|address| address.to_string());
+    }
+    if let Operand::Device(device) = Operand::read(name, Model::Fx3u) {
+        let value = || (device.kind == DeviceKind::C).then(|| format!("{device}.CV"));
+        return address(device).map(|address| address.to_string()).or_else(value);
+    }
+    let timer = |letter: &str| Some(format!("{letter}{}.Q", name.strip_prefix(letter)?.strip_prefix('S')?));
+    timer("T").or_else(|| timer("C"))
+}
+
 /// The address of the variable that stands for a data register and the next one as 32 bits.
 fn pair_address(first: Device) -> Option<DirectAddress> {
     if first.kind != DeviceKind::D || Device::new(first.kind, first.number + 1).is_special() {

@@ -32,7 +32,7 @@ pub use prove::{Proof, prove};
 pub mod told;
 
 mod dialect;
-pub use dialect::device_called;
+pub use dialect::{device_called, variable_called};
 
 mod header;
 
