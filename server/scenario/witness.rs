@@ -59,11 +59,20 @@ struct Trial {
     error: Option<Message>,
 }
 
-/// Something that can be set and seen in both programs.
+/// Something that can be set in the first program, and seen if the second has it, too.
 struct Handle {
     /// What the first program calls it.
     name: String,
-    sides: [Variable; 2],
+    own: Variable,
+    /// In the second one, which does not care if it is of the other family and has no such variable.
+    other: Option<Variable>,
+}
+
+impl Handle {
+    /// The variable of a side.
+    fn side(&self, side: usize) -> Option<Variable> {
+        if side == 0 { Some(self.own) } else { self.other }
+    }
 }
 
 /// Values by the numbers of handles.
@@ -102,7 +111,8 @@ impl Trial {
         };
         let codes = [code(0)?, code(1)?];
         let finder = [0, 1].map(|side| Finder::new(&codes[side], documents[side], found, side));
-        let mut handles: BTreeMap<String, [Variable; 2]> = BTreeMap::new();
+        let is_mixed = codes[0].target.is_fx() != codes[1].target.is_fx();
+        let mut handles: BTreeMap<String, (Variable, Option<Variable>)> = BTreeMap::new();
         let shared = [0, 1].map(|side| {
             let names = codes[side].named().into_iter().flat_map(|name| parts_of(&name));
             names.map(|name| (finder[side].key(&name), name)).collect::<Vec<_>>()
@@ -112,15 +122,18 @@ impl Trial {
         let names = told.chain(shared.into_iter().flatten());
         for (key, name) in names.filter(|(_, name)| is_first_scan(name).is_none()) {
             let sides = finder.each_ref().map(|finder| finder.find(&name, &key));
-            let [Some((own, first)), Some((_, second))] = sides else { continue };
+            let [Some((own, first)), second] = sides else { continue };
+            let second = second.map(|(_, variable)| variable);
             let is_relay = |variable| matches!(variable, Variable::Relay(_));
-            let is_alike = is_relay(first) == is_relay(second) && first.range(&codes[0]) == second.range(&codes[1]);
-            if is_alike && !handles.values().any(|known| known[0] == first) {
-                handles.insert(own, [first, second]);
+            let is_alike = second.map_or(is_mixed, |second| {
+                is_relay(first) == is_relay(second) && first.range(&codes[0]) == second.range(&codes[1])
+            });
+            if is_alike && !handles.values().any(|known| known.0 == first) {
+                handles.insert(own, (first, second));
             }
         }
-        let handles: Vec<Handle> =
-            handles.into_iter().map(|(name, sides)| Handle { name, sides }).collect();
+        let handles = handles.into_iter().map(|(name, (own, other))| Handle { name, own, other });
+        let handles: Vec<Handle> = handles.collect();
         let (own, others) = wanted(found, &handles, &finder[0]);
         let key = found.keys.get(&found.what).map_or(found.what.as_str(), SmolStr::as_str);
         let lacking = (0..2).find(|side| finder[*side].find(&found.what, key).is_none());
@@ -270,7 +283,7 @@ impl Trial {
 
     /// A value for a variable, by a random number.
     fn value(&self, handle: usize, draw: u64) -> Value {
-        match self.handles[handle].sides[0] {
+        match self.handles[handle].own {
             Variable::Relay(_) => Value::Bit(draw % 2 == 1),
             _ if draw.is_multiple_of(7) => Value::Number(RUN_OUT),
             _ => Value::Number(self.numbers[(draw / 8 % self.numbers.len() as u64) as usize]),
@@ -317,7 +330,9 @@ impl Trial {
             };
             for (side, machine) in machines.iter_mut().enumerate() {
                 for (handle, value) in set.into_iter().flatten() {
-                    self.handles[*handle].sides[side].set(&self.codes[side], value)?.apply(machine);
+                    if let Some(variable) = self.handles[*handle].side(side) {
+                        variable.set(&self.codes[side], value)?.apply(machine);
+                    }
                 }
                 let Outcome { errors, .. } = machine.scan((scan as i64).saturating_mul(attempt.run.scan_ns));
                 if let Some(error) = errors.first() {
@@ -333,8 +348,9 @@ impl Trial {
     }
 
     fn values(&self, handle: usize, machines: &[Machine<u8>; 2]) -> [Value; 2] {
-        let sides = self.handles[handle].sides;
-        [0, 1].map(|side| machines[side].value(sides[side], 0))
+        let Handle { own, other, .. } = &self.handles[handle];
+        let value = machines[0].value(*own, 0);
+        [value.clone(), other.map_or(value, |other| machines[1].value(other, 0))]
     }
 
     /// Whether an attempt shows the same as another one did: that value in the first program, another in the second.
@@ -424,7 +440,7 @@ impl Trial {
 
     /// Whether it makes a difference to set a variable to something else than it is, or than `value`.
     fn matters(&mut self, attempt: &Attempt, seen: &Seen, handle: usize, value: Option<&Value>) -> bool {
-        let others = match self.handles[handle].sides[0] {
+        let others = match self.handles[handle].own {
             Variable::Relay(_) => vec![Value::Bit(false), Value::Bit(true)],
             Variable::Enumerated(..) => (0..4).map(Value::Number).collect(),
             _ => match value {
@@ -516,8 +532,9 @@ fn wanted(found: &Counterexample, handles: &[Handle], finder: &Finder<'_>) -> (V
     let is_helper = |handle: &Handle| {
         is_helper_name(handle.name.rsplit('.').next().unwrap_or(&handle.name))
     };
+    let shared = (0..handles.len()).filter(|number| handles[*number].other.is_some());
     let (own, others): (Vec<usize>, Vec<usize>) =
-        (0..handles.len()).partition(|number| is_own(&handles[*number]));
+        shared.partition(|number| is_own(&handles[*number]));
     (own, others.into_iter().filter(|number| !is_helper(&handles[*number])).collect())
 }
 
