@@ -2,7 +2,8 @@
 //! programs with them.
 
 use crate::logic::{
-    Atom, Bounds, Formulas, Moment, Path, Place, Real, Scan, State, Step, Term, WIDE, evaluate, real_at,
+    Atom, Bounds, Formulas, Moment, Path, Place, Real, Scan, State, Step, Storage, Term,
+    WIDE, evaluate, real_at, wholes,
 };
 use crate::target::iec::ElementaryType;
 use crate::target::{Device, DirectAddress, Model, Operand, Width};
@@ -241,11 +242,20 @@ pub(super) fn is_possible(state: &State, type_of: &dyn Fn(&str) -> Option<Elemen
     })
 }
 
-/// Whether running these with plain values is what a PLC does: nothing is stored into elements of arrays, of which
-/// nobody knows which are the same, and no two variables of different sizes share memory.
+/// Whether running these with plain values is what a PLC does: no elements of arrays are used of which nobody knows which
+/// are the same, no whole beside its parts, and no two variables of different sizes share memory.
 pub(super) fn is_plain(paths: &[&Path]) -> bool {
-    let mut stores = paths.iter().flat_map(|path| path.actions()).flat_map(|action| &action.terms);
-    if stores.any(|term| term.text.contains('[')) {
+    let variables = paths.iter().flat_map(|path| path.terms());
+    let variables = variables.filter(|term| term.operand == Operand::Variable);
+    if variables.clone().any(|term| term.is_element() && !(term.is_fixed() && term.storage != Storage::Anywhere)) {
+        return false;
+    }
+    let wholes: FxHashSet<SmolStr> = variables
+        .clone()
+        .filter(|term| term.is_element())
+        .flat_map(|term| wholes(&term.key()).map(SmolStr::from).collect::<Vec<_>>())
+        .collect();
+    if variables.into_iter().any(|term| wholes.contains(&term.key())) {
         return false;
     }
     let terms = paths.iter().flat_map(|path| path.terms());
