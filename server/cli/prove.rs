@@ -49,7 +49,7 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         match scenario(found, &names, path, language) {
             Some(text) if !put(&text, Some(path), language) => return Outcome::Unusable,
             Some(_) => {}
-            None => remark(&Message::new("cli.no-scenario").with("path", path.display()).render(language)),
+            None => remark(&Message::new("cli.scenario-unshown").with("path", path.display()).render(language)),
         }
     }
     match proof {

@@ -253,7 +253,8 @@ impl<'p> Run<'p> {
     /// The moment at which `term`, whose key is `name`, is read as a bit.
     fn moment(&self, term: &Term, name: SmolStr, formulas: &mut Formulas) -> Moment {
         // Words are made of bits, bits of words: whatever wrote to the kind counts.
-        let since = match self.is_apart(term) && !self.parted.contains(&name) {
+        let is_apart = self.is_apart(term) || term.is_own_part();
+        let since = match is_apart && !self.parted.contains(&name) {
             true => self.after(self.last_event(term, &name), formulas),
             false if leads_anywhere(term) => self.touched[ANYWHERE],
             false => self.touched[slot(term)],

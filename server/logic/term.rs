@@ -110,6 +110,13 @@ impl Term {
         }
     }
 
+    /// Whether nothing changes it but who writes to it, to what it is a part of, or to something that may be anywhere in
+    /// a variable: `Word.3` of a variable in a place of its own.
+    pub fn is_own_part(&self) -> bool {
+        let is_own = matches!(self.storage, Storage::Own | Storage::Local);
+        self.operand == Operand::Variable && is_own && !self.text.contains('^') && self.is_fixed()
+    }
+
     /// Whether it is an element of an array.
     pub fn is_element(&self) -> bool {
         self.operand == Operand::Variable && self.text.contains('[')

@@ -64,6 +64,8 @@ struct Handle {
     /// What the first program calls it.
     name: String,
     own: Variable,
+    /// Whether it can be set; only the program drives coils of timers and counters.
+    is_settable: bool,
     /// In the second one, which does not care if it is of the other family and has no such variable.
     other: Option<Variable>,
 }
@@ -132,7 +134,11 @@ impl Trial {
                 handles.insert(own, (first, second));
             }
         }
-        let handles = handles.into_iter().map(|(name, (own, other))| Handle { name, own, other });
+        let handles = handles.into_iter().map(|(name, (own, other))| {
+            let is_relay = matches!(own, Variable::Relay(_));
+            let is_settable = !is_relay || own.set(&codes[0], &Value::Bit(false)).is_some();
+            Handle { name, own, is_settable, other }
+        });
         let handles: Vec<Handle> = handles.collect();
         let (own, others) = wanted(found, &handles, &finder[0]);
         let key = found.keys.get(&found.what).map_or(found.what.as_str(), SmolStr::as_str);
@@ -236,7 +242,7 @@ impl Trial {
         let at = |name: &str| self.handles.iter().position(|handle| handle.name == name);
         let own = self.handles.iter().enumerate();
         let pairs = own.filter_map(|(number, handle)| {
-            let [_, current] = <[String; 2]>::try_from(parts_of(&handle.name)).ok()?;
+            let [_, current, _] = <[String; 3]>::try_from(parts_of(&handle.name)).ok()?;
             Some((number, at(&current)?))
         });
         pairs.collect()
@@ -269,7 +275,7 @@ impl Trial {
                 true
             }
         };
-        for handle in 0..self.handles.len() {
+        for handle in (0..self.handles.len()).filter(|handle| self.handles[*handle].is_settable) {
             let place = 8 * handle as u64 + 8;
             if !is_kept(place) {
                 attempt.now.insert(handle, self.value(handle, draw(place + 1)));
@@ -415,7 +421,8 @@ impl Trial {
     fn complete(&mut self, attempt: &mut Attempt, seen: &Seen) {
         let first = attempt.first();
         for handle in 0..self.handles.len() {
-            if attempt.now.contains_key(&handle) || !self.matters(attempt, seen, handle, None) {
+            let is_settable = self.handles[handle].is_settable;
+            if !is_settable || attempt.now.contains_key(&handle) || !self.matters(attempt, seen, handle, None) {
                 continue;
             }
             let mut value = None;
@@ -538,15 +545,16 @@ fn wanted(found: &Counterexample, handles: &[Handle], finder: &Finder<'_>) -> (V
     (own, others.into_iter().filter(|number| !is_helper(&handles[*number])).collect())
 }
 
-/// What can be seen of a device: of a timer or counter its contact and its current value.
+/// What can be seen of a device: of a timer or counter its contact, its current value, and its coil.
 fn parts_of(name: &str) -> Vec<String> {
     let mut letters = name.chars();
     let kind = letters.next().and_then(DeviceKind::of_letter).filter(|kind| kind.has_preset());
     let Some(kind) = kind else { return vec![name.to_string()] };
     let rest = letters.as_str();
     let number = rest.strip_prefix(['S', 's']).unwrap_or(rest);
+    let letter = kind.letter();
     match number.parse::<u32>() {
-        Ok(number) => vec![format!("{}S{number}", kind.letter()), format!("{}{number}", kind.letter())],
+        Ok(number) => vec![format!("{letter}S{number}"), format!("{letter}{number}"), format!("{letter}C{number}")],
         Err(_) => vec![name.to_string()],
     }
 }

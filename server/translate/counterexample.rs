@@ -385,7 +385,10 @@ fn has_its_bits(state: &State) -> bool {
         }),
         _ => true,
     };
+    // One bit of a word may have two names: `w.1` and `w.%X1`.
+    let mut known: FxHashMap<(&str, u32), bool> = FxHashMap::default();
     state.bits.iter().all(|(key, value)| match bit_of_word(key) {
+        Some(bit) if *known.entry(bit).or_insert(*value) != *value => false,
         Some((word, bit)) if state.words.contains_key(word) => {
             (state.words[word] >> bit & 1 == 1) == *value
         }

@@ -15,7 +15,7 @@ use crate::logic::{
     is_helper_name, may_drive, shown, touches_bits,
 };
 use crate::target::iec::ElementaryType;
-use crate::target::{Flow, Model, Target};
+use crate::target::{DeviceKind, Flow, Model, Target};
 use crate::text::{Message, Span, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
@@ -611,7 +611,10 @@ impl Prover<'_> {
         if self.all.iter().any(|all| count(all) > 1) {
             return false;
         }
-        let forgets = |action: &&&Action| matches!(action.deed, Deed::Instruction(_) | Deed::Compute(_));
+        let forgets = |action: &&&Action| {
+            let is_pulse = matches!(action.deed, Deed::Coil(CoilKind::Rising | CoilKind::Falling));
+            is_pulse || matches!(action.deed, Deed::Instruction(_) | Deed::Compute(_))
+        };
         let written = own.iter().filter(forgets).flat_map(|action| action.changes());
         let written: Vec<Term> = written.map(Cow::into_owned).collect();
         let mut others = all().filter(|action| shown(action) != what);
@@ -619,7 +622,7 @@ impl Prover<'_> {
             action
                 .changes()
                 .iter()
-                .any(|term| written.iter().any(|own| own.key() == term.key() || own.may_cover(term)))
+                .any(|term| written.iter().any(|own| own.may_cover(term) || may_overlap(own, term)))
         })
     }
 
@@ -668,6 +671,13 @@ fn may_name(source: &Source, key: &str) -> bool {
     let is_device = key.starts_with(|letter: char| letter.is_ascii_uppercase());
     let name = root.trim_end_matches(|digit: char| digit.is_ascii_digit());
     key.starts_with('%') || text.contains(if is_device { name } else { &root })
+}
+
+/// Whether two operands of the FX family may have a relay in common: a group has others than its first.
+fn may_overlap(one: &Term, other: &Term) -> bool {
+    let kind = |term: &Term| term.operand.device().map(|device| device.kind);
+    let is_relay = matches!(kind(one), Some(DeviceKind::X | DeviceKind::Y | DeviceKind::M | DeviceKind::S));
+    is_relay && kind(one) == kind(other) && !(one.is_lone() && other.is_lone())
 }
 
 /// Rungs with their paths.
