@@ -74,6 +74,7 @@ mod plain_instructions;
 mod proof_declarations;
 mod proof_memory;
 mod proof_numbers;
+mod proof_shown;
 mod proof_values;
 mod proof_verdicts;
 mod rules;

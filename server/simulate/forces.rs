@@ -133,7 +133,7 @@ impl<L: Lanes> Machine<L> {
                 let Some(datum) = variable.datum(&self.code, value) else { return };
                 iec::put(&mut self.memory, &self.code.iec, spot, &datum);
                 if let Lies::Bits(first, count) = spot.lies {
-                    for cell in first..first + Cell::from(count) {
+                    for cell in (0..Cell::from(count)).map(|bit| first + bit) {
                         let on = self.memory.cell(cell);
                         self.write_cell(cell, on);
                     }

@@ -366,7 +366,7 @@ impl<L: Lanes> Machine<L> {
         let published = match spot.lies {
             Lies::Bits(first, count) => {
                 let bits: Option<Vec<L>> =
-                    (first..first + Cell::from(count)).map(|cell| self.terminals.output(cell)).collect();
+                    (0..Cell::from(count)).map(|bit| self.terminals.output(first + bit)).collect();
                 bits
             }
             _ => None,

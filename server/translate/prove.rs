@@ -3,7 +3,7 @@
 //! Rungs are compared in step as far as they drive the same things in the same order. Where one program does so in
 //! another way, stretches between jumps, labels and the like are compared by what comes of them.
 
-use super::counterexample::{self, Counterexample};
+use super::counterexample::{self, Counterexample, Inputs, Shown, Value};
 use super::paired::Paired;
 use super::source::{self, Source};
 use super::{To, declared, dialect, reached, types, units};
@@ -15,7 +15,7 @@ use crate::logic::{
     is_helper_name, may_drive, shown, touches_bits,
 };
 use crate::target::iec::ElementaryType;
-use crate::target::{Flow, Model, Target};
+use crate::target::{DeviceKind, Flow, Model, Target};
 use crate::text::{Message, Span, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
@@ -405,12 +405,12 @@ impl<'s> Prover<'s> {
             }
             Comparison::Unlike => undecided("prove.unlike"),
             Comparison::Different { place: Place::Bit(key), .. } if self.is_driven_behind(sides, &key) => {
-                let found = self.beyond(sides).or_else(|| self.by_running(state, [&left, &right], sides));
+                let found = self.beyond(sides).or_else(|| self.by_running(state, sides));
                 found.map_or_else(|| undecided("prove.driven-again"), Err)
             }
             Comparison::Different { what, place, .. } => {
                 let found = self.different((what, place), state.clone(), [&left, &right], sides);
-                let found = found.or_else(|| self.by_running(state, [&left, &right], sides));
+                let found = found.or_else(|| self.by_running(state, sides));
                 found.map_or_else(|| undecided("prove.unconfirmed"), Err)
             }
         }
@@ -503,10 +503,30 @@ impl Prover<'_> {
         let units = [0, 1].map(|side| self.unit_around(side, sides[side]));
         self.is_plain(&units).then_some(())?;
         let (state, values) = counterexample::confirmed_near(state, paths, &place)?;
-        reached::is_reached(&units, &state, &place).then_some(())?;
+        let state = reached::reached(&units, &state, &place)?;
+        let key = match &place {
+            Place::Bit(key) => key.clone(),
+            Place::Event(_) => folded(&what),
+        };
         let at = sides.map(|side| rung_of(side, &what));
-        let (inputs, before) = counterexample::inputs(&state, paths, &type_of);
-        Some(Proof::Different(Box::new(Counterexample { inputs, before, what, sides: values, at })))
+        Some(self.found((what, key, values), &state, at, &units, &type_of))
+    }
+
+    /// The difference in `what`, as people are told it.
+    fn found(
+        &self,
+        (what, key, values): (String, SmolStr, [bool; 2]),
+        state: &State,
+        at: [Option<Span>; 2],
+        units: &[reached::Unit<'_>; 2],
+        type_of: &dyn Fn(&str) -> Option<ElementaryType>,
+    ) -> Proof {
+        let own = units.each_ref().map(|unit| unit.paths());
+        let Inputs { inputs, before, mut keys } = counterexample::inputs(state, [&own[0], &own[1]], type_of);
+        keys.insert(what.clone(), key);
+        let sides = values.map(Value::Bit);
+        let shown = Shown::Untried;
+        Proof::Different(Box::new(Counterexample { inputs, before, what, sides, at, keys, shown }))
     }
 
     /// The difference that is there at the end of a scan when both programs are run from a state in which something
@@ -514,7 +534,6 @@ impl Prover<'_> {
     fn by_running(
         &self,
         state: Option<State>,
-        paths: [&[&Path]; 2],
         sides: [Rungs<'_, '_>; 2],
     ) -> Option<Proof> {
         let types = self.types(sides);
@@ -534,8 +553,7 @@ impl Prover<'_> {
         }
         let what = bit.text.to_string();
         let at = sides.map(|side| rung_of(side, &what));
-        let (inputs, before) = counterexample::inputs(&state, paths, &type_of);
-        Some(Proof::Different(Box::new(Counterexample { inputs, before, what, sides: values, at })))
+        Some(self.found((what, key, values), &state, at, &units, &type_of))
     }
 
     /// Whether running what is executed in one scan with plain values is what a PLC does.
@@ -585,7 +603,18 @@ impl Prover<'_> {
         if self.is_mixed && own.iter().any(|action| is_detector(&action)) {
             return false;
         }
-        let forgets = |action: &&&Action| matches!(action.deed, Deed::Instruction(_) | Deed::Compute(_));
+        // Where it stands twice, the other one may do it.
+        let count = |all: &[Source]| {
+            let actions = all.iter().filter_map(Source::path).flat_map(Path::actions);
+            actions.filter(|action| shown(action) == what).count()
+        };
+        if self.all.iter().any(|all| count(all) > 1) {
+            return false;
+        }
+        let forgets = |action: &&&Action| {
+            let is_pulse = matches!(action.deed, Deed::Coil(CoilKind::Rising | CoilKind::Falling));
+            is_pulse || matches!(action.deed, Deed::Instruction(_) | Deed::Compute(_))
+        };
         let written = own.iter().filter(forgets).flat_map(|action| action.changes());
         let written: Vec<Term> = written.map(Cow::into_owned).collect();
         let mut others = all().filter(|action| shown(action) != what);
@@ -593,7 +622,7 @@ impl Prover<'_> {
             action
                 .changes()
                 .iter()
-                .any(|term| written.iter().any(|own| own.key() == term.key() || own.may_cover(term)))
+                .any(|term| written.iter().any(|own| own.may_cover(term) || may_overlap(own, term)))
         })
     }
 
@@ -642,6 +671,13 @@ fn may_name(source: &Source, key: &str) -> bool {
     let is_device = key.starts_with(|letter: char| letter.is_ascii_uppercase());
     let name = root.trim_end_matches(|digit: char| digit.is_ascii_digit());
     key.starts_with('%') || text.contains(if is_device { name } else { &root })
+}
+
+/// Whether two operands of the FX family may have a relay in common: a group has others than its first.
+fn may_overlap(one: &Term, other: &Term) -> bool {
+    let kind = |term: &Term| term.operand.device().map(|device| device.kind);
+    let is_relay = matches!(kind(one), Some(DeviceKind::X | DeviceKind::Y | DeviceKind::M | DeviceKind::S));
+    is_relay && kind(one) == kind(other) && !(one.is_lone() && other.is_lone())
 }
 
 /// Rungs with their paths.
