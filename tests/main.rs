@@ -88,6 +88,7 @@ mod simulate_faults;
 mod simulate_iec;
 mod simulate_iec_blocks;
 mod simulate_iec_programs;
+mod simulate_iec_values;
 mod simulate_recorder;
 mod simulate_rungs;
 mod simulate_session;

@@ -4,13 +4,10 @@ use super::code::Code;
 use super::machine::Machine;
 use super::row::Cell;
 use super::session::Touch;
-use super::{Lanes, Lies, Slot, Spot, iec};
-use crate::target::iec::{Datum, ElementaryType, Literal, LiteralValue, characters_of, spelled};
-use crate::target::{Device, DeviceKind, Model, Operand};
+use super::{Lanes, Lies, Slot, Spot, Value, iec};
+use crate::target::iec::Datum;
+use crate::target::{Device, DeviceKind, Operand};
 use crate::text::Message;
-use serde_json::Value as Json;
-use smol_str::SmolStr;
-use std::fmt;
 use std::ops::RangeInclusive;
 
 /// Something with a value that a person can watch and set.
@@ -26,25 +23,6 @@ pub enum Variable {
     Typed(Spot),
     /// A variable of an enumerated type, with the number of the type.
     Enumerated(Spot, u32),
-}
-
-/// What a variable has.
-#[derive(Clone, PartialEq, Debug)]
-pub enum Value {
-    /// On or off.
-    Bit(bool),
-    /// A number, signed as its type says.
-    Number(i64),
-    /// A number beyond those of 64 bits with a sign.
-    Unsigned(u64),
-    /// A real number.
-    Real(f64),
-    /// A duration, in nanoseconds.
-    Time(i64),
-    /// A text, and a value of an enumerated type by its name.
-    Text(SmolStr),
-    /// A date or a character as a literal.
-    Name(SmolStr),
 }
 
 impl Code {
@@ -111,6 +89,7 @@ impl Code {
 impl Variable {
     /// What setting it to `value` does; nothing if that is no value of it.
     pub fn set(self, code: &Code, value: &Value) -> Option<Touch> {
+        let value = &self.meant(code, value)?;
         match (self, value) {
             (Variable::Relay(_), _) => {
                 let is_free = !self.is_coil(code);
@@ -123,6 +102,23 @@ impl Variable {
                 Some(Touch::Write(self, value.clone()))
             }
             _ => None,
+        }
+    }
+
+    /// What a value is that people write for it: `Red` and `Colour#Red` are the same, `K5` is a number unless a value of
+    /// its type is called so. Nothing for a name that says no value of it.
+    pub fn meant(self, code: &Code, value: &Value) -> Option<Value> {
+        match (self, value) {
+            (Variable::Enumerated(_, enumeration), _) => {
+                let number = self.datum(code, value)?.whole();
+                code.iec.name_of_value(enumeration, number).cloned().map(Value::Name)
+            }
+            (_, Value::Word(_, meant)) => Some((**meant).clone()),
+            (Variable::Typed(spot), Value::Name(_)) => {
+                value.datum(spot.kind).map(|datum| Value::of_datum(datum, spot.kind))
+            }
+            (_, Value::Name(_)) => None,
+            _ => Some(value.clone()),
         }
     }
 
@@ -147,7 +143,8 @@ impl Variable {
 
     /// Why it, which people call `name`, cannot be set to `value`.
     pub fn refusal(self, code: &Code, name: &str, value: &Value) -> Message {
-        match (value, self.range(code)) {
+        let meant = self.meant(code, value);
+        match (meant.as_ref().unwrap_or(value), self.range(code)) {
             (Value::Number(number), Some(range)) => Message::new("simulate.range")
                 .with("name", name)
                 .with("value", number)
@@ -177,154 +174,27 @@ impl Variable {
 
     /// The value as a variable of IEC 61131-3 takes it; nothing if it is none of its type.
     pub(super) fn datum(self, code: &Code, value: &Value) -> Option<Datum> {
-        let kind = match (self, value) {
+        match (self, value) {
             (Variable::Enumerated(_, enumeration), Value::Text(name) | Value::Name(name)) => {
-                return code.iec.value_named(enumeration, name).map(Datum::Whole);
+                code.iec.value_named(enumeration, name).map(Datum::Whole)
+            }
+            (Variable::Enumerated(_, enumeration), Value::Word(name, meant)) => {
+                let named = code.iec.value_named(enumeration, name).map(Datum::Whole);
+                named.or_else(|| self.datum(code, meant))
             }
             (Variable::Enumerated(_, enumeration), Value::Number(number)) => {
                 let number = i128::from(*number);
-                return code.iec.name_of_value(enumeration, number).map(|_| Datum::Whole(number));
+                code.iec.name_of_value(enumeration, number).map(|_| Datum::Whole(number))
             }
-            (Variable::Typed(spot), _) => spot.kind,
-            _ => return None,
-        };
-        value.datum(kind)
+            (Variable::Typed(spot), _) => value.datum(spot.kind),
+            _ => None,
+        }
     }
 }
 
 /// Whether two of these, one behind the other, are a number of 32 bits.
 fn has_pairs(kind: DeviceKind) -> bool {
     matches!(kind, DeviceKind::D | DeviceKind::R)
-}
-
-impl Value {
-    /// What a variable of an elementary type has.
-    pub(super) fn of_datum(datum: Datum, kind: ElementaryType) -> Value {
-        use ElementaryType::*;
-        match (datum, kind) {
-            (Datum::Real(number), _) => Value::Real(number),
-            (Datum::Whole(number), Bool) => Value::Bit(number != 0),
-            (Datum::Whole(number), Time | Ltime) => Value::Time(number as i64),
-            (Datum::Whole(number), _) if kind.integers().is_some() => match i64::try_from(number) {
-                Ok(number) => Value::Number(number),
-                Err(_) => Value::Unsigned(number as u64),
-            },
-            (Datum::Text(text), _) => Value::Text(text),
-            (datum, _) => Value::Name(spelled(&datum, kind)),
-        }
-    }
-
-    /// A value as people write it: `1`, `on`, `TRUE`, `-5`, `H1F`, `16#1F`, `1.5`, `T#2s`, `'text'`, `D#2024-01-31`,
-    /// `Colour#Red`.
-    pub fn read(word: &str) -> Option<Value> {
-        let word = word.trim();
-        match word.to_ascii_lowercase().as_str() {
-            "on" | "true" => return Some(Value::Bit(true)),
-            "off" | "false" => return Some(Value::Bit(false)),
-            _ => {}
-        }
-        let upper = word.to_ascii_uppercase();
-        if let Some(digits) = upper.strip_prefix('H')
-            && let Ok(bits) = u32::from_str_radix(digits, 16)
-        {
-            // A pattern of 16 bits is a signed number, as everywhere on these PLCs.
-            let number = u16::try_from(bits).map_or(i64::from(bits as i32), |word| i64::from(word as i16));
-            return Some(Value::Number(number));
-        }
-        if let Ok(number) = upper.strip_prefix('K').unwrap_or(&upper).parse() {
-            return Some(Value::Number(number));
-        }
-        match Operand::read(word, Model::Iec) {
-            Operand::Literal(literal) => match literal.value {
-                LiteralValue::Bool(on) => Some(Value::Bit(on)),
-                LiteralValue::Integer(number) => match i64::try_from(number) {
-                    Ok(number) => Some(Value::Number(number)),
-                    Err(_) => u64::try_from(number).ok().map(Value::Unsigned),
-                },
-                LiteralValue::Real(number) => Some(Value::Real(number)),
-                LiteralValue::Time(time) => Some(Value::Time(time)),
-                LiteralValue::Text | LiteralValue::WideText => characters_of(word).map(Value::Text),
-                _ => Some(Value::Name(word.into())),
-            },
-            _ => None,
-        }
-    }
-
-    /// The value in a variable of type `kind`; nothing if that does not hold it. A number alone is milliseconds where a
-    /// time is wanted.
-    fn datum(&self, kind: ElementaryType) -> Option<Datum> {
-        use ElementaryType::*;
-        let is_real = matches!(kind, Real | Lreal);
-        let datum = match self {
-            Value::Bit(on) => Datum::from(*on),
-            Value::Number(number) if is_real => Datum::Real(*number as f64),
-            Value::Number(number) if matches!(kind, Time | Ltime) => {
-                Datum::Whole(i128::from(*number) * 1_000_000)
-            }
-            Value::Number(number) => Datum::Whole(i128::from(*number)),
-            Value::Unsigned(number) => Datum::Whole(i128::from(*number)),
-            Value::Real(number) if is_real => Datum::Real(*number),
-            Value::Real(ms) if matches!(kind, Time | Ltime) => Datum::Whole((ms * 1e6).round() as i128),
-            Value::Time(time) if matches!(kind, Time | Ltime) => Datum::Whole(i128::from(*time)),
-            Value::Text(text) | Value::Name(text) if matches!(kind, String | Wstring) => {
-                Datum::Text(text.clone())
-            }
-            Value::Text(text) | Value::Name(text) => match Literal::read(text) {
-                Ok(literal) => return Datum::of_literal(literal.value, kind),
-                Err(_) => return None,
-            },
-            Value::Real(_) | Value::Time(_) => return None,
-        };
-        let is_number = kind.integers().is_some() || is_real || matches!(kind, Time | Ltime);
-        match &datum {
-            Datum::Whole(_) | Datum::Real(_) if !is_number => None,
-            Datum::Whole(_) if is_real => None,
-            _ => {
-                let (held, is_same) = datum.held(kind);
-                is_same.then_some(held)
-            }
-        }
-    }
-
-    /// As programs that read results want it.
-    pub fn json(&self) -> Json {
-        match self {
-            Value::Bit(on) => Json::Bool(*on),
-            Value::Number(number) => Json::from(*number),
-            Value::Unsigned(number) => Json::from(*number),
-            Value::Real(number) => Json::from(*number),
-            // Milliseconds, as a whole number where they are one.
-            Value::Time(time) if time % 1_000_000 == 0 => Json::from(time / 1_000_000),
-            Value::Time(time) => Json::from(*time as f64 / 1e6),
-            Value::Text(text) | Value::Name(text) => Json::from(text.as_str()),
-        }
-    }
-
-    /// As a bit: 0 is off, 1 is on.
-    pub fn as_bit(&self) -> Option<bool> {
-        match self {
-            Value::Bit(on) => Some(*on),
-            Value::Number(0) => Some(false),
-            Value::Number(1) => Some(true),
-            _ => None,
-        }
-    }
-}
-
-impl fmt::Display for Value {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Value::Bit(on) => f.write_str(if *on { "1" } else { "0" }),
-            Value::Number(number) => number.fmt(f),
-            Value::Unsigned(number) => number.fmt(f),
-            Value::Real(number) => write!(f, "{number:?}"),
-            Value::Time(time) => {
-                f.write_str(&spelled(&Datum::Whole(i128::from(*time)), ElementaryType::Time))
-            }
-            Value::Text(text) => write!(f, "'{}'", text.replace('$', "$$").replace('\'', "$'")),
-            Value::Name(name) => f.write_str(name),
-        }
-    }
 }
 
 impl<L: Lanes> Machine<L> {
@@ -337,7 +207,7 @@ impl<L: Lanes> Machine<L> {
             Variable::Enumerated(spot, enumeration) => {
                 let number = self.datum_at(spot, lane).whole();
                 let name = self.code.iec.name_of_value(enumeration, number).cloned();
-                name.map_or(Value::Number(number as i64), Value::Text)
+                name.map_or(Value::Number(number as i64), Value::Name)
             }
             Variable::Pair(lower, upper) => {
                 let (lower, upper) = (self.memory().word(lower, lane), self.memory().word(upper, lane));

@@ -4,7 +4,7 @@
 use crate::logic::{
     Atom, Bounds, Formulas, Moment, Path, Place, Real, Scan, State, Step, Term, WIDE, evaluate, real_at,
 };
-use crate::target::iec::ElementaryType;
+use crate::target::iec::{ElementaryType, real_spelled};
 use crate::target::{Device, DirectAddress, Model, Operand, Width};
 use crate::text::Span;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -46,7 +46,7 @@ impl fmt::Display for Value {
         match self {
             Value::Bit(value) => write!(f, "{value}"),
             Value::Word(value) => write!(f, "{value}"),
-            Value::Real(value) => write!(f, "{value:?}"),
+            Value::Real(value) => f.write_str(&real_spelled(*value)),
             Value::Time(nanoseconds) => write!(f, "T#{}ms", nanoseconds / 1_000_000),
         }
     }

@@ -523,19 +523,9 @@ impl Running {
 
     fn set(&mut self, name: &str, value: &Json, is_force: bool) -> Result<(), Message> {
         let variable = self.variable(name)?;
-        let value = match value {
-            Json::Bool(on) => Some(Value::Bit(*on)),
-            Json::Number(number) => {
-                let whole = number.as_i64().map(Value::Number);
-                whole
-                    .or_else(|| number.as_u64().map(Value::Unsigned))
-                    .or_else(|| number.as_f64().map(Value::Real))
-            }
-            Json::String(word) => Value::read(word),
-            _ => None,
-        };
         let code = self.session.machine().code();
-        let value = value.ok_or_else(|| Message::new("cli.run-no-value").with("name", name))?;
+        let value =
+            Value::of_json(value).ok_or_else(|| Message::new("cli.run-no-value").with("name", name))?;
         let touch = match is_force {
             true => variable.force(code, &value),
             false => variable.set(code, &value),

@@ -386,7 +386,7 @@ impl<'a> Compiler<'a> {
             self.problems.dedup();
             return Err(self.problems);
         }
-        self.parts.names.finish(self.image);
+        self.parts.names.finish(self.image, &self.kinds);
         let mut code =
             self.builder.finish().map_err(|obstacle| vec![Problem { place: Place::START, obstacle }])?;
         if code.slots > MOST_WORDS || self.parts.texts > MOST_WORDS {

@@ -9,6 +9,7 @@ use crate::target::iec::ElementaryType;
 use crate::target::iec::semantics::NOTES;
 use crate::target::{Model, Operand};
 use crate::text::folded;
+use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 use std::sync::Arc;
 
@@ -16,8 +17,15 @@ use std::sync::Arc;
 #[derive(Debug, Default)]
 pub(in crate::simulate) struct Names {
     roots: Vec<Root>,
-    enumerations: Vec<Arc<Enumeration>>,
+    enumerations: Vec<Enumerated>,
     pub(in crate::simulate) image: Image,
+}
+
+/// An enumerated type, with the folded names that it is declared by.
+#[derive(Debug)]
+struct Enumerated {
+    values: Arc<Enumeration>,
+    names: Vec<SmolStr>,
 }
 
 /// A global variable, a program, or a variable that lies at an address.
@@ -53,11 +61,17 @@ impl Names {
         self.roots.push(Root { path, variable: variable.clone() });
     }
 
-    pub(super) fn finish(&mut self, image: Image) {
+    /// Takes in where addresses lie, and what types are called; names are folded.
+    pub(super) fn finish(&mut self, image: Image, kinds: &FxHashMap<SmolStr, Kind>) {
         self.image = image;
         let mut found = Vec::new();
         self.roots.iter().for_each(|root| enumerations(&root.variable.kind, &mut found));
-        self.enumerations = found;
+        let named = |values: Arc<Enumeration>| {
+            let is_own = |kind: &Kind| matches!(kind, Kind::Enumeration(own) if Arc::ptr_eq(own, &values));
+            let names = kinds.iter().filter(|(_, kind)| is_own(kind)).map(|(name, _)| name.clone()).collect();
+            Enumerated { values, names }
+        };
+        self.enumerations = found.into_iter().map(named).collect();
     }
 
     /// What a name leads to, letter case aside. What stands around a program may be left out, and the program, too,
@@ -90,7 +104,8 @@ impl Names {
         let Some((step, rest)) = steps.split_first() else {
             let enumeration = match &variable.kind {
                 Kind::Enumeration(own) => {
-                    self.enumerations.iter().position(|other| Arc::ptr_eq(own, other)).map(|at| at as u32)
+                    let is_own = |other: &Enumerated| Arc::ptr_eq(own, &other.values);
+                    self.enumerations.iter().position(is_own).map(|at| at as u32)
                 }
                 _ => None,
             };
@@ -118,14 +133,19 @@ impl Names {
 
     /// The name of a value of an enumerated type.
     pub(in crate::simulate) fn name_of(&self, enumeration: u32, value: i128) -> Option<&SmolStr> {
-        self.enumerations.get(enumeration as usize)?.values.get(usize::try_from(value).ok()?)
+        let values = &self.enumerations.get(enumeration as usize)?.values.values;
+        values.get(usize::try_from(value).ok()?)
     }
 
-    /// The value of an enumerated type with a name.
+    /// The value of an enumerated type with a name, before which that of the type may stand: `Red`, `Colour#Red`.
     pub(in crate::simulate) fn value_of(&self, enumeration: u32, name: &str) -> Option<i128> {
-        let values = &self.enumerations.get(enumeration as usize)?.values;
-        let name = folded(name.rsplit('#').next().unwrap_or(name));
-        values.iter().position(|own| folded(own) == name).map(|place| place as i128)
+        let Enumerated { values, names } = self.enumerations.get(enumeration as usize)?;
+        let (kind, name) = name.split_once('#').map_or((None, name), |(kind, name)| (Some(kind), name));
+        if kind.is_some_and(|kind| !names.contains(&folded(kind))) {
+            return None;
+        }
+        let name = folded(name);
+        values.values.iter().position(|own| folded(own) == name).map(|place| place as i128)
     }
 
     /// The names of variables that are worth watching, as short as they lead to one.
