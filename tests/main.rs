@@ -87,6 +87,7 @@ mod simulate_devices;
 mod simulate_faults;
 mod simulate_iec;
 mod simulate_iec_blocks;
+mod simulate_iec_checked;
 mod simulate_iec_programs;
 mod simulate_iec_values;
 mod simulate_recorder;

@@ -89,7 +89,7 @@ fn the_debugger_knows_values_by_their_names() {
     assert_eq!(plc.console("set c=Gr"), "Gr");
     plc.breakpoints(&path, json!([{ "line": 16, "condition": "c = Gr and d <> Col#H1 and r > 0.25" }]));
     plc.go("continue");
-    assert_eq!(plc.here(), "Main · ST d @16:1, scan 0, 0 ms");
+    assert_eq!(plc.here(), "Main · ST d @16:1, scan 1, 10 ms");
     assert_eq!(
         (plc.value("c"), plc.value("c = col#re"), plc.value("r * 2")),
         ("Gr".into(), "0".into(), "1.0".into())

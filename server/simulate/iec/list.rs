@@ -130,6 +130,31 @@ impl<'a> Compiler<'a> {
     }
 }
 
+/// What an instruction tells of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sees {
+    /// What it sees before it acts on something else than the current result.
+    First,
+    /// What has become of the current result.
+    Result,
+    Nothing,
+}
+
+fn sees(kind: &ItemKind) -> Sees {
+    match kind {
+        ItemKind::Operation { operation, .. } => match operation.operator.role {
+            OperatorRole::Store | OperatorRole::Latch { .. } => Sees::First,
+            _ => Sees::Result,
+        },
+        ItemKind::Call { .. }
+        | ItemKind::InputOperator { .. }
+        | ItemKind::Jump { .. }
+        | ItemKind::Return { .. } => Sees::First,
+        ItemKind::Label { .. } => Sees::Nothing,
+        _ => Sees::Result,
+    }
+}
+
 /// Whether an instruction goes on with the current result.
 fn uses_result(kind: &ItemKind) -> bool {
     match kind {
@@ -153,6 +178,11 @@ impl<'a> List<'_, 'a> {
         while at < items.end {
             let item = self.items[at];
             self.at(item.span);
+            let place = self.compiler.builder.place_number();
+            let sees = sees(&item.kind);
+            if sees == Sees::First {
+                self.saw(place);
+            }
             let next = self.item(at, item);
             at = match next {
                 Ok(next) => next,
@@ -163,10 +193,20 @@ impl<'a> List<'_, 'a> {
                     self.behind(at)
                 }
             };
-            if self.compiler.builder.is_watched() && matches!(self.current, Current::Bit) {
-                let power = self.compiler.builder.settle();
-                self.compiler.builder.saw(power);
+            if sees == Sees::Result {
+                self.saw(place);
             }
+        }
+    }
+
+    /// Says that the instruction at a place is executed, with the current result if that is a BOOL.
+    fn saw(&mut self, place: u32) {
+        if self.compiler.builder.is_watched() {
+            let power = match self.current {
+                Current::Bit => self.compiler.builder.settle(),
+                _ => Row::RAIL,
+            };
+            self.compiler.builder.saw_at(place, power);
         }
     }
 
