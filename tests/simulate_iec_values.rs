@@ -96,7 +96,7 @@ fn the_debugger_knows_values_by_their_names() {
     );
     assert!(plc.refusal("evaluate", json!({ "expression": "c = Blue" })).contains("Blue"));
     assert!(plc.refusal("evaluate", json!({ "expression": "Gr" })).contains("Gr"));
-    assert_eq!(plc.console("force d=Col#Off"), "Off");
+    assert_eq!(plc.console("force d=Col#Off"), "Re (Off from the next scan on)");
 }
 
 #[test]

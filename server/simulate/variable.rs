@@ -164,7 +164,10 @@ impl Variable {
 
     /// What holding it at `value` does; nothing if that is no value of it.
     pub fn force(self, code: &Code, value: &Value) -> Option<Touch> {
-        self.set(code, value).map(|_| Touch::Hold(self, value.clone()))
+        match self.set(code, value)? {
+            Touch::Write(variable, value) => Some(Touch::Hold(variable, value)),
+            _ => None,
+        }
     }
 
     /// What letting it go does.

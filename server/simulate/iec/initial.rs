@@ -25,6 +25,8 @@ pub(super) fn constant(operand: Operand, word: &str, kind: ElementaryType) -> Op
             }
             _ => None,
         },
+        // A bit is a bit string whose other bits are 0.
+        LiteralValue::Bool(on) if kind.belongs_to(GenericType::AnyBit) => Some(Datum::from(on)),
         LiteralValue::Integer(number) if kind.belongs_to(GenericType::AnyReal) => {
             Some(Datum::Real(number as f64))
         }

@@ -376,7 +376,12 @@ impl<'a> List<'_, 'a> {
 
     fn combine(&mut self, at: usize, operation: Operation, word: &str) -> Outcome {
         let is_logic = matches!(operation.operator.operand, Some(GenericType::AnyBit));
-        if let (Current::Bit, true) = (&self.current, is_logic) {
+        let is_bit = match self.compiler.value(word)? {
+            Value::Variable(variable) => variable.kind.elementary() == Some(ElementaryType::Bool),
+            // A literal is what the current result is.
+            _ => true,
+        };
+        if let (Current::Bit, true) = (&self.current, is_logic && is_bit) {
             let cell = self.compiler.relay(word)?;
             self.logic(operation, cell);
             return Ok(());
