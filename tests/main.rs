@@ -89,6 +89,7 @@ mod simulate_iec;
 mod simulate_iec_blocks;
 mod simulate_iec_checked;
 mod simulate_iec_programs;
+mod simulate_iec_standard;
 mod simulate_iec_values;
 mod simulate_recorder;
 mod simulate_rungs;

@@ -129,9 +129,10 @@ impl Variable {
         match self {
             Variable::Relay(_) | Variable::Enumerated(..) => None,
             Variable::Typed(spot) => {
-                let range = spot.kind.integers()?;
+                let whole = spot.kind.integers()?;
+                let (least, greatest) = code.iec.range(spot).unwrap_or((*whole.start(), *whole.end()));
                 let bound = |bound: i128| i64::try_from(bound).unwrap_or(i64::MAX);
-                Some(bound(*range.start())..=bound(*range.end()))
+                Some(bound(least)..=bound(greatest))
             }
             Variable::Word(slot) => {
                 let device = code.layout.device_of_slot(slot)?;
@@ -189,7 +190,13 @@ impl Variable {
                 let number = i128::from(*number);
                 code.iec.name_of_value(enumeration, number).map(|_| Datum::Whole(number))
             }
-            (Variable::Typed(spot), _) => value.datum(spot.kind),
+            (Variable::Typed(spot), _) => {
+                let within = |datum: &Datum| {
+                    let range = code.iec.range(spot);
+                    range.is_none_or(|(least, greatest)| (least..=greatest).contains(&datum.whole()))
+                };
+                value.datum(spot.kind).filter(within)
+            }
             _ => None,
         }
     }

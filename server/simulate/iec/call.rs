@@ -13,7 +13,7 @@ use crate::simulate::code::{Op, Place};
 use crate::simulate::row::Row;
 use crate::simulate::{Cell, Obstacle};
 use crate::target::iec::semantics::NOTES;
-use crate::target::iec::{ElementaryType, Function};
+use crate::target::iec::{Datum, EN, ENO, ElementaryType, Function, Parameter};
 use crate::text::{Message, folded};
 use smol_str::SmolStr;
 
@@ -83,7 +83,7 @@ impl Compiler<'_> {
     pub(super) fn set_aside(&mut self, given: Given) -> Given {
         let Input::At(from) = given.input else { return given };
         let place = self.take(Extent { cells: 1, words: 1, texts: 1 });
-        let to = Spot { kind: given.kind, lies: lies(place, given.kind, u32::MAX as usize), index: 0 };
+        let to = Spot::new(given.kind, lies(place, given.kind, u32::MAX as usize));
         self.copy(Input::At(from), given.kind, to);
         Given::at(to)
     }
@@ -97,7 +97,7 @@ impl Compiler<'_> {
                 *self.parked.insert(place)
             }
         };
-        Spot { kind, lies: lies(place, kind, u32::MAX as usize), index: 0 }
+        Spot::new(kind, lies(place, kind, u32::MAX as usize))
     }
 
     /// Copies a value with parts.
@@ -153,7 +153,7 @@ impl Compiler<'_> {
             let own = arguments.in_out.iter().find(|(name, _)| folded(name) == folded(&field.name));
             let (name, word) = own.ok_or_else(|| said("simulate.in-out", &field.name))?;
             let handed = self.variable(word)?;
-            if !handed.kind.is_same(&field.kind) {
+            if !handed.kind.is_like(&field.kind) {
                 return Err(said("simulate.other-type", word));
             }
             let handed = self.frozen(handed);
@@ -206,7 +206,7 @@ impl Compiler<'_> {
     ) -> Result<(), Obstacle> {
         let Kind::Record(record) = variable.kind.clone() else { return Err(Obstacle::Unreadable) };
         let enabled = arguments.enabled.take();
-        let enable = arguments.enable;
+        let enable = self.enabling(variable, arguments.enable)?;
         self.enabled(enable, |own| {
             let aliases = own.handed_over(variable, &mut arguments)?;
             match record.what {
@@ -230,7 +230,35 @@ impl Compiler<'_> {
             }
             own.taken_over(variable, std::mem::take(&mut arguments.outputs))
         })?;
-        self.tell_enabled(enable.unwrap_or(Row::RAIL), enabled)
+        let told = self.flag(variable, &ENO)?.or(enable).unwrap_or(Row::RAIL);
+        self.tell_enabled(told, enabled)
+    }
+
+    /// The relay that enables a call of a declared unit, and its EN and ENO made ready where it declares them: EN is
+    /// what is given, or what the variable has; ENO is on unless the unit is not enabled, or says so itself.
+    fn enabling(&mut self, variable: &Variable, given: Option<Cell>) -> Result<Option<Cell>, Obstacle> {
+        let (input, output) = (self.flag(variable, &EN)?, self.flag(variable, &ENO)?);
+        if let (Some(input), Some(given)) = (input, given) {
+            self.copy(Input::At(cell_spot(given)), ElementaryType::Bool, cell_spot(input));
+        }
+        let enable = input.or(given);
+        if let Some(output) = output {
+            let from = cell_spot(enable.unwrap_or(Row::RAIL));
+            self.copy(Input::At(from), ElementaryType::Bool, cell_spot(output));
+        }
+        Ok(enable)
+    }
+
+    /// EN or ENO as a unit of the program declares it.
+    fn flag(&mut self, variable: &Variable, parameter: &Parameter) -> Result<Option<Cell>, Obstacle> {
+        let Kind::Record(record) = &variable.kind else { return Ok(None) };
+        let field = match record.what {
+            RecordKind::Unit(_) => record.field(parameter.name),
+            _ => None,
+        };
+        let wrong = || said("simulate.no-bit", parameter.name);
+        let part = |field: &Field| variable.part(field.kind.clone(), field.at)?.cell();
+        field.map(|field| part(field).ok_or_else(wrong)).transpose()
     }
 
     /// Writes ENO to its variable.
@@ -263,17 +291,20 @@ impl Compiler<'_> {
             folded(&field.name) == folded(&self.declared.units[unit].name)
                 && self.declared.units[unit].result.is_some()
         });
-        let (enable, enabled) = (arguments.enable, arguments.enabled.take());
+        let enabled = arguments.enabled.take();
+        // Also the result of a function that is not executed is what its variable has at first.
+        let list = self.parts.initials.len();
+        self.parts.initials.push(Vec::new());
+        self.initial_of_variable(list, &variable, None, true);
+        self.builder.op(Op::Initialise(list as u32));
+        let enable = self.enabling(&variable, arguments.enable)?;
         self.enabled(enable, |own| {
-            let list = own.parts.initials.len();
-            own.parts.initials.push(Vec::new());
-            own.initial_of_variable(list, &variable, None, true);
-            own.builder.op(Op::Initialise(list as u32));
             let aliases = own.handed_over(&variable, &mut arguments)?;
             own.enter(unit, &variable, aliases, Row::RAIL, place);
             own.taken_over(&variable, std::mem::take(&mut arguments.outputs))
         })?;
-        self.tell_enabled(enable.unwrap_or(Row::RAIL), enabled)?;
+        let told = self.flag(&variable, &ENO)?.or(enable).unwrap_or(Row::RAIL);
+        self.tell_enabled(told, enabled)?;
         let Some(field) = result else { return Ok(None) };
         let from = variable.part(field.kind.clone(), field.at).and_then(|part| part.spot());
         let from = from.ok_or_else(|| said("simulate.not-elementary", &field.name))?;
@@ -302,6 +333,12 @@ impl Compiler<'_> {
             }
             if let Some((word, negated)) = enabled {
                 self.tell_enabled(ok, Some((word, negated)))?;
+            }
+            if let Some(enable) = enable {
+                // What is not executed has the result that a variable of its type has at first.
+                let off = self.inverse(enable);
+                let nothing = vec![(Input::Constant(Datum::default_of(to.kind)), to.kind)];
+                self.compute_with(super::compile::copied, nothing, to.kind, to, off, None);
             }
         }
         Ok(to)

@@ -230,7 +230,7 @@ impl Compiler<'_> {
             self.temporaries.push(place);
         }
         let place = self.temporaries[depth];
-        Spot { kind, lies: super::place::lies(place, kind, u32::MAX as usize), index: 0 }
+        Spot::new(kind, super::place::lies(place, kind, u32::MAX as usize))
     }
 
     /// The value of the current result for a calculation; nothing if there is none, or it has parts.

@@ -68,7 +68,7 @@ impl Image {
             }
             None => super::place::lies(*self.alone.get(&(address, kind))?, kind, 0),
         };
-        Some(Spot { kind, lies, index: 0 })
+        Some(Spot::new(kind, lies))
     }
 
     /// The cells of a location, in blocks.

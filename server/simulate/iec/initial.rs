@@ -82,6 +82,18 @@ impl Compiler<'_> {
                 };
                 self.noted(list, variable, value, all);
             }
+            Kind::Subrange(kind, range) => {
+                let value = match written {
+                    Some((source, at)) => self.initial_datum(source, at, *kind)?,
+                    // The first number of the range, where 0 may be none of it.
+                    None => self
+                        .parts
+                        .ranges
+                        .get(*range as usize - 1)
+                        .map_or(Datum::Whole(0), |range| Datum::Whole(range.0)),
+                };
+                self.noted(list, variable, value, all);
+            }
             Kind::Enumeration(names) => {
                 let value = match written {
                     Some((source, at)) => {
@@ -220,6 +232,7 @@ const MOST_ELEMENTS: u64 = 1 << 20;
 fn begins_otherwise(kind: &Kind) -> bool {
     match kind {
         Kind::Elementary(kind, _) => !is_zero(*kind),
+        Kind::Subrange(..) => true,
         Kind::Enumeration(_) => false,
         Kind::Array(_, element) => begins_otherwise(element),
         Kind::Record(record) => record.size != Extent::default(),

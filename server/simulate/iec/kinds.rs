@@ -26,7 +26,22 @@ impl Compiler<'_> {
         Ok(match written.value {
             TypeSpec::Elementary(kind) => Kind::of(kind),
             TypeSpec::Named => return self.named(source, written.span, unit),
-            TypeSpec::Subrange { base, .. } => self.kind(source, base, unit)?,
+            TypeSpec::Subrange { base, least, greatest } => {
+                let base = self.kind(source, base, unit)?;
+                let [least, greatest] = [least, greatest].map(|at| self.number(source, at, unit));
+                match (base.elementary(), least, greatest) {
+                    (Some(kind), Some(least), Some(greatest)) if least <= greatest => {
+                        let range = (least, greatest);
+                        let known = self.parts.ranges.iter().position(|own| *own == range);
+                        let number = known.unwrap_or_else(|| {
+                            self.parts.ranges.push(range);
+                            self.parts.ranges.len() - 1
+                        });
+                        Kind::Subrange(kind, number as u32 + 1)
+                    }
+                    _ => return refused(self, "simulate.bounds"),
+                }
+            }
             TypeSpec::Reference { .. } => return refused(self, "simulate.reference"),
             TypeSpec::Text { wide, length } => {
                 let kind = if wide { ElementaryType::Wstring } else { ElementaryType::String };
@@ -103,17 +118,21 @@ impl Compiler<'_> {
 
     /// A number that is known before the program runs: a literal, or a constant.
     fn bound(&self, source: usize, id: OperandId, unit: Option<usize>) -> Option<i64> {
+        self.number(source, id, unit).and_then(|number| i64::try_from(number).ok())
+    }
+
+    fn number(&self, source: usize, id: OperandId, unit: Option<usize>) -> Option<i128> {
         let operand = self.declared.sources[source].tree.operand(id);
         match operand.value {
             Operand::Literal(literal) => match literal.value {
-                LiteralValue::Integer(number) => i64::try_from(number).ok(),
+                LiteralValue::Integer(number) => Some(number),
                 _ => None,
             },
             Operand::Variable => {
                 let (source, id) = self.constant(self.declared.word(source, operand.span), unit)?;
                 match self.declared.sources[source].tree.operand(id).value {
                     // A constant of constants is not followed.
-                    Operand::Literal(_) => self.bound(source, id, unit),
+                    Operand::Literal(_) => self.number(source, id, unit),
                     _ => None,
                 }
             }

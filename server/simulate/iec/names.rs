@@ -235,7 +235,7 @@ fn steps(name: &str) -> Option<Vec<Step>> {
 
 fn enumerations(kind: &Kind, found: &mut Vec<Arc<Enumeration>>) {
     match kind {
-        Kind::Elementary(..) => {}
+        Kind::Elementary(..) | Kind::Subrange(..) => {}
         Kind::Enumeration(own) => {
             if !found.iter().any(|other| Arc::ptr_eq(own, other)) {
                 found.push(Arc::clone(own));
@@ -250,7 +250,7 @@ fn enumerations(kind: &Kind, found: &mut Vec<Arc<Enumeration>>) {
 /// elements of arrays.
 fn walk(variable: &Variable, name: String, found: &mut Vec<(String, Spot)>, is_watched: bool) {
     match &variable.kind {
-        Kind::Elementary(..) | Kind::Enumeration(_) => {
+        Kind::Elementary(..) | Kind::Subrange(..) | Kind::Enumeration(_) => {
             if let (Some(spot), false) = (variable.spot(), is_watched && variable.is_constant) {
                 found.push((name, spot));
             }
@@ -288,10 +288,7 @@ fn walk(variable: &Variable, name: String, found: &mut Vec<(String, Spot)>, is_w
                 let first = at.plus(record.size).words - NOTES as u32;
                 for note in 0..NOTES as u32 {
                     let lies = Lies::Word(first + note);
-                    found.push((
-                        format!("{name}.#{note}"),
-                        Spot { kind: ElementaryType::Lint, lies, index: 0 },
-                    ));
+                    found.push((format!("{name}.#{note}"), Spot::new(ElementaryType::Lint, lies)));
                 }
             }
         }

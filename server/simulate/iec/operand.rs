@@ -377,11 +377,11 @@ impl Compiler<'_> {
 
 /// A BOOL in a cell.
 pub(super) fn cell_spot(cell: Cell) -> Spot {
-    Spot { kind: ElementaryType::Bool, lies: Lies::Cell(cell), index: 0 }
+    Spot::of_cell(cell)
 }
 
 fn word_spot(slot: Slot) -> Spot {
-    Spot { kind: ElementaryType::Lint, lies: Lies::Word(slot), index: 0 }
+    Spot::new(ElementaryType::Lint, Lies::Word(slot))
 }
 
 /// A part of a bit string: `.3`, `.%X3`, `.%B1`.

@@ -50,13 +50,17 @@ impl Place {
             At::Memory(at) => lies(at, kind, length),
             At::Other(lies) => lies,
         };
-        Some(Spot { kind, lies, index: self.index })
+        let range = match self.kind {
+            Kind::Subrange(_, range) => range,
+            _ => 0,
+        };
+        Some(Spot { kind, lies, index: self.index, range })
     }
 
     /// The relay that it is; nothing where that is known at run time only.
     pub(super) fn cell(&self) -> Option<Cell> {
         match self.spot()? {
-            Spot { kind: ElementaryType::Bool, lies: Lies::Cell(cell), index: 0 } => Some(cell),
+            Spot { kind: ElementaryType::Bool, lies: Lies::Cell(cell), index: 0, .. } => Some(cell),
             _ => None,
         }
     }
