@@ -69,3 +69,74 @@ fn subranges_hold_and_say_where_they_are_left() {
     assert!(err.contains("`d` takes 0 to 9") || err.contains("from 0 to 9"), "{err}");
     assert_eq!(result("v : INT(1..5) := 4;", "LD v\nADD 10\nSUB 10\nST v", "v"), "4");
 }
+
+#[test]
+fn programs_are_connected_by_their_configuration() {
+    let text = "CONFIGURATION Plant\nVAR_GLOBAL\nwanted : INT := 5; made : INT; done : BOOL; ramp : ARRAY[0..1] OF INT;\nEND_VAR\n\
+        RESOURCE PLC ON Cpu\nTASK Slow(INTERVAL := T#20ms, PRIORITY := 1);\n\
+        PROGRAM A WITH Slow : Maker(goal := wanted, each := 2, sum => made, busy => done, table := ramp);\n\
+        PROGRAM B : Maker(goal := %IW3, sum => %QW7);\nEND_RESOURCE\nEND_CONFIGURATION\n\
+        PROGRAM Maker\nVAR_INPUT\ngoal : INT; each : INT := 1; table : ARRAY[0..1] OF INT;\nEND_VAR\n\
+        VAR_OUTPUT\nsum : INT; busy : BOOL;\nEND_VAR\nLD sum\nLT goal\nST busy\nJMPCN full\nLD sum\nADD each\nADD table[1]\nST sum\n\
+        full:\nEND_PROGRAM\n";
+    let mut plc = Plc::new(text);
+    plc.set("%IW3", "3").set("ramp[1]", "1").scan();
+    assert_eq!(["made", "done", "B.sum", "%QW7"].map(|name| plc.get(name)), ["3", "1", "1", "1"]);
+    // A task that does not run takes nothing over.
+    plc.set("made", "0").scan();
+    assert_eq!(["made", "A.sum", "%QW7"].map(|name| plc.get(name)), ["0", "3", "2"]);
+    plc.scan().scan().scan();
+    assert_eq!(["made", "A.sum", "done", "%QW7"].map(|name| plc.get(name)), ["6", "6", "0", "3"]);
+}
+
+#[test]
+fn arrays_lie_at_addresses() {
+    let text = "PROGRAM Main\nVAR\nrow AT %MW10 : ARRAY[0..9] OF INT := [1, 2, 3];\nbits AT %QX0.6 : ARRAY[0..3] OF BOOL;\n\
+        grid AT %IB8 : ARRAY[0..1, 0..2] OF BYTE;\ncopy : ARRAY[0..9] OF INT;\nk : INT; one : BYTE; got : WORD;\nEND_VAR\n\
+        LD k\nADD 10\nST row[k]\nLD TRUE\nST bits[k]\nLD grid[1, k]\nST one\nLD row\nST copy\nLD %MW12\nST got\n\
+        LD 7\nST %MW19\nEND_PROGRAM\n";
+    let mut plc = Plc::new(text);
+    plc.set("k", "2").set("grid[1,2]", "33").scan();
+    assert_eq!(
+        ["row[2]", "copy[2]", "got", "one", "%IB13"].map(|name| plc.get(name)),
+        ["12", "12", "12", "33", "33"]
+    );
+    assert_eq!(["row[0]", "row[9]", "%MW10", "%MB20"].map(|name| plc.get(name)), ["1", "7", "1", "1"]);
+    assert_eq!(["bits[1]", "bits[2]", "%QX0.7", "%QX1.0"].map(|name| plc.get(name)), ["0", "1", "0", "1"]);
+    plc.set("k", "3").scan();
+    assert_eq!(plc.errors, [ErrorKind::Calculation(Fault::Index)]);
+}
+
+#[test]
+fn var_config_lays_variables_of_instances_at_addresses() {
+    let text = "CONFIGURATION Plant\nRESOURCE PLC ON Cpu\nPROGRAM A : Main;\nPROGRAM B : Main;\nEND_RESOURCE\n\
+        VAR_CONFIG\nPLC.A.start AT %IX0.3 : BOOL;\nPLC.A.left.lamp AT %QX1.0 : BOOL;\nPLC.B.start AT %IX0.4 : BOOL;\n\
+        PLC.B.left.limit : INT := 9;\nEND_VAR\nEND_CONFIGURATION\n\
+        FUNCTION_BLOCK Light\nVAR_INPUT\non_ : BOOL;\nEND_VAR\nVAR\nlamp AT %Q* : BOOL; limit : INT := 4;\nEND_VAR\n\
+        LD on_\nST lamp\nEND_FUNCTION_BLOCK\n\
+        PROGRAM Main\nVAR\nstart AT %I* : BOOL;\nleft : Light;\nEND_VAR\nLD start\nST left.on_\nCAL left\nEND_PROGRAM\n";
+    let text = text.replace("on_", "lit");
+    let mut plc = Plc::new(&text);
+    plc.set("%IX0.3", "1").scan();
+    assert_eq!(["%QX1.0", "A.left.lamp", "B.left.lamp"].map(|name| plc.get(name)), ["1", "1", "0"]);
+    assert_eq!(["A.left.limit", "B.left.limit"].map(|name| plc.get(name)), ["4", "9"]);
+    plc.set("A.start", "0").set("B.start", "1").scan();
+    assert_eq!(["%IX0.3", "%IX0.4", "%QX1.0", "B.left.lamp"].map(|name| plc.get(name)), ["0", "1", "0", "1"]);
+    let files = folder(&[("main.il", &text.replace("PLC.B.start", "PLC.C.start"))]);
+    let (code, _, err) = run(&files, &["run", "main.il"]);
+    assert!(code == 1 && err.contains("main.il:9:1: PLC.C.start is not declared"), "{err}");
+}
+
+#[test]
+fn instances_are_called_by_subscripts() {
+    let text = format!(
+        "{UNITS}PROGRAM Main\nVAR\nall : ARRAY[1..3, 0..1] OF Count;\ni, j : INT := 1;\nlast : INT;\nEND_VAR\n\
+         CAL all[i, j](n => last)\nEND_PROGRAM\n"
+    );
+    let mut plc = Plc::new(&text);
+    plc.scan().set("i", "3").scan().scan().set("j", "0").scan();
+    let names = ["all[1,1].n", "all[3,1].n", "all[3,0].n", "all[2,0].n", "last"];
+    assert_eq!(names.map(|name| plc.get(name)), ["1", "2", "1", "0", "1"]);
+    plc.set("i", "4").scan();
+    assert_eq!((plc.get("all[3,0].n"), plc.errors.is_empty()), ("1".into(), false));
+}

@@ -111,7 +111,7 @@ impl Compiler<'_> {
                     Some((source, at)) => self.elements(source, at, count(bounds))?,
                     None => Vec::new(),
                 };
-                let size = element.size();
+                let size = variable.size_of(element);
                 // Elements without a value that all begin with 0 need no look.
                 let is_plain = values.is_empty() && !all && !begins_otherwise(element);
                 let count = if is_plain { 0 } else { count(bounds).min(MOST_ELEMENTS) };
@@ -162,6 +162,7 @@ impl Compiler<'_> {
         let is_nothing = matches!(&value, Datum::Whole(0))
             || matches!(&value, Datum::Real(number) if *number == 0.0)
             || matches!(&value, Datum::Text(text) if text.is_empty());
+        let variable = self.bound_to(variable.clone());
         if let (Some(spot), true) = (variable.spot(), all || !is_nothing) {
             self.parts.initials[list].push((spot, value));
         }

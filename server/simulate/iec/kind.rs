@@ -121,6 +121,14 @@ impl Kind {
         }
     }
 
+    /// The bits that it takes at an address; nothing for what does not lie there, as structures do not.
+    pub(in crate::simulate) fn bits(&self) -> Option<u64> {
+        match self {
+            Kind::Array(bounds, element) => element.bits()?.checked_mul(count(bounds)),
+            _ => self.elementary()?.bits().map(u64::from),
+        }
+    }
+
     /// The elementary type that its values are: of an enumeration that of the numbers of its names.
     pub(in crate::simulate) fn elementary(&self) -> Option<ElementaryType> {
         match self {

@@ -3,11 +3,11 @@
 use super::compile::Compiler;
 use super::declarations::Section;
 use super::kind::{Declared, Enumeration, Extent, Field, Kind, Record, RecordKind};
-use crate::il::iec::{OperandId, PouKind, SectionKind, TypeId, TypeSpec};
+use crate::il::iec::{Declaration, OperandId, PouKind, SectionKind, TypeId, TypeSpec};
 use crate::simulate::{Obstacle, Problem};
-use crate::target::Operand;
 use crate::target::iec::semantics::NOTES;
 use crate::target::iec::{ElementaryType, FunctionBlock, LiteralValue, Parameter, ParameterType};
+use crate::target::{DirectAddress, Location, Operand};
 use crate::text::{Message, Span, folded};
 use smol_str::SmolStr;
 use std::sync::Arc;
@@ -216,6 +216,32 @@ impl Compiler<'_> {
             }
         }
         fields
+    }
+
+    /// Lets arrays at addresses lie side by side before anything else has its place there.
+    pub(super) fn reserve(&mut self) {
+        let globals = self.declared.globals.iter().map(|section| (*section, None));
+        let own = self.declared.units.iter().enumerate();
+        let own = own.flat_map(|(unit, at)| at.sections.iter().map(move |section| (*section, Some(unit))));
+        let sections: Vec<(Section, Option<usize>)> = globals.chain(own).collect();
+        let mut rows: Vec<(DirectAddress, (u64, u64))> = Vec::new();
+        for (section, unit) in sections {
+            let located = |at: &Declaration| at.address.is_some();
+            let tree = self.declared.sources[section.source].tree;
+            if !section.declarations.of(&tree.declarations).iter().any(located) {
+                continue;
+            }
+            for field in self.fields(section, unit) {
+                if let (Some(address), None) = (field.address, field.kind.elementary()) {
+                    rows.extend(super::image::extent(address, &field.kind).map(|extent| (address, extent)));
+                }
+            }
+        }
+        let mut ground = (&mut self.builder, &mut self.parts);
+        for location in [Location::Input, Location::Output, Location::Memory] {
+            let own = rows.iter().filter(|(address, _)| address.location == location);
+            self.image.reserve(location, own.map(|(_, extent)| *extent), &mut ground);
+        }
     }
 
     /// The variables of a unit; behind those of a function lies its result.

@@ -5,8 +5,7 @@ use super::current::{Current, Given};
 use super::declarations::Source;
 use super::kind::Kind;
 use super::operand::{Value, cell_spot, said};
-use super::parts::{Copying, Input, Lies, Spot};
-use super::place::At;
+use super::parts::{Input, Lies, Spot};
 use crate::il::iec::{Condition, Item, ItemKind, ListForm, OperandId, Operation, Parameter};
 use crate::simulate::builder::Position;
 use crate::simulate::code::Op;
@@ -504,18 +503,11 @@ impl<'a> List<'_, 'a> {
             return Ok(());
         }
         if let Current::Whole(source) = &self.current {
-            let (At::Memory(from), At::Memory(to)) = (source.at, target.at) else {
-                return Err(Obstacle::Unreadable);
-            };
-            if negated || !source.kind.is_same(&target.kind) {
+            if negated {
                 return Err(said("simulate.other-type", word));
             }
-            let copying =
-                Copying { from: (from, source.index), to: (to, target.index), size: source.kind.size() };
-            self.compiler.parts.copies.push(copying);
-            let number = self.compiler.parts.copies.len() as u32 - 1;
-            self.compiler.builder.op(Op::Copy { power: Row::RAIL, number });
-            return Ok(());
+            let source = source.clone();
+            return self.compiler.copy_whole(&source, &target, word);
         }
         let spot = target.spot().ok_or_else(|| said("simulate.not-elementary", word))?;
         let depth = self.depth();

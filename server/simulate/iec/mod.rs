@@ -37,6 +37,8 @@ mod call;
 
 mod drawing;
 
+mod configuration;
+
 mod compile;
 pub(super) use compile::compile;
 

@@ -1,7 +1,7 @@
 //! Names of variables, and what they lead to.
 
 use super::image::Image;
-use super::kind::{Enumeration, Kind, RecordKind};
+use super::kind::{Enumeration, Extent, Kind, RecordKind};
 use super::parts::{Lies, Spot};
 use super::place::{At, Place as Variable};
 use crate::il::iec::SectionKind;
@@ -19,6 +19,8 @@ pub(in crate::simulate) struct Names {
     roots: Vec<Root>,
     enumerations: Vec<Enumerated>,
     pub(in crate::simulate) image: Image,
+    /// Variables of instances that lie at addresses, by where they would lie.
+    rebound: FxHashMap<Extent, Variable>,
 }
 
 /// An enumerated type, with the folded names that it is declared by.
@@ -62,8 +64,13 @@ impl Names {
     }
 
     /// Takes in where addresses lie, and what types are called; names are folded.
-    pub(super) fn finish(&mut self, image: Image, kinds: &FxHashMap<SmolStr, Kind>) {
-        self.image = image;
+    pub(super) fn finish(
+        &mut self,
+        image: Image,
+        kinds: &FxHashMap<SmolStr, Kind>,
+        rebound: FxHashMap<Extent, Variable>,
+    ) {
+        (self.image, self.rebound) = (image, rebound);
         let mut found = Vec::new();
         self.roots.iter().for_each(|root| enumerations(&root.variable.kind, &mut found));
         let named = |values: Arc<Enumeration>| {
@@ -109,7 +116,7 @@ impl Names {
                 }
                 _ => None,
             };
-            return Some(Leaf { spot: variable.spot()?, enumeration });
+            return Some(Leaf { spot: self.spot(variable)?, enumeration });
         };
         let part = match (step, &variable.kind) {
             (Step::Member(name), Kind::Record(record)) => {
@@ -124,11 +131,20 @@ impl Names {
                     }
                     number = number * (greatest - least + 1) as u64 + (subscript - least) as u64;
                 }
-                variable.part((**element).clone(), element.size().times(number))?
+                variable.part((**element).clone(), variable.size_of(element).times(number))?
             }
             _ => return None,
         };
         self.leaf(&part, rest)
+    }
+
+    /// The value that a variable is, wherever it lies.
+    fn spot(&self, variable: &Variable) -> Option<Spot> {
+        let bound = match variable.at {
+            At::Memory(at) if variable.kind.elementary().is_some() => self.rebound.get(&at),
+            _ => None,
+        };
+        bound.unwrap_or(variable).spot()
     }
 
     /// The name of a value of an enumerated type.
@@ -153,7 +169,7 @@ impl Names {
         let mut names = Vec::new();
         for root in &self.roots {
             let mut leaves = Vec::new();
-            walk(&root.variable, String::new(), &mut leaves, true);
+            self.walk(&root.variable, String::new(), &mut leaves, true);
             for (name, spot) in leaves {
                 names.push(self.shortest(root, &name, spot));
             }
@@ -187,11 +203,62 @@ impl Names {
         (0..=least).rev().map(path).find(leads).unwrap_or_else(|| path(0))
     }
 
+    /// Finds the elementary parts of a variable. Those that are worth watching are its own, what blocks give, and the first
+    /// elements of arrays.
+    fn walk(&self, variable: &Variable, name: String, found: &mut Vec<(String, Spot)>, is_watched: bool) {
+        match &variable.kind {
+            Kind::Elementary(..) | Kind::Subrange(..) | Kind::Enumeration(_) => {
+                if let (Some(spot), false) = (self.spot(variable), is_watched && variable.is_constant) {
+                    found.push((name, spot));
+                }
+            }
+            Kind::Array(bounds, element) => {
+                let most = if is_watched { WATCHED_ELEMENTS } else { MOST_ELEMENTS };
+                for number in 0..super::kind::count(bounds).min(most) {
+                    let mut rest = number;
+                    let mut subscripts: Vec<String> = Vec::new();
+                    for (least, greatest) in bounds.iter().rev() {
+                        let length = (greatest - least + 1) as u64;
+                        subscripts.insert(0, (least + (rest % length) as i64).to_string());
+                        rest /= length;
+                    }
+                    let Some(part) =
+                        variable.part((**element).clone(), variable.size_of(element).times(number))
+                    else {
+                        return;
+                    };
+                    self.walk(&part, format!("{name}[{}]", subscripts.join(",")), found, is_watched);
+                }
+            }
+            Kind::Record(record) => {
+                let is_block = matches!(record.what, RecordKind::Block(_));
+                for field in &record.fields {
+                    let is_shown = !is_watched
+                        || !field.is_constant && (!is_block || field.section == SectionKind::Output);
+                    if !is_shown || !field.has_place() {
+                        continue;
+                    }
+                    let Some(part) = variable.part(field.kind.clone(), field.at) else { continue };
+                    let shown = if is_watched { field.name.clone() } else { folded(&field.name) };
+                    let name = if name.is_empty() { shown.to_string() } else { format!("{name}.{shown}") };
+                    self.walk(&part, name, found, is_watched);
+                }
+                if let (At::Memory(at), true, false) = (variable.at, is_block, is_watched) {
+                    let first = at.plus(record.size).words - NOTES as u32;
+                    for note in 0..NOTES as u32 {
+                        let lies = Lies::Word(first + note);
+                        found.push((format!("{name}.#{note}"), Spot::new(ElementaryType::Lint, lies)));
+                    }
+                }
+            }
+        }
+    }
+
     /// The name of what lies at a place.
     pub(in crate::simulate) fn name_at(&self, wanted: Spot) -> Option<String> {
         for root in &self.roots {
             let mut leaves = Vec::new();
-            walk(&root.variable, String::new(), &mut leaves, false);
+            self.walk(&root.variable, String::new(), &mut leaves, false);
             if let Some((name, spot)) = leaves.into_iter().find(|(_, spot)| *spot == wanted) {
                 return Some(self.shortest(root, &name, spot));
             }
@@ -204,7 +271,7 @@ impl Names {
     pub(in crate::simulate) fn all(&self) -> Vec<(String, Spot)> {
         let mut all = Vec::new();
         for root in &self.roots {
-            walk(&root.variable, folded(&root.path.join(".")).to_string(), &mut all, false);
+            self.walk(&root.variable, folded(&root.path.join(".")).to_string(), &mut all, false);
         }
         all
     }
@@ -243,54 +310,5 @@ fn enumerations(kind: &Kind, found: &mut Vec<Arc<Enumeration>>) {
         }
         Kind::Array(_, element) => enumerations(element, found),
         Kind::Record(record) => record.fields.iter().for_each(|field| enumerations(&field.kind, found)),
-    }
-}
-
-/// Finds the elementary parts of a variable. Those that are worth watching are its own, what blocks give, and the first
-/// elements of arrays.
-fn walk(variable: &Variable, name: String, found: &mut Vec<(String, Spot)>, is_watched: bool) {
-    match &variable.kind {
-        Kind::Elementary(..) | Kind::Subrange(..) | Kind::Enumeration(_) => {
-            if let (Some(spot), false) = (variable.spot(), is_watched && variable.is_constant) {
-                found.push((name, spot));
-            }
-        }
-        Kind::Array(bounds, element) => {
-            let most = if is_watched { WATCHED_ELEMENTS } else { MOST_ELEMENTS };
-            for number in 0..super::kind::count(bounds).min(most) {
-                let mut rest = number;
-                let mut subscripts: Vec<String> = Vec::new();
-                for (least, greatest) in bounds.iter().rev() {
-                    let length = (greatest - least + 1) as u64;
-                    subscripts.insert(0, (least + (rest % length) as i64).to_string());
-                    rest /= length;
-                }
-                let Some(part) = variable.part((**element).clone(), element.size().times(number)) else {
-                    return;
-                };
-                walk(&part, format!("{name}[{}]", subscripts.join(",")), found, is_watched);
-            }
-        }
-        Kind::Record(record) => {
-            let is_block = matches!(record.what, RecordKind::Block(_));
-            for field in &record.fields {
-                let is_shown =
-                    !is_watched || !field.is_constant && (!is_block || field.section == SectionKind::Output);
-                if !is_shown || !field.has_place() {
-                    continue;
-                }
-                let Some(part) = variable.part(field.kind.clone(), field.at) else { continue };
-                let shown = if is_watched { field.name.clone() } else { folded(&field.name) };
-                let name = if name.is_empty() { shown.to_string() } else { format!("{name}.{shown}") };
-                walk(&part, name, found, is_watched);
-            }
-            if let (At::Memory(at), true, false) = (variable.at, is_block, is_watched) {
-                let first = at.plus(record.size).words - NOTES as u32;
-                for note in 0..NOTES as u32 {
-                    let lies = Lies::Word(first + note);
-                    found.push((format!("{name}.#{note}"), Spot::new(ElementaryType::Lint, lies)));
-                }
-            }
-        }
     }
 }
