@@ -132,3 +132,61 @@ fn what_is_infinite_is_told_as_text_and_reals_have_the_digits_of_their_type() {
         answer["scans"].as_array().unwrap().iter().map(|row| row["values"].clone()).collect();
     assert_eq!(rows, vec![json!({ "a": "-Infinity", "c": "NaN" }); 2]);
 }
+
+/// What a picture shows beside operands: lines from 1, words, values.
+fn shown(picture: &Value, text: &str) -> Vec<String> {
+    let elements =
+        picture["elements"].as_array().unwrap().iter().filter(|element| element["kind"] == "value");
+    let mut all: Vec<(u64, u64, String)> = elements
+        .map(|element| {
+            let (start, end) = (&element["range"]["start"], &element["range"]["end"]);
+            let (line, from) = (start["line"].as_u64().unwrap(), start["character"].as_u64().unwrap());
+            let to = end["character"].as_u64().unwrap();
+            let words = &text.lines().nth(line as usize).unwrap()[from as usize..to as usize];
+            (line + 1, from, format!("{}: {words} = {}", line + 1, element["value"]))
+        })
+        .collect();
+    all.sort();
+    all.into_iter().map(|(_, _, shown)| shown).collect()
+}
+
+#[test]
+fn values_stand_beside_the_words_of_the_unit_and_instance_that_they_are_of() {
+    let text = "FUNCTION_BLOCK Once\nVAR_INPUT\nn : INT;\nEND_VAR\nVAR\nm : INT;\nt : TON;\nEND_VAR\n\
+        LD n\nADD 1\nST m\nCAL t(IN := TRUE, PT := T#1s)\nLD t.ET\nEND_FUNCTION_BLOCK\n\
+        FUNCTION_BLOCK Twice\nVAR_INPUT\nn : INT;\nEND_VAR\nVAR_IN_OUT\nall : INT;\nEND_VAR\nLD n\nADD all\nST all\n\
+        LD limit\nST n\nEND_FUNCTION_BLOCK\n\
+        PROGRAM Main\nVAR_EXTERNAL\nlimit : INT;\nEND_VAR\nVAR\nn : INT := 3;\ngo : BOOL;\nc : (Re, Gr) := Gr;\none : Once;\n\
+        a, b : Twice;\ns : STRING := 'x';\nrow : ARRAY[0..2] OF INT := [4, 5, 6];\nEND_VAR\n\
+        LD n\nST one.n\nLD go\nST go\nCAL one()\nCAL a(n := 1, all := n)\nCAL b(n := 10, all := n)\nLD c\nLD s\nLD row[1]\n\
+        LD row[n]\nLD %IW4\nEND_PROGRAM\nCONFIGURATION C\nVAR_GLOBAL\nlimit : INT := 8;\nEND_VAR\nRESOURCE R ON Cpu\n\
+        PROGRAM P : Main;\nEND_RESOURCE\nEND_CONFIGURATION\n";
+    let text =
+        text.replace("FUNCTION_BLOCK Twice\n", "FUNCTION_BLOCK Twice\nVAR_EXTERNAL\nlimit : INT;\nEND_VAR\n");
+    let mut plc = Simulated::open("file:///values/words.il", "iec-il", &text);
+    plc.tell("start", json!({ "paused": true }));
+    let range = json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 90, "character": 0 } });
+    plc.tell("watch", json!({ "ranges": [range] }));
+    plc.tell("step", json!({ "count": 2 }));
+    let picture = plc.picture(|picture| picture["scan"] == json!(2));
+    // What is another value in each instance is not shown, nor what a subscript names that only the PLC knows.
+    let expected = [
+        "9: n = 25",
+        "11: m = 26",
+        "12: t = \"T#20ms\"",
+        "13: t.ET = \"T#20ms\"",
+        "26: all = 36",
+        "27: all = 36",
+        "28: limit = 8",
+        "44: n = 36",
+        "45: one.n = 25",
+        "49: n = 36",
+        "50: n = 36",
+        "51: c = \"Gr\"",
+        "52: s = \"'x'\"",
+        "53: row[1] = 5",
+        "55: %IW4 = 0",
+    ];
+    let shown = shown(&picture, &text);
+    assert_eq!(shown, expected);
+}

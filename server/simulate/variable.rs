@@ -1,10 +1,11 @@
 //! Names of what can be watched and set, and their values.
 
 use super::code::Code;
+use super::iec::{self, Leaf};
 use super::machine::Machine;
 use super::row::Cell;
 use super::session::Touch;
-use super::{Lanes, Lies, Slot, Spot, Value, iec};
+use super::{Lanes, Lies, Slot, Spot, Value};
 use crate::target::iec::Datum;
 use crate::target::{Device, DeviceKind, Operand};
 use crate::text::Message;
@@ -36,11 +37,7 @@ impl Code {
     pub fn variable(&self, name: &str) -> Option<Variable> {
         let name = name.trim();
         if !self.target.is_fx() {
-            return self.iec.find(name).map(|leaf| match (leaf.spot.lies, leaf.enumeration) {
-                (_, Some(enumeration)) => Variable::Enumerated(leaf.spot, enumeration),
-                (Lies::Cell(cell), None) => Variable::Relay(cell),
-                _ => Variable::Typed(leaf.spot),
-            });
+            return self.iec.find(name).map(Variable::of_leaf);
         }
         if let Some(register) = name.strip_suffix(":32") {
             let device = self.device(register).filter(|device| has_pairs(device.kind))?;
@@ -65,6 +62,18 @@ impl Code {
         }
     }
 
+    /// The variable that a name means inside of an IEC 61131-3 program unit, which has no name for what stands outside of
+    /// all. In a program with several instances it is that of the first; of any other unit nothing is given where its
+    /// instances differ.
+    pub fn variable_at(&self, unit: &str, name: &str) -> Option<Variable> {
+        self.iec.names().find_at(unit, name.trim()).map(Variable::of_leaf)
+    }
+
+    /// The variable that a name means in one of the bodies of an IEC 61131-3 program.
+    pub(super) fn variable_in(&self, scope: usize, name: &str) -> Option<Variable> {
+        self.iec.names().find_in(scope, name.trim()).map(Variable::of_leaf)
+    }
+
     /// What the program uses, as names for [`Code::variable`]: relays, contacts of timers and counters, registers; the
     /// variables of an IEC 61131-3 program that are worth watching.
     pub fn named(&self) -> Vec<String> {
@@ -87,6 +96,14 @@ impl Code {
 }
 
 impl Variable {
+    fn of_leaf(leaf: Leaf) -> Variable {
+        match (leaf.spot.lies, leaf.enumeration) {
+            (_, Some(enumeration)) => Variable::Enumerated(leaf.spot, enumeration),
+            (Lies::Cell(cell), None) if leaf.spot.index == 0 => Variable::Relay(cell),
+            _ => Variable::Typed(leaf.spot),
+        }
+    }
+
     /// What setting it to `value` does; nothing if that is no value of it.
     pub fn set(self, code: &Code, value: &Value) -> Option<Touch> {
         let value = &self.meant(code, value)?;

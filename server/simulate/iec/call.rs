@@ -31,6 +31,7 @@ impl Compiler<'_> {
         let unit = self.bodies[number].unit;
         let place = self.declared.units[unit].place.unwrap_or(Place::START);
         self.builder.at(place, 0);
+        let first = self.builder.place_number();
         self.edges();
         self.renew(number);
         let parts = self.declared.units[unit].body.clone();
@@ -52,6 +53,7 @@ impl Compiler<'_> {
         self.builder.forget_power();
         self.land();
         self.builder.op(Op::Return);
+        self.instructions.push(first..self.builder.place_number() + 1);
     }
 
     /// Variables that begin anew at each call: VAR_TEMP. Those of functions begin where they are called.

@@ -6,6 +6,7 @@ use super::kind::{Extent, Kind, Record};
 use super::list::Jumps;
 use super::parts::{Computing, Input, Parts, Spot};
 use super::place::{At, Place as Variable};
+use super::scopes::Scope;
 use crate::document::Document;
 use crate::il::iec::SectionKind;
 use crate::simulate::builder::Builder;
@@ -17,6 +18,7 @@ use crate::target::{DirectAddress, Target};
 use crate::text::{Message, folded};
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Compiles documents that are one program in IEC 61131-3.
@@ -63,6 +65,8 @@ pub(super) struct Compiler<'a> {
     pub(super) calls: Vec<(u32, usize)>,
     /// Where bodies begin.
     pub(super) starts: Vec<u32>,
+    /// The instructions of each body, by their numbers among the places of the code.
+    pub(super) instructions: Vec<Range<u32>>,
     /// The body that is being compiled.
     pub(super) now: usize,
     /// Places for current results of that body, by the depth of parentheses.
@@ -109,6 +113,7 @@ impl<'a> Compiler<'a> {
             functions: FxHashMap::default(),
             calls: Vec::new(),
             starts: Vec::new(),
+            instructions: Vec::new(),
             now: usize::MAX,
             temporaries: Vec::new(),
             parked: None,
@@ -133,7 +138,13 @@ impl<'a> Compiler<'a> {
             Some(elementary) => self.image.place(address, elementary, &mut ground).map(At::Other),
             None => self.image.row(address, kind, &mut ground).map(At::Image),
         };
-        Ok(Variable { kind: kind.clone(), at: at.ok_or_else(wrong)?, index: 0, is_constant: false })
+        let at = at.ok_or_else(wrong)?;
+        let variable = Variable { kind: kind.clone(), at, index: 0, is_constant: false };
+        let here = self.parts.names.around.located.entry(address).or_default();
+        if !here.iter().any(|own| own.kind.is_same(kind)) {
+            here.push(variable.clone());
+        }
+        Ok(variable)
     }
 
     /// The variable itself, where VAR_CONFIG lays the one of an instance at an address.
@@ -246,6 +257,7 @@ impl<'a> Compiler<'a> {
             self.problems.dedup();
             return Err(self.problems);
         }
+        self.scopes();
         self.parts.names.finish(self.image, &self.kinds, self.rebound);
         let mut code =
             self.builder.finish().map_err(|obstacle| vec![Problem { place: Place::START, obstacle }])?;
@@ -254,6 +266,22 @@ impl<'a> Compiler<'a> {
         }
         code.iec = self.parts;
         Ok(code)
+    }
+
+    /// Notes what names mean in each body.
+    fn scopes(&mut self) {
+        for (number, body) in std::mem::take(&mut self.bodies).into_iter().enumerate() {
+            let (record, unit) = (self.record(body.unit), &self.declared.units[body.unit]);
+            self.parts.names.scopes.push(Scope {
+                unit: folded(&unit.name),
+                kind: unit.kind,
+                record,
+                base: body.base,
+                aliases: body.aliases,
+                instructions: self.instructions.get(number).cloned().unwrap_or_default(),
+            });
+        }
+        self.parts.names.around.globals = std::mem::take(&mut self.globals);
     }
 
     /// A unit that calls itself, through others or not, would need variables for each call.

@@ -4,6 +4,7 @@ use super::image::Image;
 use super::kind::{Enumeration, Extent, Kind, RecordKind};
 use super::parts::{Lies, Spot};
 use super::place::{At, Place as Variable};
+use super::scopes::{Around, Scope};
 use crate::il::iec::SectionKind;
 use crate::target::iec::ElementaryType;
 use crate::target::iec::semantics::NOTES;
@@ -16,7 +17,9 @@ use std::sync::Arc;
 /// The variables of a program by name.
 #[derive(Debug, Default)]
 pub(in crate::simulate) struct Names {
-    roots: Vec<Root>,
+    pub(super) roots: Vec<Root>,
+    pub(super) scopes: Vec<Scope>,
+    pub(super) around: Around,
     enumerations: Vec<Enumerated>,
     pub(in crate::simulate) image: Image,
     /// Variables of instances that lie at addresses, by where they would lie.
@@ -32,10 +35,10 @@ struct Enumerated {
 
 /// A global variable, a program, or a variable that lies at an address.
 #[derive(Debug)]
-struct Root {
+pub(super) struct Root {
     /// As declared, with what stands around it: `Resource`, `Main`.
-    path: Vec<SmolStr>,
-    variable: Variable,
+    pub(super) path: Vec<SmolStr>,
+    pub(super) variable: Variable,
 }
 
 /// An elementary value with a name.
@@ -48,7 +51,7 @@ pub(in crate::simulate) struct Leaf {
 
 /// A step of a path.
 #[derive(PartialEq, Debug)]
-enum Step {
+pub(super) enum Step {
     Member(SmolStr),
     Element(Vec<i64>),
 }
@@ -107,7 +110,7 @@ impl Names {
         best.filter(|_| is_unique).map(|(_, leaf)| leaf)
     }
 
-    fn leaf(&self, variable: &Variable, steps: &[Step]) -> Option<Leaf> {
+    pub(super) fn leaf(&self, variable: &Variable, steps: &[Step]) -> Option<Leaf> {
         let Some((step, rest)) = steps.split_first() else {
             let enumeration = match &variable.kind {
                 Kind::Enumeration(own) => {
@@ -278,7 +281,7 @@ impl Names {
 }
 
 /// The steps of a name: members, and subscripts that are numbers.
-fn steps(name: &str) -> Option<Vec<Step>> {
+pub(super) fn steps(name: &str) -> Option<Vec<Step>> {
     let mut steps = Vec::new();
     for part in name.trim().split('.') {
         let (member, mut rest) = part.split_at(part.find('[').unwrap_or(part.len()));

@@ -51,7 +51,7 @@ pub struct Spot {
     pub(in crate::simulate) kind: ElementaryType,
     pub(in crate::simulate) lies: Lies,
     /// The subscripts that are known at run time only, a place among the indices and 1; 0 for none.
-    pub(super) index: u32,
+    pub(in crate::simulate) index: u32,
     /// The subrange that it is of, a place among the ranges and 1; 0 for none.
     pub(super) range: u32,
 }
@@ -118,6 +118,11 @@ impl Parts {
     /// What a name leads to.
     pub(in crate::simulate) fn find(&self, name: &str) -> Option<Leaf> {
         self.names.find(name)
+    }
+
+    /// What names mean.
+    pub(in crate::simulate) fn names(&self) -> &Names {
+        &self.names
     }
 
     /// The names of variables that are worth watching.
