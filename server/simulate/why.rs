@@ -450,11 +450,7 @@ impl<'a> Inquiry<'a> {
         let now = machine.memory().word(layout.slot(device)?, 0);
         let preset = match driver.action.terms.get(1)?.operand {
             Operand::Device(register) => machine.memory().word(layout.slot(register)?, 0),
-            _ => match Value::read(&driver.action.terms.get(1)?.text)? {
-                Value::Number(number) => number,
-                Value::Bit(on) => i64::from(on),
-                _ => return None,
-            },
+            _ => Value::read(&driver.action.terms.get(1)?.text)?.as_number()? as i64,
         };
         let is_on = *value == Value::Bit(true);
         if device.kind == DeviceKind::C {

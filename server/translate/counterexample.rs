@@ -5,7 +5,7 @@ use crate::logic::{
     Atom, Bounds, Formulas, Moment, Path, Place, Real, Scan, State, Step, Storage, Term,
     WIDE, evaluate, real_at, wholes,
 };
-use crate::target::iec::ElementaryType;
+use crate::target::iec::{ElementaryType, real_spelled};
 use crate::target::{Device, DirectAddress, Model, Operand, Width};
 use crate::text::{Message, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -86,7 +86,7 @@ impl fmt::Display for Value {
         match self {
             Value::Bit(value) => write!(f, "{value}"),
             Value::Word(value) => write!(f, "{value}"),
-            Value::Real(value) => write!(f, "{value:?}"),
+            Value::Real(value) => f.write_str(&real_spelled(*value)),
             Value::Time(nanoseconds) => write!(f, "T#{}ms", nanoseconds / 1_000_000),
             Value::Named(name) => f.write_str(name),
         }

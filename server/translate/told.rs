@@ -2,6 +2,7 @@
 
 use super::{Counterexample, Proof, Shown, Value};
 use crate::document::Document;
+use crate::target::iec::real_spelled;
 use crate::text::{Encoding, Language, Message, Span, text_width};
 use serde_json::{Map, Value as Json, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -54,6 +55,8 @@ fn value_json(value: &Value) -> Json {
     match value {
         Value::Bit(value) => json!(value),
         Value::Word(value) => json!(value),
+        // JSON has no number for these.
+        Value::Real(value) if !value.is_finite() => json!(real_spelled(*value).as_str()),
         Value::Real(value) => json!(value),
         Value::Time(_) | Value::Named(_) => json!(value.to_string()),
     }

@@ -1,8 +1,12 @@
 //! The notification `rungwise/monitor`: what of a program that runs is on the screen.
 
 use super::super::to_proto::Place;
-use crate::simulate::{Code, EnergisedKind, Lanes, Machine, Sight, Variable, power_flow};
+use crate::document::Tree;
+use crate::ide;
+use crate::il::iec::{ItemKind, ParameterValue, Run};
+use crate::simulate::{Code, EnergisedKind, Lanes, Machine, Sight, Value, Variable, power_flow};
 use crate::target::Operand;
+use crate::text::Span;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value as Json, json};
 use std::ops::Range as Bytes;
@@ -137,20 +141,74 @@ impl Monitor {
 /// The values of words, beside the operands that name them.
 fn words(place: Place<'_>, window: &Bytes<usize>, machine: &Machine<u8>) -> Vec<Json> {
     let mut elements = Vec::new();
-    let layout = &machine.code().layout;
+    let code = machine.code();
     let shown = place.document.chunks().skip_while(|at| at.start < window.start);
     for at in shown.take_while(|at| at.start < window.end) {
         let reading = at.chunk.reading();
-        for operand in reading.operations().flat_map(|operation| operation.operands) {
-            let Operand::Device(device) = operand.value else { continue };
-            let Some(slot) = layout.slot(device) else { continue };
+        let mut show = |span: Span, variable: Variable| {
+            let value = match machine.value(variable, 0) {
+                // As programs spell it: milliseconds would look like a number.
+                value @ (Value::Time(_) | Value::Text(_)) => value.to_string().into(),
+                value => value.json(),
+            };
             elements.push(json!({
-                "range": place.range(operand.span.shifted(at.start)),
+                "range": place.range(span.shifted(at.start)),
                 "kind": "value",
                 "energised": false,
-                "value": machine.value(Variable::Word(slot), 0).json(),
+                "value": value,
             }));
+        };
+        if code.target.is_fx() {
+            for operand in reading.operations().flat_map(|operation| operation.operands) {
+                let Operand::Device(device) = operand.value else { continue };
+                let word = code.layout.slot(device).map(Variable::Word);
+                word.into_iter().for_each(|word| show(operand.span, word));
+            }
+            continue;
+        }
+        let unit = ide::pou_at(place.document, at.start);
+        let unit = unit.and_then(|number| place.document.scopes().pous.get(number));
+        let unit = unit.map_or("", |unit| &unit.name);
+        for span in operands(reading.tree()) {
+            let word = span.of(reading.text());
+            // Of an instance that is called what it counts.
+            let counted =
+                || ["ET", "CV"].into_iter().find_map(|pin| code.variable_at(unit, &format!("{word}.{pin}")));
+            match code.variable_at(unit, word).or_else(counted) {
+                Some(variable @ (Variable::Typed(_) | Variable::Enumerated(..))) => show(span, variable),
+                _ => {}
+            }
         }
     }
     elements
+}
+
+/// Where operands of instructions and of drawn elements stand.
+fn operands(tree: &Tree) -> Vec<Span> {
+    match tree {
+        Tree::Ladder(tree) => {
+            let elements = tree.rungs.iter().flat_map(|rung| &rung.graph.elements);
+            elements.flat_map(|element| &element.operands).map(|operand| operand.span).collect()
+        }
+        Tree::Iec(tree) => {
+            let own = tree.items.iter().flat_map(|item| {
+                let (first, parameters) = match item.kind {
+                    ItemKind::Operation { operand, .. } | ItemKind::Open { operand, .. } => {
+                        (operand, Run::default())
+                    }
+                    ItemKind::Call { callee, parameters, .. } => (callee, parameters),
+                    ItemKind::InputOperator { instance, .. } => (Some(instance), Run::default()),
+                    ItemKind::Function { parameters, .. } => (None, parameters),
+                    _ => (None, Run::default()),
+                };
+                let handed = parameters.of(&tree.parameters).iter().filter_map(|given| match given.value {
+                    ParameterValue::Operand(id) => Some(id),
+                    ParameterValue::Instructions | ParameterValue::Missing => None,
+                });
+                first.into_iter().chain(handed)
+            });
+            own.map(|id| tree.operand(id).span).collect()
+        }
+        Tree::Fx(_) => Vec::new(),
+    }
 }

@@ -524,9 +524,9 @@ impl Running {
 
     fn set(&mut self, name: &str, value: &Json, is_force: bool) -> Result<(), Message> {
         let variable = self.variable(name)?;
-        let value = Value::of_json(value);
         let code = self.session.machine().code();
-        let value = value.ok_or_else(|| Message::new("cli.run-no-value").with("name", name))?;
+        let value =
+            Value::of_json(value).ok_or_else(|| Message::new("cli.run-no-value").with("name", name))?;
         let touch = match is_force {
             true => variable.force(code, &value),
             false => variable.set(code, &value),
