@@ -163,6 +163,8 @@ impl Trial {
         attempt.run.hold = seen.hold;
         self.simplify(&mut attempt, &seen);
         self.complete(&mut attempt, &seen);
+        // What was only left over from the scan before is set now.
+        self.simplify(&mut attempt, &seen);
         seen.values = self.last(&attempt, &seen).unwrap_or(seen.values);
         let name = |handle: usize| self.handles[handle].name.clone();
         let mut inputs: BTreeMap<String, Held> =
