@@ -89,6 +89,9 @@ struct Attempt {
     now: Values,
 }
 
+/// Looks at both PLCs behind a scan, and says whether that was enough.
+type Look<'l> = dyn FnMut(&Trial, u64, &[Machine<u8>; 2]) -> bool + 'l;
+
 /// What differed.
 #[derive(Clone, PartialEq, Debug)]
 struct Seen {
@@ -322,7 +325,7 @@ impl Trial {
     fn scans(
         &mut self,
         attempt: &Attempt,
-        look: &mut dyn FnMut(&Trial, u64, &[Machine<u8>; 2]) -> bool,
+        look: &mut Look<'_>,
     ) -> Option<()> {
         let first = attempt.first();
         let effort: usize = self.codes.iter().map(|code| code.instructions() + 100).sum();
