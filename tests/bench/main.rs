@@ -27,6 +27,8 @@ mod cursor;
 
 mod simulation;
 
+mod simulation_iec;
+
 use figures::{Figures, Table, calibrate, milliseconds};
 use lsp_client::{Client, at};
 use programs::Program;
@@ -60,6 +62,7 @@ fn main() {
     translation::measure(&table);
     cursor::measure(&table);
     simulation::measure(&table);
+    simulation_iec::measure(&table);
     command_line::measure(&table);
     println!("| (calibration again) | {} | | | | |", milliseconds(calibrate()));
 }
