@@ -29,6 +29,8 @@ mod cursor;
 
 mod simulation;
 
+mod simulation_iec;
+
 use figures::{Figures, Table, calibrate, milliseconds};
 use lsp_client::{Client, at};
 use programs::Program;
@@ -63,6 +65,7 @@ fn main() {
     machine_code::measure(&table);
     cursor::measure(&table);
     simulation::measure(&table);
+    simulation_iec::measure(&table);
     command_line::measure(&table);
     println!("| (calibration again) | {} | | | | |", milliseconds(calibrate()));
 }
