@@ -7,11 +7,24 @@
 //! `cargo bench --bench bench -- WORD …` measures only rows whose names contain one of the words; the environment
 //! variable `RUNGWISE_BENCH_SERVER` names another build of the program.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a bench that cannot run stops")]
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a bench that cannot run stops"
+)]
 
 #[path = "../lsp_client.rs"]
 #[allow(dead_code, reason = "the tests use all of it")]
 mod lsp_client;
+
+#[path = "../loopback.rs"]
+#[allow(dead_code, reason = "the tests use all of it")]
+mod loopback;
+
+#[path = "../line_time.rs"]
+mod line_time;
 
 mod figures;
 
@@ -26,6 +39,8 @@ mod translation;
 mod cursor;
 
 mod simulation;
+
+mod link;
 
 use figures::{Figures, Table, calibrate, milliseconds};
 use lsp_client::{Client, at};
@@ -60,6 +75,7 @@ fn main() {
     translation::measure(&table);
     cursor::measure(&table);
     simulation::measure(&table);
+    link::measure(&table);
     command_line::measure(&table);
     println!("| (calibration again) | {} | | | | |", milliseconds(calibrate()));
 }
