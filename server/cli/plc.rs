@@ -233,10 +233,7 @@ impl Person {
                     server.plc_mut().put(variable, &setting.value);
                     Some(String::new())
                 });
-                let shown = set.or_else(|| {
-                    let machine = server.plc().machine();
-                    Some(format!("{} = {}", line, machine.value(code.variable(line)?, 0)))
-                });
+                let shown = set.or_else(|| Some(format!("{line} = {}", server.plc().shown(line)?)));
                 let unknown = || Message::new("link.plc-words").with("line", line).render(self.language);
                 return Some(shown.unwrap_or_else(unknown)).filter(|answer| !answer.is_empty());
             }

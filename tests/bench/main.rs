@@ -7,11 +7,24 @@
 //! `cargo bench --bench bench -- WORD …` measures only rows whose names contain one of the words; the environment
 //! variable `RUNGWISE_BENCH_SERVER` names another build of the program.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a bench that cannot run stops")]
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a bench that cannot run stops"
+)]
 
 #[path = "../lsp_client.rs"]
 #[allow(dead_code, reason = "the tests use all of it")]
 mod lsp_client;
+
+#[path = "../loopback.rs"]
+#[allow(dead_code, reason = "the tests use all of it")]
+mod loopback;
+
+#[path = "../line_time.rs"]
+mod line_time;
 
 mod figures;
 
@@ -30,6 +43,7 @@ mod cursor;
 mod simulation;
 
 mod simulation_iec;
+mod link;
 
 use figures::{Figures, Table, calibrate, milliseconds};
 use lsp_client::{Client, at};
@@ -66,6 +80,7 @@ fn main() {
     cursor::measure(&table);
     simulation::measure(&table);
     simulation_iec::measure(&table);
+    link::measure(&table);
     command_line::measure(&table);
     println!("| (calibration again) | {} | | | | |", milliseconds(calibrate()));
 }
