@@ -322,11 +322,7 @@ impl Trial {
 
     /// Runs both programs and lets `look` see them behind each scan, until it has seen enough. Nothing if something
     /// goes wrong in a scan, or if that is too much work.
-    fn scans(
-        &mut self,
-        attempt: &Attempt,
-        look: &mut Look<'_>,
-    ) -> Option<()> {
+    fn scans(&mut self, attempt: &Attempt, look: &mut Look<'_>) -> Option<()> {
         let first = attempt.first();
         let effort: usize = self.codes.iter().map(|code| code.instructions() + 100).sum();
         let effort = effort * (first + attempt.run.hold + 1) as usize + WORK_OF_START;

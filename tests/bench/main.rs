@@ -42,8 +42,8 @@ mod cursor;
 
 mod simulation;
 
-mod simulation_iec;
 mod link;
+mod simulation_iec;
 
 use figures::{Figures, Table, calibrate, milliseconds};
 use lsp_client::{Client, at};
