@@ -46,7 +46,7 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
     private readonly simulation: SimulationView,
     private readonly memory: vscode.Memento,
   ) {
-    const command = (name: string, run: () => Promise<unknown>) => vscode.commands.registerCommand(`rungwise.controller.${name}`, () => this.run(run));
+    const register = (command: string, run: () => Promise<unknown>) => vscode.commands.registerCommand(command, () => this.run(run));
     this.status.name = 'Rungwise PLC';
     this.status.command = `${VIEW}.focus`;
     this.subscriptions = [
@@ -56,15 +56,15 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
       this.drifted,
       vscode.window.createTreeView(VIEW, { treeDataProvider: this }),
       vscode.workspace.registerTextDocumentContentProvider(SCHEME, this),
-      command('connect', () => this.connect()),
-      command('disconnect', () => this.tell('disconnect')),
-      command('download', () => this.download()),
-      command('upload', () => this.upload()),
-      command('verify', () => this.verify()),
-      command('start', () => this.start()),
-      command('stop', () => this.tell('stop')),
-      command('monitor', () => this.monitor()),
-      command('write', () => this.write()),
+      register('rungwise.controller.connect', () => this.connect()),
+      register('rungwise.controller.disconnect', () => this.tell('disconnect')),
+      register('rungwise.controller.download', () => this.download()),
+      register('rungwise.controller.upload', () => this.upload()),
+      register('rungwise.controller.verify', () => this.verify()),
+      register('rungwise.controller.start', () => this.start()),
+      register('rungwise.controller.stop', () => this.tell('stop')),
+      register('rungwise.controller.monitor', () => this.monitor()),
+      register('rungwise.controller.write', () => this.write()),
       server.onNotification(PLC_STATE, (params) => this.take(params)),
       server.onDidStart(() => this.take(undefined)),
       vscode.workspace.onDidChangeTextDocument(({ document }) => LANGUAGES.includes(document.languageId) && this.compareSoon()),
@@ -220,8 +220,9 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
     const state = parseState(params);
     // What was compared stays so until something else is said of it.
     this.state = state.connected && state.match === undefined ? { ...state, ...(before.match && { match: before.match }), drift: before.drift } : state;
-    if (before.connected && !state.connected && state.reason !== undefined) {
-      void vscode.window.showErrorMessage(`Rungwise: ${state.reason}`);
+    const { reason } = state;
+    if (before.connected && reason !== undefined) {
+      void vscode.window.showErrorMessage(`Rungwise: ${reason}`);
     }
     if (before.monitoring !== undefined && state.monitoring === undefined) {
       this.simulation.unfollowAll();
