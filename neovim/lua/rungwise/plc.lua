@@ -78,7 +78,7 @@ local function show_difference(plan)
 end
 
 local function is_confirmed(question)
-  return vim.fn.confirm(question, t('&Yes\n&No'), 2) == 1
+  return vim.fn.confirm(question, t('&Yes') .. '\n' .. t('&No'), 2) == 1
 end
 
 --- What `:Rungwise plc VERB …` does.

@@ -59,7 +59,8 @@ M.chinese = {
   ['the program in the PLC is the same'] = 'PLC 中的程序相同',
   ['the program in the PLC is another one'] = 'PLC 中是另一个程序',
   ['this computer has no serial port'] = '本机没有串口',
-  ['&Yes\n&No'] = '是(&Y)\n否(&N)',
+  ['&Yes'] = '是(&Y)',
+  ['&No'] = '否(&N)',
   ['Stop the PLC and write %d bytes into it?'] = '停止 PLC 并写入 %d 个字节吗？',
   ['Stop the PLC, write %d bytes into it and start it? The machine may move.'] =
     '停止 PLC、写入 %d 个字节并启动它吗？机器可能会动。',

@@ -160,12 +160,15 @@ impl Watching {
             machine.hold_only(held);
             let shown = self.monitor.instructions(code);
             let mut sights = Vec::new();
-            machine.scan_watched(now_ns - start, &mut |sight| {
-                if shown.contains(&sight.instruction) {
-                    sights.push(sight);
-                }
-                true
-            });
+            // No power flows in a program that is not executed.
+            if mode == Mode::Run {
+                machine.scan_watched(now_ns - start, &mut |sight| {
+                    if shown.contains(&sight.instruction) {
+                        sights.push(sight);
+                    }
+                    true
+                });
+            }
             elements = self.monitor.elements(place, code, &sights, machine);
         }
         let named = self.known.iter().zip(self.watch.points().iter().zip(&values));
