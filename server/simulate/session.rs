@@ -212,8 +212,8 @@ impl Session {
         Some(sights)
     }
 
-    /// Runs a scan that begins at `now_ns` anew up to the sight with a number, and shows the PLC as it is there. Nothing
-    /// if the scan is not known, or has not as many sights.
+    /// Runs a scan that begins at `now_ns` anew up to the sight with a number, and shows the PLC as it is there.
+    /// Nothing if the scan is not known, or has not as many sights.
     pub(super) fn inside<T>(
         &self,
         scan: u64,

@@ -26,8 +26,8 @@ pub enum Value {
     Text(SmolStr),
     /// A value of an enumerated type by its name, a date or a character as a literal.
     Name(SmolStr),
-    /// A word that is this number or bit, unless a variable has a value with such a name: `H1F`, `K5`, `on`. No variable
-    /// has it.
+    /// A word that is this number or bit, unless a variable has a value with such a name: `H1F`, `K5`, `on`. No
+    /// variable has it.
     Word(SmolStr, Box<Value>),
 }
 

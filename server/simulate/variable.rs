@@ -62,8 +62,8 @@ impl Code {
         }
     }
 
-    /// The variable that a name means inside of an IEC 61131-3 program unit, which has no name for what stands outside of
-    /// all. In a program with several instances it is that of the first; of any other unit nothing is given where its
+    /// The variable that a name means inside of an IEC 61131-3 program unit, which has no name for what stands outside
+    /// of all. In a program with several instances it is that of the first; of any other unit nothing is given where its
     /// instances differ.
     pub fn variable_at(&self, unit: &str, name: &str) -> Option<Variable> {
         self.iec.names().find_at(unit, name.trim()).map(Variable::of_leaf)
@@ -122,8 +122,8 @@ impl Variable {
         }
     }
 
-    /// What a value is that people write for it: `Red` and `Colour#Red` are the same, `K5` is a number unless a value of
-    /// its type is called so. Nothing for a name that says no value of it.
+    /// What a value is that people write for it: `Red` and `Colour#Red` are the same, `K5` is a number unless a value
+    /// of its type is called so. Nothing for a name that says no value of it.
     pub fn meant(self, code: &Code, value: &Value) -> Option<Value> {
         match (self, value) {
             (Variable::Enumerated(_, enumeration), _) => {

@@ -174,10 +174,9 @@ fn words(place: Place<'_>, window: &Bytes<usize>, machine: &Machine<u8>) -> Vec<
             // Of an instance that is called what it counts.
             let counted =
                 || ["ET", "CV"].into_iter().find_map(|pin| code.variable_at(unit, &format!("{word}.{pin}")));
-            match code.variable_at(unit, word).or_else(counted) {
-                Some(variable @ (Variable::Typed(_) | Variable::Enumerated(..))) => show(span, variable),
-                _ => {}
-            }
+            let variable = code.variable_at(unit, word).or_else(counted);
+            let is_word = |own: &Variable| matches!(own, Variable::Typed(_) | Variable::Enumerated(..));
+            variable.filter(is_word).into_iter().for_each(|word| show(span, word));
         }
     }
     elements

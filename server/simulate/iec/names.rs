@@ -206,8 +206,8 @@ impl Names {
         (0..=least).rev().map(path).find(leads).unwrap_or_else(|| path(0))
     }
 
-    /// Finds the elementary parts of a variable. Those that are worth watching are its own, what blocks give, and the first
-    /// elements of arrays.
+    /// Finds the elementary parts of a variable. Those that are worth watching are its own, what blocks give, and the
+    /// first elements of arrays.
     fn walk(&self, variable: &Variable, name: String, found: &mut Vec<(String, Spot)>, is_watched: bool) {
         match &variable.kind {
             Kind::Elementary(..) | Kind::Subrange(..) | Kind::Enumeration(_) => {

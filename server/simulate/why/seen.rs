@@ -26,7 +26,8 @@ impl Seen {
     }
 
     /// What the instruction at a place saw last before the sight with this number, and the number of that; of a body
-    /// that has these instructions, if one is given. What stands in several lines of a list is seen at the last of them.
+    /// that has these instructions, if one is given. What stands in several lines of a list is seen at the last of
+    /// them.
     pub(super) fn last(
         &self,
         code: &Code,

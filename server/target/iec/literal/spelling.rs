@@ -29,8 +29,8 @@ pub fn spelled(value: &Datum, kind: ElementaryType) -> SmolStr {
     }
 }
 
-/// The number with the fewest digits that a variable of type `kind` takes for this one: of the REAL nearest to 0.1 it is
-/// 0.1, and not what is left behind its seventh digit.
+/// The number with the fewest digits that a variable of type `kind` takes for this one: of the REAL nearest to 0.1 it
+/// is 0.1, and not what is left behind its seventh digit.
 pub fn shortest(number: f64, kind: ElementaryType) -> f64 {
     match kind {
         ElementaryType::Real => format!("{:?}", number as f32).parse().unwrap_or(number),
