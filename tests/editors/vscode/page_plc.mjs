@@ -27,9 +27,18 @@ async function hasPower(workbench) {
   return bold.some((text) => text.includes('( )'));
 }
 
+/** Runs a command that asks something, and waits until it does. */
+async function ask(workbench, command, title) {
+  await workbench.page.keyboard.press('F1');
+  await workbench.page.waitForSelector('.quick-input-widget:visible', { timeout: 45_000 });
+  await workbench.page.keyboard.type(command);
+  await workbench.page.locator('.quick-input-list .monaco-list-row', { hasText: command }).first().waitFor({ timeout: 45_000 });
+  await workbench.page.keyboard.press('Enter');
+  await workbench.page.locator('.quick-input-title', { hasText: title }).first().waitFor({ timeout: 45_000 });
+}
+
 /** Answers the box at the top of the window. */
 async function answer(workbench, text) {
-  await workbench.page.waitForSelector('.quick-input-widget:visible', { timeout: 45_000 });
   await workbench.page.keyboard.press('Control+a');
   await workbench.page.keyboard.type(text);
   await workbench.page.keyboard.press('Enter');
@@ -41,9 +50,10 @@ async function download(workbench) {
   try {
     await workbench.clear();
     await workbench.openFile('downloaded.lad');
-    await workbench.command('Rungwise: PLC: Connect');
+    await ask(workbench, 'Rungwise: PLC: Connect', 'Port of the PLC');
     const other = workbench.page.locator('.quick-input-list .monaco-list-row', { hasText: 'Another port' }).first();
     await other.click();
+    await workbench.page.locator('.quick-input-widget input').first().waitFor({ timeout: 45_000 });
     await answer(workbench, port);
     await workbench.status('FX2N RUN');
     await workbench.command('Rungwise: PLC: Download');
@@ -59,7 +69,7 @@ async function download(workbench) {
     if (await hasPower(workbench)) {
       throw new Error('a coil has power');
     }
-    await workbench.command('Rungwise: PLC: Write a Device');
+    await ask(workbench, 'Rungwise: PLC: Write a Device', 'Write into the PLC');
     await answer(workbench, 'X0=1');
     await workbench.until('the motor on', () => hasPower(workbench));
     await workbench.command('PLC: Focus on PLC View').catch(() => workbench.calm());
