@@ -1,10 +1,8 @@
 //! The program that is debugged: read from the disk, compiled, and its places as the protocol names them.
 
-use crate::check;
-use crate::document::{Document, Member, Notation, ProjectView, Tree};
+use crate::document::{Document, Notation, Tree};
 use crate::project::{
-    CommentsFile, MANIFEST_NAME, Manifest, Project, Stamp, is_program_file, open_document, program_files,
-    read_text,
+    CommentsFile, MANIFEST_NAME, Stamp, Surroundings, is_program_file, open_document, read_text,
 };
 use crate::simulate::{Code, Drivers, Place, Problem, compile, instruction_words};
 use crate::target::{Model, Target};
@@ -195,54 +193,37 @@ fn no_file(path: &Path) -> Message {
 /// The files of the program at a path, in the order of execution.
 fn files_of(path: &Path) -> Result<Vec<File>, Message> {
     let unread = |path: &Path| Message::new("debug.unreadable").with("path", path.display());
-    let project = Project::of(path);
-    if let Some(error) = project.as_ref().and_then(|project| project.error.as_ref()) {
+    if path.is_file() && !is_program_file(path) {
+        return Err(Message::new("cli.no-program-file").with("path", path.display()));
+    }
+    let around = Surroundings::of(path).map_err(|_| unread(path))?;
+    let project = around.project.as_ref();
+    if let Some(error) = project.and_then(|project| project.error.as_ref()) {
         return Err(error.message.clone());
     }
-    let manifest = project.as_ref().map(|project| project.manifest.clone()).unwrap_or_default();
-    let own = match &project {
-        Some(project) => project.files().map_err(|_| unread(path))?,
-        None if path.is_dir() => program_files(path).map_err(|_| unread(path))?,
-        None => Vec::new(),
-    };
-    let is_member = |file: &PathBuf| file.canonicalize().is_ok_and(|file| file == path);
-    let paths = match own.iter().any(is_member) || path.is_dir() {
-        true => own,
-        false if is_program_file(path) => vec![path.to_path_buf()],
-        false => return Err(Message::new("cli.no-program-file").with("path", path.display())),
-    };
-    let comments = project.as_ref().and_then(|project| {
+    let manifest = project.map(|project| project.manifest.clone()).unwrap_or_default();
+    let comments = project.and_then(|project| {
         let file = project.root.join(project.manifest.comments.as_ref()?);
         Some(CommentsFile::open(&file, manifest.target().unwrap_or(Target::of(Model::Fx2n))).comments.clone())
     });
     let mut files = Vec::new();
-    for path in paths {
-        let path = path.canonicalize().map_err(|_| unread(&path))?;
+    for path in &around.files {
+        let path = path.canonicalize().map_err(|_| unread(path))?;
         let stamp = Stamp::of(&path);
         let text = read_text(&path).ok_or_else(|| unread(&path))?;
         let document = open_document(&path.to_string_lossy(), &text, &manifest, None, None);
         let document = comments.as_ref().map(|comments| document.commented(comments)).unwrap_or(document);
         files.push(File { path, document, stamp, is_outdated: false });
     }
-    let numbers = program_of(path, &files, &manifest)?;
+    let documents: Vec<&Document> = files.iter().map(|file| &file.document).collect();
+    let mut programs = around.programs(&documents);
+    let numbers = match programs.len() {
+        0 => return Err(Message::new("cli.no-programs")),
+        1 => programs.swap_remove(0),
+        _ => return Err(Message::new("debug.many-programs").with("path", path.display())),
+    };
     let mut files: Vec<Option<File>> = files.into_iter().map(Some).collect();
     Ok(numbers.into_iter().filter_map(|number| files.get_mut(number)?.take()).collect())
-}
-
-/// The numbers of the files that are one program with the one at `path`, or of the only program of a folder.
-fn program_of(path: &Path, files: &[File], manifest: &Manifest) -> Result<Vec<usize>, Message> {
-    let here = files.iter().position(|file| file.path == path);
-    let members = files.iter().map(|file| Member { name: "", document: &file.document }).collect();
-    let view = ProjectView::new(members, here.unwrap_or(0), manifest.files.is_some());
-    let view = view.ok_or_else(|| Message::new("cli.no-programs"))?;
-    if here.is_some() {
-        return Ok(check::program_around(&view));
-    }
-    let mut programs = check::programs(&view);
-    match programs.len() {
-        0 | 1 => Ok(programs.pop().unwrap_or_default()),
-        _ => Err(Message::new("debug.many-programs").with("path", path.display())),
-    }
 }
 
 /// Where the rungs of a document begin.
