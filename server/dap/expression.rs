@@ -4,8 +4,9 @@
 //! signs of C (`|| ^ && ! == !=`), and `&`. In arithmetic and comparisons a bit is 0 or 1; a number by itself holds
 //! where it is not 0.
 
-use crate::simulate::{Code, Value, Variable};
+use crate::simulate::{Code, Value, Variable, joined};
 use crate::text::Message;
+use std::cmp::Ordering;
 
 /// Something that has a value.
 #[derive(Clone, Debug)]
@@ -58,12 +59,12 @@ const NOT_AT: usize = 3;
 const MOST_DEPTH: usize = 64;
 
 impl Expression {
-    /// Reads an expression about a program.
+    /// Reads an expression about a program; names may be those of the variables of `owner`.
     ///
     /// # Errors
     /// A sentence that says what is wrong.
-    pub(super) fn read(text: &str, code: &Code) -> Result<Expression, Message> {
-        let mut reader = Reader { words: words(text), at: 0, code, text, depth: 0 };
+    pub(super) fn read(text: &str, code: &Code, owner: Option<&str>) -> Result<Expression, Message> {
+        let mut reader = Reader { words: words(text), at: 0, code, owner, text, depth: 0 };
         let expression = reader.level(0)?;
         match reader.peek() {
             None => Ok(expression),
@@ -80,10 +81,7 @@ impl Expression {
             Expression::Value(value) => value.clone(),
             Expression::Variable(variable) => of(*variable),
             Expression::Not(part) => Value::Bit(!holds(&part.value(of)?)),
-            Expression::Minus(part) => {
-                let part = part.value(of)?;
-                Value::Number(number(&part).and_then(i64::checked_neg).ok_or_else(no_result)?)
-            }
+            Expression::Minus(part) => Operator::Minus.of(&Value::Number(0), &part.value(of)?)?,
             Expression::Both(operator, left, right) => operator.of(&left.value(of)?, &right.value(of)?)?,
         })
     }
@@ -119,25 +117,80 @@ impl Operator {
                 _ => left != right,
             }));
         }
-        let (Some(left), Some(right)) = (number(left), number(right)) else { return Err(no_result()) };
-        let result = match self {
+        if let Some(order) = order(left, right)
+            && let Some(holds) = self.holds_for(order)
+        {
+            return Ok(Value::Bit(holds));
+        }
+        let result = match (left, right) {
+            (Value::Real(_), _) | (_, Value::Real(_)) => {
+                let both = real(left).zip(real(right));
+                both.and_then(|(left, right)| self.of_reals(left, right)).map(Value::Real)
+            }
+            (Value::Time(left), Value::Time(right)) => self.of_numbers(*left, *right).map(Value::Time),
+            // A duration turned round.
+            (Value::Number(0), Value::Time(right)) => self.of_numbers(0, *right).map(Value::Time),
+            _ => {
+                let both = number(left).zip(number(right));
+                both.and_then(|(left, right)| self.of_numbers(left, right)).map(Value::Number)
+            }
+        };
+        result.ok_or_else(no_result)
+    }
+
+    fn of_numbers(self, left: i64, right: i64) -> Option<i64> {
+        match self {
             Operator::Plus => left.checked_add(right),
             Operator::Minus => left.checked_sub(right),
             Operator::Times => left.checked_mul(right),
             Operator::Divide => left.checked_div(right),
             Operator::Modulo => left.checked_rem(right),
-            _ => {
-                return Ok(Value::Bit(match self {
-                    Operator::Equal => left == right,
-                    Operator::Unequal => left != right,
-                    Operator::Less => left < right,
-                    Operator::LessEqual => left <= right,
-                    Operator::Greater => left > right,
-                    _ => left >= right,
-                }));
-            }
+            _ => None,
+        }
+    }
+
+    fn of_reals(self, left: f64, right: f64) -> Option<f64> {
+        let result = match self {
+            Operator::Plus => left + right,
+            Operator::Minus => left - right,
+            Operator::Times => left * right,
+            Operator::Divide => left / right,
+            _ => return None,
         };
-        result.map(Value::Number).ok_or_else(no_result)
+        result.is_finite().then_some(result)
+    }
+
+    /// Whether a comparison holds for what is ordered so; nothing for other operators.
+    fn holds_for(self, order: Ordering) -> Option<bool> {
+        Some(match self {
+            Operator::Equal => order.is_eq(),
+            Operator::Unequal => order.is_ne(),
+            Operator::Less => order.is_lt(),
+            Operator::LessEqual => order.is_le(),
+            Operator::Greater => order.is_gt(),
+            Operator::GreaterEqual => order.is_ge(),
+            _ => return None,
+        })
+    }
+}
+
+/// How two values compare; nothing if they do not.
+fn order(left: &Value, right: &Value) -> Option<Ordering> {
+    match (left, right) {
+        (Value::Real(_), _) | (_, Value::Real(_)) => real(left)?.partial_cmp(&real(right)?),
+        (Value::Time(left), Value::Time(right)) => Some(left.cmp(right)),
+        (Value::Text(left) | Value::Name(left), Value::Text(right) | Value::Name(right)) => {
+            Some(left.cmp(right))
+        }
+        (Value::Unsigned(left), Value::Unsigned(right)) => Some(left.cmp(right)),
+        _ => Some(number(left)?.cmp(&number(right)?)),
+    }
+}
+
+fn real(value: &Value) -> Option<f64> {
+    match value {
+        Value::Real(real) => Some(*real),
+        value => number(value).map(|number| number as f64),
     }
 }
 
@@ -145,6 +198,7 @@ struct Reader<'a> {
     words: Vec<&'a str>,
     at: usize,
     code: &'a Code,
+    owner: Option<&'a str>,
     text: &'a str,
     depth: usize,
 }
@@ -203,7 +257,8 @@ impl<'a> Reader<'a> {
             "-" => self.nested(|reader| Ok(Expression::Minus(Box::new(reader.part()?)))),
             word => {
                 // A name before a number: `H1` may be a variable of a program.
-                let variable = self.code.variable(word).map(Expression::Variable);
+                let own = self.owner.and_then(|owner| self.code.variable(&joined(owner, word)));
+                let variable = own.or_else(|| self.code.variable(word)).map(Expression::Variable);
                 let known = variable.or_else(|| Value::read(word).map(Expression::Value));
                 let is_name = word.starts_with(|c: char| c.is_alphanumeric() || c == '_' || c == '%');
                 known.ok_or_else(|| match is_name {

@@ -1,13 +1,14 @@
 //! The program that is debugged: read from the disk, compiled, and its places as the protocol names them.
 
+use super::stack::names_at;
 use crate::document::{Document, Notation, Tree};
 use crate::project::{
     CommentsFile, MANIFEST_NAME, Stamp, Surroundings, is_program_file, open_document, read_text,
 };
-use crate::simulate::{Code, Drivers, Place, Problem, compile, instruction_words};
+use crate::simulate::{Code, Drivers, Place, Problem, Variable, compile, instruction_words, joined};
 use crate::target::{Model, Target};
 use crate::text::{Encoding, LineColumn, Message, Span};
-use rustc_hash::FxHashSet;
+use rustc_hash::FxHashMap;
 use serde_json::{Value, json};
 use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
@@ -23,7 +24,7 @@ pub(super) struct Program {
     /// What drives what, once somebody has asked why.
     pub(super) drivers: OnceCell<Drivers>,
     /// Instructions at which it can stop, in the order of the text.
-    stops: Vec<(Place, u32)>,
+    stops: Vec<Stop>,
     /// Where rungs begin, in the order of the text.
     rungs: Vec<Place>,
 }
@@ -37,6 +38,14 @@ pub(super) struct File {
     stamp: Option<Stamp>,
     /// Whether it was said that it has changed on the disk.
     is_outdated: bool,
+}
+
+/// Where a program can stop.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) struct Stop {
+    pub(super) place: Place,
+    /// The instructions there, by their numbers: of a function block one for each instance.
+    pub(super) instructions: Vec<u32>,
 }
 
 /// A place as people count: lines and columns from 1, columns in UTF-16.
@@ -66,14 +75,17 @@ impl Program {
         let mut rungs: Vec<Place> =
             (0..).zip(&documents).flat_map(|(number, document)| rungs_of(number, document)).collect();
         rungs.sort_unstable_by_key(|place| (place.document, place.span.start));
-        let mut known = FxHashSet::default();
-        let mut stops: Vec<(Place, u32)> = code
-            .seen()
-            .filter(|(_, place)| known.insert(*place))
-            .map(|(number, place)| (place, number))
-            .collect();
+        let mut known: FxHashMap<Place, Vec<u32>> = FxHashMap::default();
+        for (number, place) in code.stops() {
+            let instructions = known.entry(place).or_default();
+            if !instructions.contains(&number) {
+                instructions.push(number);
+            }
+        }
+        let stop = |(place, instructions)| Stop { place, instructions };
+        let mut stops: Vec<Stop> = known.into_iter().map(stop).collect();
         // At one start the rung comes before its elements.
-        stops.sort_unstable_by_key(|(place, _)| {
+        stops.sort_unstable_by_key(|Stop { place, .. }| {
             (place.document, place.span.start, std::cmp::Reverse(place.span.end))
         });
         Ok(Program { files, code: Arc::new(code), drivers: OnceCell::new(), stops, rungs })
@@ -137,31 +149,53 @@ impl Program {
 
     /// The instructions of the lines `first` to `last` of a file at which it can stop.
     pub(super) fn stops_in(&self, file: u32, first: u32, last: u32) -> Vec<Place> {
-        let own = self.stops.iter().map(|(place, _)| *place).filter(|place| place.document == file);
+        let own = self.stops.iter().map(|stop| stop.place).filter(|place| place.document == file);
         own.filter(|place| (first..=last).contains(&self.lines(*place).line)).collect()
     }
 
     /// The instruction at which a breakpoint of a line of a file stops: the one at the column, else the first of the
     /// line, else the first behind it.
-    pub(super) fn stop_at(&self, file: u32, line: u32, column: Option<u32>) -> Option<(Place, u32)> {
+    pub(super) fn stop_at(&self, file: u32, line: u32, column: Option<u32>) -> Option<&Stop> {
         let document = &self.files.get(file as usize)?.document;
         let offset =
             |line: u32, column: u32| document.offset(LineColumn { line, column }, Encoding::Utf16) as u32;
         let start = offset(line.saturating_sub(1), 0);
-        let own = || self.stops.iter().filter(|(place, _)| place.document == file);
+        let own = || self.stops.iter().filter(|stop| stop.place.document == file);
         let is_on_line = |place: &Place| self.lines(*place).line == line;
         if let Some(column) = column {
             let at = offset(line.saturating_sub(1), column.saturating_sub(1));
-            let around = own().filter(|(place, _)| (place.span.start..place.span.end).contains(&at));
-            let element = around.min_by_key(|(place, _)| place.span.end - place.span.start);
+            let around = own().filter(|stop| (stop.place.span.start..stop.place.span.end).contains(&at));
+            let element = around.min_by_key(|stop| stop.place.span.end - stop.place.span.start);
             // A rung is around all of its elements, and begins in its first line.
-            let element = element.filter(|(place, _)| is_on_line(place));
-            let behind = || own().find(|(place, _)| place.span.start >= at && is_on_line(place));
-            if let Some(stop) = element.or_else(behind) {
-                return Some(*stop);
+            let element = element.filter(|stop| is_on_line(&stop.place));
+            let behind = || own().find(|stop| stop.place.span.start >= at && is_on_line(&stop.place));
+            let stop = element.or_else(behind);
+            if stop.is_some() {
+                return stop;
             }
         }
-        own().find(|(place, _)| place.span.start >= start).copied()
+        own().find(|stop| stop.place.span.start >= start)
+    }
+
+    /// Where a routine or program unit is entered that is called `name`.
+    pub(super) fn entry(&self, name: &str) -> Option<Stop> {
+        let instructions = self.code.entries(name);
+        let first = instructions.first()?;
+        let place = self.stops.iter().find(|stop| stop.instructions.contains(first))?.place;
+        Some(Stop { place, instructions })
+    }
+
+    /// The instructions that name a variable.
+    pub(super) fn naming(&self, variable: Variable) -> Vec<u32> {
+        let names = |place: Place, instruction: u32| {
+            let owner = self.code.owner(instruction);
+            names_at(self, place).iter().any(|name| {
+                let own = owner.as_ref().and_then(|owner| self.code.variable(&joined(owner, name)));
+                own.or_else(|| self.code.variable(name)) == Some(variable)
+            })
+        };
+        let all = self.stops.iter().flat_map(|stop| stop.instructions.iter().map(|own| (stop.place, *own)));
+        all.filter(|(place, instruction)| names(*place, *instruction)).map(|(_, own)| own).collect()
     }
 
     /// The files that have changed on the disk since they were read and of which that was not said yet.

@@ -176,6 +176,7 @@ impl Builder {
             places: self.places,
             states: Vec::new(),
             interrupts: Vec::new(),
+            labels: Vec::new(),
             counts_pulses,
             routine_timers: Vec::new(),
             keepers: self.keepers,
@@ -466,6 +467,26 @@ impl Builder {
         if self.is_watched {
             let power = self.power();
             self.saw(power);
+        }
+    }
+
+    /// The number of the present instruction.
+    pub(super) fn instruction(&self) -> u32 {
+        self.places.len() as u32 - 1
+    }
+
+    /// Says that the CPU comes to the present instruction.
+    pub(super) fn reached(&mut self) {
+        if self.is_watched {
+            let place = self.instruction();
+            self.op(Op::Reached { place });
+        }
+    }
+
+    /// Says what an instruction leaves behind in a cell.
+    pub(super) fn behind(&mut self, place: u32, power: Cell) {
+        if self.is_watched {
+            self.op(Op::Behind { place, power });
         }
     }
 

@@ -4,7 +4,7 @@ use super::code::Code;
 use super::machine::Machine;
 use super::row::Cell;
 use super::session::Touch;
-use super::{Lanes, Lies, Slot, Spot, iec};
+use super::{Lanes, Lies, Scope, Slot, Spot, iec};
 use crate::target::iec::{Datum, ElementaryType, Literal, LiteralValue, characters_of, spelled};
 use crate::target::{Device, DeviceKind, Model, Operand};
 use crate::text::Message;
@@ -100,6 +100,17 @@ impl Code {
         self.devices.iter().map(name).collect()
     }
 
+    /// The variables of an IEC 61131-3 program by the units that declare them; for an FX nothing.
+    pub fn scopes(&self) -> Vec<Scope> {
+        self.iec.scopes()
+    }
+
+    /// The program, the instance of a function block or the function of IEC 61131-3 to which an instruction belongs, as
+    /// a name for [`Code::variable`] begins.
+    pub fn owner(&self, instruction: u32) -> Option<String> {
+        self.iec.owner(instruction)
+    }
+
     fn device(&self, name: &str) -> Option<Device> {
         match Operand::read(name, self.target.model) {
             Operand::Device(device) if self.layout.has(device) => Some(device),
@@ -109,6 +120,14 @@ impl Code {
 }
 
 impl Variable {
+    /// Its type, if it is declared with one.
+    pub fn declared(self) -> Option<ElementaryType> {
+        match self {
+            Variable::Typed(spot) => Some(spot.kind),
+            _ => None,
+        }
+    }
+
     /// What setting it to `value` does; nothing if that is no value of it.
     pub fn set(self, code: &Code, value: &Value) -> Option<Touch> {
         match (self, value) {

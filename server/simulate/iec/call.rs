@@ -29,6 +29,9 @@ impl Compiler<'_> {
         let unit = self.bodies[number].unit;
         let place = self.declared.units[unit].place.unwrap_or(Place::START);
         self.builder.at(place, 0);
+        let (first, base) = (self.builder.instruction(), self.bodies[number].base);
+        let name = self.declared.units[unit].name.clone();
+        self.parts.names.bodies.push(super::names::Body { first, unit, name, base });
         self.edges();
         self.renew(number);
         let parts = self.declared.units[unit].body.clone();
@@ -250,6 +253,7 @@ impl Compiler<'_> {
         place: Place,
     ) -> Result<Option<Spot>, Obstacle> {
         let record = self.record(unit);
+        let is_new = !self.functions.contains_key(&unit);
         let base = match self.functions.get(&unit) {
             Some(base) => *base,
             None => {
@@ -259,6 +263,10 @@ impl Compiler<'_> {
             }
         };
         let variable = Variable::new(Kind::Record(record.clone()), base);
+        if is_new {
+            let name = self.declared.units[unit].name.clone();
+            self.parts.names.add_function(name, &variable);
+        }
         let result = record.fields.iter().find(|field| {
             folded(&field.name) == folded(&self.declared.units[unit].name)
                 && self.declared.units[unit].result.is_some()

@@ -280,7 +280,7 @@ impl<'a> Compiler<'a> {
         let variable = Variable::new(Kind::Record(record), base);
         self.initial_of_variable(0, &variable, None, false);
         self.name_located(&path, &variable);
-        self.parts.names.add(path, &variable);
+        self.parts.names.add_program(path, &variable);
         Some(variable)
     }
 

@@ -153,6 +153,8 @@ impl<'a> List<'_, 'a> {
         while at < items.end {
             let item = self.items[at];
             self.at(item.span);
+            let instruction = self.compiler.builder.instruction();
+            self.reached(item, instruction);
             let next = self.item(at, item);
             at = match next {
                 Ok(next) => next,
@@ -165,9 +167,26 @@ impl<'a> List<'_, 'a> {
             };
             if self.compiler.builder.is_watched() && matches!(self.current, Current::Bit) {
                 let power = self.compiler.builder.settle();
-                self.compiler.builder.saw(power);
+                self.compiler.builder.behind(instruction, power);
             }
         }
+    }
+
+    /// Lets a debugger stop before an instruction, and know the current result there.
+    fn reached(&mut self, item: Item, instruction: u32) {
+        if matches!(item.kind, ItemKind::Label { .. }) || !self.compiler.builder.is_watched() {
+            return;
+        }
+        self.compiler.builder.reached();
+        let result = match &self.current {
+            Current::Nothing | Current::Whole(_) => return,
+            Current::Bit => {
+                let power = self.compiler.builder.settle();
+                Given::at(cell_spot(power))
+            }
+            Current::Given(given) => given.clone(),
+        };
+        self.compiler.parts.results.insert(instruction, (result.input, result.kind));
     }
 
     pub(super) fn at(&mut self, span: Span) {

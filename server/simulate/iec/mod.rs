@@ -16,8 +16,11 @@ mod image;
 
 mod names;
 
+mod scopes;
+pub use scopes::{Member, Scope, joined};
+
 mod run;
-pub(super) use run::{call_block, compute, copy, initialise, of_pattern, put, read, schedule};
+pub(super) use run::{call_block, compute, copy, initialise, of_pattern, put, read, result_before, schedule};
 
 mod declarations;
 

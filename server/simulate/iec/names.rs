@@ -1,7 +1,7 @@
 //! Names of variables, and what they lead to.
 
 use super::image::Image;
-use super::kind::{Enumeration, Kind, RecordKind};
+use super::kind::{Enumeration, Extent, Kind, RecordKind};
 use super::parts::{Lies, Spot};
 use super::place::{At, Place as Variable};
 use crate::il::iec::SectionKind;
@@ -15,17 +15,35 @@ use std::sync::Arc;
 /// The variables of a program by name.
 #[derive(Debug, Default)]
 pub(in crate::simulate) struct Names {
-    roots: Vec<Root>,
+    pub(super) roots: Vec<Root>,
+    /// The variables of functions, which are found where nothing else is called so.
+    pub(super) functions: Vec<Root>,
+    /// In the order of their instructions.
+    pub(super) bodies: Vec<Body>,
     enumerations: Vec<Arc<Enumeration>>,
     pub(in crate::simulate) image: Image,
 }
 
 /// A global variable, a program, or a variable that lies at an address.
 #[derive(Debug)]
-struct Root {
+pub(super) struct Root {
     /// As declared, with what stands around it: `Resource`, `Main`.
-    path: Vec<SmolStr>,
-    variable: Variable,
+    pub(super) path: Vec<SmolStr>,
+    pub(super) variable: Variable,
+    /// Whether these are the variables of a program or function.
+    pub(super) is_unit: bool,
+}
+
+/// The body of a unit with the variables of one instance.
+#[derive(Debug)]
+pub(super) struct Body {
+    /// The number of its first instruction.
+    pub(super) first: u32,
+    pub(super) unit: usize,
+    /// How the unit is called.
+    pub(super) name: SmolStr,
+    /// Where the variables lie.
+    pub(super) base: Extent,
 }
 
 /// An elementary value with a name.
@@ -50,7 +68,17 @@ const MOST_ELEMENTS: u64 = 1 << 16;
 
 impl Names {
     pub(super) fn add(&mut self, path: Vec<SmolStr>, variable: &Variable) {
-        self.roots.push(Root { path, variable: variable.clone() });
+        self.roots.push(Root::new(path, variable, false));
+    }
+
+    /// The variables of a program.
+    pub(super) fn add_program(&mut self, path: Vec<SmolStr>, variable: &Variable) {
+        self.roots.push(Root::new(path, variable, true));
+    }
+
+    /// The variables of a function.
+    pub(super) fn add_function(&mut self, name: SmolStr, variable: &Variable) {
+        self.functions.push(Root::new(vec![name], variable, true));
     }
 
     pub(super) fn finish(&mut self, image: Image) {
@@ -67,13 +95,17 @@ impl Names {
             return self.image.find(address).map(|spot| Leaf { spot, enumeration: None });
         }
         let steps = steps(name)?;
+        self.find_in(&self.roots, &steps).or_else(|| self.find_in(&self.functions, &steps))
+    }
+
+    fn find_in(&self, roots: &[Root], steps: &[Step]) -> Option<Leaf> {
         let mut best: Option<(usize, Leaf)> = None;
         let mut is_unique = true;
-        for root in &self.roots {
+        for root in roots {
             for skipped in 0..=root.path.len() {
                 let suffix = &root.path[skipped..];
                 let is_here = suffix.len() <= steps.len()
-                    && suffix.iter().zip(&steps).all(|(own, step)| *step == Step::Member(folded(own)));
+                    && suffix.iter().zip(steps).all(|(own, step)| *step == Step::Member(folded(own)));
                 let leaf = is_here.then(|| self.leaf(&root.variable, &steps[suffix.len()..])).flatten();
                 let Some(leaf) = leaf else { continue };
                 match best {
@@ -138,14 +170,17 @@ impl Names {
                 names.push(self.shortest(root, &name, spot));
             }
         }
-        let direct =
-            self.image.named.iter().filter(|address| {
-                self.image.find(**address).is_some_and(|spot| self.named_at(spot).is_none())
-            });
-        names.extend(direct.map(ToString::to_string));
+        names.extend(self.direct());
         names.sort();
         names.dedup();
         names
+    }
+
+    /// The addresses at which no variable is declared.
+    pub(super) fn direct(&self) -> impl Iterator<Item = String> {
+        let is_free = |spot| self.named_at(spot).is_none();
+        let named = self.image.named.iter();
+        named.filter(move |address| self.image.find(**address).is_some_and(is_free)).map(ToString::to_string)
     }
 
     /// A variable that is declared at an address, or anywhere else.
@@ -188,6 +223,18 @@ impl Names {
         }
         all
     }
+}
+
+/// How the element of an array with a number is called: `[2,3]`.
+pub(super) fn subscripts(bounds: &[(i64, i64)], number: u64) -> String {
+    let mut rest = number;
+    let mut subscripts: Vec<String> = Vec::new();
+    for (least, greatest) in bounds.iter().rev() {
+        let length = (greatest - least + 1) as u64;
+        subscripts.insert(0, (least + (rest % length) as i64).to_string());
+        rest /= length;
+    }
+    format!("[{}]", subscripts.join(","))
 }
 
 /// The steps of a name: members, and subscripts that are numbers.
@@ -238,17 +285,10 @@ fn walk(variable: &Variable, name: String, found: &mut Vec<(String, Spot)>, is_w
         Kind::Array(bounds, element) => {
             let most = if is_watched { WATCHED_ELEMENTS } else { MOST_ELEMENTS };
             for number in 0..super::kind::count(bounds).min(most) {
-                let mut rest = number;
-                let mut subscripts: Vec<String> = Vec::new();
-                for (least, greatest) in bounds.iter().rev() {
-                    let length = (greatest - least + 1) as u64;
-                    subscripts.insert(0, (least + (rest % length) as i64).to_string());
-                    rest /= length;
-                }
                 let Some(part) = variable.part((**element).clone(), element.size().times(number)) else {
                     return;
                 };
-                walk(&part, format!("{name}[{}]", subscripts.join(",")), found, is_watched);
+                walk(&part, name.clone() + &subscripts(bounds, number), found, is_watched);
             }
         }
         Kind::Record(record) => {

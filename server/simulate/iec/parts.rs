@@ -2,9 +2,11 @@
 
 use super::kind::Extent;
 use super::names::{Leaf, Names};
+use super::scopes::Scope;
 use crate::simulate::{Cell, Slot};
 use crate::target::Location;
 use crate::target::iec::{Datum, ElementaryType, Formula, FunctionBlock};
+use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 use std::ops::Range;
 
@@ -18,6 +20,8 @@ pub(in crate::simulate) struct Parts {
     /// The first list has the initial values of the program; others are those of units that begin anew at each call.
     pub(super) initials: Vec<Vec<(Spot, Datum)>>,
     pub(super) tasks: Vec<Task>,
+    /// Current results before instructions, by the numbers of these.
+    pub(super) results: FxHashMap<u32, (Input, ElementaryType)>,
     /// Texts of memory in all.
     pub(in crate::simulate) texts: usize,
     pub(super) names: Names,
@@ -119,6 +123,22 @@ impl Parts {
     /// The names of variables that are worth watching.
     pub(in crate::simulate) fn watched(&self) -> Vec<String> {
         self.names.watched()
+    }
+
+    /// The variables by the units that declare them.
+    pub(in crate::simulate) fn scopes(&self) -> Vec<Scope> {
+        self.names.scopes()
+    }
+
+    /// The instance or function whose body an instruction belongs to.
+    pub(in crate::simulate) fn owner(&self, instruction: u32) -> Option<String> {
+        self.names.owner(instruction)
+    }
+
+    /// The numbers of the first instructions of the bodies of a unit.
+    pub(in crate::simulate) fn bodies(&self, name: &str) -> Vec<u32> {
+        let own = self.names.bodies.iter().filter(|body| body.name.eq_ignore_ascii_case(name));
+        own.map(|body| body.first).collect()
     }
 
     /// The name of what lies at a place.
