@@ -3,7 +3,7 @@
 use super::binary::folder;
 use super::dap_client::Debugger;
 use serde_json::{Value, json};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 const PLANT: &str = "\
@@ -67,7 +67,7 @@ fn scopes(plc: &mut Debugger, frame: i64) -> Vec<(String, Value)> {
         .collect()
 }
 
-fn entered(path: &PathBuf) -> Debugger {
+fn entered(path: &Path) -> Debugger {
     let mut plc = Debugger::launch(path, json!({}));
     assert_eq!(plc.begin()["reason"], "entry");
     plc
@@ -166,6 +166,7 @@ fn instances_and_functions_are_frames_with_variables_of_their_own() {
     assert_eq!((plc.value("Level"), plc.value("Sum[2]")), ("70".into(), "71".into()));
     assert_eq!(plc.console("set Sum[3]=-4"), "-4");
     assert_eq!(plc.console("force Left.Speed=9"), "9 (forced)");
+    plc.breakpoints(&path, json!([]));
     plc.go("stepOut");
     assert_eq!((plc.value("Level"), plc.value("Sum[3] - 1")), ("90".into(), "-5".into()));
 }

@@ -1,7 +1,7 @@
 //! Going back to the last breakpoint, slice by slice, so that it can be stopped.
 //!
-//! Scans can only be run forwards. So stretches of them are run again, the last one first, and what the program comes to
-//! in one is noted; from its end back the first thing that stops is where the way ends.
+//! Scans can only be run forwards. So stretches of them are run again, the last one first, and what the program comes
+//! to in one is noted; from its end back the first thing that stops is where the way ends.
 
 use super::breakpoints::{Breakpoints, Hit, Passed};
 use super::debuggee::{Debuggee, run_to_stop};

@@ -265,8 +265,8 @@ impl Breakpoints {
         }
     }
 
-    /// Goes back to before what the program has just come to. Gives why it stops there on the way back, if it does: then
-    /// this is still counted.
+    /// Goes back to before what the program has just come to. Gives why it stops there on the way back, if it does:
+    /// then this is still counted.
     pub(super) fn take_back(&mut self, passed: Vec<Passed>) -> Option<Hit> {
         let count = |id: i64| self.hits.get(&id).copied().unwrap_or(0);
         let stops = |passed: &&Passed| passed.count.is_none_or(|own| own.holds(count(passed.id)));

@@ -73,9 +73,12 @@
 //!
 //! ```text
 //! { uri, version, source: "simulator", mode, scan, time_ms, edition, branch,
-//!   elements: { range, kind: "wire" | "contact" | "output" | "line" | "value", energised, conducts?, value? }[],
+//!   elements: { range, kind: "wire" | "contact" | "output" | "line" | "value" | "forced", energised, conducts?,
+//!     value? }[],
 //!   values: { device, value, forced, wired? }[], errors: { range, message }[] }
 //! ```
+//!
+//! A `forced` element is the name of something that is forced, wherever it stands; its `value` is what it is held at.
 //!
 //! Values that a variable cannot have are refused, and scan times other than 0.001 to 60000 ms and speeds below 0.
 //!
@@ -88,6 +91,8 @@
 //! begins a new one, and devices and instructions around the edit keep what they remember.
 
 mod chart;
+
+mod forced;
 
 mod monitor;
 

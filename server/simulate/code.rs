@@ -267,8 +267,8 @@ impl Code {
         numbers.filter_map(|number| Some((number, *self.places.get(number as usize)?)))
     }
 
-    /// The first instructions of a routine, by its label, or of the bodies of a program unit of IEC 61131-3, letter case
-    /// aside, by their numbers.
+    /// The first instructions of a routine, by its label, or of the bodies of a program unit of IEC 61131-3, by their
+    /// numbers; letter case is no matter.
     pub fn entries(&self, name: &str) -> Vec<u32> {
         let number = |op: &Op| match op {
             Op::Seen { place, .. } | Op::SeenContact { place, .. } | Op::Reached { place } => Some(*place),

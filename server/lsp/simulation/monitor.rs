@@ -1,6 +1,7 @@
 //! The notification `rungwise/monitor`: what of a program that runs is on the screen.
 
 use super::super::to_proto::Place;
+use super::forced::forced;
 use crate::simulate::{Code, EnergisedKind, Lanes, Machine, Sight, Variable, power_flow};
 use crate::target::Operand;
 use serde::{Deserialize, Serialize};
@@ -107,6 +108,7 @@ impl Monitor {
                 elements.push(element);
             }
             elements.extend(words(place, window, machine));
+            elements.extend(forced(place, self.document, window, code, machine));
         }
         elements
     }
