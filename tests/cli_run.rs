@@ -122,6 +122,11 @@ fn a_program_of_iec_61131_runs_with_its_names_and_types() {
         last["values"],
         json!({ "Motor": true, "Main.Delay.ET": 20, "delay.q": true, "Level": 24.0, "Count": 65535, "%IX0.0": false })
     );
+    // Two names of one variable are both shown, one name is shown once.
+    let names = "%IX0.0,Start,start";
+    let (_, out, _) = run(&folder, &["run", "main.il", "--scans", "1", "--watch", names, "--format", "json"]);
+    let answer: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(answer["scans"][0]["values"], json!({ "%IX0.0": false, "Start": false }));
     let (_, out, _) = run(&folder, &["run", "main.il", "--why", "Level@20ms", "--why", "Count"]);
     assert!(out.contains("the program has given it") && !out.contains("by hand"), "{out}");
     let (code, _, err) = run(&folder, &["run", "main.il", "--set", "Count=-1"]);

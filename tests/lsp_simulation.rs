@@ -155,15 +155,15 @@ fn what_is_forced_is_marked_wherever_it_is_named() {
     plc.tell("force", json!({ "name": "D0", "value": 7 }));
     plc.picture(|picture| forced(picture, &text) == ["9:D0=7", "9:M20=true"]);
     // A variable of one instance, and not the one of the same name beside it.
-    let text = "FUNCTION_BLOCK Lamp\nVAR_INPUT On : BOOL; END_VAR\nVAR Lit : BOOL; END_VAR\nLD On\nST Lit\nEND_FUNCTION_BLOCK\n\
-                PROGRAM Main\nVAR One : Lamp; Lit : BOOL; END_VAR\nCAL One(On := TRUE)\nLD One.Lit\nST Lit\nEND_PROGRAM\n";
+    let text = "FUNCTION_BLOCK Lamp\nVAR_INPUT Go : BOOL; END_VAR\nVAR Lit : BOOL; END_VAR\nLD Go\nST Lit\nEND_FUNCTION_BLOCK\n\
+                PROGRAM Main\nVAR One : Lamp; Lit : BOOL; END_VAR\nCAL One(Go := TRUE)\nLD One.Lit\nST Lit\nEND_PROGRAM\n";
     let mut plc = Simulated::open("file:///simulated/forced.il", "plc-il", text);
     plc.tell("start", json!({}));
     plc.tell("watch", json!({ "ranges": all }));
     plc.tell("force", json!({ "name": "One.Lit", "value": false }));
-    plc.picture(|picture| forced(picture, text) == ["11:One=false", "5:Lit=false"]);
+    plc.picture(|picture| forced(picture, text) == ["10:One=false", "5:Lit=false"]);
     plc.tell("force", json!({ "name": "Main.Lit", "value": true }));
-    plc.picture(|picture| forced(picture, text) == ["11:One=false", "12:Lit=true", "5:Lit=false"]);
+    plc.picture(|picture| forced(picture, text) == ["10:One=false", "11:Lit=true", "5:Lit=false"]);
 }
 
 #[test]

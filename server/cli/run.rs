@@ -178,8 +178,8 @@ fn named(
     let mut watched: Vec<(String, Variable)> = Vec::new();
     for name in names {
         match code.variable(&name) {
-            // What is named twice is shown once.
-            Some(variable) if watched.iter().any(|(_, known)| *known == variable) => {}
+            // What is asked for twice is shown once; of two names for one variable each is shown.
+            Some(_) if watched.iter().any(|(known, _)| known.eq_ignore_ascii_case(name.trim())) => {}
             Some(variable) => watched.push((name.trim().to_string(), variable)),
             None => complaint("unknown-name", unknown(&name)),
         }

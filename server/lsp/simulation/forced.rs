@@ -1,7 +1,7 @@
 //! Where the text names what is forced.
 
 use super::super::to_proto::Place;
-use crate::document::{Mention, Symbol};
+use crate::document::{Mention, Symbol, Use};
 use crate::simulate::{Code, Machine, Variable, joined};
 use crate::target::Device;
 use crate::text::Span;
@@ -24,7 +24,7 @@ pub(super) fn forced(
     let shown = place.document.chunks().skip_while(|at| at.start < window.start);
     for at in shown.take_while(|at| at.start < window.end) {
         let owners = owners(code, number, &(at.start..at.start + at.chunk.len()), machine);
-        for mention in at.chunk.mentions() {
+        for mention in at.chunk.mentions().iter().filter(|mention| mention.usage != Use::Declare) {
             let span = mention.span.shifted(at.start);
             let variables = variables(mention, &name_at(place, span), &owners, code);
             let Some(held) = variables.into_iter().find(|variable| machine.is_forced(*variable)) else {
