@@ -12,6 +12,8 @@ mod help;
 mod import;
 mod input;
 mod language;
+mod progress;
+
 mod prove;
 mod render;
 mod run;
