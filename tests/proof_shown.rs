@@ -111,7 +111,8 @@ fn iec_condition(dice: &mut Dice) -> String {
     let mut text = match dice.roll(7) {
         0 => {
             let compare = dice.one(&["GT", "EQ", "LT", "NE"]);
-            let pair = dice.one(&["n;3", "k;4", "n;k", "u;1", "p.CV;1", "h[1];2", "t.ET;T#20ms", "dur;T#5ms"]);
+            let pair =
+                dice.one(&["n;3", "k;4", "n;k", "u;1", "p.CV;1", "h[1];2", "t.ET;T#20ms", "dur;T#5ms"]);
             let (left, right) = pair.split_once(';').unwrap_or_default();
             format!("LD {left}\n{compare} {right}\n")
         }
@@ -133,7 +134,9 @@ fn iec_rung(dice: &mut Dice) -> String {
             dice.one(&["ADD", "SUB", "MUL", "DIV", "MOD"]),
             dice.one(&["n", "k", "2"])
         ),
-        2 => format!("CAL t(IN := {}, PT := T#{}ms)\n", dice.one(&["a", "c"]), dice.one(&["20", "50", "3000"])),
+        2 => {
+            format!("CAL t(IN := {}, PT := T#{}ms)\n", dice.one(&["a", "c"]), dice.one(&["20", "50", "3000"]))
+        }
         3 => format!("CAL p(CU := {}, R := {}, PV := 2)\n", dice.one(&["a", "c"]), dice.one(&["b", "z"])),
         4 => format!("CAL s(S1 := {}, R := {})\n", dice.one(&["a", "c"]), dice.one(&["b", "z"])),
         5 => format!("CAL r(S := {}, R1 := {})\n", dice.one(&["a", "c"]), dice.one(&["b", "z"])),
@@ -145,7 +148,14 @@ fn iec_rung(dice: &mut Dice) -> String {
         _ => {
             iec_condition(dice)
                 + dice.one(&[
-                    "ST y\n", "ST z\n", "STN c\n", "S y\n", "R z\n", "ST y\nST z\n", "ST g[1]\n", "ST g[0]\n",
+                    "ST y\n",
+                    "ST z\n",
+                    "STN c\n",
+                    "S y\n",
+                    "R z\n",
+                    "ST y\nST z\n",
+                    "ST g[1]\n",
+                    "ST g[0]\n",
                 ])
         }
     }
@@ -292,9 +302,8 @@ impl Count {
             Proof::Different(found) => match &found.shown {
                 Shown::Runs(_) => {
                     self.shown += 1;
-                    self.wrong.extend(
-                        wrong([left, right], &found, again).map(|what| format!("{what}{}", told())),
-                    );
+                    self.wrong
+                        .extend(wrong([left, right], &found, again).map(|what| format!("{what}{}", told())));
                 }
                 // A program of the other family need not have what only one of the two drives.
                 Shown::Not(reason) if reason.key() == "prove.not-there" => {}

@@ -49,7 +49,9 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         match scenario(found, &names, path, language) {
             Some(text) if !put(&text, Some(path), language) => return Outcome::Unusable,
             Some(_) => {}
-            None => remark(&Message::new("cli.scenario-unshown").with("path", path.display()).render(language)),
+            None => {
+                remark(&Message::new("cli.scenario-unshown").with("path", path.display()).render(language))
+            }
         }
     }
     match proof {
@@ -60,12 +62,7 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
 
 /// A scenario test for the file at `path`, which names the first program as it is found from there; nothing if the
 /// simulated PLC does not show the difference.
-fn scenario(
-    found: &Counterexample,
-    names: &[String; 2],
-    path: &Path,
-    language: Language,
-) -> Option<String> {
+fn scenario(found: &Counterexample, names: &[String; 2], path: &Path, language: Language) -> Option<String> {
     let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
     let left = absolute(Path::new(&names[0]));
     let folder = absolute(path).parent().map(Path::to_path_buf).unwrap_or_default();

@@ -3,7 +3,8 @@
 use super::formula::{Atom, Moment, Step};
 use super::number::{is_real, number, range};
 use super::{
-    Action, Contact, Deed, Drive, Expression, Formula, Formulas, Gate, Path, Storage, Term, Test, WIDE, wholes,
+    Action, Contact, Deed, Drive, Expression, Formula, Formulas, Gate, Path, Storage, Term, Test, WIDE,
+    wholes,
 };
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::target::iec::LiteralValue;

@@ -125,7 +125,8 @@ impl Term {
     /// Whether all its subscripts are numbers in the one spelling that [`Term::key`] keeps, so that no other key is the
     /// same element.
     pub fn is_fixed(&self) -> bool {
-        let subscripts = self.text.split('[').skip(1).map(|part| part.split_once(']').map(|(inside, _)| inside));
+        let subscripts =
+            self.text.split('[').skip(1).map(|part| part.split_once(']').map(|(inside, _)| inside));
         let is_plain = |number: &str| number.parse::<i64>().is_ok_and(|value| value.to_string() == number);
         subscripts.into_iter().all(|inside| inside.is_some_and(|inside| inside.split(',').all(is_plain)))
     }
@@ -143,7 +144,9 @@ impl Term {
         let is_apart = self.is_lone() && other.is_lone();
         let keys = [self.key(), other.key()];
         keys[0] == keys[1]
-            || is_variable(self) && is_variable(other) && (is_within(&keys[0], &keys[1]) || is_within(&keys[1], &keys[0]))
+            || is_variable(self)
+                && is_variable(other)
+                && (is_within(&keys[0], &keys[1]) || is_within(&keys[1], &keys[0]))
             || is_anywhere && is_variable(self) && is_variable(other)
             || !is_apart && area(self).is_some() && area(self) == area(other)
     }

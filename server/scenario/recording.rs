@@ -215,11 +215,7 @@ fn quoted(word: &str) -> String {
 
 /// A scenario test that the first of two programs passes and the second fails, if the simulated PLC shows how; `names`
 /// are those of their files.
-pub fn of_counterexample(
-    found: &Counterexample,
-    names: &[String; 2],
-    language: Language,
-) -> Option<String> {
+pub fn of_counterexample(found: &Counterexample, names: &[String; 2], language: Language) -> Option<String> {
     let run = found.run()?;
     let held = |value: &Held| match value {
         Held::Bit(value) => u8::from(*value).to_string(),

@@ -120,7 +120,8 @@ impl Trial {
             names.map(|name| (finder[side].key(&name), name)).collect::<Vec<_>>()
         });
         let told = found.inputs.keys().chain(found.before.keys()).chain([&found.what]);
-        let told = told.map(|name| (found.keys.get(name).unwrap_or(&SmolStr::from(name)).clone(), name.clone()));
+        let told =
+            told.map(|name| (found.keys.get(name).unwrap_or(&SmolStr::from(name)).clone(), name.clone()));
         let names = told.chain(shared.into_iter().flatten());
         for (key, name) in names.filter(|(_, name)| is_first_scan(name).is_none()) {
             let sides = finder.each_ref().map(|finder| finder.find(&name, &key));
@@ -187,7 +188,8 @@ impl Trial {
     /// A way to run both programs so that they differ: as the proof says, with timers that have run out, a few scans
     /// later, or with other values.
     fn search(&mut self, found: &Counterexample) -> Option<(Attempt, Seen)> {
-        let at = |name: &String| self.handles.iter().position(|handle| handle.name.eq_ignore_ascii_case(name));
+        let at =
+            |name: &String| self.handles.iter().position(|handle| handle.name.eq_ignore_ascii_case(name));
         let values = |of: &BTreeMap<String, Held>| -> Values {
             of.iter().filter_map(|(name, value)| Some((at(name)?, given(value)))).collect()
         };
@@ -224,11 +226,7 @@ impl Trial {
     }
 
     /// The attempt if it shows what the proof says; if it shows something else, it may be of use later.
-    fn tried(
-        &mut self,
-        attempt: Attempt,
-        spare: &mut Option<(Attempt, Seen)>,
-    ) -> Option<(Attempt, Seen)> {
+    fn tried(&mut self, attempt: Attempt, spare: &mut Option<(Attempt, Seen)>) -> Option<(Attempt, Seen)> {
         let seen = self.run(&attempt)?;
         if self.wanted[..self.own].contains(&seen.handle) {
             return Some((attempt, seen));
@@ -422,7 +420,8 @@ impl Trial {
         let first = attempt.first();
         for handle in 0..self.handles.len() {
             let is_settable = self.handles[handle].is_settable;
-            if !is_settable || attempt.now.contains_key(&handle) || !self.matters(attempt, seen, handle, None) {
+            if !is_settable || attempt.now.contains_key(&handle) || !self.matters(attempt, seen, handle, None)
+            {
                 continue;
             }
             let mut value = None;
@@ -527,7 +526,8 @@ impl<'c> Finder<'c> {
 fn wanted(found: &Counterexample, handles: &[Handle], finder: &Finder<'_>) -> (Vec<usize>, Vec<usize>) {
     let key = found.keys.get(&found.what).map_or(found.what.as_str(), SmolStr::as_str);
     let named = finder.find(&found.what, key).map(|(name, _)| name);
-    let words: Vec<String> = found.what.split(' ').flat_map(parts_of).map(|word| folded(&word).to_string()).collect();
+    let words: Vec<String> =
+        found.what.split(' ').flat_map(parts_of).map(|word| folded(&word).to_string()).collect();
     let instance = format!("{}.", folded(&found.what));
     let is_own = |handle: &Handle| {
         let name = folded(&handle.name);
@@ -536,12 +536,9 @@ fn wanted(found: &Counterexample, handles: &[Handle], finder: &Finder<'_>) -> (V
             || name.starts_with(&instance)
             || name.contains(&format!(".{instance}"))
     };
-    let is_helper = |handle: &Handle| {
-        is_helper_name(handle.name.rsplit('.').next().unwrap_or(&handle.name))
-    };
+    let is_helper = |handle: &Handle| is_helper_name(handle.name.rsplit('.').next().unwrap_or(&handle.name));
     let shared = (0..handles.len()).filter(|number| handles[*number].other.is_some());
-    let (own, others): (Vec<usize>, Vec<usize>) =
-        shared.partition(|number| is_own(&handles[*number]));
+    let (own, others): (Vec<usize>, Vec<usize>) = shared.partition(|number| is_own(&handles[*number]));
     (own, others.into_iter().filter(|number| !is_helper(&handles[*number])).collect())
 }
 
@@ -554,7 +551,9 @@ fn parts_of(name: &str) -> Vec<String> {
     let number = rest.strip_prefix(['S', 's']).unwrap_or(rest);
     let letter = kind.letter();
     match number.parse::<u32>() {
-        Ok(number) => vec![format!("{letter}S{number}"), format!("{letter}{number}"), format!("{letter}C{number}")],
+        Ok(number) => {
+            vec![format!("{letter}S{number}"), format!("{letter}{number}"), format!("{letter}C{number}")]
+        }
         Err(_) => vec![name.to_string()],
     }
 }

@@ -2,8 +2,8 @@
 //! programs with them.
 
 use crate::logic::{
-    Atom, Bounds, Formulas, Moment, Path, Place, Real, Scan, State, Step, Storage, Term,
-    WIDE, evaluate, real_at, wholes,
+    Atom, Bounds, Formulas, Moment, Path, Place, Real, Scan, State, Step, Storage, Term, WIDE, evaluate,
+    real_at, wholes,
 };
 use crate::target::iec::{ElementaryType, real_spelled};
 use crate::target::{Device, DirectAddress, Model, Operand, Width};
@@ -247,7 +247,10 @@ pub(super) fn is_possible(state: &State, type_of: &dyn Fn(&str) -> Option<Elemen
 pub(super) fn is_plain(paths: &[&Path]) -> bool {
     let variables = paths.iter().flat_map(|path| path.terms());
     let variables = variables.filter(|term| term.operand == Operand::Variable);
-    if variables.clone().any(|term| term.is_element() && !(term.is_fixed() && term.storage != Storage::Anywhere)) {
+    if variables
+        .clone()
+        .any(|term| term.is_element() && !(term.is_fixed() && term.storage != Storage::Anywhere))
+    {
         return false;
     }
     let wholes: FxHashSet<SmolStr> = variables
@@ -389,9 +392,7 @@ fn has_its_bits(state: &State) -> bool {
     let mut known: FxHashMap<(&str, u32), bool> = FxHashMap::default();
     state.bits.iter().all(|(key, value)| match bit_of_word(key) {
         Some(bit) if *known.entry(bit).or_insert(*value) != *value => false,
-        Some((word, bit)) if state.words.contains_key(word) => {
-            (state.words[word] >> bit & 1 == 1) == *value
-        }
+        Some((word, bit)) if state.words.contains_key(word) => (state.words[word] >> bit & 1 == 1) == *value,
         _ => is_known(key),
     })
 }

@@ -531,11 +531,7 @@ impl Prover<'_> {
 
     /// The difference that is there at the end of a scan when both programs are run from a state in which something
     /// else differs on the way.
-    fn by_running(
-        &self,
-        state: Option<State>,
-        sides: [Rungs<'_, '_>; 2],
-    ) -> Option<Proof> {
+    fn by_running(&self, state: Option<State>, sides: [Rungs<'_, '_>; 2]) -> Option<Proof> {
         let types = self.types(sides);
         let type_of = |key: &str| types.get(key).copied();
         let state = state.filter(|state| counterexample::is_possible(state, &type_of))?;

@@ -46,7 +46,11 @@ impl<'s> Unit<'s> {
 
     /// The bits by themselves that coils drive.
     fn driven(&self) -> Vec<Term> {
-        let coils = self.paths().into_iter().flat_map(Path::actions).filter(|action| matches!(action.deed, Deed::Coil(_)));
+        let coils = self
+            .paths()
+            .into_iter()
+            .flat_map(Path::actions)
+            .filter(|action| matches!(action.deed, Deed::Coil(_)));
         coils.filter_map(|action| action.terms.first()).filter(|term| term.is_lone()).cloned().collect()
     }
 

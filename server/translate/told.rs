@@ -128,9 +128,9 @@ fn remark(found: &Counterexample) -> Option<Message> {
         Shown::Not(reason) => {
             Some(Message::new("prove.not-shown").with_messages("reason", vec![reason.clone()]))
         }
-        Shown::Runs(run) if run.hold > 0 => Some(
-            Message::new("prove.later").with("scans", run.hold).with("time", run.scan_ns / 1_000_000),
-        ),
+        Shown::Runs(run) if run.hold > 0 => {
+            Some(Message::new("prove.later").with("scans", run.hold).with("time", run.scan_ns / 1_000_000))
+        }
         Shown::Runs(_) | Shown::Untried => None,
     }
 }

@@ -46,6 +46,14 @@ async function energised(workbench) {
       .map((span) => span.textContent.replaceAll('\u00a0', ' ')));
 }
 
+/** The names in the editor's text that have a frame of dashes and a letter F: what is forced. */
+async function forcedNames(workbench) {
+  return workbench.page.locator('.editor-instance .view-lines span').evaluateAll((spans) =>
+    spans
+      .filter((span) => span.children.length === 0 && getComputedStyle(span, '::after').content === '"F"')
+      .map((span) => span.textContent.replaceAll('\u00a0', ' ').trim()));
+}
+
 const hasCoil = async (workbench) => (await energised(workbench)).some((text) => text.includes('( )'));
 
 async function operated(workbench) {
@@ -105,9 +113,11 @@ async function byKeys(workbench, workspace) {
   await panel.locator('[data-name="X1"][data-forced]').waitFor();
   await keyboard.press('f');
   await workbench.until('the motor stopped', async () => (await isOn(panel, 'X1')) && !(await isOn(panel, 'Y0')));
+  await workbench.until('the forced contact marked in the text', async () => (await forcedNames(workbench)).includes('X1'));
   await workbench.screenshot('41-panel-forced');
   await keyboard.press('r');
   await panel.locator('[data-name="X1"]:not([data-forced])').waitFor();
+  await workbench.until('no mark in the text', async () => (await forcedNames(workbench)).length === 0);
   await keyboard.press('g');
   await panel.locator('.mode[data-mode="paused"]').waitFor();
   // The chart says what is at its cursor; P goes to the change before.
