@@ -6,10 +6,17 @@
 use rungwise::check::{self, Severities};
 use rungwise::document::{Document, Edit, Notation};
 use rungwise::ide::{self, Style};
+use rungwise::link::frame::framed;
+use rungwise::link::plc::{Plc, Server};
+use rungwise::link::{Host, Line, Patience, Point, Switch, Transport, Watch};
 use rungwise::project::{CommentsFile, FormatStyle, Manifest, decode};
 use rungwise::target::{Model, Target};
 use rungwise::text::{Encoding, Language, LineColumn, Span, TextEdit};
+use std::collections::VecDeque;
+use std::io;
 use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
 
 /// What must hold for any bytes.
 pub type Body = fn(&[u8]);
@@ -23,6 +30,8 @@ pub const TARGETS: &[(&str, Body)] = &[
     ("session", session),
     ("manifest", manifest),
     ("comments", comments),
+    ("port", port),
+    ("peer", peer),
 ];
 
 /// Instruction list of a PLC; the first byte chooses the model.
@@ -111,6 +120,112 @@ pub fn comments(bytes: &[u8]) {
     holds(&Document::new(&text, Notation::FxIl, Target::of(Model::Fx2n)).commented(&file.comments));
 }
 
+/// From one scan of the virtual PLC to the next.
+const SCAN_NS: i64 = 10_000_000;
+
+/// A host that sends these bytes to the virtual PLC: as they are, then each line of them as the body of a frame. The
+/// first byte chooses the model, the switch and what makes time pass.
+pub fn port(bytes: &[u8]) {
+    let (choice, bytes) = bytes.split_first().unwrap_or((&0, &[]));
+    let model = [Model::Fx1s, Model::Fx1n, Model::Fx2n, Model::Fx3u][usize::from(*choice) % 4];
+    let mut plc = Plc::new(Target::of(model), SCAN_NS);
+    plc.power_on(if choice & 4 == 0 { Switch::Run } else { Switch::Stop }, 0);
+    let mut server = if choice & 8 == 0 { Server::new(plc) } else { Server::stepped(plc, SCAN_NS) };
+    let frames = bytes.split(|byte| *byte == b'\n').map(framed);
+    for (number, piece) in [bytes.to_vec()].into_iter().chain(frames).enumerate() {
+        let now_ns = number as i64 * SCAN_NS;
+        server.advance(now_ns);
+        piece.iter().for_each(|byte| drop(server.take(*byte, now_ns)));
+    }
+    let answers = |byte: &u8| server.take(*byte, 0).map_or(0, |answer| answer.bytes.len());
+    assert_eq!(framed(b"00E0202").iter().map(answers).sum::<usize>(), 8, "it answers no more");
+}
+
+/// Somebody at the other end of a host's line: pieces of the bytes say what each answer is. A piece has a kind and a
+/// length, and is sent as it is, as the body of a frame, or in the place of part of what the virtual PLC answers.
+pub fn peer(bytes: &[u8]) {
+    let (choice, script) = bytes.split_first().unwrap_or((&0, &[]));
+    let model = [Model::Fx1s, Model::Fx1n, Model::Fx2n, Model::Fx3u][usize::from(*choice) % 4];
+    let server = Server::new(Plc::new(Target::of(model), SCAN_NS));
+    let line = Scripted {
+        server,
+        script: script.to_vec(),
+        place: 0,
+        on_the_way: VecDeque::new(),
+        now: Duration::ZERO,
+        sent: 0,
+    };
+    let patience = Patience { answer: Duration::from_secs(1), tries: 3 };
+    let Ok(mut host) = Host::connect(Line::new(line, patience, Arc::default())) else { return };
+    let target = host.identity().target;
+    let points: Vec<Point> =
+        ["X0", "D0", "C199", "M8000"].iter().filter_map(|name| Point::named(name, target)).collect();
+    // What comes of each is told truly or is an error; here they only have to end.
+    let _ = host.status();
+    let _ = host.read(&points);
+    let _ = host.poll(&mut Watch::new(points));
+    if let Ok(plan) = host.plan(&[0x2400, 0xC500, 0x000F], target, &mut |_| {}) {
+        let _ = host.download(&plan, true, &mut |_| {});
+    }
+}
+
+/// The line of [`peer`].
+struct Scripted {
+    server: Server,
+    script: Vec<u8>,
+    place: usize,
+    on_the_way: VecDeque<u8>,
+    now: Duration,
+    sent: usize,
+}
+
+impl Scripted {
+    fn next(&mut self) -> u8 {
+        self.place += 1;
+        // Whoever has nothing more to say answers as a PLC does.
+        self.script.get(self.place - 1).copied().unwrap_or(0)
+    }
+}
+
+impl Transport for Scripted {
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.sent += 1;
+        assert!(self.sent < 50_000, "the host goes on for ever");
+        let take = |byte: &u8| self.server.take(*byte, 0);
+        let mut answer: Vec<u8> = bytes.iter().filter_map(take).flat_map(|answer| answer.bytes).collect();
+        let kind = self.next();
+        if kind % 4 != 0 {
+            let length = self.next();
+            let piece: Vec<u8> = (0..length).map(|_| self.next()).collect();
+            match kind % 4 {
+                1 => answer = piece,
+                2 => answer = framed(&piece),
+                _ => answer.iter_mut().zip(piece).for_each(|(place, byte)| *place ^= byte),
+            }
+        }
+        self.on_the_way.extend(answer);
+        Ok(())
+    }
+
+    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
+        let Some(byte) = self.on_the_way.pop_front() else {
+            self.now += wait;
+            return Ok(0);
+        };
+        self.now += Duration::from_millis(1);
+        buffer[0] = byte;
+        Ok(1)
+    }
+
+    fn set_baud(&mut self, _baud: u32) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn now(&self) -> Duration {
+        self.now
+    }
+}
+
 /// All that an editor asks of a document is answered with places inside it, and formatting is done after one time.
 fn holds(document: &Document) {
     let text = document.text();
@@ -158,10 +273,10 @@ fn holds(document: &Document) {
 fn serve(input: Vec<u8>) {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build();
     let Ok(runtime) = runtime else { return };
-    let input = std::io::Cursor::new(input);
+    let input = io::Cursor::new(input);
     let served = runtime.block_on(async {
         let session = rungwise::lsp::serve_between(input, tokio::io::sink(), None, Language::English);
-        tokio::time::timeout(std::time::Duration::from_secs(10), session).await
+        tokio::time::timeout(Duration::from_secs(10), session).await
     });
     assert!(served.is_ok(), "the server hangs");
 }

@@ -67,8 +67,18 @@ fn words_that_are_no_instructions_go_through() {
     assert_eq!(codes.iter().filter(|code| **code == "unread-word").count(), 2, "{codes:?}");
     let (code, _, err) = run(&folder, &["run", "odd.il"]);
     assert_eq!((code, err.contains("does not know what NOP? does")), (1, true), "{err}");
-    let (code, _, err) = run(&folder, &["translate", "odd.il", "--to", "ladder", "--prove"]);
-    assert!(err.contains("odd.il:1: this rung is kept as it is"), "{code} {err}");
+    // It may be a contact, a coil or anything else, so the rung around it is neither translated nor proved.
+    std::fs::write(folder.path().join("one.il"), "LD X0\nNOP? H01FF\nOUT Y0\nEND\n").unwrap();
+    std::fs::write(folder.path().join("none.il"), "LD X0\nOUT Y0\nEND\n").unwrap();
+    let (_, out, err) = run(&folder, &["translate", "one.il", "--to", "ladder"]);
+    assert!(err.contains("one.il:1: this rung is kept as it is") && out.contains("NOP? H01FF"), "{out}{err}");
+    assert_eq!(run(&folder, &["prove", "one.il", "none.il"]).0, 1);
+    let drawing = "|  X0                    |\n+--| |---[NOP? H01FF]----+\n";
+    std::fs::write(folder.path().join("box.lad"), drawing).unwrap();
+    let (code, _, err) = run(&folder, &["run", "box.lad"]);
+    assert_eq!((code, err.contains("does not know what NOP? does")), (1, true), "{err}");
+    let (_, out, _) = run(&folder, &["check", "box.lad"]);
+    assert!(out.contains("warning[unread-word]"), "{out}");
     assert!(run(&folder, &["explain", "NOP?"]).1.contains("is no instruction of the model"));
 }
 

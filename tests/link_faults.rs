@@ -1,11 +1,16 @@
 //! Downloads over lines with faults: what the host says of the PLC is true, and when the faults stop the job is finished.
 
 use crate::loopback::{Loopback, words};
+use rungwise::link::frame::STX;
 use rungwise::link::plc::{Faults, Plc, Server};
-use rungwise::link::{Fate, Mode, Switch};
+use rungwise::link::{Fate, Host, Line, LinkError, Mode, Patience, Switch, Transport};
 use rungwise::machine_code::{END, Image};
 use rungwise::target::{Model, Target};
+use std::io;
 use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 /// Two programs that differ in many places, long enough for several frames.
 fn programs(model: Model) -> [Vec<u16>; 2] {
@@ -105,7 +110,8 @@ impl Case {
                         (Fate::Verified, program == *after && Case::is_running(&line) == is_running)
                     }
                     Err(failure) => match failure.fate {
-                        Fate::Untouched | Fate::Stopped => (failure.fate, program == *before),
+                        Fate::Untouched => (failure.fate, program == *before && Case::is_running(&line)),
+                        Fate::Stopped => (failure.fate, program == *before),
                         Fate::Partial | Fate::Unverified => (failure.fate, !Case::is_running(&line)),
                         Fate::Verified => (failure.fate, program == *after),
                     },
@@ -168,4 +174,111 @@ fn downloads_to_an_fx1n_are_told_truly_and_can_be_mended() {
 #[test]
 fn downloads_to_an_fx1s_are_told_truly_and_can_be_mended() {
     check(Model::Fx1s, 7500..10_000);
+}
+
+#[test]
+fn what_an_upload_brings_is_what_is_in_the_plc() {
+    let mut brought = 0;
+    for seed in 0..3000 {
+        let model = [Model::Fx2n, Model::Fx1s][seed as usize % 2];
+        let case = Case::new(model);
+        let line = Loopback::with(Server::new(case.plc.clone()), faults_of(seed));
+        let image = line.host().and_then(|mut host| host.upload(&mut |_| {}));
+        if let Ok(image) = image {
+            brought += 1;
+            assert_eq!(image.program(), case.programs[0], "seed {seed}");
+            assert_eq!(image.memory(), line.ends().server.plc().words(), "seed {seed}");
+        }
+        // What is compared is true as well: a plan for the program that is there has nothing to write.
+        let same = line.host().and_then(|mut host| host.plan(&case.programs[0], case.target, &mut |_| {}));
+        let other = line.host().and_then(|mut host| host.plan(&case.programs[1], case.target, &mut |_| {}));
+        assert!(same.is_err() || same.is_ok_and(|plan| plan.bytes() == 0), "seed {seed}");
+        assert!(other.is_err() || other.is_ok_and(|plan| plan.bytes() > 0), "seed {seed}");
+    }
+    assert!((500..2900).contains(&brought), "{brought}");
+}
+
+/// A line whose user ends what is under way when so many requests have been sent.
+struct Ended {
+    line: Loopback,
+    left: usize,
+    cancel: Arc<AtomicBool>,
+}
+
+impl Transport for Ended {
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        if bytes.first() == Some(&STX) {
+            match self.left.checked_sub(1) {
+                Some(left) => self.left = left,
+                None => self.cancel.store(true, Ordering::Relaxed),
+            }
+        }
+        self.line.send(bytes)
+    }
+
+    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
+        self.line.receive(buffer, wait)
+    }
+
+    fn set_baud(&mut self, baud: u32) -> io::Result<()> {
+        self.line.set_baud(baud)
+    }
+
+    fn now(&self) -> Duration {
+        self.line.now()
+    }
+}
+
+#[test]
+fn a_download_that_is_ended_at_any_request_is_told_truly_and_can_be_finished() {
+    for model in [Model::Fx2n, Model::Fx1s] {
+        let case = Case::new(model);
+        let [before, after] = &case.programs;
+        let mut fates = Vec::new();
+        for requests in 0.. {
+            let line = Loopback::with(Server::new(case.plc.clone()), Faults::default());
+            let cancel = Arc::<AtomicBool>::default();
+            let ended = Ended { line: line.clone(), left: requests, cancel: Arc::clone(&cancel) };
+            let is_running = || Case::is_running(&line);
+            let planned =
+                Host::connect(Line::new(ended, Patience::default(), cancel)).and_then(|mut host| {
+                    let plan = host.plan(after, case.target, &mut |_| {})?;
+                    Ok((host, plan))
+                });
+            let (mut host, plan) = match planned {
+                Ok(planned) => planned,
+                Err(error) => {
+                    assert_eq!(error, LinkError::Cancelled, "{requests}");
+                    assert!(is_running() && program_in(&line) == *before, "{requests}");
+                    continue;
+                }
+            };
+            let failure = match host.download(&plan, true, &mut |_| {}) {
+                Ok(report) => {
+                    assert!(report.mode == Mode::Run && is_running() && program_in(&line) == *after);
+                    break;
+                }
+                Err(failure) => failure,
+            };
+            assert_eq!(failure.cause, LinkError::Cancelled, "{requests}");
+            let (program, is_running) = (program_in(&line), is_running());
+            let is_true = match failure.fate {
+                Fate::Untouched => program == *before && is_running,
+                Fate::Stopped => program == *before,
+                Fate::Partial | Fate::Unverified => !is_running,
+                Fate::Verified => program == *after,
+            };
+            assert!(is_true, "{requests}: {failure:?}, and it runs: {is_running}");
+            fates.push(failure.fate);
+            let again = line.host().and_then(|mut host| {
+                let plan = host.plan(after, case.target, &mut |_| {})?;
+                host.download(&plan, true, &mut |_| {}).map_err(|failure| failure.cause)
+            });
+            assert!(again.is_ok_and(|report| report.mode == Mode::Run), "{requests}");
+            assert!(program_in(&line) == *after && Case::is_running(&line), "{requests}");
+        }
+        fates.dedup();
+        let all = [Fate::Untouched, Fate::Stopped, Fate::Partial, Fate::Unverified, Fate::Verified];
+        assert_eq!(fates, all, "{model:?}");
+    }
 }

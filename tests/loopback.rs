@@ -20,7 +20,6 @@ pub struct Ends {
     pub now_ns: i64,
     byte_ns: i64,
     busy_ns: [i64; 2],
-    /// Whether each answer is refused.
     pub sent: Vec<u8>,
     pub received: Vec<u8>,
 }

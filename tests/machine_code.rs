@@ -118,7 +118,7 @@ fn index_registers() {
     // The second word of D0 with each index register: two bits of its number in the value, one beside the area.
     for number in 0..8u16 {
         let coded = words(&format!("INC D0Z{number}"));
-        assert_eq!(coded, [0x0040, 0xA600, 0x8600 | number / 4 << 8 | number % 4 << 6], "Z{number}");
+        assert_eq!(coded, [0x0040, 0xA600, 0x8600 | (number / 4) << 8 | (number % 4) << 6], "Z{number}");
     }
     assert_eq!(words("CJ P3Z1"), hex("0010 A806 8040"));
 }

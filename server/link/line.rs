@@ -20,8 +20,8 @@ use std::time::Duration;
 /// How patient a host is.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Patience {
-    /// Time for an answer to begin, beyond what the bytes take on the line. A PLC answers once a scan; the maker's tools
-    /// wait 5 s.
+    /// Time for an answer to begin, beyond what the bytes take on the line. A PLC answers once a scan; the maker's
+    /// tools wait 5 s.
     pub answer: Duration,
     /// How often a request is sent before it has failed.
     pub tries: u32,
@@ -60,6 +60,8 @@ enum Nothing {
 const BARRIER: Address<Plain> = Address::new(0x0E02);
 /// So many lengths, all odd: 3, 5, … 63. Other reads of more than two bytes are of even lengths.
 const BARRIERS: usize = 31;
+/// How long answers to earlier requests may come before the one to such a read, in times of the patience for one.
+const EARLIER_ANSWERS: u32 = 4;
 
 impl<T: Transport> Line<T> {
     /// A line that nobody has spoken on; `cancel` ends what goes on at the next request.
@@ -176,6 +178,7 @@ impl<T: Transport> Line<T> {
             self.barrier = (self.barrier + 1) % BARRIERS;
             let command = BARRIER.read(3 + 2 * self.barrier);
             self.send(&framed(&command.body()))?;
+            let end = self.transport.now() + EARLIER_ANSWERS * self.patience.answer;
             loop {
                 match self.answer(command.expected())? {
                     Ok(_) => {
@@ -183,8 +186,11 @@ impl<T: Transport> Line<T> {
                         return Ok(());
                     }
                     Err(Nothing::Silence) => break,
-                    // Something that was asked for earlier.
+                    // Something that was asked for earlier, or somebody who never stops talking.
                     Err(_) => has_heard = true,
+                }
+                if self.transport.now() >= end {
+                    break;
                 }
             }
             self.troubles += 1;

@@ -94,8 +94,8 @@ impl Term {
         match &self.operand {
             Operand::Device(device) => matches!(device.kind, DeviceKind::X | DeviceKind::Y | DeviceKind::M),
             Operand::Direct(address) => address.width == Width::Bit,
-            // `T1.Q` and `Bits[2]` are bits by themselves, `Word.3` and `Bits[i]` are not, nor are parts of what lies at
-            // an address.
+            // `T1.Q` and `Bits[2]` are bits by themselves, `Word.3` and `Bits[i]` are not, nor are parts of what lies
+            // at an address.
             Operand::Variable => match self.storage {
                 Storage::Own | Storage::Local => {
                     let is_part =
@@ -110,8 +110,8 @@ impl Term {
         }
     }
 
-    /// Whether nothing changes it but who writes to it, to what it is a part of, or to something that may be anywhere in
-    /// a variable: `Word.3` of a variable in a place of its own.
+    /// Whether nothing changes it but who writes to it, to what it is a part of, or to something that may be anywhere
+    /// in a variable: `Word.3` of a variable in a place of its own.
     pub fn is_own_part(&self) -> bool {
         let is_own = matches!(self.storage, Storage::Own | Storage::Local);
         self.operand == Operand::Variable && is_own && !self.text.contains('^') && self.is_fixed()

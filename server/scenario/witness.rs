@@ -1,9 +1,9 @@
 //! A difference between two programs as the simulated PLC shows it.
 //!
 //! A proof finds a state in which two programs differ. A person wants more: values to set, in a PLC that was just
-//! switched on, so that something differs that can be seen; nothing among them that does not matter, and nothing left out
-//! that does. So both programs are run: from the values of the proof, then from others near to them, with a limit on
-//! work that no clock gives. What is shown in the end has been seen.
+//! switched on, so that something differs that can be seen; nothing among them that does not matter, and nothing left
+//! out that does. So both programs are run: from the values of the proof, then from others near to them, with a limit
+//! on work that no clock gives. What is shown in the end has been seen.
 
 use super::mutant::lot;
 use crate::document::{Document, Scopes};
@@ -89,6 +89,9 @@ struct Attempt {
     now: Values,
 }
 
+/// Looks at both PLCs behind a scan, and says whether that was enough.
+type Look<'l> = dyn FnMut(&Trial, u64, &[Machine<u8>; 2]) -> bool + 'l;
+
 /// What differed.
 #[derive(Clone, PartialEq, Debug)]
 struct Seen {
@@ -163,6 +166,8 @@ impl Trial {
         attempt.run.hold = seen.hold;
         self.simplify(&mut attempt, &seen);
         self.complete(&mut attempt, &seen);
+        // What was only left over from the scan before is set now.
+        self.simplify(&mut attempt, &seen);
         seen.values = self.last(&attempt, &seen).unwrap_or(seen.values);
         let name = |handle: usize| self.handles[handle].name.clone();
         let mut inputs: BTreeMap<String, Held> =
@@ -205,14 +210,15 @@ impl Trial {
             }
         }
         let mut spare = None;
-        for scan_ns in SCANS_NS {
-            for lead in 0..2 {
-                for now in [&now, &full] {
-                    let run = Run { lead, hold: MOST_HOLD, scan_ns };
-                    let attempt = Attempt { run, before: before.clone(), now: now.clone() };
-                    if let Some(shown) = self.tried(attempt, &mut spare) {
-                        return Some(shown);
-                    }
+        let runs = [0, MOST_HOLD].into_iter().flat_map(|hold| {
+            let leads = move |scan_ns| (0..2).map(move |lead| Run { lead, hold, scan_ns });
+            SCANS_NS.into_iter().flat_map(leads)
+        });
+        for run in runs {
+            for now in [&now, &full] {
+                let attempt = Attempt { run, before: before.clone(), now: now.clone() };
+                if let Some(shown) = self.tried(attempt, &mut spare) {
+                    return Some(shown);
                 }
             }
         }
@@ -314,13 +320,9 @@ impl Trial {
         seen
     }
 
-    /// Runs both programs and lets `look` see them behind each scan, until it has seen enough. Nothing if something goes
-    /// wrong in a scan, or if that is too much work.
-    fn scans(
-        &mut self,
-        attempt: &Attempt,
-        look: &mut dyn FnMut(&Trial, u64, &[Machine<u8>; 2]) -> bool,
-    ) -> Option<()> {
+    /// Runs both programs and lets `look` see them behind each scan, until it has seen enough. Nothing if something
+    /// goes wrong in a scan, or if that is too much work.
+    fn scans(&mut self, attempt: &Attempt, look: &mut Look<'_>) -> Option<()> {
         let first = attempt.first();
         let effort: usize = self.codes.iter().map(|code| code.instructions() + 100).sum();
         let effort = effort * (first + attempt.run.hold + 1) as usize + WORK_OF_START;

@@ -242,8 +242,8 @@ pub(super) fn is_possible(state: &State, type_of: &dyn Fn(&str) -> Option<Elemen
     })
 }
 
-/// Whether running these with plain values is what a PLC does: no elements of arrays are used of which nobody knows which
-/// are the same, no whole beside its parts, and no two variables of different sizes share memory.
+/// Whether running these with plain values is what a PLC does: no elements of arrays are used of which nobody knows
+/// which are the same, no whole beside its parts, and no two variables of different sizes share memory.
 pub(super) fn is_plain(paths: &[&Path]) -> bool {
     let variables = paths.iter().flat_map(|path| path.terms());
     let variables = variables.filter(|term| term.operand == Operand::Variable);

@@ -18,6 +18,8 @@ pub use counterexample::{Counterexample, Run, Shown, Value};
 
 mod declared;
 
+mod helpers;
+
 mod paired;
 
 mod reached;

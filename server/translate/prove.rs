@@ -6,13 +6,12 @@
 use super::counterexample::{self, Counterexample, Inputs, Shown, Value};
 use super::paired::Paired;
 use super::source::{self, Source};
-use super::{To, declared, dialect, reached, types, units};
-use crate::document::{DeclaredType, Document, Scopes, Tree};
-use crate::il::iec::{SectionKind, words_of_body};
-use crate::ladder::{CoilKind, ContactKind};
+use super::{To, declared, dialect, helpers, reached, types, units};
+use crate::document::{DeclaredType, Document, Scopes};
+use crate::ladder::CoilKind;
 use crate::logic::{
-    Action, Comparison, Deed, Effort, Path, Place, State, Storage, Term, Test, compare, compare_outcome,
-    is_helper_name, may_drive, shown, touches_bits,
+    Action, Comparison, Deed, Effort, Path, Place, State, Storage, Term, compare, compare_outcome, may_drive,
+    shown, touches_bits,
 };
 use crate::target::iec::ElementaryType;
 use crate::target::{DeviceKind, Flow, Model, Target};
@@ -20,7 +19,6 @@ use crate::text::{Message, Span, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 use std::borrow::Cow;
-use std::cell::RefCell;
 
 /// What is known of two programs.
 #[derive(Clone, PartialEq, Debug)]
@@ -88,7 +86,7 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
         before: [Vec::new(), Vec::new()],
         next: [0, 0],
         may_be_off,
-        helpers: helpers([left, right], [&sources[0], &sources[1]]),
+        helpers: helpers::of([left, right], [&sources[0], &sources[1]]),
         is_reordered: false,
         is_mixed,
         scopes: [left.scopes(), right.scopes()],
@@ -113,74 +111,6 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
         }
         Ok(()) => Proof::Equal { is_reordered: prover.is_reordered },
     }
-}
-
-/// The variables, by their keys, that keep the power of a rung and that nobody outside of their program unit knows. A
-/// program of the FX family has nothing that stands for them; in one of IEC 61131-3 they are only looked at behind the
-/// store that gives them their value, so that no scan knows what they were in the one before.
-fn helpers(documents: [&Document; 2], sources: [&[Source]; 2]) -> FxHashSet<SmolStr> {
-    let mut helpers = FxHashSet::default();
-    let mut known = FxHashSet::default();
-    for scopes in documents.map(Document::scopes) {
-        known.extend(scopes.globals.keys().cloned());
-        for variable in scopes.pous.iter().flat_map(|pou| &pou.variables) {
-            let is_own = variable.section == SectionKind::Local && variable.address.is_none();
-            let kind = if is_own && is_helper_name(&variable.name) { &mut helpers } else { &mut known };
-            kind.insert(folded(&variable.name));
-        }
-    }
-    if !documents.iter().any(|document| document.target().is_fx()) {
-        sources.into_iter().for_each(|sources| known.extend(remembered(&helpers, sources)));
-    }
-    helpers.retain(|name| !known.contains(name));
-    helpers
-}
-
-/// Those of `helpers` that a program looks at without having stored to them before, or uses for something else.
-fn remembered(helpers: &FxHashSet<SmolStr>, sources: &[Source]) -> FxHashSet<SmolStr> {
-    let found = RefCell::new(FxHashSet::default());
-    let stored: RefCell<FxHashSet<SmolStr>> = RefCell::default();
-    let looks_at = |term: &Term| {
-        let key = term.key();
-        if helpers.contains(&key) && !stored.borrow().contains(&key) {
-            found.borrow_mut().insert(key);
-        }
-    };
-    let mut unit = None;
-    for source in sources {
-        if source.pou != unit || !source.rung.labels.is_empty() || source.rung.path.is_err() {
-            stored.borrow_mut().clear();
-            unit = source.pou;
-        }
-        match &source.rung.path {
-            Ok(path) => path.iter().for_each(|path| {
-                path.visit(
-                    &mut |action| match (&action.deed, &action.terms[..]) {
-                        (Deed::Coil(CoilKind::Plain | CoilKind::Negated), [term]) => {
-                            stored.borrow_mut().insert(term.key());
-                        }
-                        _ => action.terms.iter().for_each(looks_at),
-                    },
-                    &mut |condition| {
-                        for contact in condition.contacts() {
-                            match contact.test {
-                                Test::Bit(ContactKind::NormallyOpen | ContactKind::NormallyClosed) => {
-                                    contact.terms.iter().for_each(looks_at);
-                                }
-                                // What an edge remembers of it goes on to the next scan.
-                                _ => found.borrow_mut().extend(contact.terms.iter().map(Term::key)),
-                            }
-                        }
-                    },
-                );
-            }),
-            Err(_) => {
-                let words = words_of(source);
-                found.borrow_mut().extend(words.split(' ').map(SmolStr::new));
-            }
-        }
-    }
-    found.into_inner()
 }
 
 /// Whether a rung begins a part of the program in which there may be no power at the left rail.
@@ -262,7 +192,7 @@ fn stretches(sources: &[Source]) -> Vec<Stretch<'_>> {
             }
             Ok(Some(path)) => open.rungs.push((source, path)),
             Err(_) => {
-                open.end = Some(End::Unread(source, words_of(source)));
+                open.end = Some(End::Unread(source, source.words()));
                 stretches.push(std::mem::take(&mut open));
             }
         }
@@ -274,15 +204,6 @@ fn stretches(sources: &[Source]) -> Vec<Stretch<'_>> {
         _ => stretches.push(open),
     }
     stretches
-}
-
-/// The words of a rung in one spelling, comments aside.
-fn words_of(source: &Source) -> SmolStr {
-    let (text, span) = (source.chunk.text(), source.rung.span);
-    match source.chunk.tree() {
-        Tree::Iec(_) => words_of_body(text, span),
-        _ => span.of(text).split_whitespace().collect::<Vec<_>>().join(" ").into(),
-    }
 }
 
 /// Whether the rungs behind it are not executed if it is without condition.

@@ -9,8 +9,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// The JSON of `prove`: `{"equal", "counterexample": {"inputs", "before", "left", "right", "lines", "run", "reason"}}`.
 /// `run` says how the simulated PLC shows the difference: `{"scan_ms", "first", "last"}`, the time of a scan, the
-/// number of the one that begins with the inputs and that of the one that shows it, from 0; where it is `null`, `reason`
-/// says why the simulated PLC does not.
+/// number of the one that begins with the inputs and that of the one that shows it, from 0. Where it is `null`,
+/// `reason` says why the simulated PLC does not.
 pub fn json(proof: &Proof, sides: [&Document; 2], language: Language) -> Json {
     let place = |at: &[Option<Span>; 2]| {
         let [left, right] = [0, 1].map(|side| at[side].map(|span| line(sides[side], span)));

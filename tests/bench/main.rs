@@ -7,11 +7,24 @@
 //! `cargo bench --bench bench -- WORD …` measures only rows whose names contain one of the words; the environment
 //! variable `RUNGWISE_BENCH_SERVER` names another build of the program.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a bench that cannot run stops")]
+#![allow(
+    clippy::expect_used,
+    clippy::panic,
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a bench that cannot run stops"
+)]
 
 #[path = "../lsp_client.rs"]
 #[allow(dead_code, reason = "the tests use all of it")]
 mod lsp_client;
+
+#[path = "../loopback.rs"]
+#[allow(dead_code, reason = "the tests use all of it")]
+mod loopback;
+
+#[path = "../line_time.rs"]
+mod line_time;
 
 mod figures;
 
@@ -28,6 +41,9 @@ mod machine_code;
 mod cursor;
 
 mod simulation;
+
+mod link;
+mod simulation_iec;
 
 use figures::{Figures, Table, calibrate, milliseconds};
 use lsp_client::{Client, at};
@@ -63,6 +79,8 @@ fn main() {
     machine_code::measure(&table);
     cursor::measure(&table);
     simulation::measure(&table);
+    simulation_iec::measure(&table);
+    link::measure(&table);
     command_line::measure(&table);
     println!("| (calibration again) | {} | | | | |", milliseconds(calibrate()));
 }

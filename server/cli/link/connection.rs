@@ -4,7 +4,7 @@ use crate::cli::Outcome;
 use crate::cli::input::{complain, remark};
 use crate::cli::progress::interruption;
 use crate::cli::run::duration;
-use crate::link::{Host, Line, LinkError, Patience, Progress, Stage, Transport, transport};
+use crate::link::{Host, Line, LinkError, Patience, Progress, Speed, Stage, Transport, transport};
 use crate::project::Project;
 use crate::text::{Language, Message};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -20,8 +20,14 @@ pub(in crate::cli) struct Connection {
     #[arg(long, value_name = "TIME", value_parser = duration, default_value = "1s")]
     timeout: i64,
     /// The speed to which the line is switched: 19200, 38400, 57600 or 115200 [default: 9600, as it is].
-    #[arg(long, value_name = "BAUD")]
+    #[arg(long, value_name = "BAUD", value_parser = speed)]
     baud: Option<u32>,
+}
+
+/// A speed to which a line can be switched, in bits a second.
+fn speed(word: &str) -> Result<u32, String> {
+    let baud = word.parse().ok().filter(|baud| Speed::of_baud(*baud).is_some());
+    baud.ok_or_else(|| word.to_string())
 }
 
 /// A host on whatever line the user has named.

@@ -37,9 +37,11 @@ impl<T: Transport> Host<T> {
     /// # Errors
     /// If it does not, or the line fails.
     pub fn stop(&mut self) -> Result<(), LinkError> {
-        if self.mode()? == Mode::Stop {
-            return Ok(());
-        }
+        if self.mode()? == Mode::Stop { Ok(()) } else { self.halt() }
+    }
+
+    /// Orders a CPU that runs to stop, and waits until it has.
+    pub(super) fn halt(&mut self) -> Result<(), LinkError> {
         self.order(FORCED_STOP, true)?;
         if self.comes_to(Mode::Stop)? { Ok(()) } else { Err(LinkError::StillRunning) }
     }

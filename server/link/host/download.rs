@@ -77,7 +77,7 @@ pub enum Fate {
     Partial,
     /// All of it has been written, but not found to be right. The PLC stands still.
     Unverified,
-    /// It is the new one, word for word. The PLC stands still.
+    /// It is the new one, word for word. The PLC was to be started, and whether it runs is not known.
     Verified,
 }
 
@@ -148,12 +148,11 @@ impl<T: Transport> Host<T> {
         Ok(Plan { model: target.model, before, wanted })
     }
 
-    /// Carries a plan out: stop, write what has changed, read all of it back, compare the sum, and start if `is_started`
-    /// says so.
+    /// Carries a plan out: stop, write what has changed, read all of it back, compare the sum, and start if
+    /// `is_started` says so.
     ///
     /// # Errors
-    /// With what has become of the program. The PLC stands still, and the same
-    /// download, planned again, finishes the job.
+    /// With what has become of the program. The same download, planned again, finishes the job.
     pub fn download(
         &mut self,
         plan: &Plan,
@@ -171,8 +170,10 @@ impl<T: Transport> Host<T> {
         fate: &mut Fate,
         tell: &mut dyn FnMut(Progress),
     ) -> Result<Report, LinkError> {
-        *fate = Fate::Stopped;
-        self.stop()?;
+        if self.mode()? == Mode::Run {
+            *fate = Fate::Stopped;
+            self.halt()?;
+        }
         let mut held = plan.before.clone();
         let mut written = 0;
         let mut compared = 0;
@@ -202,7 +203,7 @@ impl<T: Transport> Host<T> {
     ) -> Result<usize, LinkError> {
         let chunks = wanted.changed_chunks(held, MOST_DATA);
         let total = chunks.iter().map(|chunk| chunk.bytes.len()).sum();
-        if chunks.is_empty() && *fate == Fate::Stopped {
+        if chunks.is_empty() && matches!(fate, Fate::Untouched | Fate::Stopped) {
             return Ok(0);
         }
         let is_guarded = self.dialect() == Dialect::Extended;

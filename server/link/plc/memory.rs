@@ -1,9 +1,9 @@
 //! What a host finds at the addresses of the virtual PLC.
 
 use super::cpu::{PARAMETER_BYTES, Plc, WRITE_ENABLE};
-use crate::link::Mode;
 use crate::link::address::{Extended, Lying, Map, Part, Plain};
 use crate::link::command::{Command, Reply, Space};
+use crate::link::{Mode, Point};
 use crate::simulate::{Value, Variable};
 use crate::target::{Device, DeviceKind, Model};
 use std::sync::Arc;
@@ -74,6 +74,15 @@ impl Plc {
                 _ => byte,
             }),
         }
+    }
+
+    /// What somebody in front of the PLC reads of a device: what a host does, in the names of hosts and of the simulator.
+    pub fn shown(&self, name: &str) -> Option<Value> {
+        if let Some(Point::Bit(device, part)) = Point::named(name, self.target) {
+            return Some(Value::Bit(self.bit(device, part)));
+        }
+        let variable = self.machine.code().variable(name)?;
+        Some(self.machine.value(variable, 0))
     }
 
     fn bit(&self, device: Device, part: Part) -> bool {

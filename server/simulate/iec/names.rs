@@ -257,8 +257,8 @@ impl Names {
                         continue;
                     }
                     let Some(part) = variable.part(field.kind.clone(), field.at) else { continue };
-                    let shown = if is_watched { field.name.clone() } else { folded(&field.name) };
-                    let name = if name.is_empty() { shown.to_string() } else { format!("{name}.{shown}") };
+                    let own = &field.name;
+                    let name = if name.is_empty() { own.to_string() } else { format!("{name}.{own}") };
                     self.walk(&part, name, found, is_watched);
                 }
                 if let (At::Memory(at), true, false) = (variable.at, is_block, is_watched) {
@@ -285,12 +285,13 @@ impl Names {
         direct.filter(|address| self.image.find(**address) == Some(wanted)).map(ToString::to_string).next()
     }
 
-    /// All values with their whole names, also what instances of blocks note.
+    /// All values with their whole names, folded, also what instances of blocks note.
     pub(in crate::simulate) fn all(&self) -> Vec<(String, Spot)> {
         let mut all = Vec::new();
         for root in &self.roots {
-            self.walk(&root.variable, folded(&root.path.join(".")).to_string(), &mut all, false);
+            self.walk(&root.variable, root.path.join("."), &mut all, false);
         }
+        all.iter_mut().for_each(|(name, _)| *name = folded(name).to_string());
         all
     }
 }
