@@ -47,12 +47,16 @@ async function energised(workbench) {
       .map((span) => span.textContent.replaceAll('\u00a0', ' ')));
 }
 
-/** The names in the editor's text that have a frame of dashes and a letter F: what is forced. */
+/** The names in the editor's text that are forced: each has a frame of dashes, and there are as many letters F. */
 async function forcedNames(workbench) {
-  return workbench.page.locator('.editor-instance .view-lines span').evaluateAll((spans) =>
-    spans
-      .filter((span) => span.children.length === 0 && getComputedStyle(span, '::after').content === '"F"')
-      .map((span) => span.textContent.replaceAll('\u00a0', ' ').trim()));
+  return workbench.page.locator('.editor-instance .view-lines span').evaluateAll((spans) => {
+    const leaves = spans.filter((span) => span.children.length === 0);
+    const letters = leaves.filter((span) => getComputedStyle(span, '::after').content === '"F"');
+    const framed = leaves
+      .filter((span) => getComputedStyle(span).borderTopStyle === 'dashed' && span.textContent !== '')
+      .map((span) => span.textContent.replaceAll('\u00a0', ' ').trim());
+    return letters.length === framed.length ? framed : [`${framed.length} frames, ${letters.length} letters`];
+  });
 }
 
 const hasCoil = async (workbench) => (await energised(workbench)).some((text) => text.includes('( )'));
@@ -170,7 +174,7 @@ async function declared(workbench) {
   const panel = await openPanel(workbench, 'mixer.il', 'Start');
   const row = (name) => panel.locator(`[data-name="${name}"]`);
   const names = await panel.locator('.row').evaluateAll((rows) => rows.map((own) => own.dataset.name));
-  if (names.join(' ') !== 'Mixer.Start Mixer.Stop Mixer.Motor') {
+  if (names.join(' ') !== 'Mixer.Start Mixer.Stop Mixer.Motor Mixer.Delay.ET') {
     throw new Error(`on the panel are ${names}`);
   }
   await row('Mixer.Start').locator('.push').click();
