@@ -16,7 +16,7 @@ local timer
 vim.api.nvim_set_hl(0, 'RungwiseEnergised', { default = true, link = 'DiffAdd' })
 vim.api.nvim_set_hl(0, 'RungwiseReady', { default = true, underdotted = true })
 vim.api.nvim_set_hl(0, 'RungwiseValue', { default = true, link = 'Comment' })
-vim.api.nvim_set_hl(0, 'RungwiseForced', { default = true, bold = true, underdouble = true })
+vim.api.nvim_set_hl(0, 'RungwiseForcedName', { default = true, bold = true, underdouble = true })
 vim.api.nvim_set_hl(0, 'RungwiseForcedSign', { default = true, link = 'WarningMsg' })
 
 --- Tells the server something about the program of a buffer; `done` gets the answer.
@@ -115,7 +115,7 @@ function M.on_monitor(_, picture, context)
     elseif element.kind == 'forced' then
       local value = element.value == true and 1 or element.value == false and 0 or element.value
       tell(line, t('%s forced to %s', name_in(running.buffer, element.range, server), tostring(value)))
-      mark(running.buffer, element.range, server.offset_encoding, { hl_group = 'RungwiseForced', priority = 160 })
+      mark(running.buffer, element.range, server.offset_encoding, { hl_group = 'RungwiseForcedName', priority = 160 })
       forced[line] = true
     elseif element.energised or element.conducts then
       mark(running.buffer, element.range, server.offset_encoding, {

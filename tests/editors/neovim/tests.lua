@@ -458,7 +458,7 @@ check('a program runs, holds itself, shows its power and goes back', function()
       local details = own[4]
       found.signs = found.signs + (vim.trim(details.sign_text or '') == 'F' and 1 or 0)
       found.words = found.words .. (details.virt_text and details.virt_text[1][1] or '')
-      if details.hl_group == 'RungwiseForced' then
+      if details.hl_group == 'RungwiseForcedName' then
         table.insert(found.names, vim.fn.getline(line):sub(own[3] + 1, details.end_col))
       end
     end
