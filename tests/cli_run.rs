@@ -122,6 +122,11 @@ fn a_program_of_iec_61131_runs_with_its_names_and_types() {
         last["values"],
         json!({ "Motor": true, "Main.Delay.ET": 20, "delay.q": true, "Level": 24.0, "Count": 65535, "%IX0.0": false })
     );
+    // Two names of one variable are both shown, one name is shown once.
+    let names = "%IX0.0,Start,start";
+    let (_, out, _) = run(&folder, &["run", "main.il", "--scans", "1", "--watch", names, "--format", "json"]);
+    let answer: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(answer["scans"][0]["values"], json!({ "%IX0.0": false, "Start": false }));
     let (_, out, _) = run(&folder, &["run", "main.il", "--why", "Level@20ms", "--why", "Count"]);
     assert!(out.contains("the program has given it") && !out.contains("by hand"), "{out}");
     let (code, _, err) = run(&folder, &["run", "main.il", "--set", "Count=-1"]);
@@ -146,4 +151,54 @@ fn a_file_of_a_project_runs_with_the_others() {
         assert_eq!(out.replace(' ', ""), picture.replace(' ', ""), "{asked}");
         assert!(out.contains("M8000 ▆") && out.contains("Y1    ▆"), "{out}");
     }
+}
+
+/// A program that goes on for longer than anybody waits, in a terminal that `script` gives it.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_long_run_shows_a_bar_on_a_terminal_and_ctrl_c_leaves_what_it_did() {
+    use std::io::{Read, Write};
+    use std::process::{Command, Stdio};
+    let folder = folder(&[("clock.il", "LD M8000\nINC D0\nLD X0\nDIV K1 K0 D1\nEND\n")]);
+    let program = env!("CARGO_BIN_EXE_rungwise");
+    let line = format!(
+        "trap : INT; {program} run clock.il --scans 1000000000 --watch D0 --trace out.csv; echo code $?"
+    );
+    let mut terminal = Command::new("script")
+        .args(["--quiet", "--flush", "--command", &line, "/dev/null"])
+        .env("LC_ALL", "C")
+        .env("TERM", "xterm")
+        .current_dir(&folder)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("script of util-linux");
+    let (mut input, mut output) = (terminal.stdin.take().unwrap(), terminal.stdout.take().unwrap());
+    let (mut shown, mut bytes) = (String::new(), [0; 4096]);
+    let mut until = |wanted: &str, shown: &mut String| {
+        while !shown.contains(wanted) {
+            let count = output.read(&mut bytes).unwrap();
+            assert!(count > 0, "{wanted} does not come: {shown}");
+            shown.push_str(&String::from_utf8_lossy(&bytes[..count]));
+        }
+    };
+    until("% · scan ", &mut shown);
+    input.write_all(b"\x03").unwrap();
+    until("code 1", &mut shown);
+    assert!(shown.contains("ended by Ctrl-C after "), "{shown}");
+    terminal.wait().unwrap();
+    let trace = std::fs::read_to_string(folder.path().join("out.csv")).unwrap();
+    let last = trace.lines().last().unwrap().split(',').collect::<Vec<_>>();
+    assert!(
+        trace.starts_with("scan,time_ms,D0\n0,0,1\n") && trace.ends_with('\n') && last.len() == 3,
+        "{last:?}"
+    );
+    assert_eq!(last[0].parse::<i64>().unwrap() * 10, last[1].parse::<i64>().unwrap());
+}
+
+#[test]
+fn a_long_run_shows_no_bar_in_a_pipe() {
+    let folder = folder(&[("clock.il", "LD M8000\nINC D0\nEND\n")]);
+    let (code, _, err) = run(&folder, &["run", "clock.il", "--scans", "300000", "--watch", "X0"]);
+    assert_eq!((code, err.as_str()), (0, ""));
 }

@@ -71,6 +71,37 @@ fn times_are_those_of_scans() {
 }
 
 #[test]
+fn a_step_is_done_again_and_again() {
+    let clocked = "LD X0\nOUT C0 K4\nLD C0\nOUT Y0\nEND\n";
+    let tell = |steps: &str| {
+        let suite = format!("[[scenario]]\nname = \"one\"\nsteps = [\n{steps}\n]\n");
+        run(&tested(clocked, &suite), &["test"])
+    };
+    // The fourth pulse comes at 160 ms; `after` counts from it.
+    let train = "{ at = 100, every = 20, times = 4, pulse = { X0 = 10 }, expect = { X0 = 1 } }";
+    for (expected, code) in [
+        ("{ at = 150, expect = { C0 = 3, Y0 = 0 } }, { at = 160, expect = { Y0 = 1 } }", 0),
+        ("{ after = 0, expect = { C0 = 4 } }, { after = 10, expect = { X0 = 0 } }", 0),
+        ("{ after = 0, expect = { C0 = 3 } }", 1),
+    ] {
+        let (found, out, err) = tell(&format!("{train},\n{expected}"));
+        assert_eq!((found, err.as_str()), (code, ""), "{expected}\n{out}");
+    }
+    for (step, said) in [
+        ("{ every = 20, set = { X0 = 1 } }", "`every` and `times` belong together"),
+        ("{ times = 2, set = { X0 = 1 } }", "`every` and `times` belong together"),
+        ("{ every = 5, times = 2, set = { X0 = 1 } }", "`every` is one scan at least"),
+        ("{ every = 20, times = 0, set = { X0 = 1 } }", "a whole number from 1"),
+        ("{ every = 20, times = 1.5, set = { X0 = 1 } }", "a whole number from 1"),
+        ("{ every = 20, times = 2, pulse = { X0 = 20 } }", "the pulse lasts until the next one begins"),
+        ("{ every = 20, times = 1000000, set = { X0 = 1 } }", "1000000 scans"),
+    ] {
+        let (code, out, err) = tell(step);
+        assert!(code != 0 && format!("{out}{err}").contains(said), "{step}\n{code}\n{out}\n{err}");
+    }
+}
+
+#[test]
 fn expectations_hold_at_a_time_within_one_always_never_and_until() {
     let start = "{ at = \"100ms\", set = { X0 = 1 } },";
     passes(&format!("{start} {{ at = \"100ms\", expect = {{ Y1 = 1 }}, within = \"400ms\" }}"));

@@ -52,15 +52,17 @@ fn instructions_rungs_and_scans_are_stepped_both_ways() {
     plc.go("next");
     assert_eq!(plc.here(), "motor.il · LD M8013 @11:1, scan 0, 0 ms");
     plc.go("next");
+    assert_eq!(plc.here(), "motor.il · END @13:1, scan 0, 0 ms");
+    plc.go("next");
     assert_eq!(plc.here(), "motor.il · LD X0 @1:1, scan 1, 10 ms");
     plc.go("stepOut");
     assert_eq!(plc.here(), "motor.il · LD X0 @1:1, scan 2, 20 ms");
     // Back over the border of a scan, and into one that was not stepped through.
     plc.go("stepBack");
-    assert_eq!(plc.here(), "motor.il · MOV K5 D0 @12:1, scan 1, 10 ms");
+    assert_eq!(plc.here(), "motor.il · END @13:1, scan 1, 10 ms");
     plc.go("stepBack");
-    assert_eq!(plc.here(), "motor.il · LD M8013 @11:1, scan 1, 10 ms");
-    for _ in 0..17 {
+    assert_eq!(plc.here(), "motor.il · MOV K5 D0 @12:1, scan 1, 10 ms");
+    for _ in 0..19 {
         plc.go("stepBack");
     }
     assert_eq!(plc.here(), "motor.il · OR Y0 @2:1, scan 0, 0 ms");
@@ -121,7 +123,7 @@ fn breakpoints_move_to_instructions_and_stop_on_their_terms() {
     let motor = program("motor.il", MOTOR);
     let mut plc = entered(&motor);
     let set =
-        plc.breakpoints(&motor.path, json!([{ "line": 5 }, { "line": 13 }, { "line": 3, "column": 5 }]));
+        plc.breakpoints(&motor.path, json!([{ "line": 5 }, { "line": 14 }, { "line": 3, "column": 5 }]));
     assert_eq!(places(&set), ["6:1", "no instruction stands here or below", "3:1"]);
     let other = plc.breakpoints(&PathBuf::from("/elsewhere.il"), json!([{ "line": 1 }]));
     assert_eq!(places(&other), ["this file is no part of the program that is debugged"]);
@@ -170,7 +172,11 @@ fn a_change_of_data_stops_behind_what_changed_it() {
     let mut plc = Debugger::launch(&motor.path, json!({ "set": ["X0=1@50ms", "X0=0@70ms", "X1=1@200ms"] }));
     plc.begin();
     let info = plc.ask("dataBreakpointInfo", json!({ "name": "Y0", "variablesReference": 2 }));
-    assert_eq!((&info["dataId"], &info["accessTypes"]), (&json!("Y0"), &json!(["write"])), "{info}");
+    assert_eq!(
+        (&info["dataId"], &info["accessTypes"]),
+        (&json!("Y0"), &json!(["write", "readWrite"])),
+        "{info}"
+    );
     assert_eq!(plc.ask("dataBreakpointInfo", json!({ "name": "Q7" }))["dataId"], Value::Null);
     let set =
         plc.ask("setDataBreakpoints", json!({ "breakpoints": [{ "dataId": "Y0", "accessType": "write" }] }));
@@ -191,7 +197,7 @@ fn a_change_of_data_stops_behind_what_changed_it() {
     plc.go("continue");
     assert_eq!((plc.here().as_str(), plc.value("X0")), ("motor.il · LD X0 @1:1, scan 7, 70 ms", "0".into()));
     assert_eq!(plc.go("continue")["text"], "D0: 0 → 5");
-    assert_eq!(plc.here(), "motor.il · LD X0 @1:1, scan 51, 510 ms");
+    assert_eq!(plc.here(), "motor.il · END @13:1, scan 50, 500 ms");
     assert_eq!(
         plc.said(),
         [
@@ -301,10 +307,12 @@ fn routines_are_frames() {
     plc.go("stepOut");
     assert_eq!(plc.stack()[0], "called.il · LD X0 @3:1");
     plc.go("stepBack");
-    assert_eq!(plc.stack()[0], "P1 · OUT Y2 @10:1");
+    assert_eq!(plc.stack()[0], "P1 · SRET @11:1");
     // A step over a rung passes what it calls.
     plc.breakpoints(&called.path, json!([]));
     plc.go("stepOut");
+    plc.go("next");
+    assert_eq!(plc.stack()[0], "called.il · FEND @5:1");
     plc.go("next");
     assert_eq!(plc.here(), "called.il · LD M8000 @1:1, scan 1, 10 ms");
     plc.go("next");

@@ -77,13 +77,19 @@ impl Debugger {
         self.input = None;
     }
 
-    /// The answer to a request, whatever it is.
-    pub fn answer(&mut self, command: &str, arguments: Value) -> Value {
+    /// Sends a request without waiting for its answer; gives its number.
+    pub fn send(&mut self, command: &str, arguments: Value) -> i64 {
         self.last += 1;
         let seq = self.last;
         let request = json!({ "seq": seq, "type": "request", "command": command, "arguments": arguments });
         let body = request.to_string();
         self.write(format!("Content-Length: {}\r\n\r\n{body}", body.len()).as_bytes());
+        seq
+    }
+
+    /// The answer to a request, whatever it is.
+    pub fn answer(&mut self, command: &str, arguments: Value) -> Value {
+        let seq = self.send(command, arguments);
         loop {
             let message = self.message(command);
             if message["type"] == "response" && message["request_seq"] == seq {

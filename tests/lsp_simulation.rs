@@ -123,6 +123,49 @@ fn what_is_shown_is_painted_as_power_flowed() {
     assert_eq!(energised(&held, "output").len(), 1, "{held}");
 }
 
+/// The names in a text that a picture marks as forced, as `line:name=value`.
+fn forced(picture: &Value, text: &str) -> Vec<String> {
+    let elements = picture["elements"].as_array().unwrap().iter().filter(|one| one["kind"] == "forced");
+    let mut names: Vec<String> = elements
+        .map(|one| {
+            let place = |end: &str, part: &str| one["range"][end][part].as_u64().unwrap() as usize;
+            let line = place("start", "line");
+            let name =
+                &text.lines().nth(line).unwrap()[place("start", "character")..place("end", "character")];
+            format!("{}:{name}={}", line + 1, one["value"])
+        })
+        .collect();
+    names.sort_unstable();
+    names
+}
+
+#[test]
+fn what_is_forced_is_marked_wherever_it_is_named() {
+    let all = json!([{ "start": { "line": 0, "character": 0 }, "end": { "line": 99, "character": 0 } }]);
+    let text = MOTOR.replace("T0  K100 |", "M20      |")
+        + "\n|  Y1                   |\n+--| |--[MOV D0 K2M20]--+\n";
+    let mut plc = Simulated::open("file:///simulated/forced.lad", "ladder", &text);
+    plc.tell("start", json!({}));
+    plc.tell("watch", json!({ "ranges": all }));
+    plc.picture(|picture| forced(picture, &text).is_empty());
+    plc.tell("force", json!({ "name": "Y0", "value": 1 }));
+    plc.picture(|picture| forced(picture, &text) == ["1:Y0=true", "3:Y0=true", "5:Y0=true"]);
+    plc.tell("release", json!({}));
+    plc.tell("force", json!({ "name": "M23", "value": 1 }));
+    plc.tell("force", json!({ "name": "D0", "value": 7 }));
+    plc.picture(|picture| forced(picture, &text) == ["9:D0=7", "9:M20=true"]);
+    // A variable of one instance, and not the one of the same name beside it.
+    let text = "FUNCTION_BLOCK Lamp\nVAR_INPUT Go : BOOL; END_VAR\nVAR Lit : BOOL; END_VAR\nLD Go\nST Lit\nEND_FUNCTION_BLOCK\n\
+                PROGRAM Main\nVAR One : Lamp; Lit : BOOL; END_VAR\nCAL One(Go := TRUE)\nLD One.Lit\nST Lit\nEND_PROGRAM\n";
+    let mut plc = Simulated::open("file:///simulated/forced.il", "plc-il", text);
+    plc.tell("start", json!({}));
+    plc.tell("watch", json!({ "ranges": all }));
+    plc.tell("force", json!({ "name": "One.Lit", "value": false }));
+    plc.picture(|picture| forced(picture, text) == ["10:One=false", "5:Lit=false"]);
+    plc.tell("force", json!({ "name": "Main.Lit", "value": true }));
+    plc.picture(|picture| forced(picture, text) == ["10:One=false", "11:Lit=true", "5:Lit=false"]);
+}
+
 #[test]
 fn what_is_shown_belongs_to_the_scan_and_the_lines_that_are_shown() {
     let two_rungs = LIST.replace("END\n", "LD X0\nOUT Y5\nEND\n");

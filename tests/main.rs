@@ -24,6 +24,7 @@ mod comments;
 mod corpus;
 mod dap;
 mod dap_client;
+mod dap_iec;
 mod document;
 mod drawing_redrawn;
 mod extremes;

@@ -77,3 +77,35 @@ fn lists_of_iec_have_faults_too() {
     assert!(told.iter().any(|line| line.contains("x: normally closed") && line.contains("LDN")), "{told:#?}");
     assert!(told.iter().any(|line| line.starts_with("x: reset in place of set")), "{told:#?}");
 }
+
+#[test]
+fn presets_and_constants_are_others() {
+    let fx = "LD= D0 K5\nAND> D1 H10\nMOV K7 D2\nLD X0\nDCMP D4 K100000 M0\nEND\n";
+    let told: Vec<String> = mutants("a.il", fx)
+        .into_iter()
+        .filter(|(what, _)| what.contains("constant"))
+        .map(|(what, new)| format!("{what} | {new}"))
+        .collect();
+    let expected = [
+        "D0: the constant K6 in place of K5 | LD= D0 K6",
+        "D2: the constant K8 in place of K7 | MOV K8 D2",
+        "D4: the constant K100001 in place of K100000 | DCMP D4 K100001 M0",
+    ];
+    assert_eq!(told, expected);
+    let head = "PROGRAM a\nVAR x, y : BOOL; t : TON; c : CTU; n : INT; END_VAR\n";
+    let iec = format!(
+        "{head}LD x\nST t.IN\nCAL t(PT := T#1s500ms)\nCAL c(CU := x, PV := INT#3)\nLD n\nGT 4\nST y\nLD 9\nST n\nEND_PROGRAM\n"
+    );
+    let told: Vec<String> = mutants("a.il", &iec)
+        .into_iter()
+        .filter(|(what, _)| what.contains("constant"))
+        .map(|(what, new)| format!("{what} | {new}"))
+        .collect();
+    let expected = [
+        "t: the constant T#3s in place of T#1s500ms |     CAL     t( /         IN := x, /         PT := T#3s /     )",
+        "c: the constant INT#4 in place of INT#3 |     CAL     c( /         CU := x, /         PV := INT#4 /     )",
+        "n: the constant 5 in place of 4 |     LD      n /     GT      5 /     ST      y",
+        "n: the constant 10 in place of 9 |     LD      10 /     ST      n",
+    ];
+    assert_eq!(told, expected);
+}

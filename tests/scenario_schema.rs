@@ -51,6 +51,8 @@ fn the_examples_of_the_schema_are_read() {
                     true => format!("{head}{key} = {value}, set = {{ X7 = 1 }}, always = {{ Y7 = 0 }}, expect = {{ Y6 = 0 }} }}]")
                         .replace(&format!("{key} = {value}, set = {{ X7 = 1 }}"), &match key.as_str() {
                             "set" => format!("{key} = {value}"),
+                            "every" => format!("{key} = {value}, times = 2, set = {{ X7 = 1 }}"),
+                            "times" => format!("{key} = {value}, every = 50, set = {{ X7 = 1 }}"),
                             _ => format!("{key} = {value}, set = {{ X7 = 1 }}"),
                         }),
                     false => format!("{head}{key} = {value}\n"),

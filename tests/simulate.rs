@@ -1,7 +1,7 @@
 //! The simulated PLC: what instructions do, scan by scan.
 
 use rungwise::document::{Document, Notation};
-use rungwise::simulate::{Machine, Outcome, compile};
+use rungwise::simulate::{Machine, Outcome, Session, Touch, Value, compile};
 use rungwise::target::{Device, Model, Operand, Target};
 use std::sync::Arc;
 
@@ -19,6 +19,19 @@ pub(crate) fn device(name: &str) -> Device {
         Operand::Device(device) => device,
         other => panic!("{name} is {other:?}"),
     }
+}
+
+/// What switching an input or writing a relay of a simulation does.
+pub(crate) fn switched(session: &Session, name: &str, on: bool) -> Touch {
+    let code = session.machine().code();
+    let touch = code.variable(name).and_then(|variable| variable.set(code, &Value::Bit(on)));
+    touch.unwrap_or_else(|| panic!("{name} is no relay"))
+}
+
+/// Does that before the next scan.
+pub(crate) fn switch(session: &mut Session, name: &str, on: bool) {
+    let touch = switched(session, name, on);
+    session.touch(touch);
 }
 
 impl Plc {

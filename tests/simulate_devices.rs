@@ -1,6 +1,6 @@
 //! What applied instructions do that take many scans, or work with what is around the PLC.
 
-use crate::simulate::{Plc, device};
+use crate::simulate::{Plc, device, switched};
 use rungwise::document::{Document, Notation};
 use rungwise::simulate::{ErrorKind, Outcome, Session, Touch, compile};
 use rungwise::target::outside::Event;
@@ -763,7 +763,7 @@ fn what_happens_around_the_plc_belongs_to_its_history() {
         Touch::Around(Event::Trimmer(0, 77)),
         Touch::Around(Event::Absolute(5)),
         Touch::Around(Event::Contact(0, 3, true)),
-        Touch::Set(device("X1"), true),
+        switched(&session, "X1", true),
     ];
     for scan in 1..60 {
         if scan == 3 {

@@ -498,7 +498,7 @@ fn a_program_in_which_the_check_finds_errors_runs_with_a_word_about_them() {
 }
 
 #[test]
-fn what_is_watched_twice_is_shown_once() {
-    let rows = rows("LD X0;OUT Y0;END", &["X0=1"], "X0,X000,Y0,X0");
-    assert_eq!(rows[0]["values"], json!({"X0": true, "Y0": true}));
+fn what_is_watched_twice_is_shown_once_and_two_names_are_both_shown() {
+    let rows = rows("LD X0;OUT Y0;END", &["X0=1"], "X0,X000,Y0,x0");
+    assert_eq!(rows[0]["values"], json!({"X0": true, "X000": true, "Y0": true}));
 }

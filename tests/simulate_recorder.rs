@@ -1,9 +1,9 @@
 //! What a recorder knows of variables is what they were, however the simulation came there.
 
-use crate::simulate::device;
+use crate::simulate::switch;
 use proptest::prelude::*;
 use rungwise::document::{Document, Notation};
-use rungwise::simulate::{Recorder, Session, Touch, Value, compile};
+use rungwise::simulate::{Recorder, Session, Value, compile};
 use rungwise::target::{Model, Target};
 use std::sync::Arc;
 
@@ -67,8 +67,8 @@ proptest! {
                 bench.recorder.record(&names(), bench.session.machine());
             }
             match kind {
-                0 => bench.session.touch(Touch::Set(device(&format!("X{input}")), true)),
-                1 => bench.session.touch(Touch::Set(device(&format!("X{input}")), false)),
+                0 => switch(&mut bench.session, &format!("X{input}"), true),
+                1 => switch(&mut bench.session, &format!("X{input}"), false),
                 2 => bench.scan(count),
                 _ => {
                     let back = bench.session.machine().scans().saturating_sub(count / 4).max(1);
@@ -144,7 +144,7 @@ fn other_code_for_the_same_plc_goes_on_with_the_record() {
     let mut bench = Bench::new(PROGRAM);
     bench.scan(10);
     bench.recorder.record(&names(), bench.session.machine());
-    bench.session.touch(Touch::Set(device("X0"), true));
+    switch(&mut bench.session, "X0", true);
     bench.scan(10);
     let document = Document::new("LD X0\nOUT Y1\nRST Y0\nEND\n", Notation::FxIl, Target::of(Model::Fx3u));
     bench.session.adopt(Arc::new(compile(&[&document], false).expect("a program")));

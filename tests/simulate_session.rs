@@ -1,9 +1,9 @@
 //! Looking back: any scan of a simulation is known again, and goes on from there in another way.
 
-use crate::simulate::device;
+use crate::simulate::{device, switch};
 use proptest::prelude::*;
 use rungwise::document::{Document, Notation};
-use rungwise::simulate::{EnergisedKind, Machine, Session, Touch, compile, power_flow};
+use rungwise::simulate::{EnergisedKind, Machine, Session, compile, power_flow};
 use rungwise::target::{Model, Target};
 use std::sync::Arc;
 
@@ -46,7 +46,7 @@ proptest! {
         let mut now = 0;
         for scan in 1..=3_000u64 {
             for (_, input, on) in touches.iter().filter(|(at, ..)| *at == scan) {
-                session.touch(Touch::Set(device(&format!("X{input}")), *on));
+                switch(&mut session, &format!("X{input}"), *on);
             }
             session.scan(now);
             // Scans are evenly apart for a while, then at another distance.
@@ -75,7 +75,7 @@ fn a_million_scans_stay_in_bounded_memory_and_are_all_known() {
     let mut session = session(PROGRAM);
     for scan in 0..1_000_000u64 {
         if scan % 100_000 == 50 {
-            session.touch(Touch::Set(device("X0"), scan % 200_000 == 50));
+            switch(&mut session, "X0", scan % 200_000 == 50);
         }
         session.scan(scan as i64 * 10 * MS);
     }
@@ -96,7 +96,7 @@ fn marked(text: &str, touches: &str) -> String {
     let watched = Arc::new(compile(&[&drawing], true).expect("a program"));
     let mut session = Session::new(code);
     for name in touches.split_whitespace() {
-        session.touch(Touch::Set(device(name), true));
+        switch(&mut session, name, true);
     }
     session.scan(0);
     let sights = session.sights(1, &watched).expect("a scan");

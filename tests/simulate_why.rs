@@ -1,9 +1,9 @@
 //! Why a device is on or off.
 
 use crate::binary::{folder, run};
-use crate::simulate::device;
+use crate::simulate::switch;
 use rungwise::document::{Document, Notation};
-use rungwise::simulate::{Condition, Drivers, Inquiry, Session, Touch, compile};
+use rungwise::simulate::{Condition, Drivers, Inquiry, Session, Value as Held, compile};
 use rungwise::target::{Model, Target};
 use rungwise::text::Language;
 use serde_json::{Value, json};
@@ -106,7 +106,7 @@ impl Plc {
     fn run(&mut self, settings: &str, scans: usize) -> &mut Plc {
         for setting in settings.split_whitespace() {
             let (name, value) = setting.split_once('=').unwrap_or((setting, "1"));
-            self.session.touch(Touch::Set(device(name), value == "1"));
+            switch(&mut self.session, name, value == "1");
         }
         for _ in 0..scans {
             self.session.scan(self.now_ns);
@@ -311,7 +311,9 @@ Y0 is on: ( ) Y0 has power  [2]
   X0 is on: an input, since scan 0 (0 ms)  [2]
   X1 is off: an input  [2]",
     );
-    plc.session.touch(Touch::Force(device("Y0"), false));
+    let code = plc.session.machine().code();
+    let held = code.variable("Y0").and_then(|variable| variable.force(code, &Held::Bit(false)));
+    plc.session.touch(held.unwrap());
     plc.run("", 1).check("Y0", "Y0 is off: it is forced\n");
     let mut plc = Plc::list("LDP X0\nAND= D0 K0\nOUT Y0\nEND\n");
     plc.run("X0", 2).check(

@@ -1,11 +1,11 @@
 //! Checks the files of a project together, also where only some of them were asked for.
 
-use super::input::{Beside, Program, folder_of, programs, read_programs};
+use super::input::{Beside, Program, complain, folder_of, programs, read_programs};
 use crate::check;
 use crate::document::{Document, Exports, Member, Outer, ProjectView};
-use crate::project::{MOST_PROJECT_BYTES, Project};
+use crate::project::{MOST_PROJECT_BYTES, Project, Surroundings};
 use crate::target::Target;
-use crate::text::{Diagnostic, Language};
+use crate::text::{Diagnostic, Language, Message};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -141,28 +141,20 @@ fn shown_path(file: &File, programs: &[Program]) -> String {
 
 /// The files that are one program with the one at `path`, or those in the folder there; nothing after complaints.
 pub(super) fn whole_program(path: &Path, language: Language) -> Option<Vec<Program>> {
-    let own = programs(&[path.to_path_buf()], None, language)?;
-    let Some(root) = folder_of(path) else { return Some(own) };
-    let project = Project::read(&root);
-    let files = project.files_in_reach();
-    let wanted = path.canonicalize().ok();
-    let here = files.iter().position(|file| wanted.is_some() && file.canonicalize().ok() == wanted);
-    let Some(here) = here.filter(|_| files.len() > 1) else { return Some(own) };
-    let base = path.parent().unwrap_or(Path::new(""));
-    let relative = |file: &PathBuf| match (file.strip_prefix(&root), folder_of(path)) {
-        // As the user would write it, where the project begins in the folder of the program.
-        (Ok(below), Some(_)) if base.join(".").canonicalize().is_ok_and(|base| base == root) => {
-            base.join(below)
+    let alone = || programs(&[path.to_path_buf()], None, language);
+    let around = match Surroundings::of(path) {
+        Ok(around) if around.here.is_some() && around.files.len() > 1 => around,
+        Err(reason) if path.exists() => {
+            let help = Message::new("cli.check-path").render(language);
+            let reason = format!("{}: {reason}", path.display());
+            complain("unreadable-input", &reason, &help, language);
+            return None;
         }
-        _ => file.clone(),
+        _ => return alone(),
     };
-    let all = programs(&files.iter().map(relative).collect::<Vec<_>>(), None, language)?;
-    let members = all.iter().map(|program| Member { name: "", document: &program.document }).collect();
-    let numbers = ProjectView::new(members, here, project.manifest.files.is_some())
-        .map(|view| check::program_around(&view))
-        .unwrap_or_default();
+    let all = programs(&around.files, None, language)?;
+    let documents: Vec<&Document> = all.iter().map(|program| &program.document).collect();
+    let numbers = around.programs(&documents).into_iter().flatten();
     let mut all: Vec<Option<Program>> = all.into_iter().map(Some).collect();
-    let chosen: Vec<Program> =
-        numbers.into_iter().filter_map(|number| all.get_mut(number).and_then(Option::take)).collect();
-    Some(if chosen.is_empty() { own } else { chosen })
+    Some(numbers.filter_map(|number| all.get_mut(number).and_then(Option::take)).collect())
 }

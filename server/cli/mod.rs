@@ -16,6 +16,7 @@ mod input;
 mod language;
 mod link;
 mod plc;
+mod progress;
 mod prove;
 mod render;
 mod run;

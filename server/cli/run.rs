@@ -2,7 +2,8 @@
 
 use super::Outcome;
 use super::across::{checked, whole_program};
-use super::input::{Program, caution, complain, put, say};
+use super::input::{Program, caution, complain, put, remark, say};
+use super::progress::Progress;
 use super::why;
 use crate::document::Document;
 use crate::scenario::picture;
@@ -178,8 +179,8 @@ fn named(
     let mut watched: Vec<(String, Variable)> = Vec::new();
     for name in names {
         match code.variable(&name) {
-            // What is named twice is shown once.
-            Some(variable) if watched.iter().any(|(_, known)| *known == variable) => {}
+            // What is asked for twice is shown once; of two names for one variable each is shown.
+            Some(_) if watched.iter().any(|(known, _)| known.eq_ignore_ascii_case(name.trim())) => {}
             Some(variable) => watched.push((name.trim().to_string(), variable)),
             None => complaint("unknown-name", unknown(&name)),
         }
@@ -199,12 +200,21 @@ impl Simulation {
         let mut touches = std::mem::take(&mut self.touches).into_iter().peekable();
         let mut told: Vec<(Option<Place>, Message)> = Vec::new();
         let mut now_ns = 0i64;
+        let by_time = arguments.time / arguments.scan_time.max(1) + 1;
+        let mut progress = Progress::new(arguments.scans.unwrap_or(by_time.unsigned_abs()));
+        let mut is_ended = false;
         for scan in 0.. {
             let is_over = match arguments.scans {
                 Some(scans) => scan >= scans,
                 None => now_ns > arguments.time,
             };
             if is_over {
+                break;
+            }
+            if !progress.goes_on(scan, language) {
+                let words = Message::new("cli.run-ended").with("scans", scan).render(language);
+                progress.aside(|| remark(&words));
+                is_ended = true;
                 break;
             }
             while let Some((_, touch)) = touches.next_if(|(from_ns, _)| *from_ns <= now_ns) {
@@ -214,7 +224,7 @@ impl Simulation {
                 let message = error.kind.message();
                 // What goes wrong in every scan is said once.
                 if !told.contains(&(error.place, message.clone())) {
-                    complain_at(programs, error.place, message.clone(), language);
+                    progress.aside(|| complain_at(programs, error.place, message.clone(), language));
                     told.push((error.place, message));
                 }
             }
@@ -223,8 +233,9 @@ impl Simulation {
             let least = self.session.machine().least_scan_ns();
             now_ns = now_ns.saturating_add(arguments.scan_time.max(least));
         }
+        progress.end();
         self.trace.end();
-        told.is_empty()
+        told.is_empty() && !is_ended
     }
 
     /// Writes what came out; whether that could be done.

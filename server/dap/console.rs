@@ -22,34 +22,35 @@ const MOST_TARGETS: usize = 200;
 
 impl<W: Write> Adapter<W> {
     /// Does what a line of the console says.
-    pub(super) fn console(&mut self, line: &str) -> Answer {
+    pub(super) fn console(&mut self, line: &str, frame: i64) -> Answer {
         let line = line.trim();
         let (verb, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
         let rest = rest.trim();
         match verb.to_ascii_lowercase().as_str() {
             "run" => self.run_for(rest),
             "scan" => self.run_scans(rest),
-            "back" => self.back(rest),
-            "set" => self.assign(rest, false),
-            "force" => self.assign(rest, true),
-            "release" => self.release(rest),
-            "why" => self.why(rest),
+            "back" => self.back(rest, frame),
+            "set" => self.assign(rest, frame, false),
+            "force" => self.assign(rest, frame, true),
+            "release" => self.release(rest, frame),
+            "why" => self.why(rest, frame),
             "help" | "?" => Ok(self.result("debug.help")),
-            _ => self.evaluate(line),
+            _ => self.evaluate(line, frame),
         }
     }
 
     /// The value of an expression; of a name what there is to know of it.
-    pub(super) fn evaluate(&mut self, text: &str) -> Answer {
+    pub(super) fn evaluate(&mut self, text: &str, frame: i64) -> Answer {
         let language = self.language;
         let debugged = self.debugged()?;
-        let name = text.trim();
-        if let Some(shown) = debugged.variables.shown(name, &debugged.debuggee, &debugged.program, language) {
+        let name = debugged.whole(frame, text);
+        let variables = &debugged.variables;
+        if let Some(shown) = variables.shown(None, &name, &debugged.debuggee, &debugged.program, language) {
             return Ok(json!({
                 "result": shown["value"], "type": shown["type"], "variablesReference": shown["variablesReference"],
             }));
         }
-        let value = debugged.value_of(text)?;
+        let value = debugged.value_of(text, frame)?;
         Ok(json!({ "result": value.to_string(), "variablesReference": 0 }))
     }
 
@@ -81,12 +82,12 @@ impl<W: Write> Adapter<W> {
         Ok(json!({ "result": "", "variablesReference": 0 }))
     }
 
-    fn back(&mut self, name: &str) -> Answer {
+    fn back(&mut self, name: &str, frame: i64) -> Answer {
         if name.is_empty() {
             self.step_back()?;
         } else {
             let debugged = self.stopped()?;
-            let variable = debugged.variable(name)?;
+            let variable = debugged.variable(&debugged.whole(frame, name))?;
             if !debugged.debuggee.back_to_change(variable) {
                 return Err(Message::new("debug.never-changed").with("name", name));
             }
@@ -95,31 +96,33 @@ impl<W: Write> Adapter<W> {
         Ok(json!({ "result": "", "variablesReference": 0 }))
     }
 
-    fn assign(&mut self, assignment: &str, is_force: bool) -> Answer {
+    fn assign(&mut self, assignment: &str, frame: i64, is_force: bool) -> Answer {
         let wrong = || Message::new("debug.assignment").with("text", assignment);
         let (name, value) = assignment.split_once('=').ok_or_else(wrong)?;
         let (name, value) = (name.trim_end_matches(':').trim(), value.trim());
-        self.change(name, value, is_force)?;
-        self.evaluate(name)
+        let name = self.debugged()?.whole(frame, name);
+        self.change(&name, value, is_force)?;
+        self.evaluate(&name, frame)
     }
 
-    fn release(&mut self, name: &str) -> Answer {
+    fn release(&mut self, name: &str, frame: i64) -> Answer {
         let debugged = self.debugged()?;
         let touches: Vec<Touch> = match name {
             "" => vec![Touch::LetAllGo],
             name => {
-                let variable = debugged.variable(name)?;
+                let variable = debugged.variable(&debugged.whole(frame, name))?;
                 vec![variable.release()]
             }
         };
         touches.into_iter().try_for_each(|touch| self.touch(touch))?;
-        if name.is_empty() { Ok(self.result("debug.released")) } else { self.evaluate(name) }
+        if name.is_empty() { Ok(self.result("debug.released")) } else { self.evaluate(name, frame) }
     }
 
     /// Why a device is what it is, here.
-    fn why(&mut self, name: &str) -> Answer {
+    fn why(&mut self, name: &str, frame: i64) -> Answer {
         let language = self.language;
         let debugged = self.stopped()?;
+        let name = &debugged.whole(frame, name);
         let variable = debugged.variable(name)?;
         let program = &debugged.program;
         let documents: Vec<&Document> = program.files.iter().map(|file| &file.document).collect();
@@ -164,8 +167,8 @@ fn later(scan: u64, count: i64) -> u64 {
 
 impl Debugged {
     /// The value of an expression here.
-    fn value_of(&self, text: &str) -> Result<Value, Message> {
-        let expression = Expression::read(text, self.debuggee.code())?;
+    fn value_of(&self, text: &str, frame: i64) -> Result<Value, Message> {
+        let expression = Expression::read(text, self.debuggee.code(), self.instruction(frame))?;
         let machine = self.debuggee.machine();
         expression.value(&|variable| match self.debuggee.here() {
             Some(_) => machine.value_inside(variable, 0),

@@ -5,7 +5,9 @@
 //! the same values. What a person did is kept: who has gone back and goes on meets it again, until something else is
 //! done.
 
-use crate::simulate::{Caller, Code, Error, Glimpse, Machine, Place, Session, Sight, Touch, Variable};
+use crate::simulate::{
+    Caller, Code, Error, Glimpse, Machine, Outcome, Place, Session, Sight, Touch, Variable,
+};
 use std::sync::Arc;
 
 /// The PLC, somewhere in a scan.
@@ -30,7 +32,10 @@ pub(super) struct Debuggee {
 #[derive(Clone, Debug)]
 pub(super) struct Here {
     pub(super) place: Place,
-    pub(super) sight: Sight<u8>,
+    /// The instruction, by its number.
+    pub(super) instruction: u32,
+    /// What it sees, if there is power to be seen.
+    pub(super) sight: Option<Sight<u8>>,
     /// Where the routines that it is in were entered, the innermost last.
     pub(super) callers: Vec<Caller>,
 }
@@ -94,9 +99,11 @@ impl Debuggee {
     pub(super) fn sights(&self) -> Vec<Sight<u8>> {
         let (mut sights, last) = (Vec::new(), self.seen);
         if last > 0 {
+            let mut seen = 0;
             self.at_start().scan_inside(self.now_ns(), &mut |glimpse| {
-                sights.push(glimpse.sight);
-                (sights.len() as u64) < last
+                seen += u64::from(glimpse.is_stop);
+                sights.extend(glimpse.sight);
+                seen < last
             });
         }
         sights
@@ -127,7 +134,7 @@ impl Debuggee {
         machine
     }
 
-    fn touches(&self, scan: u64) -> impl Iterator<Item = &Touch> {
+    pub(super) fn touches(&self, scan: u64) -> impl Iterator<Item = &Touch> {
         let all = self.settings.iter().chain(&self.done);
         all.filter(move |(before, _)| *before == scan).map(|(_, touch)| touch)
     }
@@ -136,10 +143,10 @@ impl Debuggee {
     fn look(&mut self, number: u64) -> bool {
         let mut machine = self.at_start();
         let (mut seen, mut here) = (0, None);
-        machine.scan_inside(self.now_ns(), &mut |glimpse| {
+        run_to_stop(&mut machine, self.now_ns(), &mut |glimpse| {
             seen += 1;
             if seen == number {
-                here = Here::of(&glimpse);
+                here = Here::of(glimpse);
             }
             seen < number
         });
@@ -168,14 +175,14 @@ impl Debuggee {
         let last = failing.map_or(u64::MAX, |(number, _)| number);
         let mut machine = self.at_start();
         let (mut number, mut found, mut here) = (0, None, None);
-        machine.scan_inside(self.now_ns(), &mut |glimpse| {
+        run_to_stop(&mut machine, self.now_ns(), &mut |glimpse| {
             number += 1;
             if number > self.seen {
-                found = watch(&glimpse);
+                found = watch(glimpse);
             }
             let is_end = found.is_some() || number == last;
             if is_end {
-                here = Here::of(&glimpse);
+                here = Here::of(glimpse);
             }
             !is_end
         });
@@ -205,7 +212,7 @@ impl Debuggee {
     fn failing(&self) -> Option<(u64, Error)> {
         let mut count = 0;
         let now_ns = self.now_ns();
-        let all = self.at_start().scan_inside(now_ns, &mut |_| {
+        let all = run_to_stop(&mut self.at_start(), now_ns, &mut |_| {
             count += 1;
             true
         });
@@ -213,7 +220,7 @@ impl Debuggee {
         // So many went wrong before the moment with this number.
         let errors = |number: u64| {
             let mut seen = 0;
-            let outcome = self.at_start().scan_inside(now_ns, &mut |_| {
+            let outcome = run_to_stop(&mut self.at_start(), now_ns, &mut |_| {
                 seen += 1;
                 seen < number
             });
@@ -262,65 +269,36 @@ impl Debuggee {
 
     fn count(&self) -> u64 {
         let mut count = 0;
-        self.at_start().scan_inside(self.now_ns(), &mut |_| {
+        run_to_stop(&mut self.at_start(), self.now_ns(), &mut |_| {
             count += 1;
             true
         });
         count
     }
 
-    /// Goes back to the last instruction before this one for which `watch` says so; whether there is one. `begin` is
-    /// told the PLC from which a stretch of scans is run again, `watch` what is seen in it.
-    pub(super) fn back_to_last(
-        &mut self,
-        begin: &mut impl FnMut(&Machine<u8>),
-        watch: &mut impl FnMut(&Glimpse<'_, u8>) -> bool,
-    ) -> bool {
-        let first = self.session.first_scan() + 1;
-        // The number of the scan behind the stretch, and how many moments of it count.
-        let (mut end, mut counting) = (self.scan, self.seen.saturating_sub(1));
-        let mut length = 1;
-        loop {
-            let start = end.saturating_sub(length - 1).max(first);
-            if let Some((scan, number)) = self.last_in(start, end, counting, begin, watch) {
-                return self.back_to(scan) && self.look(number);
-            }
-            if start <= first {
-                return false;
-            }
-            (end, counting, length) = (start - 1, u64::MAX, (length * 2).min(LONGEST_STRETCH));
-        }
+    /// How many instructions of this scan were seen.
+    pub(super) fn seen(&self) -> u64 {
+        self.seen
     }
 
-    /// The last moment of the scans `start` to `end` for which `watch` says so; of the last scan the first moments
-    /// count alone.
-    fn last_in(
-        &self,
-        start: u64,
-        end: u64,
-        counting: u64,
-        begin: &mut impl FnMut(&Machine<u8>),
-        watch: &mut impl FnMut(&Glimpse<'_, u8>) -> bool,
-    ) -> Option<(u64, u64)> {
-        let mut machine = self.session.at(start - 1)?;
-        begin(&machine);
-        let mut found = None;
-        for scan in start..=end {
-            let most = if scan == end { counting } else { u64::MAX };
-            if most == 0 {
-                break;
-            }
-            self.touches(scan).for_each(|touch| touch.apply(&mut machine));
-            let mut number = 0;
-            machine.scan_inside(self.time_of(scan), &mut |glimpse| {
+    /// What `of` makes of the moment where it stands; nothing between two scans.
+    pub(super) fn at_here<T>(&self, of: impl FnOnce(&Glimpse<'_, u8>) -> T) -> Option<T> {
+        let (mut number, mut of, mut made) = (0, Some(of), None);
+        if self.seen > 0 {
+            run_to_stop(&mut self.at_start(), self.now_ns(), &mut |glimpse| {
                 number += 1;
-                if watch(&glimpse) {
-                    found = Some((scan, number));
+                if number == self.seen {
+                    made = of.take().map(|of| of(glimpse));
                 }
-                number < most
+                number < self.seen
             });
         }
-        found
+        made
+    }
+
+    /// Goes back to a moment of an earlier scan, or of this one.
+    pub(super) fn back_into(&mut self, scan: u64, number: u64) -> bool {
+        self.back_to(scan) && self.look(number)
     }
 
     /// Goes back to before the scan in which a variable changed last before this one; whether there is one.
@@ -337,12 +315,19 @@ impl Debuggee {
     }
 }
 
-/// So many scans are run again at once at most.
-const LONGEST_STRETCH: u64 = 4096;
+/// Runs a scan, and shows each moment in which a debugger can stop, until `watch` returns false.
+pub(super) fn run_to_stop(
+    machine: &mut Machine<u8>,
+    now_ns: i64,
+    watch: &mut impl FnMut(&Glimpse<'_, u8>) -> bool,
+) -> Outcome {
+    machine.scan_inside(now_ns, &mut |glimpse| !glimpse.is_stop || watch(&glimpse))
+}
 
 impl Here {
     fn of(glimpse: &Glimpse<'_, u8>) -> Option<Here> {
-        let place = glimpse.machine.place(glimpse.sight.instruction)?;
-        Some(Here { place, sight: glimpse.sight, callers: glimpse.callers() })
+        let instruction = glimpse.instruction;
+        let place = glimpse.machine.place(instruction)?;
+        Some(Here { place, instruction, sight: glimpse.sight, callers: glimpse.callers() })
     }
 }

@@ -60,12 +60,13 @@ const NOT_AT: usize = 3;
 const MOST_DEPTH: usize = 64;
 
 impl Expression {
-    /// Reads an expression about a program.
+    /// Reads an expression about a program; names may be those of the instance or function
+    /// that an instruction belongs to, by the number of that.
     ///
     /// # Errors
     /// A sentence that says what is wrong.
-    pub(super) fn read(text: &str, code: &Code) -> Result<Expression, Message> {
-        let mut reader = Reader { words: words(text), at: 0, code, text, depth: 0 };
+    pub(super) fn read(text: &str, code: &Code, instruction: Option<u32>) -> Result<Expression, Message> {
+        let mut reader = Reader { words: words(text), at: 0, code, instruction, text, depth: 0 };
         let expression = reader.level(0)?;
         match reader.peek() {
             None => expression.meant(code),
@@ -112,12 +113,13 @@ impl Expression {
             Expression::Not(part) => Value::Bit(!holds(&part.value(of)?)),
             Expression::Minus(part) => {
                 let part = part.value(of)?;
-                match (number(&part), &part) {
-                    (Some(number), _) => number.checked_neg().and_then(whole).ok_or_else(no_result)?,
-                    (None, Value::Real(number)) => Value::Real(-number),
-                    (None, Value::Time(time)) => Value::Time(-time),
-                    _ => return Err(no_result()),
-                }
+                let result = match (number(&part), &part) {
+                    (Some(number), _) => number.checked_neg().and_then(whole),
+                    (None, Value::Real(number)) => Some(Value::Real(-number)),
+                    (None, Value::Time(time)) => time.checked_neg().map(Value::Time),
+                    _ => None,
+                };
+                result.ok_or_else(no_result)?
             }
             Expression::Both(operator, left, right) => operator.of(&left.value(of)?, &right.value(of)?)?,
         })
@@ -162,59 +164,74 @@ impl Operator {
                 _ => left != right,
             }));
         }
-        if self.is_comparison() {
-            let order = match (number(left), number(right)) {
-                (Some(left), Some(right)) => Some(left.cmp(&right)),
-                _ => match (left.as_number(), right.as_number()) {
-                    (Some(left), Some(right)) => left.partial_cmp(&right),
-                    // Names and texts are the same or not.
-                    (None, None) if matches!(self, Operator::Equal | Operator::Unequal) => {
-                        return Ok(Value::Bit((left == right) == (self == Operator::Equal)));
-                    }
-                    _ => return Err(no_result()),
-                },
-            };
-            return Ok(Value::Bit(match self {
-                Operator::Equal => order == Some(Ordering::Equal),
-                Operator::Unequal => order != Some(Ordering::Equal),
-                Operator::Less => order == Some(Ordering::Less),
-                Operator::LessEqual => matches!(order, Some(Ordering::Less | Ordering::Equal)),
-                Operator::Greater => order == Some(Ordering::Greater),
-                _ => matches!(order, Some(Ordering::Greater | Ordering::Equal)),
-            }));
+        if let Some(holds) = self.compared(left, right) {
+            return Ok(Value::Bit(holds));
         }
-        let result = match (number(left), number(right)) {
-            (Some(left), Some(right)) => match self {
-                Operator::Plus => left.checked_add(right),
-                Operator::Minus => left.checked_sub(right),
-                Operator::Times => left.checked_mul(right),
-                Operator::Divide => left.checked_div(right),
-                _ => left.checked_rem(right),
+        let result = match (number(left), number(right), left, right) {
+            (Some(left), Some(right), ..) => self.of_numbers(left, right).and_then(whole),
+            (_, _, Value::Time(left), Value::Time(right)) => self.of_times(*left, *right).map(Value::Time),
+            (_, _, Value::Time(_), _) | (_, _, _, Value::Time(_)) => None,
+            _ => {
+                let both = left.as_number().zip(right.as_number());
+                both.and_then(|(left, right)| self.of_reals(left, right)).map(Value::Real)
             }
-            .and_then(whole),
-            _ => self.of_reals(left, right),
         };
         result.ok_or_else(no_result)
     }
 
-    fn is_comparison(self) -> bool {
-        use Operator::*;
-        matches!(self, Equal | Unequal | Less | LessEqual | Greater | GreaterEqual)
+    /// What a comparison says of two values; nothing for other operators, and where they do not compare.
+    fn compared(self, left: &Value, right: &Value) -> Option<bool> {
+        let is_equality = matches!(self, Operator::Equal | Operator::Unequal);
+        let order = match (number(left), number(right), left, right) {
+            (Some(left), Some(right), ..) => Some(left.cmp(&right)),
+            (_, _, Value::Time(left), Value::Time(right)) => Some(left.cmp(right)),
+            (_, _, Value::Text(left), Value::Text(right)) => Some(left.cmp(right)),
+            // Dates and times of day follow each other; values of an enumerated type are the same or not.
+            (_, _, Value::Name(left), Value::Name(right)) if is_equality || left.contains('#') => {
+                Some(left.cmp(right))
+            }
+            // What is no number is neither more nor less than anything.
+            _ => left.as_number()?.partial_cmp(&right.as_number()?),
+        };
+        Some(match self {
+            Operator::Equal => order.is_some_and(Ordering::is_eq),
+            Operator::Unequal => order.is_none_or(Ordering::is_ne),
+            Operator::Less => order.is_some_and(Ordering::is_lt),
+            Operator::LessEqual => order.is_some_and(Ordering::is_le),
+            Operator::Greater => order.is_some_and(Ordering::is_gt),
+            Operator::GreaterEqual => order.is_some_and(Ordering::is_ge),
+            _ => return None,
+        })
     }
 
-    /// What arithmetic makes of numbers of which one is real.
-    fn of_reals(self, left: &Value, right: &Value) -> Option<Value> {
-        if matches!(left, Value::Time(_)) || matches!(right, Value::Time(_)) {
-            return None;
+    fn of_numbers(self, left: i128, right: i128) -> Option<i128> {
+        match self {
+            Operator::Plus => left.checked_add(right),
+            Operator::Minus => left.checked_sub(right),
+            Operator::Times => left.checked_mul(right),
+            Operator::Divide => left.checked_div(right),
+            Operator::Modulo => left.checked_rem(right),
+            _ => None,
         }
-        let (left, right) = (left.as_number()?, right.as_number()?);
-        Some(Value::Real(match self {
+    }
+
+    fn of_times(self, left: i64, right: i64) -> Option<i64> {
+        match self {
+            Operator::Plus => left.checked_add(right),
+            Operator::Minus => left.checked_sub(right),
+            _ => None,
+        }
+    }
+
+    fn of_reals(self, left: f64, right: f64) -> Option<f64> {
+        let result = match self {
             Operator::Plus => left + right,
             Operator::Minus => left - right,
             Operator::Times => left * right,
-            Operator::Divide if right != 0.0 => left / right,
+            Operator::Divide => left / right,
             _ => return None,
-        }))
+        };
+        result.is_finite().then_some(result)
     }
 }
 
@@ -222,6 +239,7 @@ struct Reader<'a> {
     words: Vec<&'a str>,
     at: usize,
     code: &'a Code,
+    instruction: Option<u32>,
     text: &'a str,
     depth: usize,
 }
@@ -280,7 +298,11 @@ impl<'a> Reader<'a> {
             "-" => self.nested(|reader| Ok(Expression::Minus(Box::new(reader.part()?)))),
             word => {
                 // A name before a number: `H1` may be a variable of a program.
-                let variable = self.code.variable(word).map(Expression::Variable);
+                let variable = match self.instruction {
+                    Some(instruction) => self.code.variable_from(instruction, word),
+                    None => self.code.variable(word),
+                };
+                let variable = variable.map(Expression::Variable);
                 let known = variable.or_else(|| Value::read(word).map(Expression::Value));
                 let is_name = word.starts_with(|c: char| c.is_alphanumeric() || c == '_' || c == '%');
                 known.ok_or_else(|| match is_name {

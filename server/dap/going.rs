@@ -1,6 +1,7 @@
 //! Going on until there is a reason to stop.
 
 use super::adapter::{Adapter, THREAD};
+use super::back::{BackSearch, Reached};
 use super::breakpoints::{Found, Hit};
 use super::debuggee::Ended;
 use super::launch::Debugged;
@@ -23,6 +24,8 @@ pub(super) enum Going {
     Out { depth: usize },
     /// To the beginning of this scan.
     Scan(u64),
+    /// Back to the last breakpoint, else to where history begins.
+    Back,
 }
 
 /// So long scans are run before the next request is looked for.
@@ -79,7 +82,10 @@ impl<W: Write> Adapter<W> {
     pub(super) fn advance(&mut self) {
         let started = Instant::now();
         while self.debugged.as_ref().is_some_and(|debugged| debugged.going.is_some() && debugged.is_due()) {
-            self.scan();
+            match self.debugged.as_ref().and_then(|debugged| debugged.going) {
+                Some(Going::Back) => self.look_back(|| started.elapsed() < SLICE),
+                _ => self.scan(),
+            }
             if started.elapsed() >= SLICE {
                 break;
             }
@@ -112,7 +118,7 @@ impl<W: Write> Adapter<W> {
         let mut logged = Vec::new();
         let mut changed_at = None;
         let ended = debuggee.advance(fails, &mut |glimpse: &Glimpse<'_, u8>| {
-            let place = glimpse.machine.place(glimpse.sight.instruction);
+            let place = glimpse.machine.place(glimpse.instruction);
             if is_watched {
                 let found = breakpoints.at(glimpse);
                 logged.extend(found.logged.into_iter().map(|words| (words, place)));
@@ -129,7 +135,7 @@ impl<W: Write> Adapter<W> {
                     glimpse.depth() < depth || glimpse.depth() == depth && is_other
                 }
                 Going::Out { depth } => glimpse.depth() < depth,
-                Going::On | Going::Scan(_) => false,
+                Going::On | Going::Scan(_) | Going::Back => false,
             };
             is_there.then_some(None)
         });
@@ -206,6 +212,11 @@ impl<W: Write> Adapter<W> {
         });
         match &hit {
             Some(Hit::Line(ids)) => body["hitBreakpointIds"] = json!(ids),
+            Some(Hit::Use { id, name }) => {
+                body["reason"] = json!("data breakpoint");
+                body["hitBreakpointIds"] = json!([id]);
+                body["text"] = json!(name);
+            }
             Some(Hit::Data { id, name, before, after }) => {
                 body["reason"] = json!("data breakpoint");
                 body["hitBreakpointIds"] = json!([id]);
@@ -229,26 +240,32 @@ impl<W: Write> Adapter<W> {
         }
     }
 
-    /// Goes back to the last breakpoint before this instruction, else to where history begins.
-    pub(super) fn reverse(&mut self) {
-        let Some(debugged) = &mut self.debugged else { return };
-        let breakpoints = std::cell::RefCell::new(&mut self.breakpoints);
-        let mut last = None;
-        let is_found = debugged.debuggee.back_to_last(
-            &mut |machine| breakpoints.borrow_mut().begin(machine, false),
-            &mut |glimpse| {
-                let hit = breakpoints.borrow_mut().at_back(glimpse);
-                let is_hit = hit.is_some();
-                last = hit.or(last.take());
-                is_hit
-            },
-        );
-        debugged.failing = None;
-        if is_found {
-            return self.stop("breakpoint", last);
+    /// Begins to go back to the last breakpoint before this instruction.
+    pub(super) fn reverse(&mut self) -> Result<(), Message> {
+        self.stopped()?;
+        if let Some(debugged) = &mut self.debugged {
+            debugged.search = Some(BackSearch::new(&debugged.debuggee, &mut self.breakpoints));
+            debugged.resume(Going::Back);
         }
-        let first = debugged.debuggee.session().first_scan() + 1;
-        debugged.debuggee.back_to(first);
-        self.stop("entry", None);
+        Ok(())
+    }
+
+    /// Goes on looking back while there is time.
+    fn look_back(&mut self, has_time: impl Fn() -> bool) {
+        let Some(debugged) = &mut self.debugged else { return };
+        let Some(search) = &mut debugged.search else { return };
+        let Some(reached) = search.look(&debugged.debuggee, &mut self.breakpoints, has_time) else { return };
+        debugged.search = None;
+        match reached {
+            Some(Reached { scan, number, hit }) => {
+                debugged.debuggee.back_into(scan, number);
+                self.stop("breakpoint", Some(hit));
+            }
+            None => {
+                let first = debugged.debuggee.session().first_scan() + 1;
+                debugged.debuggee.back_to(first);
+                self.stop("entry", None);
+            }
+        }
     }
 }

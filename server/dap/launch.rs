@@ -1,5 +1,6 @@
 //! What is debugged, as `launch` asks for it.
 
+use super::back::BackSearch;
 use super::debuggee::Debuggee;
 use super::going::Going;
 use super::program::Program;
@@ -32,6 +33,8 @@ pub(super) struct Debugged {
     pub(super) debuggee: Debuggee,
     /// How it goes on; nothing while it is stopped.
     pub(super) going: Option<Going>,
+    /// What it looks for on the way back.
+    pub(super) search: Option<BackSearch>,
     /// A moment of real time and of simulated time that are the same.
     pub(super) since: (Instant, i64),
     /// The instruction at which it stopped because it is about to fail.
@@ -60,6 +63,7 @@ impl Launch {
             debuggee: Debuggee::new(program.code.clone(), scan_ns, settings),
             program,
             going: None,
+            search: None,
             since: (Instant::now(), 0),
             failing: None,
             told: Vec::new(),

@@ -14,6 +14,8 @@
 
 mod adapter;
 
+mod back;
+
 mod breakpoints;
 
 mod console;

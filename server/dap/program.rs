@@ -1,15 +1,14 @@
 //! The program that is debugged: read from the disk, compiled, and its places as the protocol names them.
 
-use crate::check;
-use crate::document::{Document, Member, Notation, ProjectView, Tree};
+use super::stack::names_at;
+use crate::document::{Document, Notation, Tree};
 use crate::project::{
-    CommentsFile, MANIFEST_NAME, Manifest, Project, Stamp, is_program_file, open_document, program_files,
-    read_text,
+    CommentsFile, MANIFEST_NAME, Stamp, Surroundings, is_program_file, open_document, read_text,
 };
-use crate::simulate::{Code, Drivers, Place, Problem, compile, instruction_words};
+use crate::simulate::{Code, Drivers, Place, Problem, Variable, compile, instruction_words};
 use crate::target::{Model, Target};
 use crate::text::{Encoding, LineColumn, Message, Span};
-use rustc_hash::FxHashSet;
+use rustc_hash::FxHashMap;
 use serde_json::{Value, json};
 use std::cell::OnceCell;
 use std::path::{Path, PathBuf};
@@ -25,7 +24,7 @@ pub(super) struct Program {
     /// What drives what, once somebody has asked why.
     pub(super) drivers: OnceCell<Drivers>,
     /// Instructions at which it can stop, in the order of the text.
-    stops: Vec<(Place, u32)>,
+    stops: Vec<Stop>,
     /// Where rungs begin, in the order of the text.
     rungs: Vec<Place>,
 }
@@ -39,6 +38,14 @@ pub(super) struct File {
     stamp: Option<Stamp>,
     /// Whether it was said that it has changed on the disk.
     is_outdated: bool,
+}
+
+/// Where a program can stop.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub(super) struct Stop {
+    pub(super) place: Place,
+    /// The instructions there, by their numbers: of a function block one for each instance.
+    pub(super) instructions: Vec<u32>,
 }
 
 /// A place as people count: lines and columns from 1, columns in UTF-16.
@@ -68,14 +75,17 @@ impl Program {
         let mut rungs: Vec<Place> =
             (0..).zip(&documents).flat_map(|(number, document)| rungs_of(number, document)).collect();
         rungs.sort_unstable_by_key(|place| (place.document, place.span.start));
-        let mut known = FxHashSet::default();
-        let mut stops: Vec<(Place, u32)> = code
-            .seen()
-            .filter(|(_, place)| known.insert(*place))
-            .map(|(number, place)| (place, number))
-            .collect();
+        let mut known: FxHashMap<Place, Vec<u32>> = FxHashMap::default();
+        for (number, place) in code.stops() {
+            let instructions = known.entry(place).or_default();
+            if !instructions.contains(&number) {
+                instructions.push(number);
+            }
+        }
+        let stop = |(place, instructions)| Stop { place, instructions };
+        let mut stops: Vec<Stop> = known.into_iter().map(stop).collect();
         // At one start the rung comes before its elements.
-        stops.sort_unstable_by_key(|(place, _)| {
+        stops.sort_unstable_by_key(|Stop { place, .. }| {
             (place.document, place.span.start, std::cmp::Reverse(place.span.end))
         });
         Ok(Program { files, code: Arc::new(code), drivers: OnceCell::new(), stops, rungs })
@@ -139,31 +149,50 @@ impl Program {
 
     /// The instructions of the lines `first` to `last` of a file at which it can stop.
     pub(super) fn stops_in(&self, file: u32, first: u32, last: u32) -> Vec<Place> {
-        let own = self.stops.iter().map(|(place, _)| *place).filter(|place| place.document == file);
+        let own = self.stops.iter().map(|stop| stop.place).filter(|place| place.document == file);
         own.filter(|place| (first..=last).contains(&self.lines(*place).line)).collect()
     }
 
     /// The instruction at which a breakpoint of a line of a file stops: the one at the column, else the first of the
     /// line, else the first behind it.
-    pub(super) fn stop_at(&self, file: u32, line: u32, column: Option<u32>) -> Option<(Place, u32)> {
+    pub(super) fn stop_at(&self, file: u32, line: u32, column: Option<u32>) -> Option<&Stop> {
         let document = &self.files.get(file as usize)?.document;
         let offset =
             |line: u32, column: u32| document.offset(LineColumn { line, column }, Encoding::Utf16) as u32;
         let start = offset(line.saturating_sub(1), 0);
-        let own = || self.stops.iter().filter(|(place, _)| place.document == file);
+        let own = || self.stops.iter().filter(|stop| stop.place.document == file);
         let is_on_line = |place: &Place| self.lines(*place).line == line;
         if let Some(column) = column {
             let at = offset(line.saturating_sub(1), column.saturating_sub(1));
-            let around = own().filter(|(place, _)| (place.span.start..place.span.end).contains(&at));
-            let element = around.min_by_key(|(place, _)| place.span.end - place.span.start);
+            let around = own().filter(|stop| (stop.place.span.start..stop.place.span.end).contains(&at));
+            let element = around.min_by_key(|stop| stop.place.span.end - stop.place.span.start);
             // A rung is around all of its elements, and begins in its first line.
-            let element = element.filter(|(place, _)| is_on_line(place));
-            let behind = || own().find(|(place, _)| place.span.start >= at && is_on_line(place));
-            if let Some(stop) = element.or_else(behind) {
-                return Some(*stop);
+            let element = element.filter(|stop| is_on_line(&stop.place));
+            let behind = || own().find(|stop| stop.place.span.start >= at && is_on_line(&stop.place));
+            let stop = element.or_else(behind);
+            if stop.is_some() {
+                return stop;
             }
         }
-        own().find(|(place, _)| place.span.start >= start).copied()
+        own().find(|stop| stop.place.span.start >= start)
+    }
+
+    /// Where a routine or program unit is entered that is called `name`.
+    pub(super) fn entry(&self, name: &str) -> Option<Stop> {
+        let instructions = self.code.entries(name);
+        let first = instructions.first()?;
+        let place = self.stops.iter().find(|stop| stop.instructions.contains(first))?.place;
+        Some(Stop { place, instructions })
+    }
+
+    /// The instructions that name a variable.
+    pub(super) fn naming(&self, variable: Variable) -> Vec<u32> {
+        let names = |place: Place, instruction: u32| {
+            let names = names_at(self, place);
+            names.iter().any(|name| self.code.variable_from(instruction, name) == Some(variable))
+        };
+        let all = self.stops.iter().flat_map(|stop| stop.instructions.iter().map(|own| (stop.place, *own)));
+        all.filter(|(place, instruction)| names(*place, *instruction)).map(|(_, own)| own).collect()
     }
 
     /// The files that have changed on the disk since they were read and of which that was not said yet.
@@ -195,54 +224,37 @@ fn no_file(path: &Path) -> Message {
 /// The files of the program at a path, in the order of execution.
 fn files_of(path: &Path) -> Result<Vec<File>, Message> {
     let unread = |path: &Path| Message::new("debug.unreadable").with("path", path.display());
-    let project = Project::of(path);
-    if let Some(error) = project.as_ref().and_then(|project| project.error.as_ref()) {
+    if path.is_file() && !is_program_file(path) {
+        return Err(Message::new("cli.no-program-file").with("path", path.display()));
+    }
+    let around = Surroundings::of(path).map_err(|_| unread(path))?;
+    let project = around.project.as_ref();
+    if let Some(error) = project.and_then(|project| project.error.as_ref()) {
         return Err(error.message.clone());
     }
-    let manifest = project.as_ref().map(|project| project.manifest.clone()).unwrap_or_default();
-    let own = match &project {
-        Some(project) => project.files().map_err(|_| unread(path))?,
-        None if path.is_dir() => program_files(path).map_err(|_| unread(path))?,
-        None => Vec::new(),
-    };
-    let is_member = |file: &PathBuf| file.canonicalize().is_ok_and(|file| file == path);
-    let paths = match own.iter().any(is_member) || path.is_dir() {
-        true => own,
-        false if is_program_file(path) => vec![path.to_path_buf()],
-        false => return Err(Message::new("cli.no-program-file").with("path", path.display())),
-    };
-    let comments = project.as_ref().and_then(|project| {
+    let manifest = project.map(|project| project.manifest.clone()).unwrap_or_default();
+    let comments = project.and_then(|project| {
         let file = project.root.join(project.manifest.comments.as_ref()?);
         Some(CommentsFile::open(&file, manifest.target().unwrap_or(Target::of(Model::Fx2n))).comments.clone())
     });
     let mut files = Vec::new();
-    for path in paths {
-        let path = path.canonicalize().map_err(|_| unread(&path))?;
+    for path in &around.files {
+        let path = path.canonicalize().map_err(|_| unread(path))?;
         let stamp = Stamp::of(&path);
         let text = read_text(&path).ok_or_else(|| unread(&path))?;
         let document = open_document(&path.to_string_lossy(), &text, &manifest, None, None);
         let document = comments.as_ref().map(|comments| document.commented(comments)).unwrap_or(document);
         files.push(File { path, document, stamp, is_outdated: false });
     }
-    let numbers = program_of(path, &files, &manifest)?;
+    let documents: Vec<&Document> = files.iter().map(|file| &file.document).collect();
+    let mut programs = around.programs(&documents);
+    let numbers = match programs.len() {
+        0 => return Err(Message::new("cli.no-programs")),
+        1 => programs.swap_remove(0),
+        _ => return Err(Message::new("debug.many-programs").with("path", path.display())),
+    };
     let mut files: Vec<Option<File>> = files.into_iter().map(Some).collect();
     Ok(numbers.into_iter().filter_map(|number| files.get_mut(number)?.take()).collect())
-}
-
-/// The numbers of the files that are one program with the one at `path`, or of the only program of a folder.
-fn program_of(path: &Path, files: &[File], manifest: &Manifest) -> Result<Vec<usize>, Message> {
-    let here = files.iter().position(|file| file.path == path);
-    let members = files.iter().map(|file| Member { name: "", document: &file.document }).collect();
-    let view = ProjectView::new(members, here.unwrap_or(0), manifest.files.is_some());
-    let view = view.ok_or_else(|| Message::new("cli.no-programs"))?;
-    if here.is_some() {
-        return Ok(check::program_around(&view));
-    }
-    let mut programs = check::programs(&view);
-    match programs.len() {
-        0 | 1 => Ok(programs.pop().unwrap_or_default()),
-        _ => Err(Message::new("debug.many-programs").with("path", path.display())),
-    }
 }
 
 /// Where the rungs of a document begin.

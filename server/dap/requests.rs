@@ -78,7 +78,16 @@ impl<W: Write> Adapter<W> {
             "setBreakpoints" => self.set_breakpoints(asked),
             "breakpointLocations" => self.locations(&asked),
             "dataBreakpointInfo" => self.data_info(&asked),
-            "setDataBreakpoints" => self.set_data_breakpoints(asked.breakpoints),
+            "setFunctionBreakpoints" => {
+                let wanted = self.numbered(asked.breakpoints);
+                self.breakpoints.wanted_functions.clone_from(&wanted);
+                Ok(self.placed(&wanted))
+            }
+            "setDataBreakpoints" => {
+                let wanted = self.numbered(asked.breakpoints);
+                self.breakpoints.wanted_data.clone_from(&wanted);
+                Ok(self.placed(&wanted))
+            }
             "setExceptionBreakpoints" => {
                 self.stops_at_errors = asked.filters.iter().any(|filter| filter == ERRORS);
                 Ok(Json::Null)
@@ -97,17 +106,22 @@ impl<W: Write> Adapter<W> {
             "next" | "stepIn" | "stepOut" => self.step(&request.command, &asked.granularity),
             "stepBack" => self.step_back(),
             "reverseContinue" => {
-                self.stopped()?;
-                self.reverse();
+                self.reverse()?;
                 Ok(Json::Null)
             }
             "stackTrace" => self.stack(asked.start_frame, asked.levels),
             "scopes" => self.scopes(asked.frame_id),
             "variables" => self.variables(&asked),
-            "setVariable" => self.set_value(&asked.name, &asked.value),
-            "setExpression" => self.set_value(&asked.expression, &asked.value),
-            "evaluate" if asked.context == "repl" => self.console(&asked.expression),
-            "evaluate" => self.evaluate(&asked.expression),
+            "setVariable" => {
+                let name = self.named(&asked)?;
+                self.set_value(&name, &asked.value)
+            }
+            "setExpression" => {
+                let name = self.debugged()?.whole(asked.frame_id, &asked.expression);
+                self.set_value(&name, &asked.value)
+            }
+            "evaluate" if asked.context == "repl" => self.console(&asked.expression, asked.frame_id),
+            "evaluate" => self.evaluate(&asked.expression, asked.frame_id),
             "completions" => self.completions(&asked.text, asked.column),
             other => Err(Message::new("debug.no-request").with("command", other)),
         }
@@ -121,6 +135,7 @@ impl<W: Write> Adapter<W> {
             "supportsLogPoints": true,
             "supportsBreakpointLocationsRequest": true,
             "supportsDataBreakpoints": true,
+            "supportsFunctionBreakpoints": true,
             "supportsStepBack": true,
             "supportsSteppingGranularity": true,
             "supportsRestartRequest": true,
@@ -191,29 +206,24 @@ impl<W: Write> Adapter<W> {
     fn set_breakpoints(&mut self, asked: Asked) -> Answer {
         let path = asked.source.path.unwrap_or_default();
         let path = path.canonicalize().unwrap_or(path);
-        let mut wanted = Vec::new();
-        for mut breakpoint in asked.breakpoints {
+        let mut wanted = self.numbered(asked.breakpoints);
+        for (_, breakpoint) in &mut wanted {
             (breakpoint.line, breakpoint.column) = self.counted(breakpoint.line, breakpoint.column);
-            wanted.push((self.breakpoints.number(), breakpoint));
         }
-        let ids: Vec<i64> = wanted.iter().map(|(id, _)| *id).collect();
-        self.breakpoints.wanted.insert(path, wanted);
-        Ok(self.placed(&ids))
+        self.breakpoints.wanted.insert(path, wanted.clone());
+        Ok(self.placed(&wanted))
     }
 
-    fn set_data_breakpoints(&mut self, breakpoints: Vec<Wanted>) -> Answer {
-        let wanted: Vec<(i64, Wanted)> =
-            breakpoints.into_iter().map(|wanted| (self.breakpoints.number(), wanted)).collect();
-        let ids: Vec<i64> = wanted.iter().map(|(id, _)| *id).collect();
-        self.breakpoints.wanted_data = wanted;
-        Ok(self.placed(&ids))
+    /// Breakpoints with numbers by which they are known from now on.
+    fn numbered(&mut self, breakpoints: Vec<Wanted>) -> Vec<(i64, Wanted)> {
+        breakpoints.into_iter().map(|wanted| (self.breakpoints.number(), wanted)).collect()
     }
 
-    /// Places all breakpoints; gives those with these numbers.
-    fn placed(&mut self, ids: &[i64]) -> Json {
+    /// Places all breakpoints; gives what became of these.
+    fn placed(&mut self, wanted: &[(i64, Wanted)]) -> Json {
         let placed = self.place_breakpoints();
         let waiting = || Message::new("debug.not-launched").render(self.language);
-        let own = ids.iter().map(|id| match placed.iter().find(|placed| placed.id == *id) {
+        let own = wanted.iter().map(|(id, _)| match placed.iter().find(|placed| placed.id == *id) {
             Some(placed) => self.breakpoint(placed),
             None => json!({ "id": id, "verified": false, "message": waiting() }),
         });
@@ -249,14 +259,24 @@ impl<W: Write> Adapter<W> {
         Ok(json!({ "breakpoints": locations.collect::<Vec<_>>() }))
     }
 
+    /// The whole name of a variable that the client shows as a part of another, or has from a frame.
+    fn named(&mut self, asked: &Asked) -> Result<String, Message> {
+        let debugged = self.debugged()?;
+        let name = asked.name.trim();
+        Ok(match asked.variables_reference {
+            0 | INSTRUCTION => debugged.whole(asked.frame_id, name),
+            reference => debugged.variables.whole(reference, name),
+        })
+    }
+
     fn data_info(&mut self, asked: &Asked) -> Answer {
         let language = self.language;
-        let name = asked.name.trim();
-        Ok(match self.debugged()?.program.code.variable(name) {
+        let name = self.named(asked)?;
+        Ok(match self.debugged()?.program.code.variable(&name) {
             Some(_) => json!({
                 "dataId": name,
-                "description": Message::new("debug.change-of").with("name", name).render(language),
-                "accessTypes": ["write"],
+                "description": Message::new("debug.change-of").with("name", &name).render(language),
+                "accessTypes": ["write", "readWrite"],
                 "canPersist": true,
             }),
             None => json!({
@@ -310,10 +330,11 @@ impl<W: Write> Adapter<W> {
         let all = match asked.variables_reference {
             INSTRUCTION => seen(debugged, language),
             reference => {
-                let names = debugged.variables.names(reference);
+                let (variables, own) = (&debugged.variables, Some(reference));
+                let names = variables.names(reference);
                 let count = if asked.count == 0 { names.len() } else { asked.count };
                 let shown = names.iter().skip(asked.start).take(count).filter_map(|name| {
-                    debugged.variables.shown(name, &debugged.debuggee, &debugged.program, language)
+                    variables.shown(own, name, &debugged.debuggee, &debugged.program, language)
                 });
                 shown.collect()
             }
@@ -325,7 +346,8 @@ impl<W: Write> Adapter<W> {
         let language = self.language;
         self.change(name, value, false)?;
         let debugged = self.debugged()?;
-        let shown = debugged.variables.shown(name.trim(), &debugged.debuggee, &debugged.program, language);
+        let (variables, name) = (&debugged.variables, name.trim());
+        let shown = variables.shown(None, name, &debugged.debuggee, &debugged.program, language);
         shown.ok_or_else(|| Message::new("cli.run-unknown").with("name", name))
     }
 

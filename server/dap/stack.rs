@@ -3,7 +3,9 @@
 use super::adapter::{Adapter, Answer};
 use super::debuggee::Here;
 use super::launch::Debugged;
+use super::program::Program;
 use super::variables::value_of;
+use crate::document::Notation;
 use crate::simulate::{Caller, Place, milliseconds};
 use crate::text::{Language, Message};
 use serde_json::{Value, json};
@@ -58,7 +60,8 @@ impl<W: Write> Adapter<W> {
     pub(super) fn scopes(&mut self, frame: i64) -> Answer {
         let language = self.language;
         let debugged = self.debugged()?;
-        let mut scopes = debugged.variables.scopes(language);
+        let owner = debugged.instruction(frame).and_then(|own| debugged.debuggee.code().owner(own));
+        let mut scopes = debugged.variables.scopes(owner.as_deref(), language);
         if frame == 1 && debugged.debuggee.here().is_some() {
             let own = json!({
                 "name": Message::new("debug.instruction").render(language),
@@ -74,6 +77,7 @@ impl<W: Write> Adapter<W> {
 
 /// The instruction and the callers, the innermost first, each with the name of its routine.
 fn places(debugged: &Debugged, here: &Here, language: Language) -> Vec<(Place, String)> {
+    let code = debugged.debuggee.code();
     let main = debugged.program.files.get(here.place.document as usize).map(|file| file.name());
     let entered = |caller: &Caller| match caller.is_interrupt {
         true => Message::new("debug.interrupt").render(language),
@@ -84,13 +88,37 @@ fn places(debugged: &Debugged, here: &Here, language: Language) -> Vec<(Place, S
     };
     let mut routine = main.unwrap_or_default();
     let mut places = Vec::new();
-    for caller in &here.callers {
-        places.push((caller.place, routine));
+    for caller in callers(debugged, here) {
+        places.push((caller.place, code.owner(caller.instruction).unwrap_or(routine)));
         routine = entered(caller);
     }
-    places.push((here.place, routine));
+    places.push((here.place, code.owner(here.instruction).unwrap_or(routine)));
     places.reverse();
     places
+}
+
+/// Where routines were entered. A program of IEC 61131-3 is entered from nowhere in the text.
+fn callers<'h>(debugged: &Debugged, here: &'h Here) -> &'h [Caller] {
+    let first = usize::from(!debugged.debuggee.code().target.is_fx());
+    here.callers.get(first..).unwrap_or_default()
+}
+
+impl Debugged {
+    /// The instruction at which a frame of the stack is, by its number, the innermost frame having number 1.
+    pub(super) fn instruction(&self, frame: i64) -> Option<u32> {
+        let here = self.debuggee.here()?;
+        let callers = callers(self, here).iter().rev();
+        let mut instructions =
+            std::iter::once(here.instruction).chain(callers.map(|caller| caller.instruction));
+        instructions.nth(usize::try_from(frame.max(1) - 1).ok()?)
+    }
+
+    /// The whole name of what a person calls `name` in a frame of the stack.
+    pub(super) fn whole(&self, frame: i64, name: &str) -> String {
+        let instruction = self.instruction(frame);
+        let own = instruction.and_then(|instruction| self.debuggee.code().whole_name(instruction, name));
+        own.unwrap_or_else(|| name.trim().to_string())
+    }
 }
 
 /// What an instruction sees: whether it conducts, the power that reaches it or leaves it, its operands.
@@ -107,47 +135,49 @@ pub(super) fn seen(debugged: &Debugged, language: Language) -> Vec<Value> {
         })
     };
     let mut shown = Vec::new();
-    if let Some(conducts) = here.sight.conducts {
-        shown.push(bit("debug.conducts", conducts != 0));
-        shown.push(bit("debug.power-behind", here.sight.power != 0));
-    } else {
-        shown.push(bit("debug.power", here.sight.power != 0));
+    match here.sight.map(|sight| (sight.conducts, sight.power != 0)) {
+        Some((Some(conducts), power)) => {
+            shown.push(bit("debug.conducts", conducts != 0));
+            shown.push(bit("debug.power-behind", power));
+        }
+        Some((None, power)) => shown.push(bit("debug.power", power)),
+        None => {
+            let result = debugged.debuggee.machine().result_before(here.instruction);
+            shown.extend(result.map(|value| {
+                json!({
+                    "name": words("debug.result"),
+                    "value": value.to_string(),
+                    "variablesReference": 0,
+                    "presentationHint": { "attributes": ["readOnly"] },
+                })
+            }));
+        }
     }
-    for name in operands(debugged, here.place) {
-        if let Some(variable) = debugged.debuggee.code().variable(&name) {
+    let mut known = Vec::new();
+    for word in names_at(&debugged.program, here.place) {
+        let name = debugged.whole(1, &word);
+        let variable = debugged.debuggee.code().variable(&name);
+        if let Some(variable) = variable.filter(|variable| !known.contains(variable)) {
+            known.push(variable);
             let value = value_of(variable, &debugged.debuggee, language);
             shown.push(json!({
-                "name": name, "evaluateName": name, "value": value, "variablesReference": 0,
+                "name": word, "evaluateName": name, "value": value, "variablesReference": 0,
             }));
         }
     }
     shown
 }
 
-/// The names of devices in the instruction at a place.
-fn operands(debugged: &Debugged, place: Place) -> Vec<String> {
-    let Some(document) = debugged.program.document(place) else { return Vec::new() };
-    let Some(at) = document.chunk_at(place.span.start as usize) else { return Vec::new() };
-    let is_within = |start: u32| {
-        let start = start as usize + at.start;
-        (place.span.start as usize..place.span.end as usize).contains(&start)
+/// The words of the instruction at a place that may be names of variables.
+pub(super) fn names_at(program: &Program, place: Place) -> Vec<String> {
+    let Some(document) = program.document(place) else { return Vec::new() };
+    let is_drawn = document.notation() == Notation::Ladder;
+    let text = match is_drawn {
+        true => program.words(place),
+        false => document.slice(place.span).to_string(),
     };
-    let reading = at.chunk.reading();
-    let mut names: Vec<String> = Vec::new();
-    for operation in reading.operations() {
-        let own = operation.symbol.start;
-        // The name of a drawn contact stands above it.
-        let is_own = match operation.element {
-            Some(element) => element.span.shifted(at.start) == place.span,
-            None => is_within(own),
-        };
-        let operands = operation.operands.iter().filter(|_| is_own);
-        for device in operands.filter_map(|operand| operand.value.device()) {
-            let name = device.to_string();
-            if !names.contains(&name) {
-                names.push(name);
-            }
-        }
-    }
-    names
+    let is_inside = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '%' | '[' | ']' | ',');
+    let words = text.split(|c: char| !is_inside(c)).filter(|word| !word.is_empty());
+    // A line of a list begins with the operator.
+    words.skip(usize::from(!is_drawn)).map(|word| word.trim_matches([',', '.']).to_string()).collect()
 }

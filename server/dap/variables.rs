@@ -3,7 +3,7 @@
 use super::debuggee::Debuggee;
 use super::program::{File, Program};
 use crate::document::Symbol;
-use crate::simulate::{Code, Touch, Variable};
+use crate::simulate::{Code, Member, Touch, UnitVariables, Variable, joined};
 use crate::target::{Device, DeviceKind, Operand};
 use crate::text::{Language, Message};
 use serde_json::{Value as Json, json};
@@ -13,19 +13,29 @@ use std::collections::BTreeSet;
 #[derive(Default)]
 pub(super) struct Variables {
     groups: Vec<Group>,
-    /// Timers and counters, of which each is a group of its own.
-    parts: Vec<Device>,
+    /// What has parts of its own: timers and counters, instances, arrays.
+    nodes: Vec<Node>,
 }
 
 struct Group {
     title: Message,
+    /// What names begin with that are in it; empty for devices and global variables.
+    owner: String,
     names: Vec<String>,
+}
+
+/// A variable with parts, by whole names.
+struct Node {
+    name: String,
+    parts: Vec<String>,
 }
 
 /// The numbers by which the protocol names groups begin here.
 const FIRST_GROUP: i64 = 1;
-/// And those of timers and counters here.
-const FIRST_PART: i64 = 1 << 20;
+/// And those of variables with parts here.
+const FIRST_NODE: i64 = 1 << 20;
+/// So many parts are told of where their variable is shown.
+const TOLD_PARTS: usize = 4;
 
 /// The kinds of devices in the order in which they are shown, with the titles of their groups.
 const KINDS: [(&[DeviceKind], &str); 7] = [
@@ -41,85 +51,155 @@ const KINDS: [(&[DeviceKind], &str); 7] = [
 impl Variables {
     /// What a program uses.
     pub(super) fn of(program: &Program) -> Variables {
-        let code = &program.code;
-        let mut named = Vec::new();
-        for name in code.named() {
-            let device = device_of(&name, code);
-            named.push((name, device));
+        match program.code.target.is_fx() {
+            true => Variables::of_devices(program),
+            false => Variables::of_units(program.code.variables_by_unit()),
         }
+    }
+
+    fn of_devices(program: &Program) -> Variables {
+        let code = &program.code;
+        let named: Vec<Device> = code.named().iter().filter_map(|name| device_of(name, code)).collect();
+        let group =
+            |title, names: Vec<String>| Group { title: Message::new(title), owner: String::new(), names };
         let mut groups = Vec::new();
         for (kinds, title) in KINDS {
-            let own =
-                named.iter().filter_map(|(_, device)| device.filter(|device| kinds.contains(&device.kind)));
-            let names: Vec<String> = own.map(|device| device.to_string()).collect();
-            groups.push(Group { title: Message::new(title), names });
+            let own = named.iter().filter(|device| kinds.contains(&device.kind));
+            groups.push(group(title, own.map(|device| device.to_string()).collect()));
         }
         let special = special(program).into_iter().filter(|device| code.layout.has(*device));
-        let names = special.map(|device| device.to_string()).collect();
-        groups.push(Group { title: Message::new("debug.special"), names });
-        // Variables by the program unit that declares them.
-        for (name, _) in named.iter().filter(|(_, device)| device.is_none()) {
-            let title = match name.split_once('.') {
-                Some((unit, _)) => Message::new("debug.variables-of").with("unit", unit),
-                None => Message::new("debug.variables"),
-            };
-            match groups.iter_mut().find(|group| group.title == title) {
-                Some(group) => group.names.push(name.clone()),
-                None => groups.push(Group { title, names: vec![name.clone()] }),
-            }
-        }
+        groups.push(group("debug.special", special.map(|device| device.to_string()).collect()));
         groups.retain(|group| !group.names.is_empty());
-        let parts = named.iter().filter_map(|(_, device)| device.filter(|device| device.kind.has_preset()));
-        Variables { parts: parts.collect(), groups }
+        let counting = named.iter().filter(|device| device.kind.has_preset());
+        let nodes = counting.map(|device| Node { name: device.to_string(), parts: parts(*device) }).collect();
+        Variables { groups, nodes }
     }
 
-    /// The groups, as the protocol wants them.
-    pub(super) fn scopes(&self, language: Language) -> Vec<Json> {
-        let scope = |(number, group): (i64, &Group)| {
+    fn of_units(units: Vec<UnitVariables>) -> Variables {
+        let mut variables = Variables::default();
+        for UnitVariables { name: owner, members } in units {
+            let title = match owner.is_empty() {
+                true => Message::new("debug.variables"),
+                false => Message::new("debug.variables-of").with("unit", &owner),
+            };
+            let names = variables.add(&owner, &members);
+            variables.groups.push(Group { title, owner, names });
+        }
+        variables
+    }
+
+    /// Adds what is in a variable; gives the names of that.
+    fn add(&mut self, around: &str, members: &[Member]) -> Vec<String> {
+        let mut names = Vec::new();
+        for member in members {
+            let name = joined(around, &member.name);
+            if !member.members.is_empty() {
+                let parts = self.add(&name, &member.members);
+                self.nodes.push(Node { name: name.clone(), parts });
+            }
+            names.push(name);
+        }
+        names
+    }
+
+    /// The groups, as the protocol wants them; those of the unit `owner` come first.
+    pub(super) fn scopes(&self, owner: Option<&str>, language: Language) -> Vec<Json> {
+        let scope = |number: i64, title: String, count: usize| {
             json!({
-                "name": group.title.render(language),
-                "variablesReference": number,
-                "namedVariables": group.names.len(),
-                "expensive": false,
+                "name": title, "variablesReference": number, "namedVariables": count, "expensive": false,
             })
         };
-        (FIRST_GROUP..).zip(&self.groups).map(scope).collect()
+        let mut scopes: Vec<Json> = Vec::new();
+        let mut own = 0;
+        if let Some((number, node)) = owner.and_then(|owner| self.node(owner)) {
+            let title = Message::new("debug.variables-of").with("unit", &node.name).render(language);
+            scopes.push(scope(number, title, node.parts.len()));
+            own = 1;
+        }
+        for (number, group) in (FIRST_GROUP..).zip(&self.groups) {
+            let shown = scope(number, group.title.render(language), group.names.len());
+            let is_own = owner == Some(group.owner.as_str());
+            scopes.insert(if is_own { own } else { scopes.len() }, shown);
+        }
+        scopes
     }
 
-    /// The names in a group, or of the parts of a timer or counter.
-    pub(super) fn names(&self, reference: i64) -> Vec<String> {
-        if let Some(number) = reference.checked_sub(FIRST_PART).filter(|number| *number >= 0) {
-            let part = self.parts.get(number as usize);
-            return part.map(|part| parts(*part)).unwrap_or_default();
+    fn node(&self, name: &str) -> Option<(i64, &Node)> {
+        let mut nodes = (FIRST_NODE..).zip(&self.nodes);
+        nodes.find(|(_, node)| node.name.eq_ignore_ascii_case(name))
+    }
+
+    /// What is in a group or in a variable with parts: its name, and whole names.
+    fn inside(&self, reference: i64) -> Option<(&str, &[String])> {
+        let at = |first: i64| reference.checked_sub(first).and_then(|number| usize::try_from(number).ok());
+        if let Some(node) = at(FIRST_NODE).and_then(|number| self.nodes.get(number)) {
+            return Some((&node.name, &node.parts));
         }
-        let number = reference.checked_sub(FIRST_GROUP).and_then(|number| usize::try_from(number).ok());
-        number.and_then(|number| self.groups.get(number)).map(|group| group.names.clone()).unwrap_or_default()
+        let group = at(FIRST_GROUP).and_then(|number| self.groups.get(number))?;
+        Some((&group.owner, &group.names))
+    }
+
+    /// The whole names in a group, or of the parts of a variable.
+    pub(super) fn names(&self, reference: i64) -> &[String] {
+        self.inside(reference).map_or(&[], |(_, names)| names)
+    }
+
+    /// The whole name of what a group or variable shows as `name`.
+    pub(super) fn whole(&self, reference: i64, name: &str) -> String {
+        let Some((around, names)) = self.inside(reference) else { return name.to_string() };
+        let own = names.iter().find(|own| label(own, around) == name);
+        own.map_or(name, |own| own).to_string()
     }
 
     /// All names that can be asked for.
     pub(super) fn all(&self) -> impl Iterator<Item = &String> {
-        self.groups.iter().flat_map(|group| &group.names)
+        let parts = self.nodes.iter().flat_map(|node| &node.parts);
+        self.groups.iter().flat_map(|group| &group.names).chain(parts)
     }
 
-    /// A variable as the protocol wants it.
+    /// A variable as the protocol wants it, in what has the number `reference` or by itself.
     pub(super) fn shown(
         &self,
+        reference: Option<i64>,
         name: &str,
         debuggee: &Debuggee,
         program: &Program,
         language: Language,
     ) -> Option<Json> {
-        let code = debuggee.code();
-        let variable = code.variable(name)?;
-        let part = self.parts.iter().position(|part| part.to_string() == name);
-        let reference = part.map_or(0, |number| FIRST_PART + number as i64);
+        let node = self.node(name);
+        let variable = debuggee.code().variable(name);
+        let value = match (variable, node) {
+            (Some(variable), _) => value_of(variable, debuggee, language),
+            (None, Some((_, node))) => self.told(node, debuggee, language),
+            (None, None) => return None,
+        };
+        let around = reference.and_then(|reference| self.inside(reference)).map_or("", |(around, _)| around);
         Some(json!({
-            "name": name,
+            "name": label(name, around),
             "evaluateName": name,
-            "value": value_of(variable, debuggee, language),
-            "type": meaning(name, variable, program, language),
-            "variablesReference": reference,
+            "value": value,
+            "type": variable.map(|variable| meaning(name, variable, program, language)),
+            "variablesReference": node.map_or(0, |(number, _)| number),
         }))
+    }
+
+    /// The first parts of a variable with their values.
+    fn told(&self, node: &Node, debuggee: &Debuggee, language: Language) -> String {
+        let told = |part: &String| {
+            let variable = debuggee.code().variable(part)?;
+            Some(format!("{} {}", label(part, &node.name), value_of(variable, debuggee, language)))
+        };
+        let first: Vec<String> = node.parts.iter().filter_map(told).take(TOLD_PARTS).collect();
+        let rest = if node.parts.len() > first.len() { ", …" } else { "" };
+        if first.is_empty() { "…".to_string() } else { first.join(", ") + rest }
+    }
+}
+
+/// How a part is called in what is around it.
+fn label<'n>(name: &'n str, around: &str) -> &'n str {
+    match name.strip_prefix(around) {
+        Some(rest) if rest.starts_with(['.', '[']) => rest.trim_start_matches('.'),
+        _ => name,
     }
 }
 
@@ -176,11 +256,12 @@ pub(super) fn value_of(variable: Variable, debuggee: &Debuggee, language: Langua
 
 /// What a variable is, and what the project says about it.
 fn meaning(name: &str, variable: Variable, program: &Program, language: Language) -> String {
-    let kind = Message::new(match variable {
-        Variable::Relay(_) => "debug.bit",
-        _ => "debug.word",
-    });
-    let kind = kind.render(language);
+    let kind = match (variable, variable.declared()) {
+        (_, Some(declared)) => declared.to_string(),
+        (Variable::Relay(_), _) if !program.code.target.is_fx() => "BOOL".to_string(),
+        (Variable::Relay(_), _) => Message::new("debug.bit").render(language),
+        _ => Message::new("debug.word").render(language),
+    };
     match comment_of(name, program) {
         Some(comment) => format!("{kind} · {comment}"),
         None => kind,

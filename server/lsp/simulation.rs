@@ -73,21 +73,26 @@
 //!
 //! ```text
 //! { uri, version, source: "simulator", mode, scan, time_ms, edition, branch,
-//!   elements: { range, kind: "wire" | "contact" | "output" | "line" | "value", energised, conducts?, value? }[],
+//!   elements: { range, kind: "wire" | "contact" | "output" | "line" | "value" | "forced", energised, conducts?,
+//!     value? }[],
 //!   values: { device, value, forced, wired? }[], errors: { range, message }[] }
 //! ```
+//!
+//! A `forced` element is the name of something that is forced, wherever it stands; its `value` is what it is held at.
 //!
 //! Values that a variable cannot have are refused, and scan times other than 0.001 to 60000 ms and speeds below 0.
 //!
 //! A step of many scans and a search for the last change end where they are as soon as another order comes; `state`,
-//! `watch`, `panel`, `trace` and `export` are answered meanwhile. A simulation stops when its document is closed; the
-//! last `rungwise/monitor` then has `mode: "stopped"`, as after `stop`.
+//! `watch`, `panel`, `trace`, `export`, `record` and `why` are answered meanwhile. A simulation stops when its document
+//! is closed; the last `rungwise/monitor` then has `mode: "stopped"`, as after `stop`.
 //!
 //! `scan` counts from 0. What an edit made of the program is taken over as soon as it can be run; until then the old
 //! program goes on and `elements` is empty. An edit after which the program does the same leaves its history; any other
 //! begins a new one, and devices and instructions around the edit keep what they remember.
 
 mod chart;
+
+mod forced;
 
 mod monitor;
 
@@ -102,7 +107,7 @@ use super::workspace::Workspace;
 use crate::text::Message;
 use chart::Wanted;
 pub(super) use monitor::{Monitor, MonitorMethod, Picture};
-use runner::{About, Order, Runner};
+use runner::{About, Deed, Order, Question, Runner};
 pub(super) use runner::{compiled, files_around};
 use rustc_hash::FxHashMap;
 use serde::Deserialize;
@@ -157,7 +162,7 @@ impl Simulations {
         if matches!(order, Order::Start { .. }) && snapshot().program(&uri).is_none() {
             return Err(refused(Message::new("request.no-document").with("command", command)));
         }
-        let is_state = matches!(order, Order::Stop | Order::State { .. });
+        let is_state = matches!(order, Order::Do(Deed::Stop) | Order::Ask(Question::State { .. }));
         let stopped = || json!({ "uri": uri, "mode": "stopped" });
         let runner = {
             let mut running = self.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -166,7 +171,7 @@ impl Simulations {
                 Order::Start { .. } => Some(
                     running.entry(uri.clone()).or_insert_with(|| Runner::new(uri.clone(), workspace)).clone(),
                 ),
-                Order::Stop => running.remove(&uri),
+                Order::Do(Deed::Stop) => running.remove(&uri),
                 _ => running.get(&uri).cloned(),
             }
         };
@@ -186,7 +191,7 @@ impl Simulations {
     /// Why what stands at a position is on or off, in Markdown; nothing unless its program is being simulated.
     pub(super) async fn brief(&self, uri: &Uri, position: Position) -> Option<String> {
         let runner = self.0.lock().unwrap_or_else(PoisonError::into_inner).get(uri).cloned()?;
-        let order = Order::Why { about: About::At(position), scan: None, is_brief: true };
+        let order = Order::Ask(Question::Why { about: About::At(position), scan: None, is_brief: true });
         runner.ask(order).await.ok()?.as_str().map(str::to_string)
     }
 }
@@ -204,28 +209,32 @@ fn order(command: &str, asked: Asked) -> std::result::Result<Order, Message> {
     };
     Ok(match verb {
         "start" => Order::Start { scan_ms: asked.scan_time, speed: asked.speed, is_paused: asked.paused },
-        "stop" => Order::Stop,
-        "pause" => Order::Pause,
-        "run" => Order::Run { speed: asked.speed },
-        "step" => Order::Step { count: asked.count.unwrap_or(1) },
-        "stepBack" => Order::StepBack { count: asked.count.unwrap_or(1), change_of: asked.change_of },
-        "reset" => Order::Reset,
-        "set" => Order::Set { name: name?, value: value?, is_force: false },
-        "force" => Order::Set { name: name?, value: value?, is_force: true },
-        "release" => Order::Release { name: asked.name },
-        "record" => Order::Record { names: asked.names },
+        "stop" => Order::Do(Deed::Stop),
+        "pause" => Order::Do(Deed::Pause),
+        "run" => Order::Do(Deed::Run { speed: asked.speed }),
+        "step" => Order::Do(Deed::Step { count: asked.count.unwrap_or(1) }),
+        "stepBack" => {
+            Order::Do(Deed::StepBack { count: asked.count.unwrap_or(1), change_of: asked.change_of })
+        }
+        "reset" => Order::Do(Deed::Reset),
+        "set" => Order::Do(Deed::Set { name: name?, value: value?, is_force: false }),
+        "force" => Order::Do(Deed::Set { name: name?, value: value?, is_force: true }),
+        "release" => Order::Do(Deed::Release { name: asked.name }),
+        "record" => Order::Ask(Question::Record { names: asked.names }),
         "why" => {
             let about = asked.position.map(About::At);
-            Order::Why {
+            Order::Ask(Question::Why {
                 about: about.map_or_else(|| name.map(About::Name), Ok)?,
                 scan: asked.scan,
                 is_brief: false,
-            }
+            })
         }
-        "watch" => Order::Watch { ranges: asked.ranges, names: asked.names },
-        "panel" => Order::Panel,
-        "trace" => Order::Trace { wanted },
-        "export" => Order::Export { wanted, format: asked.format.ok_or_else(|| missing("format"))? },
-        _ => Order::State { names: asked.names },
+        "watch" => Order::Ask(Question::Watch { ranges: asked.ranges, names: asked.names }),
+        "panel" => Order::Ask(Question::Panel),
+        "trace" => Order::Ask(Question::Trace { wanted }),
+        "export" => {
+            Order::Ask(Question::Export { wanted, format: asked.format.ok_or_else(|| missing("format"))? })
+        }
+        _ => Order::Ask(Question::State { names: asked.names }),
     })
 }

@@ -13,6 +13,9 @@ pub use files::{
     suites_in,
 };
 
+mod around;
+pub use around::Surroundings;
+
 pub mod encoding;
 
 mod backup;

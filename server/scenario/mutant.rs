@@ -5,7 +5,8 @@ use super::{Bench, Golden, Scenario};
 use crate::document::{Document, Edit, Notation};
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
-use crate::target::{Constant, Device, DeviceKind, Operand};
+use crate::target::iec::{Datum, ElementaryType, LiteralValue, spelled};
+use crate::target::{Constant, Device, DeviceKind, Model, Operand};
 use crate::text::{Message, Span};
 use crate::translate::{Proof, Source, prove, rewritten};
 
@@ -36,6 +37,8 @@ pub enum Change {
     Latch(String, bool),
     /// A timer or counter has another preset.
     Preset(String, String),
+    /// Something is done with another constant: what that is about, the new constant and the old one.
+    Constant(String, String, String),
 }
 
 /// What became of a mutant.
@@ -62,6 +65,9 @@ impl Change {
             Change::Latch(name, false) => Message::new("mutant.reset").with("name", name),
             Change::Preset(name, preset) => {
                 Message::new("mutant.preset").with("name", name).with("preset", preset)
+            }
+            Change::Constant(name, new, old) => {
+                Message::new("mutant.constant").with("name", name).with("new", new).with("old", old)
             }
         }
     }
@@ -201,7 +207,7 @@ impl Faults {
                     Expression::Constant(true) if path.gates.len() > 1 => {}
                     condition => gates.push(Gate::Pass(condition)),
                 },
-                Gate::Through(action) => gates.push(Gate::Through(action.clone())),
+                Gate::Through(action) => gates.push(Gate::Through(self.action(action))),
                 Gate::Invert => gates.push(Gate::Invert),
             }
         }
@@ -251,6 +257,7 @@ impl Faults {
         {
             made.test = test;
         }
+        self.constants(contact.span, &mut made.terms);
         // One that is a branch alone is left out with its branch.
         let is_bridged = beside == Beside::Series && self.fault(contact.span, Change::Bridged(name));
         if is_bridged { Expression::Constant(true) } else { Expression::Contact(made) }
@@ -273,9 +280,25 @@ impl Faults {
                     made.terms[1] = other;
                 }
             }
+            Deed::Instruction(_) | Deed::Call(_) | Deed::Compute(_) => {
+                self.constants(action.span, &mut made.terms);
+            }
             _ => {}
         }
         made
+    }
+
+    /// Each constant among the operands of something may be another one.
+    fn constants(&mut self, span: Span, terms: &mut [Term]) {
+        let is_named = |term: &&Term| other_constant(term).is_none();
+        let about = terms.iter().find(is_named).map(|term| term.text.to_string()).unwrap_or_default();
+        for term in terms {
+            let Some(other) = other_constant(term) else { continue };
+            let (new, old) = (other.text.to_string(), term.text.to_string());
+            if self.fault(span, Change::Constant(about.clone(), new, old)) {
+                *term = other;
+            }
+        }
     }
 }
 
@@ -307,6 +330,29 @@ fn other_preset(counted: &Term, preset: &Term) -> Option<Term> {
     };
     let operand = Operand::Constant { value: Constant::Decimal(other), index: None };
     (other != number).then(|| Term::new(operand, &format!("K{other}"), preset.span))
+}
+
+/// A number is one more, a time twice as long.
+fn other_constant(term: &Term) -> Option<Term> {
+    let text = match term.operand {
+        Operand::Constant { value: Constant::Decimal(number), index: None } => {
+            format!("K{}", number.checked_add(1).filter(|more| *more <= i64::from(i32::MAX))?)
+        }
+        Operand::Literal(literal) => match literal.value {
+            LiteralValue::Integer(number) => {
+                let named = literal.named_type.map(|kind| format!("{kind}#")).unwrap_or_default();
+                format!("{named}{}", number.checked_add(1)?)
+            }
+            LiteralValue::Time(time) => {
+                spelled(&Datum::Whole(time.checked_mul(2)?.into()), ElementaryType::Time).to_string()
+            }
+            _ => return None,
+        },
+        _ => return None,
+    };
+    let model = if matches!(term.operand, Operand::Literal(_)) { Model::Iec } else { Model::Fx3u };
+    let other = Term::new(Operand::read(&text, model), &text, term.span);
+    (other.text != term.text).then_some(other)
 }
 
 fn name_of(terms: &[Term]) -> String {

@@ -7,9 +7,11 @@ use crate::text::{Message, Span};
 use toml::de::{DeTable, DeValue};
 
 /// The keys of a step.
-const STEP_KEYS: [&str; 14] = [
+const STEP_KEYS: [&str; 16] = [
     "at",
     "after",
+    "every",
+    "times",
     "set",
     "force",
     "release",
@@ -120,21 +122,58 @@ impl Plan {
             reading.flaw(again.key, Message::new("scenario.at-and-after"));
         }
         self.now_ns = at.unwrap_or_else(|| self.now_ns.saturating_add(after.unwrap_or(0)));
-        let scan = clock.first(self.now_ns);
-        if scan > MOST_SCANS || self.inputs.len() + self.checks.len() > MOST_PARTS {
-            reading.flaw(span, Message::new("scenario.too-long").with("scans", MOST_SCANS));
-            return;
-        }
-        self.last = self.last.max(scan);
         let before = self.inputs.len() + self.checks.len();
-        self.inputs(reading, table, scan);
-        self.checks(reading, span, table, (scan, within, lasts));
+        let (every_ns, times) = self.repeated(reading, table);
+        for time in 0..times {
+            self.now_ns = self.now_ns.saturating_add(if time == 0 { 0 } else { every_ns });
+            let scan = clock.first(self.now_ns);
+            if scan > MOST_SCANS || self.inputs.len() + self.checks.len() > MOST_PARTS {
+                reading.flaw(span, Message::new("scenario.too-long").with("scans", MOST_SCANS));
+                return;
+            }
+            self.last = self.last.max(scan);
+            let next = (time + 1 < times).then(|| clock.first(self.now_ns.saturating_add(every_ns)));
+            self.inputs(reading, table, scan, next);
+            self.checks(reading, span, table, (scan, within, lasts));
+        }
         if before == self.inputs.len() + self.checks.len() && reading.flaws.is_empty() {
             reading.flaw(span, Message::new("scenario.empty-step"));
         }
     }
 
-    fn inputs<'a>(&mut self, reading: &mut Reading<'_>, table: &'a DeTable<'a>, scan: u64) {
+    /// How often a step is done, and the time from one to the next.
+    fn repeated<'a>(&self, reading: &mut Reading<'_>, table: &'a DeTable<'a>) -> (i64, u64) {
+        let (every, times) = (reading.entry(table, "every"), reading.entry(table, "times"));
+        let (Some(every), Some(times)) = (every, times) else {
+            if let Some(alone) = every.or(times) {
+                reading.flaw(alone.key, Message::new("scenario.every-and-times"));
+            }
+            return (0, 1);
+        };
+        let every_ns = self.clock.moment(reading, every);
+        if every_ns.is_some_and(|every_ns| every_ns < self.clock.scan_ns) {
+            reading.flaw(every.span, Message::new("scenario.every-scan"));
+            return (0, 1);
+        }
+        let count = match times.value {
+            DeValue::Integer(number) => u64::from_str_radix(number.as_str(), number.radix()).ok(),
+            _ => None,
+        };
+        let count = count.filter(|count| (1..=MOST_SCANS).contains(count));
+        if count.is_none() {
+            reading.flaw(times.span, Message::new("scenario.times").with("most", MOST_SCANS));
+        }
+        (every_ns.unwrap_or(0), if every_ns.is_some() { count.unwrap_or(1) } else { 1 })
+    }
+
+    /// The inputs of a step in a scan; `next` is the scan in which it is done again.
+    fn inputs<'a>(
+        &mut self,
+        reading: &mut Reading<'_>,
+        table: &'a DeTable<'a>,
+        scan: u64,
+        next: Option<u64>,
+    ) {
         for (key, make) in [("set", InputKind::Set as fn(Value) -> InputKind), ("force", InputKind::Force)] {
             for (name, entry) in named(reading, table, key) {
                 if let Some(value) = value_of(reading, entry) {
@@ -154,6 +193,9 @@ impl Plan {
             // A pulse that is shorter than a scan is seen all the same.
             let off = self.clock.first(self.now_ns.saturating_add(lasts)).max(scan + 1);
             self.last = self.last.max(off);
+            if next.is_some_and(|next| next <= off) {
+                reading.flaw(entry.span, Message::new("scenario.pulses-touch"));
+            }
             let set = |on| InputKind::Set(Value::Bit(on));
             self.inputs.push(Input { scan, name: name.clone(), kind: set(true) });
             self.inputs.push(Input { scan: off, name, kind: set(false) });

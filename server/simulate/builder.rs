@@ -176,6 +176,7 @@ impl Builder {
             places: self.places,
             states: Vec::new(),
             interrupts: Vec::new(),
+            labels: Vec::new(),
             counts_pulses,
             routine_timers: Vec::new(),
             keepers: self.keepers,
@@ -469,19 +470,30 @@ impl Builder {
         }
     }
 
+    /// The number of the present instruction among the places of the code.
+    pub(super) fn instruction(&self) -> u32 {
+        self.places.len() as u32 - 1
+    }
+
+    /// Says that the CPU comes to the present instruction.
+    pub(super) fn reached(&mut self) {
+        if self.is_watched {
+            let place = self.instruction();
+            self.op(Op::Reached { place });
+        }
+    }
+
+    /// Says what is in a cell at an instruction, where nothing stops.
+    pub(super) fn shown(&mut self, place: u32, power: Cell) {
+        if self.is_watched {
+            self.op(Op::Shown { place, power });
+        }
+    }
+
     /// Says what is in a cell at the present instruction.
     pub(super) fn saw(&mut self, power: Cell) {
-        self.saw_at(self.place_number(), power);
-    }
-
-    /// The same at an instruction before.
-    pub(super) fn saw_at(&mut self, place: u32, power: Cell) {
+        let place = self.instruction();
         self.op(Op::Seen { place, power });
-    }
-
-    /// The number of the present instruction among the places of the code.
-    pub(super) fn place_number(&self) -> u32 {
-        self.places.len() as u32 - 1
     }
 
     /// Drives relays with the current result.

@@ -36,6 +36,8 @@ pub struct Code {
     pub(super) instructions: usize,
     /// The numbers of interrupts, and the ops at which their routines begin.
     pub(super) interrupts: Vec<(u32, u32)>,
+    /// Labels, and the ops behind them.
+    pub(super) labels: Vec<(Device, u32)>,
     /// Whether it has high-speed counters.
     pub(super) counts_pulses: bool,
     /// Timers that go on when the scan ends without their coils, see [`super::timing::routine_timer`].
@@ -99,6 +101,10 @@ pub(super) enum Op {
     SeenContact { place: u32, src: Cell, invert: bool, power: Cell },
     /// A place where power in a cell is what reaches an output.
     Seen { place: u32, power: Cell },
+    /// The CPU comes to an instruction of which nothing else is to be seen before it acts.
+    Reached { place: u32 },
+    /// Power in a cell is to be seen at an instruction at which nothing stops: it has come here, or left it.
+    Shown { place: u32, power: Cell },
     /// Makes a calculation of an IEC 61131-3 program.
     Compute { power: Cell, number: u32 },
     /// Copies a value with parts.
@@ -252,13 +258,31 @@ impl Code {
         if self.target.is_fx() { self.target.limits.calls as usize } else { usize::MAX }
     }
 
-    /// The instructions that say what they see, by their numbers, with their places in the order of the code.
-    pub fn seen(&self) -> impl Iterator<Item = (u32, Place)> {
+    /// The instructions at which a debugger can stop, by their numbers, with their places in the order of the code.
+    pub fn stops(&self) -> impl Iterator<Item = (u32, Place)> {
         let numbers = self.ops.iter().filter_map(|op| match op {
-            Op::Seen { place, .. } | Op::SeenContact { place, .. } => Some(*place),
+            Op::Seen { place, .. } | Op::SeenContact { place, .. } | Op::Reached { place } => Some(*place),
             _ => None,
         });
         numbers.filter_map(|number| Some((number, *self.places.get(number as usize)?)))
+    }
+
+    /// The first instructions of a routine, by its label, or of the bodies of a program unit of IEC 61131-3, by their
+    /// numbers; letter case is no matter.
+    pub fn entries(&self, name: &str) -> Vec<u32> {
+        let number = |op: &Op| match op {
+            Op::Seen { place, .. } | Op::SeenContact { place, .. } | Op::Reached { place } => Some(*place),
+            _ => None,
+        };
+        if !self.target.is_fx() {
+            let names = self.iec.names();
+            let firsts: Vec<u32> =
+                names.scopes_of(name).map(|scope| names.instructions_of(scope).start).collect();
+            let behind = |first: u32| self.stops().map(|(number, _)| number).find(|number| *number >= first);
+            return firsts.into_iter().filter_map(behind).collect();
+        }
+        let own = self.labels.iter().filter(|(label, _)| label.to_string().eq_ignore_ascii_case(name));
+        own.filter_map(|(_, op)| self.ops[*op as usize..].iter().find_map(number)).collect()
     }
 
     /// Where the op stands in the text.

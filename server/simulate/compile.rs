@@ -172,7 +172,9 @@ impl Compiler {
         let routines = self.labels.iter().filter(|(label, _)| label.kind == DeviceKind::I);
         let mut interrupts: Vec<(u32, u32)> = routines.map(|(label, op)| (label.number, *op)).collect();
         interrupts.sort_unstable();
-        Ok(Code { states, interrupts, routine_timers: self.routine_timers, ..code })
+        let mut labels: Vec<(Device, u32)> = self.labels.into_iter().collect();
+        labels.sort_unstable();
+        Ok(Code { states, interrupts, labels, routine_timers: self.routine_timers, ..code })
     }
 
     /// What power drives here.
@@ -350,7 +352,10 @@ impl Compiler {
         match flow {
             Flow::Straight | Flow::Refresh => self.applied(form, terms),
             Flow::Nothing if form.instruction.opcode == Opcode::Itself => Err(Obstacle::NoSimulation(form)),
-            Flow::Nothing => Ok(()),
+            Flow::Nothing => {
+                self.builder.reached();
+                Ok(())
+            }
             Flow::InterruptsAllowed => {
                 self.applied(form, terms)?;
                 self.builder.op(Op::Interrupt);
@@ -359,17 +364,20 @@ impl Compiler {
             Flow::Jump | Flow::Call => self.jump(form, terms),
             Flow::SubroutineEnd | Flow::InterruptEnd => {
                 self.close_controls();
+                self.builder.reached();
                 self.builder.op(Op::Return);
                 Ok(())
             }
             Flow::LoopBegin => {
                 let call = self.builder.call(form, terms, CallCode::Deed(|_| Ok(())))?;
+                self.builder.reached();
                 let op = self.builder.op(Op::For { call, next: 0 });
                 self.loops.push(op);
                 Ok(())
             }
             Flow::LoopEnd => {
                 let begin = self.loops.pop().ok_or(Obstacle::Loop)?;
+                self.builder.reached();
                 let end = self.builder.op(Op::Next { first: begin + 1 });
                 if let Some(Op::For { next, .. }) = self.builder.op_mut(begin) {
                     *next = end + 1;
@@ -381,11 +389,13 @@ impl Compiler {
             Flow::Step => self.step(terms),
             Flow::StepsEnd => {
                 self.close_steps();
+                self.builder.reached();
                 Ok(())
             }
             Flow::MainEnd | Flow::ProgramEnd => {
                 self.close_steps();
                 self.close_controls();
+                self.builder.reached();
                 self.builder.op(Op::End);
                 Ok(())
             }
@@ -456,6 +466,7 @@ impl Compiler {
     }
 
     fn master_control_end(&mut self, terms: &[Term]) -> Result<(), Obstacle> {
+        self.builder.reached();
         let level = terms.first().and_then(|term| term.operand.device()).ok_or(Obstacle::Unreadable)?.number;
         while let Some((_, outside)) = self.controls.pop_if(|(open, _)| *open >= level) {
             self.builder.set_rail(outside);
@@ -484,12 +495,14 @@ impl Compiler {
         self.steps.outside.get_or_insert(above);
         let (rail, was) = (self.builder.kept(), self.builder.kept());
         self.builder.forget_power();
+        self.builder.reached();
         let op = self.builder.op(Op::Step { rail, was, state, above, end: 0 });
         self.steps.open.push(op);
         self.steps.states.push(state);
         self.steps.is_fresh = true;
         self.builder.set_rail(rail);
-        self.builder.seen();
+        let instruction = self.builder.instruction();
+        self.builder.shown(instruction, rail);
         Ok(())
     }
 

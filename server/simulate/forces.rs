@@ -211,6 +211,11 @@ impl<L: Lanes> Machine<L> {
         self.forces.iter().any(|force| force.holds(variable))
     }
 
+    /// Whether something is forced.
+    pub fn is_any_forced(&self) -> bool {
+        !self.forces.is_empty()
+    }
+
     /// Rows do not write relays that are forced.
     pub(super) fn patch(&mut self) {
         let forced: Vec<Cell> = self

@@ -92,22 +92,26 @@ impl List<'_> {
             Role::BlockSeries => {
                 let block = self.blocks.pop().ok_or(Obstacle::Blocks)?;
                 builder.join(block, Position::Series);
+                builder.seen();
                 Ok(())
             }
             Role::BlockParallel => {
                 let block = self.blocks.pop().ok_or(Obstacle::Blocks)?;
                 builder.join(block, Position::Parallel);
+                builder.seen();
                 Ok(())
             }
             Role::BranchPush => {
                 let power = builder.settle();
                 self.branches.push(power);
+                builder.seen();
                 Ok(())
             }
             Role::BranchRead | Role::BranchPop => {
                 let is_last = form.instruction.role == Role::BranchPop;
                 let branch = if is_last { self.branches.pop() } else { self.branches.last().copied() };
                 builder.set_power(branch.ok_or(Obstacle::Branches)?);
+                builder.seen();
                 Ok(())
             }
             Role::Modify => {

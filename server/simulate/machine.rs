@@ -235,7 +235,7 @@ impl<L: Lanes> Machine<L> {
 
     /// The same; `watch` is told what each instruction sees, if the code says it, and ends the scan there with false.
     pub fn scan_watched(&mut self, now_ns: i64, watch: &mut impl FnMut(Sight<L>) -> bool) -> Outcome {
-        self.scan_inside(now_ns, &mut |glimpse| watch(glimpse.sight))
+        self.scan_inside(now_ns, &mut |glimpse| glimpse.sight.is_none_or(&mut *watch))
     }
 
     /// The same, and `watch` may look at the PLC as it is there.

@@ -62,6 +62,8 @@ mod run;
 mod machine;
 pub use machine::{Error, ErrorKind, Machine, Outcome, Sight};
 
+pub use iec::{Member, UnitVariables, joined};
+
 mod glimpse;
 pub use glimpse::{Caller, Glimpse};
 

@@ -37,8 +37,21 @@ impl Run {
         is_renewed
     }
 
-    fn glimpse<'m, L>(&'m self, machine: &'m Machine<L>, sight: Sight<L>) -> Glimpse<'m, L> {
-        Glimpse { machine, sight, calls: &self.calls, routines: &self.routines }
+    /// What is to be seen at an op that shows something.
+    fn glimpse<'m, L: Lanes>(&'m self, machine: &'m Machine<L>, op: Op) -> Option<Glimpse<'m, L>> {
+        let cell = |cell| machine.memory.cell(cell);
+        let (instruction, is_stop, seen) = match op {
+            Op::Seen { place, power } => (place, true, Some((None, cell(power)))),
+            Op::SeenContact { place, src, invert, power } => {
+                (place, true, Some((Some(cell(src) ^ L::all(invert)), cell(power))))
+            }
+            Op::Shown { place, power } => (place, false, Some((None, cell(power)))),
+            Op::Reached { place } => (place, true, None),
+            _ => return None,
+        };
+        let sight = seen.map(|(conducts, power)| Sight { instruction, conducts, power });
+        let (calls, routines) = (&self.calls, &self.routines);
+        Some(Glimpse { machine, instruction, sight, is_stop, calls, routines })
     }
 
     /// The loop that begins at an op, if it runs. A jump may have left loops within it, which are done with.
@@ -84,9 +97,8 @@ impl<L: Lanes> Machine<L> {
                     at += 1;
                     continue;
                 }
-                Op::Seen { .. } | Op::SeenContact { .. } => {
-                    let sight = self.sight(*op);
-                    if !sight.is_none_or(|sight| watch(run.glimpse(self, sight))) {
+                Op::Seen { .. } | Op::SeenContact { .. } | Op::Reached { .. } | Op::Shown { .. } => {
+                    if !run.glimpse(self, *op).is_none_or(&mut *watch) {
                         run.outcome.is_broken_off = true;
                         return;
                     }
@@ -107,20 +119,6 @@ impl<L: Lanes> Machine<L> {
                 self.hold();
             }
             at = next;
-        }
-    }
-
-    /// What an op says that it saw.
-    fn sight(&self, op: Op) -> Option<Sight<L>> {
-        match op {
-            Op::Seen { place, power } => {
-                Some(Sight { instruction: place, conducts: None, power: self.memory.cell(power) })
-            }
-            Op::SeenContact { place, src, invert, power } => {
-                let conducts = self.memory.cell(src) ^ L::all(invert);
-                Some(Sight { instruction: place, conducts: Some(conducts), power: self.memory.cell(power) })
-            }
-            _ => None,
         }
     }
 

@@ -14,16 +14,6 @@ use std::sync::Arc;
 /// What is done to a PLC between two scans.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Touch {
-    /// Switches an input terminal, or writes a relay.
-    Set(Device, bool),
-    /// Writes a register, or a current value.
-    SetWord(Device, i64),
-    /// Holds a relay at a value.
-    Force(Device, bool),
-    /// Holds a register at a value.
-    ForceWord(Device, i64),
-    /// Lets a forced device go.
-    Release(Device),
     /// Lets pulses arrive before the next scan, see [`Machine::pulse`].
     Pulse(Device, i32),
     /// Something happens around the CPU.
@@ -46,11 +36,6 @@ impl Touch {
             Touch::Hold(variable, ref value) => machine.hold_at(variable, value),
             Touch::LetGo(variable) => machine.let_go(variable),
             Touch::LetAllGo => machine.let_all_go(),
-            Touch::Set(device, on) => machine.set(device, if on { 0xFF } else { 0 }),
-            Touch::SetWord(device, value) => machine.set_word(device, value),
-            Touch::Force(device, on) => machine.force(device, on),
-            Touch::ForceWord(device, value) => machine.force_word(device, value),
-            Touch::Release(device) => machine.release(device),
             Touch::Pulse(device, count) => machine.pulse(device, count),
             Touch::Around(event) => {
                 machine.outside_mut().iter_mut().for_each(|outside| outside.apply(event));
@@ -227,6 +212,10 @@ impl Session {
         self.touches_before(scan).for_each(|touch| touch.apply(&mut machine));
         let (mut left, mut see, mut seen) = (number, Some(see), None);
         machine.scan_inside(now_ns, &mut |glimpse| {
+            // Where nothing is to be seen a debugger stops, and no sight is counted.
+            if glimpse.sight.is_none() {
+                return true;
+            }
             let is_there = left == 0;
             if is_there {
                 seen = see.take().map(|see| see(glimpse.machine));
@@ -285,15 +274,8 @@ impl Session {
 
     /// Whether a variable was set or forced before a scan.
     pub fn is_touched(&self, scan: u64, variable: Variable) -> bool {
-        let layout = &self.machine.code().layout;
         self.touches_before(scan).any(|touch| match *touch {
             Touch::Write(own, _) | Touch::Hold(own, _) | Touch::LetGo(own) => own == variable,
-            Touch::Set(device, _) | Touch::Force(device, _) => {
-                layout.cell(device).map(Variable::Relay) == Some(variable)
-            }
-            Touch::SetWord(device, _) | Touch::ForceWord(device, _) => {
-                layout.slot(device).map(Variable::Word) == Some(variable)
-            }
             _ => false,
         })
     }

@@ -1,12 +1,12 @@
 //! Names of what can be watched and set, and their values.
 
 use super::code::Code;
-use super::iec::{self, Leaf};
+use super::iec::{self, Leaf, UnitVariables, joined};
 use super::machine::Machine;
 use super::row::Cell;
 use super::session::Touch;
 use super::{Lanes, Lies, Slot, Spot, Value};
-use crate::target::iec::Datum;
+use crate::target::iec::{Datum, ElementaryType};
 use crate::target::{Device, DeviceKind, Operand};
 use crate::text::Message;
 use std::ops::RangeInclusive;
@@ -69,6 +69,37 @@ impl Code {
         self.iec.names().find_at(unit, name.trim()).map(Variable::of_leaf)
     }
 
+    /// The variables that a name means inside of an IEC 61131-3 program unit: one for each of its instances.
+    pub fn variables_at(&self, unit: &str, name: &str) -> Vec<Variable> {
+        let scopes = self.iec.names().scopes_of(unit);
+        scopes.filter_map(|scope| self.variable_in(scope, name)).collect()
+    }
+
+    /// The variable that a name means at an instruction, by the number of that: one of the instance or function of
+    /// IEC 61131-3 that the instruction belongs to, else what it means anywhere.
+    pub fn variable_from(&self, instruction: u32, name: &str) -> Option<Variable> {
+        let scope = self.iec.names().scope_at(instruction);
+        scope.and_then(|scope| self.variable_in(scope, name)).or_else(|| self.variable(name))
+    }
+
+    /// A name for [`Code::variable`] of what is called `name` in the instance or function that an instruction belongs to;
+    /// nothing if that has no such variable.
+    pub fn whole_name(&self, instruction: u32, name: &str) -> Option<String> {
+        let names = self.iec.names();
+        let scope = names.scope_at(instruction)?;
+        let leaf = names.find_in(scope, name.trim())?;
+        let own = joined(&names.owner_of(scope)?, name.trim());
+        // What is handed over as VAR_IN_OUT has the name that it has elsewhere.
+        if names.find(&own) == Some(leaf) { Some(own) } else { names.name_at(leaf.spot) }
+    }
+
+    /// The program, the instance of a function block or the function of IEC 61131-3 to which an instruction belongs, as
+    /// a name for [`Code::variable`] begins.
+    pub fn owner(&self, instruction: u32) -> Option<String> {
+        let names = self.iec.names();
+        names.owner_of(names.scope_at(instruction)?)
+    }
+
     /// The variable that a name means in one of the bodies of an IEC 61131-3 program.
     pub(super) fn variable_in(&self, scope: usize, name: &str) -> Option<Variable> {
         self.iec.names().find_in(scope, name.trim()).map(Variable::of_leaf)
@@ -87,6 +118,11 @@ impl Code {
         self.devices.iter().map(name).collect()
     }
 
+    /// The variables of an IEC 61131-3 program by the units that declare them; for an FX nothing.
+    pub fn variables_by_unit(&self) -> Vec<UnitVariables> {
+        self.iec.names().by_unit()
+    }
+
     fn device(&self, name: &str) -> Option<Device> {
         match Operand::read(name, self.target.model) {
             Operand::Device(device) if self.layout.has(device) => Some(device),
@@ -101,6 +137,14 @@ impl Variable {
             (_, Some(enumeration)) => Variable::Enumerated(leaf.spot, enumeration),
             (Lies::Cell(cell), None) if leaf.spot.index == 0 => Variable::Relay(cell),
             _ => Variable::Typed(leaf.spot),
+        }
+    }
+
+    /// Its type, if it is declared with one.
+    pub fn declared(self) -> Option<ElementaryType> {
+        match self {
+            Variable::Typed(spot) => Some(spot.kind),
+            _ => None,
         }
     }
 

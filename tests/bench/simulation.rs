@@ -2,7 +2,7 @@
 
 use super::figures::{Figures, Table, milliseconds};
 use rungwise::document::{Document, Notation};
-use rungwise::simulate::{Code, Lanes, Machine, Session, Touch, compile, power_flow};
+use rungwise::simulate::{Code, Lanes, Machine, Session, Touch, Value, Variable, compile, power_flow};
 use rungwise::target::{Device, DeviceKind, Model, Target};
 use std::fmt::Write;
 use std::sync::Arc;
@@ -97,6 +97,12 @@ fn input(number: u32) -> Device {
     Device::new(DeviceKind::X, number)
 }
 
+/// The first sixty inputs as variables of a program.
+fn inputs(code: &Code) -> Vec<Variable> {
+    let variable = |number| code.variable(&input(number).to_string()).expect("an input");
+    (0..60).map(variable).collect()
+}
+
 /// Twenty inputs change in each scan.
 fn flip<L: Lanes>(machine: &mut Machine<L>, scan: usize) {
     for number in 0..20 {
@@ -155,11 +161,13 @@ fn first_scan(table: &Table) {
 
 fn with_history(table: &Table, without: f64, code: &Arc<Code>) {
     let mut session = Session::new(Arc::clone(code));
+    let inputs = inputs(code);
     let started = Instant::now();
     let scans = 4_000;
     for scan in 0..scans {
         for number in 0..20 {
-            session.touch(Touch::Set(input(number * 3), (scan >> (number % 5)) & 1 == 1));
+            let on = (scan >> (number % 5)) & 1 == 1;
+            session.touch(Touch::Write(inputs[number * 3], Value::Bit(on)));
         }
         session.scan(scan as i64 * 10 * MS);
     }
@@ -176,12 +184,13 @@ fn with_history(table: &Table, without: f64, code: &Arc<Code>) {
 /// A day of a program of a hundred rungs with timers, at 10 ms a scan.
 fn a_day(table: &Table) {
     let code = code(&program(100, Shapes::Words));
+    let inputs = inputs(&code);
     let mut session = Session::new(code);
     let scans = 24 * 60 * 60 * 100;
     let started = Instant::now();
     for scan in 0..scans {
         if scan % 500 == 0 {
-            session.touch(Touch::Set(input((scan / 500 % 60) as u32), scan / 500 % 2 == 0));
+            session.touch(Touch::Write(inputs[scan / 500 % 60], Value::Bit(scan / 500 % 2 == 0)));
         }
         session.scan(scan as i64 * 10 * MS);
     }

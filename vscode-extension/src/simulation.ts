@@ -26,6 +26,8 @@ export interface Picture {
   readonly ready: readonly PlainRange[];
   /** Values beside the words that name them. */
   readonly values: readonly { readonly range: PlainRange; readonly value: string }[];
+  /** Names of what is forced, with what it is held at. */
+  readonly forced: readonly { readonly range: PlainRange; readonly value: string }[];
   readonly errors: readonly { readonly range: PlainRange; readonly message: string }[];
 }
 
@@ -44,6 +46,8 @@ export function parsePicture(params: unknown): Picture | undefined {
     return undefined;
   }
   const elements = given.elements as readonly Element[];
+  const valued = (wanted: string) =>
+    elements.filter(({ kind }) => kind === wanted).map(({ range, value }) => ({ range, value: String(value) }));
   return {
     uri: given.uri,
     version: given.version,
@@ -53,9 +57,8 @@ export function parsePicture(params: unknown): Picture | undefined {
     timeMs: Number(given.time_ms),
     energised: elements.filter(({ energised }) => energised).map(({ range }) => range),
     ready: elements.filter(({ energised, conducts }) => !energised && conducts === true).map(({ range }) => range),
-    values: elements
-      .filter(({ kind }) => kind === 'value')
-      .map(({ range, value }) => ({ range, value: String(value) })),
+    values: valued('value'),
+    forced: valued('forced'),
     errors: (Array.isArray(given.errors) ? given.errors : []) as Picture['errors'],
   };
 }

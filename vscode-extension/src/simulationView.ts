@@ -25,6 +25,19 @@ export class SimulationView implements vscode.Disposable {
   private readonly value = vscode.window.createTextEditorDecorationType({
     after: { color: new vscode.ThemeColor('editorInlayHint.foreground'), margin: '0 0.4em 0 0.3em' },
   });
+  // A frame of dashes and a letter: neither takes a column from a drawing.
+  private readonly forced = vscode.window.createTextEditorDecorationType({
+    border: '1px dashed',
+    borderColor: new vscode.ThemeColor('rungwise.forcedForeground'),
+    overviewRulerColor: new vscode.ThemeColor('rungwise.forcedForeground'),
+    overviewRulerLane: vscode.OverviewRulerLane.Left,
+    after: {
+      contentText: 'F',
+      color: new vscode.ThemeColor('rungwise.forcedForeground'),
+      fontWeight: 'bold',
+      textDecoration: 'none; position: absolute; font-size: 65%; line-height: 1; margin-left: 1px',
+    },
+  });
   private readonly error = vscode.window.createTextEditorDecorationType({
     textDecoration: 'underline wavy',
     overviewRulerColor: new vscode.ThemeColor('editorOverviewRuler.errorForeground'),
@@ -56,6 +69,7 @@ export class SimulationView implements vscode.Disposable {
       this.energised,
       this.ready,
       this.value,
+      this.forced,
       this.error,
       this.status,
       this.pictures,
@@ -262,6 +276,7 @@ export class SimulationView implements vscode.Disposable {
         this.decorate(editor, this.energised, picture.energised);
         this.decorate(editor, this.ready, picture.ready);
         this.decorate(editor, this.value, placedValues(editor.document, picture.values));
+        this.decorate(editor, this.forced, picture.forced.map(held));
         this.decorate(editor, this.error, picture.errors);
       }
     }
@@ -291,7 +306,8 @@ export class SimulationView implements vscode.Disposable {
   private clear(document: vscode.Uri): void {
     for (const editor of editorsOf(document)) {
       this.painted.delete(editor);
-      [this.energised, this.ready, this.value, this.error].forEach((type) => editor.setDecorations(type, []));
+      const types = [this.energised, this.ready, this.value, this.forced, this.error];
+      types.forEach((type) => editor.setDecorations(type, []));
     }
   }
 
@@ -350,6 +366,11 @@ function placedValues(document: vscode.TextDocument, values: Picture['values']):
     const { start, end } = document.lineAt(line).range;
     return { range: { start, end }, text: `  ${words.join(', ')}  ` };
   });
+}
+
+/** What is forced, with what the hover says of it. */
+function held({ range, value }: Picture['forced'][number]): Painted {
+  return { range, message: vscode.l10n.t('forced to {0}', value) };
 }
 
 function nameAt({ document, selection }: vscode.TextEditor): string | undefined {

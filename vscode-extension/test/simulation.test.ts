@@ -10,11 +10,13 @@ test('a picture is sorted by how it is painted, and what is none is left out', (
     { range: range(2), kind: 'contact', energised: false, conducts: true },
     { range: range(3), kind: 'contact', energised: false, conducts: false },
     { range: range(4), kind: 'value', energised: false, value: 12 },
+    { range: range(5), kind: 'forced', energised: false, value: true },
   ];
   const picture = parsePicture({ uri: 'file:///a.lad', version: 3, mode: 'paused', scan: 7, time_ms: 70, elements });
   assert.deepEqual(picture?.energised, [range(1)]);
   assert.deepEqual(picture.ready, [range(2)]);
   assert.deepEqual(picture.values, [{ range: range(4), value: '12' }]);
+  assert.deepEqual(picture.forced, [{ range: range(5), value: 'true' }]);
   assert.deepEqual([picture.mode, picture.scan, picture.timeMs, picture.errors], ['paused', 7, 70, []]);
   assert.equal(parsePicture({ uri: 'file:///a.lad' }), undefined);
   assert.equal(parsePicture(null), undefined);

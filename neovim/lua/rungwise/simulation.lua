@@ -16,6 +16,8 @@ local timer
 vim.api.nvim_set_hl(0, 'RungwiseEnergised', { default = true, link = 'DiffAdd' })
 vim.api.nvim_set_hl(0, 'RungwiseReady', { default = true, underdotted = true })
 vim.api.nvim_set_hl(0, 'RungwiseValue', { default = true, link = 'Comment' })
+vim.api.nvim_set_hl(0, 'RungwiseForcedName', { default = true, bold = true, underdouble = true })
+vim.api.nvim_set_hl(0, 'RungwiseForcedSign', { default = true, link = 'WarningMsg' })
 
 --- Tells the server something about the program of a buffer; `done` gets the answer.
 function M.tell(buffer, verb, more, done)
@@ -86,6 +88,13 @@ local function forget(buffer)
   end
 end
 
+--- The text of a range within a line.
+local function name_in(buffer, range, server)
+  local text = vim.api.nvim_buf_get_lines(buffer, range.start.line, range.start.line + 1, false)[1] or ''
+  local first = client.byte(text, range.start.character, server.offset_encoding)
+  return text:sub(first + 1, client.byte(text, range['end'].character, server.offset_encoding))
+end
+
 --- The notification `rungwise/monitor`.
 function M.on_monitor(_, picture, context)
   local running = type(picture) == 'table' and M.running[picture.uri]
@@ -107,20 +116,30 @@ function M.on_monitor(_, picture, context)
     return
   end
   vim.api.nvim_buf_clear_namespace(running.buffer, SPACE, 0, -1)
-  local values = {}
+  local values, forced = {}, {}
+  local function tell(line, words)
+    values[line] = values[line] or {}
+    table.insert(values[line], words)
+  end
   for _, element in ipairs(picture.elements or {}) do
+    local line = element.range.start.line
     if element.kind == 'value' then
-      local line = element.range.start.line
-      local text = vim.api.nvim_buf_get_lines(running.buffer, line, line + 1, false)[1] or ''
-      local first = client.byte(text, element.range.start.character, server.offset_encoding)
-      local last = client.byte(text, element.range['end'].character, server.offset_encoding)
-      values[line] = values[line] or {}
-      table.insert(values[line], ('%s = %s'):format(text:sub(first + 1, last), tostring(element.value)))
+      tell(line, ('%s = %s'):format(name_in(running.buffer, element.range, server), tostring(element.value)))
+    elseif element.kind == 'forced' then
+      local value = element.value == true and 1 or element.value == false and 0 or element.value
+      tell(line, t('%s forced to %s', name_in(running.buffer, element.range, server), tostring(value)))
+      mark(running.buffer, element.range, server.offset_encoding, { hl_group = 'RungwiseForcedName', priority = 160 })
+      forced[line] = true
     elseif element.energised or element.conducts then
       mark(running.buffer, element.range, server.offset_encoding, {
         hl_group = element.energised and 'RungwiseEnergised' or 'RungwiseReady', priority = 150,
       })
     end
+  end
+  for line in pairs(forced) do
+    vim.api.nvim_buf_set_extmark(running.buffer, SPACE, line, 0, {
+      sign_text = 'F', sign_hl_group = 'RungwiseForcedSign', priority = 160,
+    })
   end
   for line, words in pairs(values) do
     vim.api.nvim_buf_set_extmark(running.buffer, SPACE, line, 0, {

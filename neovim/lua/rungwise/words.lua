@@ -48,6 +48,7 @@ M.chinese = {
   ['Relays'] = '继电器',
   ['Registers'] = '寄存器',
   ['Variables'] = '变量',
+  ['%s forced to %s'] = '%s 强制为 %s',
   ['[forced]'] = '[已强制]',
   ['running'] = '运行中',
   ['paused'] = '已暂停',

@@ -2,14 +2,13 @@
 
 use crate::cli::Outcome;
 use crate::cli::input::{complain, remark};
+use crate::cli::progress::interruption;
 use crate::cli::run::duration;
 use crate::link::{Host, Line, LinkError, Patience, Progress, Speed, Stage, Transport, transport};
 use crate::project::Project;
 use crate::text::{Language, Message};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 #[derive(clap::Args)]
@@ -52,7 +51,7 @@ impl Connection {
     fn connect(&self, port: &str) -> Result<AnyHost, LinkError> {
         let patience =
             Patience { answer: Duration::from_nanos(self.timeout.max(1) as u64), ..Patience::default() };
-        let mut line = Line::new(transport::open(port)?, patience, cancel());
+        let mut line = Line::new(transport::open(port)?, patience, interruption());
         let Some(baud) = self.baud else { return Host::connect(line) };
         match line.greet() {
             Ok(()) => {
@@ -74,19 +73,6 @@ impl Connection {
 pub(super) fn failed(error: &LinkError, language: Language) -> Outcome {
     complain(error.code(), &error.message().render(language), &error.help().render(language), language);
     if error.is_of_line() { Outcome::LinkFailed } else { Outcome::Findings }
-}
-
-/// What Ctrl-C sets: what is under way ends at the next request, with a word about how far it came.
-fn cancel() -> Arc<AtomicBool> {
-    let cancel = Arc::new(AtomicBool::new(false));
-    let own = Arc::clone(&cancel);
-    // Without a handler Ctrl-C ends the process, which is safe too.
-    let _ = ctrlc::set_handler(move || {
-        if own.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-    });
-    cancel
 }
 
 /// A bar on a terminal, nothing elsewhere.

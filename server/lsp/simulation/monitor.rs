@@ -1,6 +1,7 @@
 //! The notification `rungwise/monitor`: what of a program that runs is on the screen.
 
 use super::super::to_proto::Place;
+use super::forced::forced;
 use crate::document::Tree;
 use crate::ide;
 use crate::il::iec::{ItemKind, ParameterValue, Run};
@@ -116,6 +117,7 @@ impl Monitor {
                 elements.push(element);
             }
             elements.extend(words(place, window, machine));
+            elements.extend(forced(place, window, code, machine));
         }
         elements
     }
@@ -166,9 +168,7 @@ fn words(place: Place<'_>, window: &Bytes<usize>, machine: &Machine<u8>) -> Vec<
             }
             continue;
         }
-        let unit = ide::pou_at(place.document, at.start);
-        let unit = unit.and_then(|number| place.document.scopes().pous.get(number));
-        let unit = unit.map_or("", |unit| &unit.name);
+        let unit = unit_at(place, at.start);
         for span in operands(reading.tree()) {
             let word = span.of(reading.text());
             // Of an instance that is called what it counts.
@@ -180,6 +180,12 @@ fn words(place: Place<'_>, window: &Bytes<usize>, machine: &Machine<u8>) -> Vec<
         }
     }
     elements
+}
+
+/// The name of the program unit at an offset; empty outside of all.
+pub(super) fn unit_at(place: Place<'_>, offset: usize) -> &str {
+    let unit = ide::pou_at(place.document, offset);
+    unit.and_then(|number| place.document.scopes().pous.get(number)).map_or("", |unit| &unit.name)
 }
 
 /// Where operands of instructions and of drawn elements stand.

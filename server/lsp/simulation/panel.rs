@@ -19,7 +19,10 @@ pub(super) fn rows(view: &ProjectView<'_>, machine: &Machine<u8>) -> Vec<Json> {
     let code = machine.code();
     let mut panel =
         Panel { view, machine, presets: presets(code), rows: Vec::new(), known: FxHashSet::default() };
-    for row in &usage.rows {
+    // A variable that is declared at an address is called by its name.
+    let is_direct = |row: &&UsageRow| matches!(row.key, UsageKey::Direct(_));
+    let (direct, named): (Vec<&UsageRow>, Vec<&UsageRow>) = usage.rows.iter().partition(is_direct);
+    for row in named.into_iter().chain(direct) {
         panel.add(row);
     }
     // What the code has and nobody mentions by this name.

@@ -22,10 +22,17 @@ use std::time::{Duration, Instant};
 use tokio::sync::oneshot;
 use tower_lsp::ls_types::{Position, Range, Uri};
 
-/// What a simulation is told to do.
+/// What a simulation is told.
 #[derive(Clone, Debug)]
 pub(super) enum Order {
     Start { scan_ms: Option<f64>, speed: Option<f64>, is_paused: bool },
+    Do(Deed),
+    Ask(Question),
+}
+
+/// What changes the course of a program that runs. What takes long ends where it is.
+#[derive(Clone, Debug)]
+pub(super) enum Deed {
     Stop,
     Pause,
     Run { speed: Option<f64> },
@@ -34,6 +41,11 @@ pub(super) enum Order {
     Reset,
     Set { name: String, value: Json, is_force: bool },
     Release { name: Option<String> },
+}
+
+/// What leaves its course alone, so that what takes long goes on meanwhile.
+#[derive(Clone, Debug)]
+pub(super) enum Question {
     Watch { ranges: Option<Vec<Range>>, names: Option<Vec<String>> },
     State { names: Option<Vec<String>> },
     Panel,
@@ -51,20 +63,6 @@ pub(super) enum About {
 }
 
 type Reply = Result<Json, Message>;
-
-impl Order {
-    /// Whether it only asks, so that what takes long goes on meanwhile.
-    fn is_question(&self) -> bool {
-        matches!(
-            self,
-            Order::Watch { .. }
-                | Order::State { .. }
-                | Order::Panel
-                | Order::Trace { .. }
-                | Order::Export { .. }
-        )
-    }
-}
 
 /// Says when dropped, also by a panic, that a thread has ended.
 struct Mark(Arc<AtomicBool>);
@@ -179,7 +177,7 @@ impl Thread {
             let wait = self.running.as_ref().map_or(Duration::from_secs(60), Running::wait);
             match receiver.recv_timeout(wait) {
                 Ok((order, reply)) => {
-                    if !order.is_question() {
+                    if !matches!(order, Order::Ask(_)) {
                         // What takes long ends where it is when something else is wanted.
                         self.end_task();
                     }
@@ -239,43 +237,48 @@ impl Thread {
     }
 
     fn obey(&mut self, order: Order) -> Reply {
-        let workspace = self.workspace.upgrade().ok_or_else(|| Message::new("simulate.not-running"))?;
-        if let Order::Start { scan_ms, speed, is_paused } = &order {
-            let mut running = Running::start(&workspace, &self.uri)?;
-            if let Some(scan_ms) = scan_ms {
-                if !SCAN_MS.contains(scan_ms) {
-                    return Err(Message::new("simulate.scan-time").with("value", scan_ms));
-                }
-                running.scan_ns = (scan_ms * 1e6) as i64;
-            }
-            running.set_speed(*speed)?;
-            running.is_paused = *is_paused;
-            if let Some(before) = self.running.take() {
-                running.session.take_over(before.session.machine());
-                running.monitor = before.monitor;
-                (running.edition, running.branch) = (before.edition + 1, before.branch + 1);
-            }
-            self.running = Some(running);
+        let gone = || Message::new("simulate.not-running");
+        let workspace = self.workspace.upgrade().ok_or_else(gone)?;
+        if let Order::Start { scan_ms, speed, is_paused } = order {
+            self.start(&workspace, scan_ms, speed, is_paused)?;
         }
-        let running = self.running.as_mut().ok_or_else(|| Message::new("simulate.not-running"))?;
+        let running = self.running.as_mut().ok_or_else(gone)?;
         match order {
-            Order::Record { names } => {
-                let language = workspace.snapshot().manner.language;
-                return running.record(&self.uri, &names.unwrap_or_default(), language);
-            }
-            Order::Why { about, scan, is_brief } => {
-                return running.why(&workspace, &self.uri, about, scan, is_brief);
-            }
-            _ => {}
+            Order::Ask(question) => return running.answer(question, &workspace, &self.uri),
+            Order::Do(deed) => running.obey(deed)?,
+            Order::Start { .. } => {}
         }
-        let more = running.tell(&order, &workspace, &self.uri)?;
-        let names = running.obey(order)?;
         running.locate(&workspace, &self.uri);
-        let mut state = running.state(&workspace, &self.uri, names);
-        if let (Some(state), Some(Json::Object(more))) = (state.as_object_mut(), more) {
-            state.extend(more);
+        Ok(running.state(&workspace, &self.uri, None))
+    }
+
+    /// Begins to run the program as it is now, in the place of the one that ran before.
+    fn start(
+        &mut self,
+        workspace: &Workspace,
+        scan_ms: Option<f64>,
+        speed: Option<f64>,
+        is_paused: bool,
+    ) -> Result<(), Message> {
+        let mut running = Running::start(workspace, &self.uri)?;
+        if let Some(scan_ms) = scan_ms {
+            if !SCAN_MS.contains(&scan_ms) {
+                return Err(Message::new("simulate.scan-time").with("value", scan_ms));
+            }
+            running.scan_ns = (scan_ms * 1e6) as i64;
         }
-        Ok(state)
+        running.set_speed(speed)?;
+        running.is_paused = is_paused;
+        if let Some(before) = self.running.take() {
+            running.session.take_over(before.session.machine());
+            running.monitor = before.monitor;
+            (running.edition, running.branch) = (before.edition + 1, before.branch + 1);
+        }
+        // The first scan is there as soon as it is asked for.
+        running.scan();
+        running.resume();
+        self.running = Some(running);
+        Ok(())
     }
 }
 
@@ -434,34 +437,24 @@ impl Running {
         }
     }
 
-    /// Does what it is told; gives the names whose values are wanted.
-    fn obey(&mut self, order: Order) -> Result<Option<Vec<String>>, Message> {
-        match order {
-            Order::State { names } => return Ok(names),
-            Order::Panel | Order::Trace { .. } | Order::Export { .. } => return Ok(None),
-            _ => {}
-        }
-        // What was seen was of another scan, or of other lines.
+    /// Does what it is told.
+    fn obey(&mut self, deed: Deed) -> Result<(), Message> {
+        // What was seen was of another scan.
         self.sights.clear();
         self.is_news = true;
-        match order {
-            Order::Start { .. } => {
-                // The first scan is there as soon as it is asked for.
-                self.scan();
-                self.resume();
-            }
-            Order::Stop => self.is_over = true,
-            Order::Pause => self.is_paused = true,
-            Order::Run { speed } => {
+        match deed {
+            Deed::Stop => self.is_over = true,
+            Deed::Pause => self.is_paused = true,
+            Deed::Run { speed } => {
                 self.set_speed(speed)?;
                 self.is_paused = false;
             }
-            Order::Step { count } => {
+            Deed::Step { count } => {
                 self.is_paused = true;
                 self.task = Some(Task::Steps(count));
             }
-            Order::StepBack { count, change_of } => self.step_back(count, change_of)?,
-            Order::Reset => {
+            Deed::StepBack { count, change_of } => self.step_back(count, change_of)?,
+            Deed::Reset => {
                 let mut session = Session::new(Arc::clone(self.session.machine().code()));
                 session.take_over(self.session.machine());
                 self.session = session;
@@ -472,24 +465,17 @@ impl Running {
                 self.scan();
                 self.resume();
             }
-            Order::Set { name, value, is_force } => self.set(&name, &value, is_force)?,
-            Order::Release { name: Some(name) } => {
+            Deed::Set { name, value, is_force } => self.set(&name, &value, is_force)?,
+            Deed::Release { name: Some(name) } => {
                 self.session.touch(self.variable(&name)?.release());
                 self.recording.note(self.session.machine().scans(), &name, InputKind::Release);
             }
-            Order::Release { name: None } => {
+            Deed::Release { name: None } => {
                 self.recording.release_all(self.session.machine().scans());
                 self.session.touch(Touch::LetAllGo);
             }
-            Order::Watch { ranges, names } => self.monitor.watch(ranges, names),
-            Order::State { .. }
-            | Order::Panel
-            | Order::Trace { .. }
-            | Order::Export { .. }
-            | Order::Record { .. }
-            | Order::Why { .. } => {}
         }
-        Ok(None)
+        Ok(())
     }
 
     fn step_back(&mut self, count: u64, change_of: Option<String>) -> Result<(), Message> {

@@ -31,7 +31,7 @@ impl Compiler<'_> {
         let unit = self.bodies[number].unit;
         let place = self.declared.units[unit].place.unwrap_or(Place::START);
         self.builder.at(place, 0);
-        let first = self.builder.place_number();
+        let first = self.builder.instruction();
         self.edges();
         self.renew(number);
         let parts = self.declared.units[unit].body.clone();
@@ -53,7 +53,7 @@ impl Compiler<'_> {
         self.builder.forget_power();
         self.land();
         self.builder.op(Op::Return);
-        self.instructions.push(first..self.builder.place_number() + 1);
+        self.instructions.push(first..self.builder.instruction() + 1);
     }
 
     /// Variables that begin anew at each call: VAR_TEMP. Those of functions begin where they are called.
@@ -380,6 +380,7 @@ impl Compiler<'_> {
         place: Place,
     ) -> Result<Option<Spot>, Obstacle> {
         let record = self.record(unit);
+        let is_new = !self.functions.contains_key(&unit);
         let base = match self.functions.get(&unit) {
             Some(base) => *base,
             None => {
@@ -389,6 +390,10 @@ impl Compiler<'_> {
             }
         };
         let variable = Variable::new(Kind::Record(record.clone()), base);
+        if is_new {
+            let name = self.declared.units[unit].name.clone();
+            self.parts.names.add_function(name, &variable);
+        }
         let result = record.fields.iter().find(|field| {
             folded(&field.name) == folded(&self.declared.units[unit].name)
                 && self.declared.units[unit].result.is_some()

@@ -203,7 +203,7 @@ impl Compiler<'_> {
             self.initial_of_variable(0, &variable, Some(declared), false);
         }
         self.name_located(&path, &variable);
-        self.parts.names.add(path, &variable);
+        self.parts.names.add_program(path, &variable);
         Some(variable)
     }
 

@@ -211,6 +211,8 @@ impl Drawing<'_, '_> {
     fn call(&mut self, call: &Arc<Call>, terms: &[Term], span: Span) -> Result<(), Obstacle> {
         let instance = terms.first().ok_or(Obstacle::Unreadable)?;
         let power = self.compiler.builder.settle();
+        let instruction = self.compiler.builder.instruction();
+        self.compiler.builder.reached();
         let variable = self.compiler.variable(&instance.text)?;
         let mut arguments = Arguments::default();
         match call.is_enabled() {
@@ -241,7 +243,10 @@ impl Drawing<'_, '_> {
             self.compiler.builder.connect(Position::First, cell, false);
             self.compiler.builder.settle();
         }
-        self.compiler.builder.seen();
+        if self.compiler.builder.is_watched() {
+            let power = self.compiler.builder.power();
+            self.compiler.builder.shown(instruction, power);
+        }
         Ok(())
     }
 

@@ -177,10 +177,11 @@ impl<'a> List<'_, 'a> {
         while at < items.end {
             let item = self.items[at];
             self.at(item.span);
-            let place = self.compiler.builder.place_number();
+            let instruction = self.compiler.builder.instruction();
+            self.reached(item, instruction);
             let sees = sees(&item.kind);
             if sees == Sees::First {
-                self.saw(place);
+                self.saw(instruction);
             }
             let next = self.item(at, item);
             at = match next {
@@ -193,19 +194,36 @@ impl<'a> List<'_, 'a> {
                 }
             };
             if sees == Sees::Result {
-                self.saw(place);
+                self.saw(instruction);
             }
         }
     }
 
-    /// Says that the instruction at a place is executed, with the current result if that is a BOOL.
-    fn saw(&mut self, place: u32) {
+    /// Lets a debugger stop before an instruction, and know the current result there.
+    fn reached(&mut self, item: Item, instruction: u32) {
+        if matches!(item.kind, ItemKind::Label { .. }) || !self.compiler.builder.is_watched() {
+            return;
+        }
+        self.compiler.builder.reached();
+        let result = match &self.current {
+            Current::Nothing | Current::Whole(_) => return,
+            Current::Bit => {
+                let power = self.compiler.builder.settle();
+                Given::at(cell_spot(power))
+            }
+            Current::Given(given) => given.clone(),
+        };
+        self.compiler.parts.results.insert(instruction, (result.input, result.kind));
+    }
+
+    /// Says that an instruction is executed, with the current result if that is a BOOL.
+    fn saw(&mut self, instruction: u32) {
         if self.compiler.builder.is_watched() {
             let power = match self.current {
                 Current::Bit => self.compiler.builder.settle(),
                 _ => Row::RAIL,
             };
-            self.compiler.builder.saw_at(place, power);
+            self.compiler.builder.shown(instruction, power);
         }
     }
 

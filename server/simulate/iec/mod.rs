@@ -17,10 +17,13 @@ mod image;
 mod names;
 pub(super) use names::Leaf;
 
+mod members;
+pub use members::{Member, UnitVariables, joined};
+
 mod scopes;
 
 mod run;
-pub(super) use run::{call_block, compute, copy, initialise, of_pattern, put, read, schedule};
+pub(super) use run::{call_block, compute, copy, initialise, of_pattern, put, read, result_before, schedule};
 
 mod declarations;
 

@@ -18,6 +18,8 @@ use std::sync::Arc;
 #[derive(Debug, Default)]
 pub(in crate::simulate) struct Names {
     pub(super) roots: Vec<Root>,
+    /// The variables of functions, which are found where nothing else is called so.
+    pub(super) functions: Vec<Root>,
     pub(super) scopes: Vec<Scope>,
     pub(super) around: Around,
     enumerations: Vec<Enumerated>,
@@ -39,6 +41,8 @@ pub(super) struct Root {
     /// As declared, with what stands around it: `Resource`, `Main`.
     pub(super) path: Vec<SmolStr>,
     pub(super) variable: Variable,
+    /// Whether these are the variables of a program or function.
+    pub(super) is_unit: bool,
 }
 
 /// An elementary value with a name.
@@ -63,7 +67,17 @@ const MOST_ELEMENTS: u64 = 1 << 16;
 
 impl Names {
     pub(super) fn add(&mut self, path: Vec<SmolStr>, variable: &Variable) {
-        self.roots.push(Root { path, variable: variable.clone() });
+        self.roots.push(Root { path, variable: variable.clone(), is_unit: false });
+    }
+
+    /// The variables of a program.
+    pub(super) fn add_program(&mut self, path: Vec<SmolStr>, variable: &Variable) {
+        self.roots.push(Root { path, variable: variable.clone(), is_unit: true });
+    }
+
+    /// The variables of a function.
+    pub(super) fn add_function(&mut self, name: SmolStr, variable: &Variable) {
+        self.functions.push(Root { path: vec![name], variable: variable.clone(), is_unit: true });
     }
 
     /// Takes in where addresses lie, and what types are called; names are folded.
@@ -75,7 +89,8 @@ impl Names {
     ) {
         (self.image, self.rebound) = (image, rebound);
         let mut found = Vec::new();
-        self.roots.iter().for_each(|root| enumerations(&root.variable.kind, &mut found));
+        let roots = self.roots.iter().chain(&self.functions);
+        roots.for_each(|root| enumerations(&root.variable.kind, &mut found));
         let named = |values: Arc<Enumeration>| {
             let is_own = |kind: &Kind| matches!(kind, Kind::Enumeration(own) if Arc::ptr_eq(own, &values));
             let names = kinds.iter().filter(|(_, kind)| is_own(kind)).map(|(name, _)| name.clone()).collect();
@@ -91,13 +106,17 @@ impl Names {
             return self.image.find(address).map(|spot| Leaf { spot, enumeration: None });
         }
         let steps = steps(name)?;
+        self.find_among(&self.roots, &steps).or_else(|| self.find_among(&self.functions, &steps))
+    }
+
+    fn find_among(&self, roots: &[Root], steps: &[Step]) -> Option<Leaf> {
         let mut best: Option<(usize, Leaf)> = None;
         let mut is_unique = true;
-        for root in &self.roots {
+        for root in roots {
             for skipped in 0..=root.path.len() {
                 let suffix = &root.path[skipped..];
                 let is_here = suffix.len() <= steps.len()
-                    && suffix.iter().zip(&steps).all(|(own, step)| *step == Step::Member(folded(own)));
+                    && suffix.iter().zip(steps).all(|(own, step)| *step == Step::Member(folded(own)));
                 let leaf = is_here.then(|| self.leaf(&root.variable, &steps[suffix.len()..])).flatten();
                 let Some(leaf) = leaf else { continue };
                 match best {
@@ -177,14 +196,17 @@ impl Names {
                 names.push(self.shortest(root, &name, spot));
             }
         }
-        let direct =
-            self.image.named.iter().filter(|address| {
-                self.image.find(**address).is_some_and(|spot| self.named_at(spot).is_none())
-            });
-        names.extend(direct.map(ToString::to_string));
+        names.extend(self.direct());
         names.sort();
         names.dedup();
         names
+    }
+
+    /// The addresses at which no variable is declared.
+    pub(super) fn direct(&self) -> impl Iterator<Item = String> {
+        let is_free = |spot| self.named_at(spot).is_none();
+        let named = self.image.named.iter();
+        named.filter(move |address| self.image.find(**address).is_some_and(is_free)).map(ToString::to_string)
     }
 
     /// A variable that is declared at an address, or anywhere else.
@@ -218,19 +240,12 @@ impl Names {
             Kind::Array(bounds, element) => {
                 let most = if is_watched { WATCHED_ELEMENTS } else { MOST_ELEMENTS };
                 for number in 0..super::kind::count(bounds).min(most) {
-                    let mut rest = number;
-                    let mut subscripts: Vec<String> = Vec::new();
-                    for (least, greatest) in bounds.iter().rev() {
-                        let length = (greatest - least + 1) as u64;
-                        subscripts.insert(0, (least + (rest % length) as i64).to_string());
-                        rest /= length;
-                    }
                     let Some(part) =
                         variable.part((**element).clone(), variable.size_of(element).times(number))
                     else {
                         return;
                     };
-                    self.walk(&part, format!("{name}[{}]", subscripts.join(",")), found, is_watched);
+                    self.walk(&part, name.clone() + &subscripts(bounds, number), found, is_watched);
                 }
             }
             Kind::Record(record) => {
@@ -279,6 +294,18 @@ impl Names {
         all.iter_mut().for_each(|(name, _)| *name = folded(name).to_string());
         all
     }
+}
+
+/// How the element of an array with a number is called: `[2,3]`.
+pub(super) fn subscripts(bounds: &[(i64, i64)], number: u64) -> String {
+    let mut rest = number;
+    let mut subscripts: Vec<String> = Vec::new();
+    for (least, greatest) in bounds.iter().rev() {
+        let length = (greatest - least + 1) as u64;
+        subscripts.insert(0, (least + (rest % length) as i64).to_string());
+        rest /= length;
+    }
+    format!("[{}]", subscripts.join(","))
 }
 
 /// The steps of a name: members, and subscripts that are numbers.

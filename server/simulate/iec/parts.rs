@@ -5,6 +5,7 @@ use super::names::{Leaf, Names};
 use crate::simulate::{Cell, Slot};
 use crate::target::Location;
 use crate::target::iec::{Datum, ElementaryType, Formula, FunctionBlock};
+use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 use std::ops::Range;
 
@@ -20,6 +21,8 @@ pub(in crate::simulate) struct Parts {
     /// The first list has the initial values of the program; others are those of units that begin anew at each call.
     pub(super) initials: Vec<Vec<(Spot, Datum)>>,
     pub(super) tasks: Vec<Task>,
+    /// Current results before instructions, by the numbers of these.
+    pub(super) results: FxHashMap<u32, (Input, ElementaryType)>,
     /// Texts of memory in all.
     pub(in crate::simulate) texts: usize,
     pub(super) names: Names,

@@ -86,6 +86,20 @@ pub(in crate::simulate) fn read<L: Lanes>(
     })
 }
 
+/// The current result before an instruction, with its type; nothing where there is none.
+pub(in crate::simulate) fn result_before<L: Lanes>(
+    memory: &Memory<L>,
+    parts: &Parts,
+    instruction: u32,
+) -> Option<(Datum, ElementaryType)> {
+    let (input, kind) = parts.results.get(&instruction)?;
+    let value = match input {
+        Input::Constant(value) => value.clone(),
+        Input::At(spot) => read(memory, parts, *spot, 0)?,
+    };
+    Some((value, *kind))
+}
+
 impl<L: Lanes> Store<'_, L> {
     fn offset(&self, index: u32) -> Option<Extent> {
         offset(self.memory, self.parts, index, self.lane)

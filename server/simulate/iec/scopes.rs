@@ -1,8 +1,9 @@
 //! What names mean inside of program units: each instance of a unit has a body of its own.
 
 use super::kind::{Extent, Kind, Record};
+use super::members::{joined, parts};
 use super::names::{Leaf, Names, Step, steps};
-use super::place::Place as Variable;
+use super::place::{At, Place as Variable};
 use crate::il::iec::{PouKind, SectionKind};
 use crate::target::{DirectAddress, Model, Operand};
 use crate::text::folded;
@@ -11,7 +12,7 @@ use smol_str::SmolStr;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A body of a unit with the variables that it works on.
+/// A body of a unit with the variables that it works on. They are in the order of their instructions.
 #[derive(Debug)]
 pub(super) struct Scope {
     /// The folded name of the unit; empty for what stands outside of all.
@@ -31,6 +32,23 @@ pub(super) struct Around {
     pub(super) globals: FxHashMap<SmolStr, Variable>,
     /// Variables that lie at addresses.
     pub(super) located: FxHashMap<DirectAddress, Vec<Variable>>,
+}
+
+impl Scope {
+    /// The path to its variables, where they lie in a variable to which a path leads.
+    fn path_from(&self, variable: &Variable, path: String) -> Option<String> {
+        if let Kind::Record(record) = &variable.kind
+            && Arc::ptr_eq(record, &self.record)
+            && variable.at == At::Memory(self.base)
+        {
+            return Some(path);
+        }
+        let inside = |(name, part): (SmolStr, Variable)| {
+            // An elementary value has no body.
+            part.kind.elementary().is_none().then(|| self.path_from(&part, joined(&path, &name)))?
+        };
+        parts(variable).into_iter().find_map(inside)
+    }
 }
 
 impl Names {
@@ -54,6 +72,20 @@ impl Names {
     /// The instructions of a body, by their numbers.
     pub(in crate::simulate) fn instructions_of(&self, scope: usize) -> Range<u32> {
         self.scopes.get(scope).map_or(0..0, |scope| scope.instructions.clone())
+    }
+
+    /// The body that an instruction with a number belongs to.
+    pub(in crate::simulate) fn scope_at(&self, instruction: u32) -> Option<usize> {
+        let after = self.scopes.partition_point(|scope| scope.instructions.start <= instruction);
+        let own = after.checked_sub(1)?;
+        self.scopes[own].instructions.contains(&instruction).then_some(own)
+    }
+
+    /// The name of the program, the instance or the function that a body is of, with what stands around it.
+    pub(in crate::simulate) fn owner_of(&self, scope: usize) -> Option<String> {
+        let scope = self.scopes.get(scope)?;
+        let mut roots = self.roots.iter().chain(&self.functions);
+        roots.find_map(|root| scope.path_from(&root.variable, root.path.join(".")))
     }
 
     /// What a name leads to in a body; nothing if it has parts, or subscripts that are no numbers.

@@ -450,6 +450,29 @@ check('a program runs, holds itself, shows its power and goes back', function()
       return found[4].virt_text and found[4].virt_text[1][1] == 'T0 = 10'
     end)
   end)
+  -- What is forced is marked wherever it is named: a letter beside the line, lines below the name, words behind it.
+  vim.cmd('Rungwise simulate force Y0 1')
+  local function forced(line)
+    local found = { signs = 0, names = {}, words = '' }
+    for _, own in ipairs(vim.api.nvim_buf_get_extmarks(0, space, { line - 1, 0 }, { line - 1, -1 }, { details = true })) do
+      local details = own[4]
+      found.signs = found.signs + (vim.trim(details.sign_text or '') == 'F' and 1 or 0)
+      found.words = found.words .. (details.virt_text and details.virt_text[1][1] or '')
+      if details.hl_group == 'RungwiseForcedName' then
+        table.insert(found.names, vim.fn.getline(line):sub(own[3] + 1, details.end_col))
+      end
+    end
+    return found
+  end
+  until_true('the forced coil and its contacts', function()
+    local coil, contact = forced(2), forced(4)
+    return vim.deep_equal(coil.names, { 'Y0' }) and coil.signs == 1 and coil.words == 'Y0 forced to 1'
+      and vim.deep_equal(contact.names, { 'Y0' })
+  end)
+  vim.cmd('Rungwise simulate release Y0')
+  until_true('nothing forced', function()
+    return #forced(2).names == 0 and forced(2).signs == 0
+  end)
   local running = simulation.running[vim.uri_from_bufnr(0)]
   -- To before the scan in which the motor came on.
   vim.cmd('Rungwise simulate back Y0')

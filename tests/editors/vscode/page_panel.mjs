@@ -4,12 +4,13 @@ import { existsSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 /** The files of these checks, and the fixtures of which they are copies. */
-export const PANEL_FILES = { 'operated.lad': 'motor.lad', 'restarted.lad': 'motor.lad' };
+export const PANEL_FILES = { 'operated.lad': 'motor.lad', 'restarted.lad': 'motor.lad', 'mixer.il': 'mixer_iec.il' };
 
 export const PANEL_TESTS = {
   'a click on the panel starts the motor, which holds itself, and one goes back past the click': operated,
   'a panel is operated by keys, and its chart is looked at and saved': byKeys,
   'a panel tells that the simulation is stopped, and starts it': restarted,
+  'a panel of an IEC 61131-3 program has its variables, and the text shows what is forced': declared,
 };
 
 /** The page of the panel. */
@@ -24,7 +25,7 @@ async function panelPage(workbench) {
   });
 }
 
-async function openPanel(workbench, file) {
+async function openPanel(workbench, file, first = 'X0') {
   await workbench.clear();
   await workbench.openFile(file);
   await workbench.goTo(2, 6);
@@ -32,7 +33,7 @@ async function openPanel(workbench, file) {
   await workbench.status('scan ');
   await workbench.command('Rungwise: I/O Panel');
   const panel = await panelPage(workbench);
-  await panel.locator('[data-name="X0"]').waitFor();
+  await panel.locator(`[data-name$="${first}"]`).waitFor();
   return panel;
 }
 
@@ -44,6 +45,18 @@ async function energised(workbench) {
     spans
       .filter((span) => span.children.length === 0 && Number(getComputedStyle(span).fontWeight) >= 700)
       .map((span) => span.textContent.replaceAll('\u00a0', ' ')));
+}
+
+/** The names in the editor's text that are forced: each has a frame of dashes, and there are as many letters F. */
+async function forcedNames(workbench) {
+  return workbench.page.locator('.editor-instance .view-lines span').evaluateAll((spans) => {
+    const leaves = spans.filter((span) => span.children.length === 0);
+    const letters = leaves.filter((span) => getComputedStyle(span, '::after').content === '"F"');
+    const framed = leaves
+      .filter((span) => getComputedStyle(span).borderTopStyle === 'dashed' && span.textContent !== '')
+      .map((span) => span.textContent.replaceAll('\u00a0', ' ').trim());
+    return letters.length === framed.length ? framed : [`${framed.length} frames, ${letters.length} letters`];
+  });
 }
 
 const hasCoil = async (workbench) => (await energised(workbench)).some((text) => text.includes('( )'));
@@ -105,9 +118,11 @@ async function byKeys(workbench, workspace) {
   await panel.locator('[data-name="X1"][data-forced]').waitFor();
   await keyboard.press('f');
   await workbench.until('the motor stopped', async () => (await isOn(panel, 'X1')) && !(await isOn(panel, 'Y0')));
+  await workbench.until('the forced contact marked in the text', async () => (await forcedNames(workbench)).includes('X1'));
   await workbench.screenshot('41-panel-forced');
   await keyboard.press('r');
   await panel.locator('[data-name="X1"]:not([data-forced])').waitFor();
+  await workbench.until('no mark in the text', async () => (await forcedNames(workbench)).length === 0);
   await keyboard.press('g');
   await panel.locator('.mode[data-mode="paused"]').waitFor();
   // The chart says what is at its cursor; P goes to the change before.
@@ -152,5 +167,24 @@ async function restarted(workbench) {
   await workbench.until('the motor', () => isOn(panel, 'Y0'));
   await workbench.command('Rungwise: Stop Simulation');
   await panel.locator('.mode[data-mode="stopped"]').waitFor();
+  await workbench.clear();
+}
+
+async function declared(workbench) {
+  const panel = await openPanel(workbench, 'mixer.il', 'Start');
+  const row = (name) => panel.locator(`[data-name="${name}"]`);
+  const names = await panel.locator('.row').evaluateAll((rows) => rows.map((own) => own.dataset.name));
+  if (names.join(' ') !== 'Mixer.Start Mixer.Stop Mixer.Motor Mixer.Delay.ET') {
+    throw new Error(`on the panel are ${names}`);
+  }
+  await row('Mixer.Start').locator('.push').click();
+  await workbench.until('the mixer, held by itself', async () => (await isOn(panel, 'Mixer.Motor')) && !(await isOn(panel, 'Mixer.Start')));
+  await row('Mixer.Stop').locator('.switch').focus();
+  await workbench.page.keyboard.press('f');
+  await workbench.until('the forced input marked in the text', async () => (await forcedNames(workbench)).includes('Stop'));
+  await workbench.screenshot('44-panel-iec');
+  await workbench.page.keyboard.press('f');
+  await workbench.until('the mixer stopped', async () => !(await isOn(panel, 'Mixer.Motor')));
+  await workbench.command('Rungwise: Stop Simulation');
   await workbench.clear();
 }

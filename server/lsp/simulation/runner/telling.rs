@@ -6,7 +6,7 @@ use super::super::super::workspace::Workspace;
 use super::super::monitor::Picture;
 use super::super::{chart, panel, why};
 use super::program::around;
-use super::{About, Order, PICTURE, Reply, Running};
+use super::{About, PICTURE, Question, Reply, Running};
 use crate::document::Document;
 use crate::scenario::Bench;
 use crate::simulate::{Drivers, Inquiry};
@@ -17,29 +17,46 @@ use std::time::Instant;
 use tower_lsp::ls_types::Uri;
 
 impl Running {
-    /// What is told besides the state.
-    pub(super) fn tell(
-        &mut self,
-        order: &Order,
-        workspace: &Workspace,
-        uri: &Uri,
-    ) -> Result<Option<Json>, Message> {
+    /// Answers a question.
+    pub(super) fn answer(&mut self, question: Question, workspace: &Workspace, uri: &Uri) -> Reply {
         let around = || around(workspace, uri).ok_or_else(|| Message::new("simulate.not-running"));
-        Ok(match order {
-            Order::Panel => {
+        let (names, more) = match question {
+            Question::State { names } => (names, None),
+            Question::Watch { ranges, names } => {
+                self.monitor.watch(ranges, names);
+                // What was seen was of other lines.
+                self.sights.clear();
+                self.is_news = true;
+                self.locate(workspace, uri);
+                (None, None)
+            }
+            Question::Panel => {
                 let rows = panel::rows(&around()?.view(), self.session.machine());
-                Some(json!({ "rows": rows }))
+                (None, Some(json!({ "rows": rows })))
             }
-            Order::Trace { wanted } => Some(chart::changes(&mut self.recorder, &self.session, wanted)),
-            Order::Export { wanted, format } => {
-                Some(chart::file(&self.session, &around()?.view(), wanted, format)?)
+            Question::Trace { wanted } => {
+                (None, Some(chart::changes(&mut self.recorder, &self.session, &wanted)))
             }
-            _ => None,
-        })
+            Question::Export { wanted, format } => {
+                (None, Some(chart::file(&self.session, &around()?.view(), &wanted, &format)?))
+            }
+            Question::Record { names } => {
+                let language = workspace.snapshot().manner.language;
+                return self.record(uri, &names.unwrap_or_default(), language);
+            }
+            Question::Why { about, scan, is_brief } => {
+                return self.why(workspace, uri, about, scan, is_brief);
+            }
+        };
+        let mut state = self.state(workspace, uri, names);
+        if let (Some(state), Some(Json::Object(more))) = (state.as_object_mut(), more) {
+            state.extend(more);
+        }
+        Ok(state)
     }
 
     /// What was done since the program began as a scenario test.
-    pub(super) fn record(&self, uri: &Uri, names: &[String], language: Language) -> Reply {
+    fn record(&self, uri: &Uri, names: &[String], language: Language) -> Reply {
         if self.recording.is_empty() {
             return Err(Message::new("scenario.recorded-nothing"));
         }
@@ -101,7 +118,7 @@ impl Running {
     }
 
     /// Why a device is on or off after a scan, or now.
-    pub(super) fn why(
+    fn why(
         &mut self,
         workspace: &Workspace,
         uri: &Uri,
