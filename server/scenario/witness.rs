@@ -322,11 +322,7 @@ impl Trial {
 
     /// Runs both programs and lets `look` see them behind each scan, until it has seen enough. Nothing if something
     /// goes wrong in a scan, or if that is too much work.
-    fn scans(
-        &mut self,
-        attempt: &Attempt,
-        look: &mut Look<'_>,
-    ) -> Option<()> {
+    fn scans(&mut self, attempt: &Attempt, look: &mut Look<'_>) -> Option<()> {
         let first = attempt.first();
         let effort: usize = self.codes.iter().map(|code| code.instructions() + 100).sum();
         let effort = effort * (first + attempt.run.hold + 1) as usize + WORK_OF_START;
@@ -456,7 +452,9 @@ impl Trial {
             Variable::Relay(_) => vec![Value::Bit(false), Value::Bit(true)],
             Variable::Enumerated(..) => (0..4).map(Value::Number).collect(),
             _ => match value {
-                Some(Value::Number(number)) => [0, 1, number + 1, number - 1].map(Value::Number).to_vec(),
+                Some(Value::Number(number)) => {
+                    [0, 1, RUN_OUT, number + 1, number - 1].map(Value::Number).to_vec()
+                }
                 _ => [0, 1, RUN_OUT].map(Value::Number).to_vec(),
             },
         };
@@ -585,7 +583,7 @@ fn given(value: &Held) -> Value {
         Held::Word(value) => Value::Number(*value),
         Held::Real(value) => Value::Real(*value),
         Held::Time(value) => Value::Time(*value),
-        Held::Named(name) => Value::Name(name.into()),
+        Held::Named(name) => Value::read(name).unwrap_or_else(|| Value::Name(name.into())),
     }
 }
 
