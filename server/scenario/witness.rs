@@ -452,7 +452,9 @@ impl Trial {
             Variable::Relay(_) => vec![Value::Bit(false), Value::Bit(true)],
             Variable::Enumerated(..) => (0..4).map(Value::Number).collect(),
             _ => match value {
-                Some(Value::Number(number)) => [0, 1, number + 1, number - 1].map(Value::Number).to_vec(),
+                Some(Value::Number(number)) => {
+                    [0, 1, RUN_OUT, number + 1, number - 1].map(Value::Number).to_vec()
+                }
                 _ => [0, 1, RUN_OUT].map(Value::Number).to_vec(),
             },
         };
@@ -581,7 +583,7 @@ fn given(value: &Held) -> Value {
         Held::Word(value) => Value::Number(*value),
         Held::Real(value) => Value::Real(*value),
         Held::Time(value) => Value::Time(*value),
-        Held::Named(name) => Value::Name(name.into()),
+        Held::Named(name) => Value::read(name).unwrap_or_else(|| Value::Name(name.into())),
     }
 }
 
