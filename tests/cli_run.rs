@@ -128,7 +128,7 @@ fn a_program_of_iec_61131_runs_with_its_names_and_types() {
     let answer: Value = serde_json::from_str(&out).unwrap();
     assert_eq!(answer["scans"][0]["values"], json!({ "%IX0.0": false, "Start": false }));
     let (_, out, _) = run(&folder, &["run", "main.il", "--why", "Level@20ms", "--why", "Count"]);
-    assert!(out.contains("the program has given it") && !out.contains("by hand"), "{out}");
+    assert!(out.contains("LD Level, MUL 2.0, ST Level is executed") && !out.contains("by hand"), "{out}");
     let (code, _, err) = run(&folder, &["run", "main.il", "--set", "Count=-1"]);
     assert!(code == 2 && err.contains("`Count` cannot be set to -1"), "{err}");
     let (code, _, err) = run(&folder, &["run", "main.il", "--watch", "Speed"]);
