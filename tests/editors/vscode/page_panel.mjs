@@ -47,15 +47,14 @@ async function energised(workbench) {
       .map((span) => span.textContent.replaceAll('\u00a0', ' ')));
 }
 
-/** The names in the editor's text that are forced: each has a frame of dashes, and there are as many letters F. */
+/** The names in the editor's text that have a frame of dashes, if there is a letter F beside one: what is forced. */
 async function forcedNames(workbench) {
-  return workbench.page.locator('.editor-instance .view-lines span').evaluateAll((spans) => {
-    const leaves = spans.filter((span) => span.children.length === 0);
-    const letters = leaves.filter((span) => getComputedStyle(span, '::after').content === '"F"');
-    const framed = leaves
-      .filter((span) => getComputedStyle(span).borderTopStyle === 'dashed' && span.textContent !== '')
-      .map((span) => span.textContent.replaceAll('\u00a0', ' ').trim());
-    return letters.length === framed.length ? framed : [`${framed.length} frames, ${letters.length} letters`];
+  return workbench.page.locator('.editor-instance .view-lines').first().evaluate((lines) => {
+    const spans = [...lines.querySelectorAll('span')];
+    const hasLetter = spans.some((span) => /^"F"/.test(getComputedStyle(span, '::after').content));
+    const framed = spans.filter((span) => getComputedStyle(span).borderTopStyle === 'dashed');
+    const names = framed.map((span) => span.textContent.replaceAll('\u00a0', ' ').trim()).filter((name) => name !== '');
+    return hasLetter ? names : [];
   });
 }
 
