@@ -668,8 +668,7 @@ fn a_controller_is_tuned_by_the_response_to_a_step() {
     plc.set("X0 D0=100 D1=500 D2=500 D10=1000 D11=16").scans(1);
     plc.set("D1=500").scans(100).set("D1=350").scans(100).check("D11=0 D13=400 D14=20 D16=50");
     // Too near at the start.
-    let mut plc = Plc::list(PID);
-    plc.set("X0 D0=100 D1=0 D2=500 D10=1000 D11=16").scans(101).check("M8067 D8067=6750 D11=16");
+    faults(PID, "X0 D0=149 D1=0 D2=500 D10=1000 D11=16", Fault::Pid(6750), 6750, "D11=16");
 }
 
 #[test]

@@ -38,11 +38,13 @@ pub(super) fn sample(
         for cell in [SLOPE, DEAD_TIME, TIME] {
             note(execution, cell, 0.0);
         }
-        return Ok(());
     }
     let (start, distance) = (real(execution, START), real(execution, DISTANCE));
     if distance.abs() < LEAST_DISTANCE {
         return Err(Fault::Pid(NOT_TUNED));
+    }
+    if is_first {
+        return Ok(());
     }
     let time = real(execution, TIME) + parameters.sampling;
     note(execution, TIME, time);
