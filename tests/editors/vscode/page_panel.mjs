@@ -47,15 +47,15 @@ async function energised(workbench) {
       .map((span) => span.textContent.replaceAll('\u00a0', ' ')));
 }
 
-/** The names in the editor's text that have a frame of dashes, if there is a letter F beside one: what is forced. */
+/** The names in the editor's text behind which stands the letter F of what is forced, which a span of its own has. */
 async function forcedNames(workbench) {
-  return workbench.page.locator('.editor-instance .view-lines').first().evaluate((lines) => {
-    const spans = [...lines.querySelectorAll('span')];
-    const hasLetter = spans.some((span) => /^"F"/.test(getComputedStyle(span, '::after').content));
-    const framed = spans.filter((span) => getComputedStyle(span).borderTopStyle === 'dashed');
-    const names = framed.map((span) => span.textContent.replaceAll('\u00a0', ' ').trim()).filter((name) => name !== '');
-    return hasLetter ? names : [];
-  });
+  return workbench.page.locator('.editor-instance .view-lines').first().evaluate((lines) =>
+    [...lines.querySelectorAll('span')]
+      .filter((span) => /^"F"/.test(getComputedStyle(span, '::after').content))
+      .map((span) => {
+        const before = span.textContent === '' ? span.previousElementSibling?.textContent ?? '' : span.textContent;
+        return before.replaceAll('\u00a0', ' ').trim().split(' ').pop();
+      }));
 }
 
 const hasCoil = async (workbench) => (await energised(workbench)).some((text) => text.includes('( )'));
