@@ -646,6 +646,32 @@ fn a_controller_has_a_derivative_part_of_the_measured_value() {
 }
 
 #[test]
+fn a_controller_is_tuned_by_the_response_to_a_step() {
+    // After a dead time of 2 s the measured value goes by 20 in each second while the output is 1000.
+    let run = |measured: &dyn Fn(i64) -> i64| {
+        let mut plc = Plc::list(PID);
+        plc.set("X0 D0=600 D1=300 D2=1000 D10=1000 D11=16").scans(1);
+        for second in 1..=7 {
+            plc.set(&format!("D1={}", 300 + measured(second)))
+                .scans(100)
+                .check("D11=16 D13=0 D2=1000 ~M8067");
+        }
+        plc
+    };
+    let mut plc = run(&|second| 20 * (second - 2).max(0) - i64::from(second == 7));
+    // 100 of 300 are gone: 1.2 × 1000 / (20 × 2 s), twice and half the dead time. What it drives up it controls in reverse.
+    plc.set("D1=401").scans(100).check("D11=1 D13=3000 D14=40 D16=100 D2=1000 ~M8067");
+    // From then on it controls.
+    plc.set("D0=401 D1=401").scans(100).check("D11=1 D2=1000");
+    // Driven down by the output, as by cooling.
+    let mut plc = Plc::list(PID);
+    plc.set("X0 D0=100 D1=500 D2=500 D10=1000 D11=16").scans(1);
+    plc.set("D1=500").scans(100).set("D1=350").scans(100).check("D11=0 D13=400 D14=20 D16=50");
+    // Too near at the start.
+    faults(PID, "X0 D0=149 D1=0 D2=500 D10=1000 D11=16", Fault::Pid(6750), 6750, "D11=16");
+}
+
+#[test]
 fn a_controller_has_limits_and_alarms() {
     controls(
         "D11=33 D13=100 D32=100 D33=-20",
@@ -665,7 +691,7 @@ fn parameters_of_a_controller_have_their_own_error_codes() {
         faults(PID, &format!("{fine} {setting}"), Fault::Pid(code), i64::from(code), "D2=0");
     }
     faults(PID, &format!("{fine} D16=-1"), Fault::Pid(6736), 6736, "D2=0");
-    faults(PID, &format!("{fine} D11=17"), Fault::NotSimulated(2), 6706, "D2=0");
+    faults(PID, &format!("{fine} D11=81"), Fault::NotSimulated(2), 6706, "D2=0");
     faults(PID, &format!("{fine} D11=37"), Fault::Value(2), 6706, "D2=0");
     // With a sampling time below the scan it goes on, in each scan.
     let mut plc = Plc::list(PID);

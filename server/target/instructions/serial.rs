@@ -206,8 +206,11 @@ pub const ROWS: &[Instruction] = &[
          value without power. The first computation comes with the drive: it takes the measured value for \
          its past, no error before it, and goes on from what `D` holds. A sampling time below the scan \
          counts as the scan, with the code 6740. An alarm comes on when a change is greater than its \
-         limit. The simulator keeps its working memory elsewhere and does not tune by itself: bit 4 of \
-         `S3`+1 is an operation error there.\n\n\
+         limit. Bit 4 of `S3`+1 asks for tuning: with the output at a fixed value, and the measured value at least \
+         150 from the set one (else 6750), it waits until a third of that way is gone, writes gain, times \
+         and direction, and takes the bit away. The simulator keeps its working memory elsewhere, tunes \
+         by the rules of Ziegler and Nichols, where a CPU may find somewhat other numbers, and has only \
+         the method of the step response: bit 6 with bit 4 is an operation error there on an FX3U.\n\n\
          ```il\n\
          LD M8002\n\
          MOV K500 D0\n\

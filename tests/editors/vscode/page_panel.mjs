@@ -47,16 +47,15 @@ async function energised(workbench) {
       .map((span) => span.textContent.replaceAll('\u00a0', ' ')));
 }
 
-/** The names in the editor's text that are forced: each has a frame of dashes, and there are as many letters F. */
+/** The names in the editor's text behind which stands the letter F of what is forced, which a span of its own has. */
 async function forcedNames(workbench) {
-  return workbench.page.locator('.editor-instance .view-lines span').evaluateAll((spans) => {
-    const leaves = spans.filter((span) => span.children.length === 0);
-    const letters = leaves.filter((span) => getComputedStyle(span, '::after').content === '"F"');
-    const framed = leaves
-      .filter((span) => getComputedStyle(span).borderTopStyle === 'dashed' && span.textContent !== '')
-      .map((span) => span.textContent.replaceAll('\u00a0', ' ').trim());
-    return letters.length === framed.length ? framed : [`${framed.length} frames, ${letters.length} letters`];
-  });
+  return workbench.page.locator('.editor-instance .view-lines').first().evaluate((lines) =>
+    [...lines.querySelectorAll('span')]
+      .filter((span) => /^"F"/.test(getComputedStyle(span, '::after').content))
+      .map((span) => {
+        const before = span.textContent === '' ? span.previousElementSibling?.textContent ?? '' : span.textContent;
+        return before.replaceAll('\u00a0', ' ').trim().split(' ').pop();
+      }));
 }
 
 const hasCoil = async (workbench) => (await energised(workbench)).some((text) => text.includes('( )'));

@@ -4,7 +4,9 @@
 //! derivative part follows the measured value, not the error, through a first-order filter whose time is the derivative
 //! gain times the derivative time. Source: the equations of the FX programming manuals, which this follows.
 
-use crate::target::{Execution, Fault};
+mod tuning;
+
+use crate::target::{Execution, Fault, Model};
 
 /// The parameters, from the first word on.
 struct Parameters {
@@ -29,6 +31,8 @@ const INPUT_ALARM: i64 = 2;
 const OUTPUT_ALARM: i64 = 4;
 const AUTOMATIC_TUNING: i64 = 16;
 const LIMITS: i64 = 32;
+/// Of an FX3U: the other method of tuning.
+const LIMIT_CYCLE: i64 = 64;
 
 /// Places of parameters behind the first: how fast the measured value and the output may rise and fall, of the output
 /// its limits instead, and the alarms.
@@ -49,6 +53,10 @@ mod note {
     pub(super) const OUTPUT: usize = 6;
     pub(super) const MEASURED: usize = 7;
 }
+
+/// What it does: noted as what runs.
+const CONTROLS: i64 = 1;
+const TUNES: i64 = 2;
 
 /// The error codes of D8067.
 const SAMPLING_TOO_SHORT: i64 = 6740;
@@ -83,7 +91,8 @@ fn parameters(execution: &mut dyn Execution) -> Result<Parameters, Fault> {
         }
     }
     let switches = execution.word(2, 1)?;
-    if switches & AUTOMATIC_TUNING != 0 {
+    let is_limit_cycle = switches & LIMIT_CYCLE != 0 && execution.model() == Model::Fx3u;
+    if switches & AUTOMATIC_TUNING != 0 && is_limit_cycle {
         return Err(Fault::NotSimulated(2));
     }
     if switches & OUTPUT_ALARM != 0 && switches & LIMITS != 0 {
@@ -111,7 +120,9 @@ pub(super) fn control(execution: &mut dyn Execution) -> Result<(), Fault> {
     let (wanted, measured) = (execution.word(0, 0)? as f64, execution.word(1, 0)? as f64);
     let present = execution.word(3, 0)?;
     execution.word(2, ALARMS)?;
-    let is_first = execution.noted(note::RUNS) == 0;
+    let is_tuning = parameters.switches & AUTOMATIC_TUNING != 0;
+    let mode = if is_tuning { TUNES } else { CONTROLS };
+    let is_first = execution.noted(note::RUNS) != mode;
     let sampling_ns = (parameters.sampling * 1e9).round() as i64;
     let passed_ns = execution.noted(note::NS) + execution.scan_ns();
     if !is_first && passed_ns < sampling_ns {
@@ -122,12 +133,18 @@ pub(super) fn control(execution: &mut dyn Execution) -> Result<(), Fault> {
         parameters.sampling = execution.scan_ns() as f64 / 1e9;
         warn(execution, SAMPLING_TOO_SHORT);
     }
-    execution.note(note::RUNS, 1);
+    execution.note(note::RUNS, mode);
     execution.note(note::NS, if is_first { 0 } else { passed_ns % sampling_ns });
+    if is_tuning {
+        return tuning::sample(execution, &parameters, is_first, (wanted, measured));
+    }
     if is_first {
         // The past of the measured value is taken to be what it is now, and no error is behind.
         for cell in [note::FILTERED, note::FILTERED_BEFORE, note::MEASURED] {
             note(execution, cell, measured);
+        }
+        for cell in [note::ERROR, note::DERIVATIVE] {
+            note(execution, cell, 0.0);
         }
     }
     let change = change(execution, &parameters, wanted, measured);
