@@ -112,7 +112,10 @@ fn a_program_is_compared_downloaded_watched_and_driven() {
     assert_eq!(state["mode"], "STOP");
     // X0 is still on, and no power flows.
     let still = editor.picture(|picture| picture["mode"] == "stopped");
-    assert!(still["elements"].as_array().unwrap().iter().all(|element| element["energised"] == false), "{still}");
+    assert!(
+        still["elements"].as_array().unwrap().iter().all(|element| element["energised"] == false),
+        "{still}"
+    );
     assert_eq!(editor.tell("start", json!({ "confirmed": true }))["mode"], "RUN");
     assert_eq!(editor.tell("disconnect", json!({}))["connected"], false);
     assert!(editor.answer("stop", json!({}))["error"]["message"].as_str().unwrap().contains("no PLC"));
