@@ -63,8 +63,8 @@ impl Code {
     }
 
     /// The variable that a name means inside of an IEC 61131-3 program unit, which has no name for what stands outside
-    /// of all. In a program with several instances it is that of the first; of any other unit nothing is given where its
-    /// instances differ.
+    /// of all. In a program with several instances it is that of the first; of any other unit nothing is given where
+    /// its instances differ.
     pub fn variable_at(&self, unit: &str, name: &str) -> Option<Variable> {
         self.iec.names().find_at(unit, name.trim()).map(Variable::of_leaf)
     }
