@@ -53,7 +53,8 @@ impl<P: Peer> Transport for Hostile<P> {
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
         let end = self.now + wait;
         let by_itself = self.on_the_way.pop_front().map(|byte| (self.now + BYTE, byte));
-        let due = by_itself.or_else(|| self.peer.by_itself().map(|(after, byte)| (self.next + after, byte)));
+        let due = by_itself
+            .or_else(|| self.peer.by_itself().map(|(after, byte)| (self.next + after.max(BYTE), byte)));
         let count = match due {
             Some((due, byte)) if due <= end.max(self.now + BYTE) => {
                 self.now = self.now.max(due);
