@@ -218,7 +218,7 @@ fn examples_do_in_the_virtual_plc_what_they_do_in_the_simulator() {
         let arguments = ["--stepped", "--scan-time", "10ms", "--model", example.target.name];
         let plc = VirtualPlc::start(example.folder.path(), &arguments);
         example.goes_there_and_back(&plc.port);
-        example.does_as_the_simulator(&plc.port, 900);
+        example.does_as_the_simulator(&plc.port, 600);
         assert_eq!(plc.quit(), Some(0));
     }
 }

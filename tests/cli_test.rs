@@ -180,7 +180,7 @@ fn a_golden_trace_is_written_and_compared() {
     let tolerant = suite.replace("time =", "tolerance = \"2 scans\"\ntime =");
     std::fs::write(files.path().join("motor.test.toml"), tolerant).unwrap();
     assert_eq!(run(&files, &["test"]).0, 0);
-    std::fs::write(&path, written.replace("10,100,1,1,0", "10,100,1,x,0")).unwrap();
+    std::fs::write(&path, written.replace("10,100,1,1,0", "10,100,1,1 0,0")).unwrap();
     let (code, _, err) = run(&files, &["test"]);
     assert!(code == 2 && err.contains("no table of scan, time_ms and variables; line 3"), "{err}");
 }
@@ -351,7 +351,9 @@ fn mistakes_are_told_with_line_and_column_in_both_languages() {
         ),
         (suite("steps = [{ set = { X99 = 1 } }]"), "3:20", "nothing called `X99`", "没有 `X99`"),
         (suite("steps = [{ set = { X0 = 7 } }]"), "3:20", "cannot be set to this value", "X0"),
-        (suite("steps = [{ set = { X0 = \"up\" } }]"), "3:25", "a value belongs here", "此处应为值"),
+        (suite("steps = [{ set = { X0 = \"up\" } }]"), "3:20", "cannot be set to this value", "X0"),
+        (suite("steps = [{ expect = { X0 = \"up\" } }]"), "3:23", "never has this value", "不会有这个值"),
+        (suite("steps = [{ set = { X0 = \"u p\" } }]"), "3:25", "a value belongs here", "此处应为值"),
         (suite("steps = [{ expect = { X0 = \"5..1\" } }]"), "3:28", "a value belongs here", "此处应为值"),
         (suite("steps = [{ at = 5 }]"), "3:10", "does nothing", "既不做任何事"),
         (suite("steps = [{ at = 5, after = 5, set = { X0 = 1 } }]"), "3:20", "`at` names", "`at` 已经"),

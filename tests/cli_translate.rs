@@ -75,6 +75,40 @@ fn a_proof_says_equal_or_which_scan_differs() {
 }
 
 #[test]
+fn what_the_simulated_plc_does_not_show_is_told_and_not_written() {
+    let [one, two] = ["LD", "LDI"].map(|load| format!("{load} X0\nOUT Y0\nLD X1\nFOO D0\nEND\n"));
+    let folder = folder(&[("one.il", &one), ("two.il", &two)]);
+    let (code, out, err) = run(&folder, &["prove", "one.il", "two.il", "--scenario", "one.test.toml"]);
+    assert_eq!((code, folder.path().join("one.test.toml").exists()), (1, false), "{out}");
+    assert!(out.contains("Not shown on the simulated PLC: one.il does not run there"), "{out}");
+    assert!(err.starts_with("one.test.toml: not written"), "{err}");
+    let (_, out, _) = run(&folder, &["prove", "one.il", "two.il", "--format", "json"]);
+    let answer: Value = serde_json::from_str(&out).unwrap();
+    let found = &answer["counterexample"];
+    assert!(found["run"].is_null() && found["reason"].as_str().unwrap().contains("one.il"), "{out}");
+}
+
+/// A timer takes its time, and an instruction is seen in what it writes.
+#[test]
+fn a_scenario_of_a_proof_passes_with_the_first_program_and_fails_with_the_second() {
+    for (one, two) in [
+        ("LD X0\nOUT T0 K20\nLD T0\nOUT Y0\n", "LD X0\nOUT T0 K20\nLD T0\nAND X1\nOUT Y0\n"),
+        ("LDP X0\nMOV K5 D0\n", "LDF X0\nMOV K5 D0\n"),
+        ("LD X0\nOUT C0 K2\nLD C0\nOUT Y0\n", "LD X0\nOUT C0 K2\nLD C0\nANI X0\nOUT Y0\n"),
+    ] {
+        let folder = folder(&[("one.il", one), ("two.il", two)]);
+        let (_, out, _) = run(&folder, &["prove", "one.il", "two.il", "--scenario", "one.test.toml"]);
+        let (code, tested, _) = run(&folder, &["test", "one.test.toml"]);
+        assert_eq!(code, 0, "{out}\n{tested}");
+        let path = folder.path().join("one.test.toml");
+        let text = std::fs::read_to_string(&path).unwrap();
+        std::fs::write(&path, text.replace("program = \"one.il\"", "program = \"two.il\"")).unwrap();
+        let (code, tested, _) = run(&folder, &["test", "one.test.toml"]);
+        assert!(code == 1 && tested.contains("was expected"), "{out}\n{tested}");
+    }
+}
+
+#[test]
 fn a_proof_of_other_structures_is_not_decided() {
     let folder =
         folder(&[("one.il", "LD X0\nCJ P0\nLD X1\nOUT Y0\nP0\nLD X2\nOUT Y1\nEND\n"), ("two.il", MOTOR)]);

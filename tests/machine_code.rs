@@ -118,7 +118,7 @@ fn index_registers() {
     // The second word of D0 with each index register: two bits of its number in the value, one beside the area.
     for number in 0..8u16 {
         let coded = words(&format!("INC D0Z{number}"));
-        assert_eq!(coded, [0x0040, 0xA600, 0x8600 | number / 4 << 8 | number % 4 << 6], "Z{number}");
+        assert_eq!(coded, [0x0040, 0xA600, 0x8600 | (number / 4) << 8 | (number % 4) << 6], "Z{number}");
     }
     assert_eq!(words("CJ P3Z1"), hex("0010 A806 8040"));
 }
@@ -283,7 +283,8 @@ fn what_has_no_machine_code_is_told_at_its_place() {
 fn every_reason_has_a_test() {
     let source = include_str!("machine_code.rs");
     for (key, _) in catalogue_keys(Language::English) {
-        if let Some(reason) = key.strip_prefix("machine-code.") {
+        // Rungs that are not translated are a matter of documents, see `cli_machine_code`.
+        if let Some(reason) = key.strip_prefix("machine-code.").filter(|reason| *reason != "not-translated") {
             assert!(source.contains(&format!("\"{reason}\"")), "{key}");
         }
     }

@@ -180,6 +180,34 @@ fn an_input_operator_is_a_call_with_that_input() {
     }
 }
 
+/// Elements with constant subscripts are variables of their own, unless a subscript that varies may be the same.
+#[test]
+fn elements_of_arrays_are_compared() {
+    let variables = "a : BOOL; b : BOOL; i : INT; g : ARRAY[0..2] OF BOOL; k : ARRAY[0..2] OF BOOL; w : WORD; o : TON; \
+                     t : ARRAY[0..1, 0..1] OF BOOL;";
+    for (left, right, expected) in [
+        ("LD a;ST g[1];LD g[1];ST y", "LD a;ST g[1];LD a;ST y", "equal"),
+        ("LD a;ST g[1];LD b;ST g[2]", "LD b;ST g[2];LD a;ST g[1]", "equal"),
+        ("LD a;ST g[1];LD g[2];ST y", "LD a;ST g[1];LD g[0];ST y", "different"),
+        ("LD a;ST g[1]", "LDN a;ST g[1]", "different"),
+        ("LD a;ST t[0,1];LD t[0,1];ST y", "LD a;ST t[0,1];LD a;ST y", "equal"),
+        ("LD g[1];ST y;CAL o(IN := a, PT := T#1s)", "CAL o(IN := a, PT := T#1s);LD g[1];ST y", "equal"),
+        ("LD w.1;ST y;CAL o(IN := a, PT := T#1s)", "CAL o(IN := a, PT := T#1s);LD w.1;ST y", "equal"),
+        ("LD a;ST g[1];LD b;ST g[i];LD g[1];ST y", "LD a;ST g[1];LD b;ST g[i];LD a;ST y", "undecided"),
+        ("LD a;ST g[1];LD g[i];ST y", "LD g[i];ST y;LD a;ST g[1]", "undecided"),
+        ("LD w.1;ST y", "LD w.%X1;ST y", "undecided"),
+    ] {
+        assert_eq!(word(&iec(variables, left), &iec(variables, right)), expected, "{left} | {right}");
+    }
+    // What is a part of something changes with it, and the other way round.
+    for (left, right) in [
+        ("LD k[1];ST y;LD g;ST k", "LD g;ST k;LD k[1];ST y"),
+        ("LD a;ST g[1];LD g;ST k;LD b;ST g[1]", "LD b;ST g[1];LD g;ST k;LD b;ST g[1]"),
+    ] {
+        assert_ne!(word(&iec(variables, left), &iec(variables, right)), "equal", "{left} | {right}");
+    }
+}
+
 /// Behind a jump the outcome of the whole scan tells.
 #[test]
 fn a_jump_makes_no_difference_where_the_scan_ends_alike() {
@@ -204,6 +232,9 @@ fn a_difference_is_shown_only_where_running_with_plain_values_is_what_a_plc_does
             "LD TRUE;ST bar[0];LD FALSE;ST bar[1];LD TRUE;ST y",
         ),
         ("LD 16#1;ST w1;LD x1;ST y", "LD 16#1;ST w1;LD TRUE;ST y"),
+        ("LD TRUE;ST m;LD a;ST bar[01];LD bar[1];ST y", "LD TRUE;ST m;LD a;ST bar[01];LD a;ST y"),
+        ("LD bar[1];ST y", "LD bar[01];ST y"),
+        ("LD i;EQ 1;AND bar[i];ST y", "LD i;EQ 1;AND bar[1];ST y"),
         ("LD c;GT re;ST y", "LD c;GE gr;ST y"),
         ("LD s;EQ 'abcd';ST y", "LD FALSE;ST y"),
     ] {

@@ -245,7 +245,7 @@ fn structures_enumerations_and_bits() {
                 LD TRUE\nST w.1\nLD line[i].x\nADD q.y\nST n\nLD c\nEQ Green\nJMPCN No\nLD Colour#Blue\nST c\nNo:\nEND_PROGRAM\n";
     let mut plc = Plc::new(text);
     plc.scan();
-    assert_eq!(plc.get("c"), "'Blue'");
+    assert_eq!(plc.get("c"), "Blue");
     assert_eq!((plc.get("q.x"), plc.get("q.y"), plc.get("n")), ("4".into(), "9".into(), "13".into()));
     assert_eq!(
         (plc.get("b"), plc.get("line[1].lit"), plc.get("line[0].lit")),
@@ -253,7 +253,7 @@ fn structures_enumerations_and_bits() {
     );
     assert_eq!(plc.get("w"), "32771");
     plc.set("c", "Colour#Red").scan();
-    assert_eq!(plc.get("c"), "'Red'");
+    assert_eq!(plc.get("c"), "Red");
 }
 
 #[test]

@@ -79,7 +79,7 @@ fn the_pump_station_runs() {
     assert_eq!(get(&session, "MotorTwo"), "1");
     set(&mut session, "FlowTwo", "1");
     (521..600).for_each(|scan| _ = session.scan(scan * 10 * MS));
-    assert_eq!(get(&session, "StationState"), "'NoFault'");
+    assert_eq!(get(&session, "StationState"), "NoFault");
     // The task runs every 100 ms only.
     session.scan(6_000 * MS);
     set(&mut session, "Level", "0");

@@ -444,16 +444,16 @@ fn branches_that_nest_too_deep_are_written_output_by_output() {
 
 /// The bits that a proof gives for a scan, and as they were one scan before.
 fn bits_of(found: &rungwise::translate::Counterexample) -> (Bits, Bits) {
-    let now: Bits = found
-        .inputs
-        .iter()
-        .filter_map(|(name, value)| match value {
+    let bits = |values: &std::collections::BTreeMap<String, Value>| -> Bits {
+        let bits = values.iter().filter_map(|(name, value)| match value {
             Value::Bit(value) => Some((name.clone(), *value)),
             _ => None,
-        })
-        .collect();
+        });
+        bits.collect()
+    };
+    let now = bits(&found.inputs);
     let mut before = now.clone();
-    before.extend(found.before.clone());
+    before.extend(bits(&found.before));
     (now, before)
 }
 
@@ -469,7 +469,7 @@ fn found_different(left: &str, right: &str) {
         bits
     });
     assert_ne!(ends[0], ends[1], "{found:?}\n{left}\nand\n{right}");
-    assert_eq!(ends.map(|bits| bits[&found.what]), found.sides, "{found:?}");
+    assert_eq!(ends.map(|bits| Value::Bit(bits[&found.what])), found.sides, "{found:?}");
 }
 
 #[test]

@@ -151,7 +151,9 @@ pub(super) fn whole_program(path: &Path, language: Language) -> Option<Vec<Progr
     let base = path.parent().unwrap_or(Path::new(""));
     let relative = |file: &PathBuf| match (file.strip_prefix(&root), folder_of(path)) {
         // As the user would write it, where the project begins in the folder of the program.
-        (Ok(below), Some(_)) if base.canonicalize().is_ok_and(|base| base == root) => base.join(below),
+        (Ok(below), Some(_)) if base.join(".").canonicalize().is_ok_and(|base| base == root) => {
+            base.join(below)
+        }
         _ => file.clone(),
     };
     let all = programs(&files.iter().map(relative).collect::<Vec<_>>(), None, language)?;

@@ -6,14 +6,13 @@ use super::encode::encoded;
 use super::input::{caution, complain, remark, say};
 use super::run::distance;
 use crate::link::Switch;
-use crate::link::plc::{Faults, Plc, Saved, Server, Service};
+use crate::link::plc::{Faults, Listener, Plc, Saved, Server, Service};
 use crate::link::transport::pty;
 use crate::simulate::Setting;
 use crate::target::{Model, Target};
 use crate::text::{Language, Message};
 use clap::ValueEnum;
 use std::io::{BufRead, Write};
-use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
@@ -104,8 +103,7 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         service.on_line(&mut transport);
         return Outcome::Clean;
     }
-    let bound =
-        TcpListener::bind(&arguments.listen).and_then(|listener| Ok((listener.local_addr()?, listener)));
+    let bound = Listener::bind(&arguments.listen).and_then(|listener| Ok((listener.address()?, listener)));
     let (address, listener) = match bound {
         Ok(bound) => bound,
         Err(error) => {

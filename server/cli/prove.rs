@@ -1,9 +1,9 @@
 //! `rungwise prove`
 
 use super::across::linked;
-use super::input::{Program, complain, programs, put, say};
+use super::input::{Program, complain, programs, put, remark, say};
 use super::{Outcome, translate};
-use crate::scenario::of_counterexample;
+use crate::scenario::{of_counterexample, shown};
 use crate::text::{Language, Message};
 use crate::translate::{Counterexample, Proof, prove, told};
 use clap::ValueEnum;
@@ -39,16 +39,20 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         return Outcome::Unusable;
     };
     let sides = [&left.document, &right.document];
-    let proof = prove(sides[0], sides[1]);
     let names = [left.path.display().to_string(), right.path.display().to_string()];
+    let proof = shown(prove(sides[0], sides[1]), sides, &names);
     match arguments.format {
         ProofFormat::Json => say(&format!("{:#}\n", told::json(&proof, sides, language))),
         ProofFormat::Text => say(&told::text(&proof, sides, &names, language)),
     }
-    if let (Some(path), Proof::Different(found)) = (&arguments.scenario, &proof)
-        && !put(&scenario(found, &names, path, language), Some(path), language)
-    {
-        return Outcome::Unusable;
+    if let (Some(path), Proof::Different(found)) = (&arguments.scenario, &proof) {
+        match scenario(found, &names, path, language) {
+            Some(text) if !put(&text, Some(path), language) => return Outcome::Unusable,
+            Some(_) => {}
+            None => {
+                remark(&Message::new("cli.scenario-unshown").with("path", path.display()).render(language))
+            }
+        }
     }
     match proof {
         Proof::Equal { .. } => Outcome::Clean,
@@ -56,8 +60,9 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     }
 }
 
-/// A scenario test for the file at `path`, which names the first program as it is found from there.
-fn scenario(found: &Counterexample, names: &[String; 2], path: &Path, language: Language) -> String {
+/// A scenario test for the file at `path`, which names the first program as it is found from there; nothing if the
+/// simulated PLC does not show the difference.
+fn scenario(found: &Counterexample, names: &[String; 2], path: &Path, language: Language) -> Option<String> {
     let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
     let left = absolute(Path::new(&names[0]));
     let folder = absolute(path).parent().map(Path::to_path_buf).unwrap_or_default();

@@ -5,7 +5,9 @@
 //! where it is not 0.
 
 use crate::simulate::{Code, Value, Variable};
+use crate::target::iec::is_identifier;
 use crate::text::Message;
+use std::cmp::Ordering;
 
 /// Something that has a value.
 #[derive(Clone, Debug)]
@@ -66,9 +68,37 @@ impl Expression {
         let mut reader = Reader { words: words(text), at: 0, code, text, depth: 0 };
         let expression = reader.level(0)?;
         match reader.peek() {
-            None => Ok(expression),
+            None => expression.meant(code),
             Some(_) => Err(reader.wrong()),
         }
+    }
+
+    /// The same, where words are what they mean beside the variables that they are compared with.
+    fn meant(self, code: &Code) -> Result<Expression, Message> {
+        let beside = |variable: Variable, value: &Value| {
+            let meant = variable.meant(code, value).map(|value| Box::new(Expression::Value(value)));
+            meant.ok_or_else(|| Message::new("cli.run-unknown").with("name", value))
+        };
+        Ok(match self {
+            Expression::Both(operator, left, right) => match (&*left, &*right) {
+                (Expression::Variable(variable), Expression::Value(value)) => {
+                    let right = beside(*variable, value)?;
+                    Expression::Both(operator, left, right)
+                }
+                (Expression::Value(value), Expression::Variable(variable)) => {
+                    let left = beside(*variable, value)?;
+                    Expression::Both(operator, left, right)
+                }
+                _ => Expression::Both(operator, Box::new(left.meant(code)?), Box::new(right.meant(code)?)),
+            },
+            Expression::Not(part) => Expression::Not(Box::new(part.meant(code)?)),
+            Expression::Minus(part) => Expression::Minus(Box::new(part.meant(code)?)),
+            Expression::Value(Value::Word(_, meant)) => Expression::Value(*meant),
+            Expression::Value(Value::Name(name)) if is_identifier(&name) => {
+                return Err(Message::new("cli.run-unknown").with("name", name));
+            }
+            other => other,
+        })
     }
 
     /// Its value, where `of` has those of variables.
@@ -82,7 +112,12 @@ impl Expression {
             Expression::Not(part) => Value::Bit(!holds(&part.value(of)?)),
             Expression::Minus(part) => {
                 let part = part.value(of)?;
-                Value::Number(number(&part).and_then(i64::checked_neg).ok_or_else(no_result)?)
+                match (number(&part), &part) {
+                    (Some(number), _) => number.checked_neg().and_then(whole).ok_or_else(no_result)?,
+                    (None, Value::Real(number)) => Value::Real(-number),
+                    (None, Value::Time(time)) => Value::Time(-time),
+                    _ => return Err(no_result()),
+                }
             }
             Expression::Both(operator, left, right) => operator.of(&left.value(of)?, &right.value(of)?)?,
         })
@@ -93,16 +128,24 @@ impl Expression {
 pub(super) fn holds(value: &Value) -> bool {
     match value {
         Value::Bit(on) => *on,
-        value => number(value).is_some_and(|number| number != 0),
+        value => value.as_number().is_some_and(|number| number != 0.0),
     }
 }
 
-fn number(value: &Value) -> Option<i64> {
+/// A bit or a whole number.
+fn number(value: &Value) -> Option<i128> {
     match value {
-        Value::Bit(on) => Some(i64::from(*on)),
-        Value::Number(number) => Some(*number),
+        Value::Bit(on) => Some(i128::from(*on)),
+        Value::Number(number) => Some(i128::from(*number)),
+        Value::Unsigned(number) => Some(i128::from(*number)),
         _ => None,
     }
+}
+
+/// A whole number as a value; nothing beyond 64 bits.
+fn whole(number: i128) -> Option<Value> {
+    let signed = i64::try_from(number).map(Value::Number);
+    signed.or_else(|_| u64::try_from(number).map(Value::Unsigned)).ok()
 }
 
 fn no_result() -> Message {
@@ -119,25 +162,59 @@ impl Operator {
                 _ => left != right,
             }));
         }
-        let (Some(left), Some(right)) = (number(left), number(right)) else { return Err(no_result()) };
-        let result = match self {
-            Operator::Plus => left.checked_add(right),
-            Operator::Minus => left.checked_sub(right),
-            Operator::Times => left.checked_mul(right),
-            Operator::Divide => left.checked_div(right),
-            Operator::Modulo => left.checked_rem(right),
-            _ => {
-                return Ok(Value::Bit(match self {
-                    Operator::Equal => left == right,
-                    Operator::Unequal => left != right,
-                    Operator::Less => left < right,
-                    Operator::LessEqual => left <= right,
-                    Operator::Greater => left > right,
-                    _ => left >= right,
-                }));
+        if self.is_comparison() {
+            let order = match (number(left), number(right)) {
+                (Some(left), Some(right)) => Some(left.cmp(&right)),
+                _ => match (left.as_number(), right.as_number()) {
+                    (Some(left), Some(right)) => left.partial_cmp(&right),
+                    // Names and texts are the same or not.
+                    (None, None) if matches!(self, Operator::Equal | Operator::Unequal) => {
+                        return Ok(Value::Bit((left == right) == (self == Operator::Equal)));
+                    }
+                    _ => return Err(no_result()),
+                },
+            };
+            return Ok(Value::Bit(match self {
+                Operator::Equal => order == Some(Ordering::Equal),
+                Operator::Unequal => order != Some(Ordering::Equal),
+                Operator::Less => order == Some(Ordering::Less),
+                Operator::LessEqual => matches!(order, Some(Ordering::Less | Ordering::Equal)),
+                Operator::Greater => order == Some(Ordering::Greater),
+                _ => matches!(order, Some(Ordering::Greater | Ordering::Equal)),
+            }));
+        }
+        let result = match (number(left), number(right)) {
+            (Some(left), Some(right)) => match self {
+                Operator::Plus => left.checked_add(right),
+                Operator::Minus => left.checked_sub(right),
+                Operator::Times => left.checked_mul(right),
+                Operator::Divide => left.checked_div(right),
+                _ => left.checked_rem(right),
             }
+            .and_then(whole),
+            _ => self.of_reals(left, right),
         };
-        result.map(Value::Number).ok_or_else(no_result)
+        result.ok_or_else(no_result)
+    }
+
+    fn is_comparison(self) -> bool {
+        use Operator::*;
+        matches!(self, Equal | Unequal | Less | LessEqual | Greater | GreaterEqual)
+    }
+
+    /// What arithmetic makes of numbers of which one is real.
+    fn of_reals(self, left: &Value, right: &Value) -> Option<Value> {
+        if matches!(left, Value::Time(_)) || matches!(right, Value::Time(_)) {
+            return None;
+        }
+        let (left, right) = (left.as_number()?, right.as_number()?);
+        Some(Value::Real(match self {
+            Operator::Plus => left + right,
+            Operator::Minus => left - right,
+            Operator::Times => left * right,
+            Operator::Divide if right != 0.0 => left / right,
+            _ => return None,
+        }))
     }
 }
 
@@ -220,7 +297,8 @@ fn words(text: &str) -> Vec<&str> {
     let mut words = Vec::new();
     let mut rest = text.trim_start();
     while let Some(first) = rest.chars().next() {
-        let is_inside = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '#' | ':' | '[' | ']');
+        let is_inside =
+            |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '#' | ':' | '[' | ']' | '\'');
         let length = match first {
             c if is_inside(c) || c == '%' && rest[1..].starts_with(|c: char| c.is_alphabetic()) => {
                 let behind = first.len_utf8();

@@ -93,7 +93,7 @@ impl Launch {
             Json::Null => Vec::new(),
             Json::Object(members) => {
                 let setting = |(name, value): (&String, &Json)| {
-                    let value = value_of_json(value).ok_or_else(|| wrong(name))?;
+                    let value = Value::of_json(value).ok_or_else(|| wrong(name))?;
                     Ok(Setting { name: name.clone(), value, from_ns: 0 })
                 };
                 members.iter().map(setting).collect::<Result<_, Message>>()?
@@ -118,15 +118,5 @@ impl Launch {
             Ok((scan, touch))
         };
         settings.into_iter().map(touch).collect()
-    }
-}
-
-/// A value as programs and people write it.
-fn value_of_json(value: &Json) -> Option<Value> {
-    match value {
-        Json::Bool(on) => Some(Value::Bit(*on)),
-        Json::Number(number) => number.as_i64().map(Value::Number),
-        Json::String(word) => Value::read(word),
-        _ => None,
     }
 }

@@ -12,6 +12,7 @@ pub use answer::{
 pub use crate::document::{At, Member, ProjectView};
 
 mod names;
+pub use names::pou_at;
 
 mod members;
 

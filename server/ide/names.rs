@@ -206,7 +206,7 @@ pub(super) fn visit_where<'d>(
 }
 
 /// The number of the POU to which the chunk that starts at `start` belongs.
-pub(super) fn pou_at(document: &Document, start: usize) -> Option<usize> {
+pub fn pou_at(document: &Document, start: usize) -> Option<usize> {
     let mut walk = PouWalk::default();
     let mut at = 0;
     for page in document.pages() {

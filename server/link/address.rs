@@ -1,7 +1,7 @@
 //! Where devices lie in a PLC's memory: two maps, and the program memory.
 //!
-//! Each map is a type, and an address belongs to one of them, so that an address of one cannot be sent with a command of
-//! the other. Sources: tables of addresses and firmware that were published for the FX2N, recordings of the maker's
+//! Each map is a type, and an address belongs to one of them, so that an address of one cannot be sent with a command
+//! of the other. Sources: tables of addresses and firmware that were published for the FX2N, recordings of the maker's
 //! tools, and three independent clients; where only one of them knows an area, its row says so.
 
 use super::command::{Command, Space};

@@ -22,7 +22,7 @@ mod download;
 pub use download::{DownloadFailure, Fate, Plan, Progress, Report, Stage};
 
 use super::{Line, LinkError, Transport};
-use crate::target::Model;
+use crate::target::{Model, Target};
 
 /// A host that knows which PLC is at the other end of its line.
 pub struct Host<T> {
@@ -37,6 +37,15 @@ enum Dialect {
     Plain,
     /// The extended ones too.
     Extended,
+}
+
+impl Dialect {
+    fn of(target: &Target) -> Dialect {
+        match target.model {
+            Model::Fx1s => Dialect::Plain,
+            _ => Dialect::Extended,
+        }
+    }
 }
 
 impl<T: Transport> Host<T> {
@@ -66,9 +75,6 @@ impl<T: Transport> Host<T> {
     }
 
     fn dialect(&self) -> Dialect {
-        match self.identity.target.model {
-            Model::Fx1s => Dialect::Plain,
-            _ => Dialect::Extended,
-        }
+        Dialect::of(self.identity.target)
     }
 }

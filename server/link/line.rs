@@ -20,8 +20,8 @@ use std::time::Duration;
 /// How patient a host is.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Patience {
-    /// Time for an answer to begin, beyond what the bytes take on the line. A PLC answers once a scan; the maker's tools
-    /// wait 5 s.
+    /// Time for an answer to begin, beyond what the bytes take on the line. A PLC answers once a scan; the maker's
+    /// tools wait 5 s.
     pub answer: Duration,
     /// How often a request is sent before it has failed.
     pub tries: u32,

@@ -1,7 +1,7 @@
 //! Whether two stretches of program do the same.
 
 use super::decide::{Verdict, equal};
-use super::{Action, Atom, Deed, Effect, Formula, Formulas, Path, Run, Term};
+use super::{Action, Atom, Deed, Effect, Formula, Formulas, Path, Run, Term, is_within};
 use crate::ladder::CoilKind;
 use crate::target::{Device, DeviceKind, Flow};
 use rustc_hash::FxHashSet;
@@ -233,7 +233,8 @@ fn is_special(term: &Term) -> bool {
 pub fn may_drive(action: &Action, key: &str) -> bool {
     let is_alike =
         |term: &Term| term.operand.device().is_none_or(|device| key.starts_with(device.kind.letter()));
-    let may_be = |term: &Term| term.key() == key || covers_others(term) && is_alike(term);
+    let is_own = |own: &str| own == key || is_within(own, key) || is_within(key, own);
+    let may_be = |term: &Term| is_own(&term.key()) || covers_others(term) && is_alike(term);
     let steers = matches!(action.deed, Deed::Instruction(form) if form.instruction.flow() != Flow::Straight);
     !steers && action.changes().iter().any(|term| may_be(term))
 }

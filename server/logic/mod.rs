@@ -4,7 +4,7 @@
 //! the devices is found by running it with formulas in place of bits.
 
 mod term;
-pub use term::{Storage, Term};
+pub use term::{Storage, Term, is_within, wholes};
 
 mod expression;
 pub use expression::{Contact, Expression, Test};

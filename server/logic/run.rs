@@ -4,12 +4,13 @@ use super::formula::{Atom, Moment, Step};
 use super::number::{is_real, number, range};
 use super::{
     Action, Contact, Deed, Drive, Expression, Formula, Formulas, Gate, Path, Storage, Term, Test, WIDE,
+    wholes,
 };
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::target::iec::LiteralValue;
 use crate::target::{Access, Device, DeviceKind, Flow, Form, Location, Operand};
 use crate::text::folded;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
 
 /// Something that is done, and the condition.
@@ -53,6 +54,8 @@ pub struct Run<'p> {
     events: u32,
     /// Bits that were driven.
     driven: FxHashMap<SmolStr, Driven<'p>>,
+    /// What has parts that were driven.
+    parted: FxHashSet<SmolStr>,
     /// The last event, counted from 1, that may have changed this device.
     changed: FxHashMap<SmolStr, u32>,
     /// The last event that may have changed any device of a kind; the last place is for variables.
@@ -93,6 +96,7 @@ impl<'p> Run<'p> {
             effects: Vec::new(),
             events: 0,
             driven: FxHashMap::default(),
+            parted: FxHashSet::default(),
             changed: FxHashMap::default(),
             kinds: [0; KINDS],
             touched: [0; KINDS],
@@ -250,7 +254,8 @@ impl<'p> Run<'p> {
     /// The moment at which `term`, whose key is `name`, is read as a bit.
     fn moment(&self, term: &Term, name: SmolStr, formulas: &mut Formulas) -> Moment {
         // Words are made of bits, bits of words: whatever wrote to the kind counts.
-        let since = match self.is_apart(term) {
+        let is_apart = self.is_apart(term) || term.is_own_part();
+        let since = match is_apart && !self.parted.contains(&name) {
             true => self.after(self.last_event(term, &name), formulas),
             false if leads_anywhere(term) => self.touched[ANYWHERE],
             false => self.touched[slot(term)],
@@ -266,7 +271,8 @@ impl<'p> Run<'p> {
     /// The last event that may have changed `term`.
     fn last_event(&self, term: &Term, name: &SmolStr) -> u32 {
         let own = self.changed.get(name).copied().unwrap_or(0);
-        own.max(self.bulk(term))
+        let around = wholes(name).filter_map(|whole| self.changed.get(whole).copied()).max().unwrap_or(0);
+        own.max(around).max(self.bulk(term))
     }
 
     /// The last event that may have changed `term` together with others.
@@ -385,8 +391,10 @@ impl<'p> Run<'p> {
             let key = term.key();
             let known = self.by_outcome.then_some(value);
             let place = slot(term);
-            // A variable in a place of its own is part of no word.
-            for slot in [place, ANYWHERE].into_iter().filter(|slot| *slot != VARIABLES) {
+            self.parted.extend(wholes(&key).map(SmolStr::from));
+            // A variable in a place of its own is part of no word. An element may be read by a subscript that varies.
+            let is_element = term.is_element();
+            for slot in [place, ANYWHERE].into_iter().filter(|slot| *slot != VARIABLES || is_element) {
                 let before = self.touched[slot];
                 self.touched[slot] = formulas.step(Step::Driven { before, key: key.clone(), value: known });
             }

@@ -94,18 +94,41 @@ impl Term {
         match &self.operand {
             Operand::Device(device) => matches!(device.kind, DeviceKind::X | DeviceKind::Y | DeviceKind::M),
             Operand::Direct(address) => address.width == Width::Bit,
-            // `T1.Q` is a bit by itself, `Word.3` is not, nor are parts of what lies at an address.
+            // `T1.Q` and `Bits[2]` are bits by themselves, `Word.3` and `Bits[i]` are not, nor are parts of what lies
+            // at an address.
             Operand::Variable => match self.storage {
                 Storage::Own | Storage::Local => {
                     let is_part =
                         |(_, last): (&str, &str)| last.starts_with(|c: char| c.is_ascii_digit() || c == '%');
-                    !self.text.contains(['[', '^']) && !self.text.rsplit_once('.').is_some_and(is_part)
+                    let is_part = self.text.rsplit_once('.').is_some_and(is_part);
+                    !is_part && !self.text.contains('^') && self.is_fixed()
                 }
                 Storage::At(_) => self.address().is_some_and(|address| address.width == Width::Bit),
                 Storage::Anywhere => false,
             },
             _ => false,
         }
+    }
+
+    /// Whether nothing changes it but who writes to it, to what it is a part of, or to something that may be anywhere
+    /// in a variable: `Word.3` of a variable in a place of its own.
+    pub fn is_own_part(&self) -> bool {
+        let is_own = matches!(self.storage, Storage::Own | Storage::Local);
+        self.operand == Operand::Variable && is_own && !self.text.contains('^') && self.is_fixed()
+    }
+
+    /// Whether it is an element of an array.
+    pub fn is_element(&self) -> bool {
+        self.operand == Operand::Variable && self.text.contains('[')
+    }
+
+    /// Whether all its subscripts are numbers in the one spelling that [`Term::key`] keeps, so that no other key is the
+    /// same element.
+    pub fn is_fixed(&self) -> bool {
+        let subscripts =
+            self.text.split('[').skip(1).map(|part| part.split_once(']').map(|(inside, _)| inside));
+        let is_plain = |number: &str| number.parse::<i64>().is_ok_and(|value| value.to_string() == number);
+        subscripts.into_iter().all(|inside| inside.is_some_and(|inside| inside.split(',').all(is_plain)))
     }
 
     /// Whether who writes to it may change `other`: the same, or what may lie in the same place.
@@ -119,7 +142,11 @@ impl Term {
         let is_variable = |term: &Term| matches!(term.operand, Operand::Variable | Operand::Direct(_));
         let is_anywhere = [self, other].iter().any(|term| term.storage == Storage::Anywhere);
         let is_apart = self.is_lone() && other.is_lone();
-        self == other
+        let keys = [self.key(), other.key()];
+        keys[0] == keys[1]
+            || is_variable(self)
+                && is_variable(other)
+                && (is_within(&keys[0], &keys[1]) || is_within(&keys[1], &keys[0]))
             || is_anywhere && is_variable(self) && is_variable(other)
             || !is_apart && area(self).is_some() && area(self) == area(other)
     }
@@ -161,6 +188,17 @@ impl Term {
             _ => folded(&self.text),
         }
     }
+}
+
+/// The keys of what the variable with this key is a part of: `line` and `line[2]` of `line[2].ready`.
+pub fn wholes(key: &str) -> impl Iterator<Item = &str> {
+    let is_device = key.starts_with(|letter: char| letter.is_ascii_uppercase() || letter == '%');
+    key.match_indices(['.', '[']).filter(move |_| !is_device).map(|(at, _)| &key[..at])
+}
+
+/// Whether the variable with the key `part` is a part of the one with the key `whole`.
+pub fn is_within(part: &str, whole: &str) -> bool {
+    wholes(part).any(|own| own == whole)
 }
 
 /// Whether a variable is one value that no other program unit has a name for.

@@ -11,7 +11,7 @@ use super::tokens;
 use super::typed;
 use super::workspace::{SNAPSHOT, Snapshot, Workspace, is_suite};
 use super::written::{given, write};
-use super::{capabilities, features, proving, simulation, testing, translating, usage};
+use super::{capabilities, features, plc, proving, simulation, testing, translating, usage};
 use crate::ide;
 use crate::text::Message;
 use serde_json::{Value, json};
@@ -27,6 +27,7 @@ pub(super) struct Backend {
     /// Whether the client asks for the edits of code actions later.
     resolves_actions: AtomicBool,
     simulations: simulation::Simulations,
+    plcs: plc::Plcs,
 }
 
 impl Backend {
@@ -35,6 +36,7 @@ impl Backend {
             workspace,
             resolves_actions: AtomicBool::new(false),
             simulations: simulation::Simulations::default(),
+            plcs: plc::Plcs::default(),
         }
     }
 }
@@ -451,6 +453,10 @@ impl LanguageServer for Backend {
         if params.command.starts_with(simulation::PREFIX) {
             let argument = params.arguments.first();
             return self.simulations.answer(&params.command, argument, &self.workspace).await;
+        }
+        if params.command.starts_with(plc::PREFIX) {
+            let token = params.work_done_progress_params.work_done_token;
+            return self.plcs.answer(&params.command, params.arguments.first(), token, &self.workspace).await;
         }
         let Some(uri) =
             params.arguments.first().and_then(|value| value.as_str()).and_then(|text| text.parse().ok())

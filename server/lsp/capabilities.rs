@@ -34,6 +34,20 @@ pub(super) const COMMANDS: &[&str] = &[
     testing::LIST,
     testing::RUN,
     "rungwise.simulate.why",
+    "rungwise.plc.ports",
+    "rungwise.plc.connect",
+    "rungwise.plc.disconnect",
+    "rungwise.plc.state",
+    "rungwise.plc.plan",
+    "rungwise.plc.verify",
+    "rungwise.plc.download",
+    "rungwise.plc.upload",
+    "rungwise.plc.start",
+    "rungwise.plc.stop",
+    "rungwise.plc.monitor",
+    "rungwise.plc.unmonitor",
+    "rungwise.plc.write",
+    "rungwise.plc.force",
 ];
 
 /// Applies the `WorkspaceEdit` that is its argument: what a code action does where clients know commands alone.

@@ -20,6 +20,7 @@ mod linking;
 mod manifest_help;
 mod manifests;
 mod outlet;
+mod plc;
 mod progress;
 mod projects;
 mod proving;
@@ -29,6 +30,7 @@ mod recording;
 mod service;
 mod settings;
 mod sheets;
+
 mod simulation;
 mod status;
 mod testing;

@@ -26,6 +26,7 @@ use super::projects::{canonical, file_path};
 use super::to_proto::Place;
 use super::workspace::{Open, Snapshot, is_toml};
 use crate::document::Document;
+use crate::scenario::shown;
 use crate::text::{Message, Span};
 use crate::translate::{Proof, prove, told};
 use serde::Deserialize;
@@ -84,7 +85,8 @@ fn program(
 
 fn told_of(snapshot: &Snapshot, sides: [(&Uri, &Document); 2]) -> Value {
     let documents = sides.map(|(_, document)| document);
-    let proof = prove(documents[0], documents[1]);
+    let names = sides.map(|(uri, _)| name_of(uri));
+    let proof = shown(prove(documents[0], documents[1]), documents, &names);
     let at: [Option<Span>; 2] = match &proof {
         Proof::Equal { .. } => [None, None],
         Proof::Different(found) => found.at,
@@ -96,7 +98,6 @@ fn told_of(snapshot: &Snapshot, sides: [(&Uri, &Document); 2]) -> Value {
     let language = snapshot.manner.language;
     let mut answer = told::json(&proof, documents, language);
     answer["places"] = places.collect();
-    let names = sides.map(|(uri, _)| name_of(uri));
     answer["page"] = page(&told::text(&proof, documents, &names, language), &names).into();
     answer
 }

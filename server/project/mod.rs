@@ -15,5 +15,8 @@ pub use files::{
 
 pub mod encoding;
 
+mod backup;
+pub use backup::Backup;
+
 mod disk;
 pub use disk::{Stamp, read_text};

@@ -1,7 +1,7 @@
 //! Runs scenarios on a simulated PLC and says what was otherwise than expected.
 
 use super::golden::Golden;
-use super::suite::{Check, CheckKind, Flaw, InputKind, Named, Scenario, Want};
+use super::suite::{Check, CheckKind, Expected, Flaw, InputKind, Named, Scenario, Want};
 use super::{Coverage, Mark};
 use crate::document::Document;
 use crate::simulate::{
@@ -99,8 +99,8 @@ struct Plan<'s> {
 /// A check while its scenario runs.
 struct Running<'s> {
     check: &'s Check,
-    wants: Vec<(&'s Want, Variable)>,
-    until: Vec<(&'s Want, Variable)>,
+    wants: Vec<(Want, Variable)>,
+    until: Vec<(Want, Variable)>,
     last: u64,
     /// Whether nothing can come of it any more.
     is_done: bool,
@@ -195,8 +195,8 @@ impl Bench {
         let last = scenario.last.or(golden.and_then(Golden::last)).unwrap_or(0);
         let mut checks = Vec::new();
         for check in &scenario.checks {
-            let mut found = |wants: &'s [Want]| -> Vec<(&'s Want, Variable)> {
-                wants.iter().filter_map(|want| Some((want, names.find(&want.name)?))).collect()
+            let mut found = |wants: &[Want]| -> Vec<(Want, Variable)> {
+                wants.iter().filter_map(|want| names.want(want)).collect()
             };
             let (wants, until) = (found(&check.wants), found(&check.until));
             let last = check.last.unwrap_or(last).min(last);
@@ -268,6 +268,22 @@ impl Names<'_> {
             self.watched.push((name.name.clone(), variable));
         }
         Some(variable)
+    }
+
+    /// What is expected, as the variable has it.
+    fn want(&mut self, want: &Want) -> Option<(Want, Variable)> {
+        let variable = self.find(&want.name)?;
+        let expected = match &want.expected {
+            Expected::Is(value) => match variable.meant(self.code, value) {
+                Some(meant) => Expected::Is(meant),
+                None => {
+                    self.flaw(&want.name, Message::new("scenario.never-value"));
+                    return None;
+                }
+            },
+            other => other.clone(),
+        };
+        Some((Want { name: want.name.clone(), expected }, variable))
     }
 
     fn flaw(&mut self, name: &Named, message: Message) {
@@ -392,18 +408,18 @@ impl Running<'_> {
     }
 }
 
-fn first_wrong<'s>(
-    wants: &[(&'s Want, Variable)],
+fn first_wrong<'w>(
+    wants: &'w [(Want, Variable)],
     machine: &Machine<u8>,
     deviation: f64,
-) -> Option<(&'s Want, Value)> {
+) -> Option<(&'w Want, Value)> {
     wants.iter().find_map(|(want, variable)| {
         let actual = machine.value(*variable, 0);
-        (!want.expected.holds(&actual, deviation)).then_some((*want, actual))
+        (!want.expected.holds(&actual, deviation)).then_some((want, actual))
     })
 }
 
-fn told(wants: &[(&Want, Variable)]) -> String {
+fn told(wants: &[(Want, Variable)]) -> String {
     let pairs = wants.iter().map(|(want, _)| format!("{} = {}", want.name.name, want.expected));
     pairs.collect::<Vec<_>>().join(", ")
 }

@@ -1,6 +1,6 @@
 //! Golden traces: tables of values over time that a scenario must give.
 
-use super::suite::{Scenario, number_of};
+use super::suite::Scenario;
 use super::{Expected, Failure};
 use crate::simulate::{Trace, Value};
 use crate::text::Message;
@@ -112,8 +112,8 @@ impl Golden {
         let near = self.rows.iter().skip(start).take_while(|(own, _)| *own <= end);
         near.filter_map(|(_, values)| values.get(column)).any(|value| {
             // In tables bits are 0 and 1.
-            let expected = match number_of(value) {
-                Some(number) if number_of(actual).is_some() => Expected::Between(number, number),
+            let expected = match value.as_number() {
+                Some(number) if actual.as_number().is_some() => Expected::Between(number, number),
                 _ => Expected::Is(value.clone()),
             };
             expected.holds(actual, scenario.deviation)

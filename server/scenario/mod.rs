@@ -35,6 +35,9 @@ pub use lcov::lcov;
 mod mutant;
 pub use mutant::{Change, Fate, Mutant, Mutants};
 
+mod witness;
+pub use witness::shown;
+
 mod recording;
 pub use recording::{Recorded, Recording, of_counterexample};
 

@@ -173,7 +173,7 @@ fn lines(document: &Document, span: Span) -> Span {
 }
 
 /// Splitmix64 of Sebastiano Vigna, which is in the public domain.
-fn lot(seed: u64, number: u64) -> u64 {
+pub(super) fn lot(seed: u64, number: u64) -> u64 {
     let mut lot = seed.wrapping_add(number.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
     lot = (lot ^ (lot >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     lot = (lot ^ (lot >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);

@@ -2,6 +2,7 @@
 
 use super::driver::is_output;
 use super::suite::{Input, InputKind, Named};
+use super::witness::{USUAL_SCAN_NS, is_first_scan};
 use super::{Bench, SUITE_ENDING, Scenario};
 use crate::simulate::{Code, Value, milliseconds};
 use crate::text::{Language, Message, Span};
@@ -212,35 +213,43 @@ fn quoted(word: &str) -> String {
     serde_json::Value::from(word).to_string()
 }
 
-/// A scenario test that the first of two programs passes and the second fails; `names` are those of their files.
-pub fn of_counterexample(found: &Counterexample, names: &[String; 2], language: Language) -> String {
-    let told = Message::new("scenario.counterexample")
-        .with("what", &found.what)
-        .with("left", found.sides[0])
-        .with("right", found.sides[1])
-        .with("first", &names[0])
-        .with("second", &names[1]);
+/// A scenario test that the first of two programs passes and the second fails, if the simulated PLC shows how; `names`
+/// are those of their files.
+pub fn of_counterexample(found: &Counterexample, names: &[String; 2], language: Language) -> Option<String> {
+    let run = found.run()?;
     let held = |value: &Held| match value {
         Held::Bit(value) => u8::from(*value).to_string(),
-        Held::Time(_) => quoted(&value.to_string()),
+        Held::Time(_) | Held::Named(_) => quoted(&value.to_string()),
         Held::Word(_) | Held::Real(_) => value.to_string(),
     };
-    let scan = u64::from(!found.before.is_empty());
-    let at = |scan: u64| if scan == 1 { "1 scan".to_string() } else { format!("{scan} scans") };
+    let told = Message::new("scenario.counterexample")
+        .with("what", &found.what)
+        .with("left", &found.sides[0])
+        .with("right", &found.sides[1])
+        .with("first", &names[0])
+        .with("second", &names[1]);
+    let first = run.lead + u64::from(!found.before.is_empty());
+    let mut steps: BTreeMap<u64, Vec<String>> = BTreeMap::new();
+    let mut add = |scan: u64, key: &str, values: String| {
+        if !values.is_empty() {
+            steps.entry(scan).or_default().push(format!("{key} = {{ {values} }}"));
+        }
+    };
+    let before = found.before.iter().map(|(name, value)| (name, held(value)));
+    add(run.lead, "set", pairs(before));
+    let inputs = found.inputs.iter().filter(|(name, _)| is_first_scan(name).is_none());
+    add(first, "set", pairs(inputs.map(|(name, value)| (name, held(value)))));
+    add(first + run.hold, "expect", pairs(std::iter::once((&found.what, held(&found.sides[0])))));
     let mut text = format!("# {}\n", told.render(language));
-    let _ = writeln!(text, "program = {}\n", quoted(&names[0].replace('\\', "/")));
-    let _ = writeln!(text, "[[scenario]]\nname = {}\nsteps = [", quoted(&found.what));
-    if scan > 0 {
-        let before = found.before.iter().map(|(name, value)| (name, u8::from(*value).to_string()));
-        let _ = writeln!(text, "  {{ at = \"{}\", set = {{ {} }} }},", at(0), pairs(before));
+    let _ = writeln!(text, "program = {}", quoted(&names[0].replace('\\', "/")));
+    if run.scan_ns != USUAL_SCAN_NS {
+        let _ = writeln!(text, "scan-time = \"{}ms\"", milliseconds(run.scan_ns));
     }
-    let inputs = found.inputs.iter().map(|(name, value)| (name, held(value)));
-    let expected = pairs(std::iter::once((&found.what, u8::from(found.sides[0]).to_string())));
-    let _ = writeln!(
-        text,
-        "  {{ at = \"{}\", set = {{ {} }}, expect = {{ {expected} }} }},\n]",
-        at(scan),
-        pairs(inputs)
-    );
-    text
+    let _ = writeln!(text, "\n[[scenario]]\nname = {}\nsteps = [", quoted(&found.what));
+    for (scan, parts) in steps {
+        let at = if scan == 1 { "1 scan".to_string() } else { format!("{scan} scans") };
+        let _ = writeln!(text, "  {{ at = \"{at}\", {} }},", parts.join(", "));
+    }
+    text.push_str("]\n");
+    Some(text)
 }

@@ -1,8 +1,7 @@
 //! What a file with scenario tests says.
 
 use crate::simulate::Value;
-use crate::text::{Message, Span};
-use serde_json::Value as Json;
+use crate::text::{Message, Span, folded};
 use std::fmt;
 
 /// The scenarios of a file. Reading never fails: what is wrong with the text is told beside it.
@@ -168,10 +167,10 @@ impl Expected {
         let signed =
             Comparison::SIGNS.into_iter().find_map(|(sign, how)| Some((how, word.strip_prefix(sign)?)));
         if let Some((how, number)) = signed {
-            return Some(Expected::Compared(how, number_of(&Value::read(number)?)?));
+            return Some(Expected::Compared(how, Value::read(number)?.as_number()?));
         }
         if let Some((least, most)) = word.split_once("..") {
-            let [least, most] = [least, most].map(|number| number_of(&Value::read(number)?));
+            let [least, most] = [least, most].map(|number| Value::read(number)?.as_number());
             let (least, most) = (least?, most?);
             return (least <= most).then_some(Expected::Between(least, most));
         }
@@ -180,13 +179,16 @@ impl Expected {
 
     /// Whether a value is so, where numbers may differ by `deviation`.
     pub fn holds(&self, actual: &Value, deviation: f64) -> bool {
-        let number = number_of(actual);
+        let number = actual.as_number();
         let is_one = |test: &dyn Fn(f64) -> bool| number.is_some_and(test);
         match self {
-            Expected::Is(value) => match (number_of(value), number) {
-                (Some(expected), Some(number)) => (expected - number).abs() <= deviation,
-                _ => value == actual,
-            },
+            Expected::Is(value) => {
+                let is_near = |expected: f64| is_one(&|number| (expected - number).abs() <= deviation);
+                match (value, actual) {
+                    (Value::Word(word, _), Value::Name(name)) => folded(word) == folded(name),
+                    _ => value == actual || value.as_number().is_some_and(is_near),
+                }
+            }
             Expected::Compared(how, other) => is_one(&|number| match how {
                 Comparison::AtMost => number <= other + deviation,
                 Comparison::AtLeast => number >= other - deviation,
@@ -212,14 +214,5 @@ impl fmt::Display for Expected {
             }
             Expected::Between(least, most) => write!(f, "{least}..{most}"),
         }
-    }
-}
-
-/// A value as a number; a bit is 0 or 1.
-pub(super) fn number_of(value: &Value) -> Option<f64> {
-    match value.json() {
-        Json::Bool(on) => Some(f64::from(u8::from(on))),
-        Json::Number(number) => number.as_f64(),
-        _ => None,
     }
 }

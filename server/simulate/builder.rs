@@ -471,8 +471,17 @@ impl Builder {
 
     /// Says what is in a cell at the present instruction.
     pub(super) fn saw(&mut self, power: Cell) {
-        let place = self.places.len() as u32 - 1;
+        self.saw_at(self.place_number(), power);
+    }
+
+    /// The same at an instruction before.
+    pub(super) fn saw_at(&mut self, place: u32, power: Cell) {
         self.op(Op::Seen { place, power });
+    }
+
+    /// The number of the present instruction among the places of the code.
+    pub(super) fn place_number(&self) -> u32 {
+        self.places.len() as u32 - 1
     }
 
     /// Drives relays with the current result.

@@ -57,6 +57,20 @@ impl<L: Lanes> Machine<L> {
     /// Holds a variable at a value, if that is one of its own.
     pub fn hold_at(&mut self, variable: Variable, value: &Value) {
         self.let_go(variable);
+        self.add_force(variable, value);
+        self.patch();
+        self.hold();
+    }
+
+    /// Holds these variables at these values, and no others: what a PLC elsewhere has.
+    pub fn hold_only(&mut self, values: impl Iterator<Item = (Variable, Value)>) {
+        self.forces.clear();
+        values.for_each(|(variable, value)| self.add_force(variable, &value));
+        self.patch();
+        self.hold();
+    }
+
+    fn add_force(&mut self, variable: Variable, value: &Value) {
         match (variable, value) {
             (Variable::Relay(cell), _) => {
                 self.forces.extend(value.as_bit().map(|on| Force::Relay(cell, on)));
@@ -72,8 +86,6 @@ impl<L: Lanes> Machine<L> {
             }
             _ => {}
         }
-        self.patch();
-        self.hold();
     }
 
     /// Lets a forced variable go; it keeps its value until something writes it.
@@ -121,7 +133,7 @@ impl<L: Lanes> Machine<L> {
                 let Some(datum) = variable.datum(&self.code, value) else { return };
                 iec::put(&mut self.memory, &self.code.iec, spot, &datum);
                 if let Lies::Bits(first, count) = spot.lies {
-                    for cell in first..first + Cell::from(count) {
+                    for cell in (0..Cell::from(count)).map(|bit| first + bit) {
                         let on = self.memory.cell(cell);
                         self.write_cell(cell, on);
                     }

@@ -104,6 +104,9 @@ impl ErrorKind {
             ErrorKind::Fault(Fault::Index) | ErrorKind::Calculation(Fault::Index) => {
                 Message::new("simulate.subscript")
             }
+            ErrorKind::Fault(Fault::Subrange) | ErrorKind::Calculation(Fault::Subrange) => {
+                Message::new("simulate.subrange")
+            }
             ErrorKind::Calculation(Fault::DivisionByZero) => Message::new("simulate.division-iec"),
             ErrorKind::Calculation(Fault::Overflow) => Message::new("simulate.overflow-iec"),
             ErrorKind::Calculation(Fault::Value(place)) => {

@@ -71,8 +71,11 @@ pub use session::{Session, Touch};
 mod search;
 pub use search::ChangeSearch;
 
+mod value;
+pub use value::Value;
+
 mod variable;
-pub use variable::{Value, Variable};
+pub use variable::Variable;
 
 mod setting;
 pub use setting::Setting;

@@ -6,7 +6,7 @@
 
 use super::machine::Machine;
 use super::session::Session;
-use super::variable::{Value, Variable};
+use super::{Value, Variable};
 
 /// The recorded variables. Scans are counted as those of a [`Session`].
 #[derive(Debug, Default)]
@@ -246,6 +246,5 @@ fn extremes(changes: &[Change]) -> Vec<Change> {
 
 /// A value as a number, for comparing.
 fn size(value: &Value) -> f64 {
-    let value = value.json();
-    value.as_f64().unwrap_or_else(|| f64::from(value.as_bool().unwrap_or(false)))
+    value.as_number().unwrap_or(0.0)
 }

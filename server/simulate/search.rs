@@ -2,7 +2,7 @@
 
 use super::machine::Machine;
 use super::session::Session;
-use super::variable::{Value, Variable};
+use super::{Value, Variable};
 
 /// A search that can be left and gone on with, from the present back to where history begins.
 #[derive(Debug)]

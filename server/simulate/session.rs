@@ -212,6 +212,31 @@ impl Session {
         Some(sights)
     }
 
+    /// Runs a scan that begins at `now_ns` anew up to the sight with a number, and shows the PLC as it is there. Nothing
+    /// if the scan is not known, or has not as many sights.
+    pub(super) fn inside<T>(
+        &self,
+        scan: u64,
+        now_ns: i64,
+        watched: &Arc<Code>,
+        number: usize,
+        see: impl FnOnce(&Machine<u8>) -> T,
+    ) -> Option<T> {
+        let mut machine = self.at(scan.checked_sub(1)?)?;
+        machine.set_code(Arc::clone(watched));
+        self.touches_before(scan).for_each(|touch| touch.apply(&mut machine));
+        let (mut left, mut see, mut seen) = (number, Some(see), None);
+        machine.scan_inside(now_ns, &mut |glimpse| {
+            let is_there = left == 0;
+            if is_there {
+                seen = see.take().map(|see| see(glimpse.machine));
+            }
+            left = left.saturating_sub(1);
+            !is_there
+        });
+        seen
+    }
+
     /// Goes on with an edited program. One that does the same keeps its history; for any other [`Machine::adopt`] says
     /// what is kept, and history begins anew. Gives whether it goes on.
     pub fn adopt(&mut self, code: Arc<Code>) -> bool {

@@ -89,7 +89,7 @@ impl Trace {
                 Some(Value::Bit(_)) | None => VarType::Wire,
                 Some(Value::Number(_) | Value::Unsigned(_)) => VarType::Integer,
                 Some(Value::Real(_) | Value::Time(_)) => VarType::Real,
-                Some(Value::Text(_) | Value::Name(_)) => VarType::String,
+                Some(Value::Text(_) | Value::Name(_) | Value::Word(..)) => VarType::String,
             };
             let code = IdCode::from(number as u32);
             // Blanks would end a name.
@@ -116,7 +116,7 @@ impl Trace {
                     Value::Unsigned(number) => writer.change_vector(*code, vector(*number))?,
                     Value::Real(number) => writer.change_real(*code, *number)?,
                     Value::Time(time) => writer.change_real(*code, *time as f64 / 1e6)?,
-                    Value::Text(text) | Value::Name(text) => {
+                    Value::Text(text) | Value::Name(text) | Value::Word(text, _) => {
                         writer.change_string(*code, &text.replace(char::is_whitespace, "_"))?
                     }
                 }
@@ -135,7 +135,7 @@ fn width(value: &Value) -> u32 {
         Value::Number(value) if i16::try_from(*value).is_ok() => 16,
         Value::Number(value) if i32::try_from(*value).is_ok() => 32,
         Value::Number(_) | Value::Unsigned(_) | Value::Real(_) | Value::Time(_) => 64,
-        Value::Text(_) | Value::Name(_) => 8,
+        Value::Text(_) | Value::Name(_) | Value::Word(..) => 8,
     }
 }
 

@@ -1,16 +1,14 @@
 //! Names of what can be watched and set, and their values.
 
 use super::code::Code;
+use super::iec::{self, Leaf};
 use super::machine::Machine;
 use super::row::Cell;
 use super::session::Touch;
-use super::{Lanes, Lies, Slot, Spot, iec};
-use crate::target::iec::{Datum, ElementaryType, Literal, LiteralValue, characters_of, spelled};
-use crate::target::{Device, DeviceKind, Model, Operand};
+use super::{Lanes, Lies, Slot, Spot, Value};
+use crate::target::iec::Datum;
+use crate::target::{Device, DeviceKind, Operand};
 use crate::text::Message;
-use serde_json::Value as Json;
-use smol_str::SmolStr;
-use std::fmt;
 use std::ops::RangeInclusive;
 
 /// Something with a value that a person can watch and set.
@@ -28,25 +26,6 @@ pub enum Variable {
     Enumerated(Spot, u32),
 }
 
-/// What a variable has.
-#[derive(Clone, PartialEq, Debug)]
-pub enum Value {
-    /// On or off.
-    Bit(bool),
-    /// A number, signed as its type says.
-    Number(i64),
-    /// A number beyond those of 64 bits with a sign.
-    Unsigned(u64),
-    /// A real number.
-    Real(f64),
-    /// A duration, in nanoseconds.
-    Time(i64),
-    /// A text, and a value of an enumerated type by its name.
-    Text(SmolStr),
-    /// A date or a character as a literal.
-    Name(SmolStr),
-}
-
 impl Code {
     /// The variable that a person calls `name`, letter case aside.
     ///
@@ -58,11 +37,7 @@ impl Code {
     pub fn variable(&self, name: &str) -> Option<Variable> {
         let name = name.trim();
         if !self.target.is_fx() {
-            return self.iec.find(name).map(|leaf| match (leaf.spot.lies, leaf.enumeration) {
-                (_, Some(enumeration)) => Variable::Enumerated(leaf.spot, enumeration),
-                (Lies::Cell(cell), None) => Variable::Relay(cell),
-                _ => Variable::Typed(leaf.spot),
-            });
+            return self.iec.find(name).map(Variable::of_leaf);
         }
         if let Some(register) = name.strip_suffix(":32") {
             let device = self.device(register).filter(|device| has_pairs(device.kind))?;
@@ -87,6 +62,18 @@ impl Code {
         }
     }
 
+    /// The variable that a name means inside of an IEC 61131-3 program unit, which has no name for what stands outside of
+    /// all. In a program with several instances it is that of the first; of any other unit nothing is given where its
+    /// instances differ.
+    pub fn variable_at(&self, unit: &str, name: &str) -> Option<Variable> {
+        self.iec.names().find_at(unit, name.trim()).map(Variable::of_leaf)
+    }
+
+    /// The variable that a name means in one of the bodies of an IEC 61131-3 program.
+    pub(super) fn variable_in(&self, scope: usize, name: &str) -> Option<Variable> {
+        self.iec.names().find_in(scope, name.trim()).map(Variable::of_leaf)
+    }
+
     /// What the program uses, as names for [`Code::variable`]: relays, contacts of timers and counters, registers; the
     /// variables of an IEC 61131-3 program that are worth watching.
     pub fn named(&self) -> Vec<String> {
@@ -109,8 +96,17 @@ impl Code {
 }
 
 impl Variable {
+    fn of_leaf(leaf: Leaf) -> Variable {
+        match (leaf.spot.lies, leaf.enumeration) {
+            (_, Some(enumeration)) => Variable::Enumerated(leaf.spot, enumeration),
+            (Lies::Cell(cell), None) if leaf.spot.index == 0 => Variable::Relay(cell),
+            _ => Variable::Typed(leaf.spot),
+        }
+    }
+
     /// What setting it to `value` does; nothing if that is no value of it.
     pub fn set(self, code: &Code, value: &Value) -> Option<Touch> {
+        let value = &self.meant(code, value)?;
         match (self, value) {
             (Variable::Relay(_), _) => {
                 let is_free = !self.is_coil(code);
@@ -126,6 +122,23 @@ impl Variable {
         }
     }
 
+    /// What a value is that people write for it: `Red` and `Colour#Red` are the same, `K5` is a number unless a value of
+    /// its type is called so. Nothing for a name that says no value of it.
+    pub fn meant(self, code: &Code, value: &Value) -> Option<Value> {
+        match (self, value) {
+            (Variable::Enumerated(_, enumeration), _) => {
+                let number = self.datum(code, value)?.whole();
+                code.iec.name_of_value(enumeration, number).cloned().map(Value::Name)
+            }
+            (_, Value::Word(_, meant)) => Some((**meant).clone()),
+            (Variable::Typed(spot), Value::Name(_)) => {
+                value.datum(spot.kind).map(|datum| Value::of_datum(datum, spot.kind))
+            }
+            (_, Value::Name(_)) => None,
+            _ => Some(value.clone()),
+        }
+    }
+
     /// The numbers that it takes; nothing for a relay.
     pub fn range(self, code: &Code) -> Option<RangeInclusive<i64>> {
         let narrow = i64::from(i16::MIN)..=i64::from(i16::MAX);
@@ -133,9 +146,10 @@ impl Variable {
         match self {
             Variable::Relay(_) | Variable::Enumerated(..) => None,
             Variable::Typed(spot) => {
-                let range = spot.kind.integers()?;
+                let whole = spot.kind.integers()?;
+                let (least, greatest) = code.iec.range(spot).unwrap_or((*whole.start(), *whole.end()));
                 let bound = |bound: i128| i64::try_from(bound).unwrap_or(i64::MAX);
-                Some(bound(*range.start())..=bound(*range.end()))
+                Some(bound(least)..=bound(greatest))
             }
             Variable::Word(slot) => {
                 let device = code.layout.device_of_slot(slot)?;
@@ -147,7 +161,8 @@ impl Variable {
 
     /// Why it, which people call `name`, cannot be set to `value`.
     pub fn refusal(self, code: &Code, name: &str, value: &Value) -> Message {
-        match (value, self.range(code)) {
+        let meant = self.meant(code, value);
+        match (meant.as_ref().unwrap_or(value), self.range(code)) {
             (Value::Number(number), Some(range)) => Message::new("simulate.range")
                 .with("name", name)
                 .with("value", number)
@@ -167,7 +182,10 @@ impl Variable {
 
     /// What holding it at `value` does; nothing if that is no value of it.
     pub fn force(self, code: &Code, value: &Value) -> Option<Touch> {
-        self.set(code, value).map(|_| Touch::Hold(self, value.clone()))
+        match self.set(code, value)? {
+            Touch::Write(variable, value) => Some(Touch::Hold(variable, value)),
+            _ => None,
+        }
     }
 
     /// What letting it go does.
@@ -177,154 +195,33 @@ impl Variable {
 
     /// The value as a variable of IEC 61131-3 takes it; nothing if it is none of its type.
     pub(super) fn datum(self, code: &Code, value: &Value) -> Option<Datum> {
-        let kind = match (self, value) {
+        match (self, value) {
             (Variable::Enumerated(_, enumeration), Value::Text(name) | Value::Name(name)) => {
-                return code.iec.value_named(enumeration, name).map(Datum::Whole);
+                code.iec.value_named(enumeration, name).map(Datum::Whole)
+            }
+            (Variable::Enumerated(_, enumeration), Value::Word(name, meant)) => {
+                let named = code.iec.value_named(enumeration, name).map(Datum::Whole);
+                named.or_else(|| self.datum(code, meant))
             }
             (Variable::Enumerated(_, enumeration), Value::Number(number)) => {
                 let number = i128::from(*number);
-                return code.iec.name_of_value(enumeration, number).map(|_| Datum::Whole(number));
+                code.iec.name_of_value(enumeration, number).map(|_| Datum::Whole(number))
             }
-            (Variable::Typed(spot), _) => spot.kind,
-            _ => return None,
-        };
-        value.datum(kind)
+            (Variable::Typed(spot), _) => {
+                let within = |datum: &Datum| {
+                    let range = code.iec.range(spot);
+                    range.is_none_or(|(least, greatest)| (least..=greatest).contains(&datum.whole()))
+                };
+                value.datum(spot.kind).filter(within)
+            }
+            _ => None,
+        }
     }
 }
 
 /// Whether two of these, one behind the other, are a number of 32 bits.
 fn has_pairs(kind: DeviceKind) -> bool {
     matches!(kind, DeviceKind::D | DeviceKind::R)
-}
-
-impl Value {
-    /// What a variable of an elementary type has.
-    pub(super) fn of_datum(datum: Datum, kind: ElementaryType) -> Value {
-        use ElementaryType::*;
-        match (datum, kind) {
-            (Datum::Real(number), _) => Value::Real(number),
-            (Datum::Whole(number), Bool) => Value::Bit(number != 0),
-            (Datum::Whole(number), Time | Ltime) => Value::Time(number as i64),
-            (Datum::Whole(number), _) if kind.integers().is_some() => match i64::try_from(number) {
-                Ok(number) => Value::Number(number),
-                Err(_) => Value::Unsigned(number as u64),
-            },
-            (Datum::Text(text), _) => Value::Text(text),
-            (datum, _) => Value::Name(spelled(&datum, kind)),
-        }
-    }
-
-    /// A value as people write it: `1`, `on`, `TRUE`, `-5`, `H1F`, `16#1F`, `1.5`, `T#2s`, `'text'`, `D#2024-01-31`,
-    /// `Colour#Red`.
-    pub fn read(word: &str) -> Option<Value> {
-        let word = word.trim();
-        match word.to_ascii_lowercase().as_str() {
-            "on" | "true" => return Some(Value::Bit(true)),
-            "off" | "false" => return Some(Value::Bit(false)),
-            _ => {}
-        }
-        let upper = word.to_ascii_uppercase();
-        if let Some(digits) = upper.strip_prefix('H')
-            && let Ok(bits) = u32::from_str_radix(digits, 16)
-        {
-            // A pattern of 16 bits is a signed number, as everywhere on these PLCs.
-            let number = u16::try_from(bits).map_or(i64::from(bits as i32), |word| i64::from(word as i16));
-            return Some(Value::Number(number));
-        }
-        if let Ok(number) = upper.strip_prefix('K').unwrap_or(&upper).parse() {
-            return Some(Value::Number(number));
-        }
-        match Operand::read(word, Model::Iec) {
-            Operand::Literal(literal) => match literal.value {
-                LiteralValue::Bool(on) => Some(Value::Bit(on)),
-                LiteralValue::Integer(number) => match i64::try_from(number) {
-                    Ok(number) => Some(Value::Number(number)),
-                    Err(_) => u64::try_from(number).ok().map(Value::Unsigned),
-                },
-                LiteralValue::Real(number) => Some(Value::Real(number)),
-                LiteralValue::Time(time) => Some(Value::Time(time)),
-                LiteralValue::Text | LiteralValue::WideText => characters_of(word).map(Value::Text),
-                _ => Some(Value::Name(word.into())),
-            },
-            _ => None,
-        }
-    }
-
-    /// The value in a variable of type `kind`; nothing if that does not hold it. A number alone is milliseconds where a
-    /// time is wanted.
-    fn datum(&self, kind: ElementaryType) -> Option<Datum> {
-        use ElementaryType::*;
-        let is_real = matches!(kind, Real | Lreal);
-        let datum = match self {
-            Value::Bit(on) => Datum::from(*on),
-            Value::Number(number) if is_real => Datum::Real(*number as f64),
-            Value::Number(number) if matches!(kind, Time | Ltime) => {
-                Datum::Whole(i128::from(*number) * 1_000_000)
-            }
-            Value::Number(number) => Datum::Whole(i128::from(*number)),
-            Value::Unsigned(number) => Datum::Whole(i128::from(*number)),
-            Value::Real(number) if is_real => Datum::Real(*number),
-            Value::Real(ms) if matches!(kind, Time | Ltime) => Datum::Whole((ms * 1e6).round() as i128),
-            Value::Time(time) if matches!(kind, Time | Ltime) => Datum::Whole(i128::from(*time)),
-            Value::Text(text) | Value::Name(text) if matches!(kind, String | Wstring) => {
-                Datum::Text(text.clone())
-            }
-            Value::Text(text) | Value::Name(text) => match Literal::read(text) {
-                Ok(literal) => return Datum::of_literal(literal.value, kind),
-                Err(_) => return None,
-            },
-            Value::Real(_) | Value::Time(_) => return None,
-        };
-        let is_number = kind.integers().is_some() || is_real || matches!(kind, Time | Ltime);
-        match &datum {
-            Datum::Whole(_) | Datum::Real(_) if !is_number => None,
-            Datum::Whole(_) if is_real => None,
-            _ => {
-                let (held, is_same) = datum.held(kind);
-                is_same.then_some(held)
-            }
-        }
-    }
-
-    /// As programs that read results want it.
-    pub fn json(&self) -> Json {
-        match self {
-            Value::Bit(on) => Json::Bool(*on),
-            Value::Number(number) => Json::from(*number),
-            Value::Unsigned(number) => Json::from(*number),
-            Value::Real(number) => Json::from(*number),
-            // Milliseconds, as a whole number where they are one.
-            Value::Time(time) if time % 1_000_000 == 0 => Json::from(time / 1_000_000),
-            Value::Time(time) => Json::from(*time as f64 / 1e6),
-            Value::Text(text) | Value::Name(text) => Json::from(text.as_str()),
-        }
-    }
-
-    /// As a bit: 0 is off, 1 is on.
-    pub fn as_bit(&self) -> Option<bool> {
-        match self {
-            Value::Bit(on) => Some(*on),
-            Value::Number(0) => Some(false),
-            Value::Number(1) => Some(true),
-            _ => None,
-        }
-    }
-}
-
-impl fmt::Display for Value {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Value::Bit(on) => f.write_str(if *on { "1" } else { "0" }),
-            Value::Number(number) => number.fmt(f),
-            Value::Unsigned(number) => number.fmt(f),
-            Value::Real(number) => write!(f, "{number:?}"),
-            Value::Time(time) => {
-                f.write_str(&spelled(&Datum::Whole(i128::from(*time)), ElementaryType::Time))
-            }
-            Value::Text(text) => write!(f, "'{}'", text.replace('$', "$$").replace('\'', "$'")),
-            Value::Name(name) => f.write_str(name),
-        }
-    }
 }
 
 impl<L: Lanes> Machine<L> {
@@ -337,7 +234,7 @@ impl<L: Lanes> Machine<L> {
             Variable::Enumerated(spot, enumeration) => {
                 let number = self.datum_at(spot, lane).whole();
                 let name = self.code.iec.name_of_value(enumeration, number).cloned();
-                name.map_or(Value::Number(number as i64), Value::Text)
+                name.map_or(Value::Number(number as i64), Value::Name)
             }
             Variable::Pair(lower, upper) => {
                 let (lower, upper) = (self.memory().word(lower, lane), self.memory().word(upper, lane));
@@ -351,7 +248,7 @@ impl<L: Lanes> Machine<L> {
         let published = match spot.lies {
             Lies::Bits(first, count) => {
                 let bits: Option<Vec<L>> =
-                    (first..first + Cell::from(count)).map(|cell| self.terminals.output(cell)).collect();
+                    (0..Cell::from(count)).map(|bit| self.terminals.output(first + bit)).collect();
                 bits
             }
             _ => None,

@@ -12,15 +12,22 @@ pub use drivers::Drivers;
 
 mod seen;
 
+mod literals;
+
+mod subject;
+use subject::Subject;
+
+mod calls;
+
 use super::{Code, Machine, Place, Session, Sight, Value, Variable, instruction_words};
 use crate::document::Document;
-use crate::ladder::{CoilKind, ContactKind};
-use crate::logic::{Contact, Deed, Expression, Test};
+use crate::ladder::CoilKind;
+use crate::logic::Deed;
 use crate::target::{Device, DeviceKind, Flow, Operand, Semantics};
-use crate::text::{Language, Message, Span};
+use crate::text::{Language, Message};
 use drivers::{Driver, Wire};
+use literals::Literals;
 use seen::Seen;
-use smol_str::{SmolStr, ToSmolStr};
 use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -73,15 +80,6 @@ pub struct Inquiry<'a> {
     reasons: RefCell<usize>,
 }
 
-/// What is asked about.
-#[derive(Clone, PartialEq, Eq, Debug)]
-struct Subject {
-    /// As terms are compared.
-    name: SmolStr,
-    device: Option<Device>,
-    variable: Variable,
-}
-
 /// A moment of a simulation: within a scan, before so many sights.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 struct Moment {
@@ -94,8 +92,8 @@ struct Moment {
 enum Literal {
     /// The relay of a contact, with the contact.
     Bit(Subject, Place),
-    /// A contact that is more: an edge, a comparison.
-    Contact(Place),
+    /// A contact that is more: an edge, a comparison of these; of one in a list what it says.
+    Contact(Place, Option<String>, Vec<Subject>),
     /// A master control or a step.
     Rail(Place),
     /// What decides by itself.
@@ -150,35 +148,6 @@ impl<'a> Inquiry<'a> {
         Some(self.value_reason(&subject, &value, moment, None, &mut Vec::new()))
     }
 
-    fn subject(&self, name: &str) -> Option<Subject> {
-        let name = name.trim();
-        let code = self.watched;
-        let device = |name: &str| match Operand::read(name, code.target.model) {
-            Operand::Device(device) if code.target.is_fx() => Some(device),
-            _ => None,
-        };
-        // TS0, TC0 and TN0 are parts of T0.
-        let whole = || {
-            let (kind, rest) = (name.get(..1)?, name.get(1..)?);
-            let rest = rest.strip_prefix(['S', 'C', 'N', 's', 'c', 'n'])?;
-            device(&format!("{kind}{rest}")).filter(|device| device.kind.has_preset())
-        };
-        match device(name).or_else(whole) {
-            Some(device) => self.device_subject(device),
-            None => {
-                let variable = code.variable(name)?;
-                Some(Subject { name: name.to_lowercase().into(), device: None, variable })
-            }
-        }
-    }
-
-    fn device_subject(&self, device: Device) -> Option<Subject> {
-        let layout = &self.watched.layout;
-        let relay = layout.cell(device).map(Variable::Relay);
-        let variable = relay.or_else(|| layout.slot(device).map(Variable::Word))?;
-        Some(Subject { name: device.to_smolstr(), device: Some(device), variable })
-    }
-
     fn seen(&self, scan: u64) -> Option<Rc<Seen>> {
         if let Some((_, seen)) = self.open.as_ref().filter(|_| scan > self.session.machine().scans()) {
             return Some(Rc::clone(seen));
@@ -203,6 +172,27 @@ impl<'a> Inquiry<'a> {
         self.machine(scan).map(|machine| machine.value_inside(subject.variable, 0))
     }
 
+    /// What a variable had when the next instruction of a moment was executed.
+    fn value_at(&self, variable: Variable, at: Moment) -> Option<Value> {
+        if at.before >= self.seen(at.scan)?.len() {
+            return Some(self.machine(at.scan)?.value_inside(variable, 0));
+        }
+        let open = self.open.as_ref().map(|(machine, _)| machine.now_ns());
+        let now_ns = self.session.time_of(at.scan).or(open)?;
+        self.session
+            .inside(at.scan, now_ns, self.watched, at.before, |machine| machine.value_inside(variable, 0))
+    }
+
+    /// Why words are what they are, as far as that is not being told already.
+    fn values_of(&self, subjects: &[Subject], at: Moment, asked: &mut Vec<Subject>) -> Vec<Reason> {
+        let new: Vec<&Subject> = subjects.iter().filter(|subject| !asked.contains(subject)).collect();
+        let reason = |subject: &Subject| {
+            let value = self.value_at(subject.variable, at)?;
+            Some(self.value_reason(subject, &value, at, None, asked))
+        };
+        new.into_iter().filter_map(reason).collect()
+    }
+
     fn reason(&self, message: Message, place: Option<Place>, scan: u64, because: Vec<Reason>) -> Reason {
         *self.reasons.borrow_mut() += 1;
         let open = self.open.as_ref().map_or(0, |(machine, _)| machine.now_ns());
@@ -224,8 +214,16 @@ impl<'a> Inquiry<'a> {
     }
 
     fn words(&self, place: Place) -> String {
-        let document = self.documents.get(place.document as usize);
-        document.map(|document| instruction_words(document, place.span)).unwrap_or_default()
+        let Some(document) = self.documents.get(place.document as usize) else { return String::new() };
+        let Some(own) = self.drivers.several_lines(place) else {
+            return instruction_words(document, place.span);
+        };
+        // What a list calculates line by line.
+        let text = document.slice(own.span);
+        text.lines()
+            .map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "))
+            .collect::<Vec<_>>()
+            .join(", ")
     }
 
     /// What a subject is: `Y0 is on`.
@@ -271,7 +269,7 @@ impl<'a> Inquiry<'a> {
         }
         if let Some(device) = subject.device
             && (device.is_special() || device.kind == DeviceKind::X)
-            && self.drivers.named(&subject.name).is_empty()
+            && self.drivers_of(subject).is_empty()
         {
             return self.outside(subject, device, moment, since, &told);
         }
@@ -330,7 +328,7 @@ impl<'a> Inquiry<'a> {
         if is_new {
             return self.reason(told(self.hand(subject, moment.scan)), None, moment.scan, Vec::new());
         }
-        let idle = self.drivers.named(&subject.name);
+        let idle = self.drivers_of(subject);
         match self.session.last_change(last, of) {
             Some(scan) if scan < moment.scan => {
                 let at = self.seen(scan).map(|seen| Moment { scan, before: seen.len() });
@@ -383,18 +381,23 @@ impl<'a> Inquiry<'a> {
     /// The instruction that wrote a value last before a moment of a scan, and the number of its sight.
     fn writer(&self, subject: &Subject, value: &Value, moment: Moment) -> Option<(Driver, usize)> {
         let seen = self.seen(moment.scan)?;
-        let written = self.drivers.named(&subject.name).iter().filter_map(|driver| {
-            let (at, sight) = seen.last(self.watched, driver.place, moment.before)?;
-            (writes(driver, sight.power != 0, value)).then(|| (driver.clone(), at))
+        let written = self.drivers_of(subject).into_iter().filter_map(|driver| {
+            let (at, sight) = self.saw(&seen, &driver, moment.before)?;
+            writes(&driver, sight.power != 0, value).then_some((driver, at))
         });
         written.max_by_key(|(_, at)| *at)
+    }
+
+    /// What an instruction saw last before the sight with this number, and the number of that.
+    fn saw(&self, seen: &Seen, driver: &Driver, before: usize) -> Option<(usize, Sight<u8>)> {
+        seen.last(self.watched, driver.place, self.frame(driver), before)
     }
 
     /// An instruction that might have driven something and did not.
     fn idle(&self, driver: &Driver, moment: Moment, asked: &mut Vec<Subject>) -> Reason {
         let instruction = self.words(driver.place);
         let seen = self.seen(moment.scan);
-        match seen.and_then(|seen| seen.last(self.watched, driver.place, moment.before)) {
+        match seen.and_then(|seen| self.saw(&seen, driver, moment.before)) {
             Some((at, sight)) => {
                 let key = if sight.power != 0 { "why.powered" } else { "why.unpowered" };
                 let because = self.power(driver, Moment { before: at, ..moment }, sight.power != 0, asked);
@@ -421,8 +424,21 @@ impl<'a> Inquiry<'a> {
     ) -> Reason {
         let seen = self.seen(at.scan);
         let has_power = seen.and_then(|seen| seen.at(at.before)).is_some_and(|sight| sight.power != 0);
-        let because = self.power(driver, at, has_power, asked);
-        let key = if has_power { "why.powered" } else { "why.unpowered" };
+        if let Deed::Call(call) = &driver.action.deed {
+            return self.called(subject, call, driver, at, told, asked);
+        }
+        let mut because = self.power(driver, at, has_power, asked);
+        let key = match (&driver.action.deed, &driver.wire) {
+            // Nothing is connected with what a list calculates.
+            (Deed::Compute(_), Some(Wire::Series(parts))) if parts.is_empty() => "why.executed",
+            _ if has_power => "why.powered",
+            _ => "why.unpowered",
+        };
+        if let Deed::Compute(computation) = &driver.action.deed
+            && let Some((inputs, _)) = computation.operands(&driver.action.terms)
+        {
+            because.extend(self.values_of(&self.subjects(inputs, driver), self.begun(driver, at), asked));
+        }
         let power = Message::new(key).with("instruction", self.words(driver.place));
         let counts = subject.device.filter(|device| device.kind.has_preset() && is_coil(driver));
         let how = match counts.and_then(|device| self.counted(device, driver, at.scan, value)) {
@@ -450,11 +466,7 @@ impl<'a> Inquiry<'a> {
         let now = machine.memory().word(layout.slot(device)?, 0);
         let preset = match driver.action.terms.get(1)?.operand {
             Operand::Device(register) => machine.memory().word(layout.slot(register)?, 0),
-            _ => match Value::read(&driver.action.terms.get(1)?.text)? {
-                Value::Number(number) => number,
-                Value::Bit(on) => i64::from(on),
-                _ => return None,
-            },
+            _ => Value::read(&driver.action.terms.get(1)?.text)?.as_number()? as i64,
         };
         let is_on = *value == Value::Bit(true);
         if device.kind == DeviceKind::C {
@@ -470,15 +482,15 @@ impl<'a> Inquiry<'a> {
     /// The fewest contacts by which power came to an instruction, or did not.
     fn power(&self, driver: &Driver, at: Moment, has_power: bool, asked: &mut Vec<Subject>) -> Vec<Reason> {
         let Some(seen) = self.seen(at.scan) else { return Vec::new() };
-        let mut literals =
-            Literals { inquiry: self, seen: &seen, at, place: driver.place, known: Vec::new() };
+        let mut literals = Literals::new(self, &seen, at, driver);
         let rail = driver.rail.and_then(|rail| literals.rail(rail));
         let Some(wire) = driver.wire.as_ref().and_then(|wire| literals.wire(wire)) else { return Vec::new() };
         let condition = Condition::And(rail.into_iter().chain([wire]).collect());
         let known = literals.known;
         let values: Vec<bool> = known.iter().map(|(_, value, _)| *value).collect();
-        // What was computed otherwise than is understood here is not explained.
-        if condition.holds(&values) != has_power {
+        // What was computed otherwise than is understood here is not explained. A call in a list tells that it is made,
+        // and not what it hands over.
+        if condition.holds(&values) != has_power && !(driver.frame.is_some() && is_call(driver)) {
             return Vec::new();
         }
         let is_asked =
@@ -498,10 +510,17 @@ impl<'a> Inquiry<'a> {
                 let reason = self.value_reason(subject, &Value::Bit(value), at, None, asked);
                 Reason { place: Some(*place), ..reason }
             }
-            Literal::Contact(place) => {
-                let key = if value { "why.conducts" } else { "why.blocks" };
-                let message = Message::new(key).with("instruction", self.words(*place));
-                self.reason(message, Some(*place), at.scan, Vec::new())
+            Literal::Contact(place, words, compared) => {
+                let key = match (words, value) {
+                    (None, true) => "why.conducts",
+                    (None, false) => "why.blocks",
+                    (Some(_), true) => "why.holds",
+                    (Some(_), false) => "why.fails",
+                };
+                let words = words.clone().unwrap_or_else(|| self.words(*place));
+                let message = Message::new(key).with("instruction", words);
+                let because = self.values_of(compared, at, asked);
+                self.reason(message, Some(*place), at.scan, because)
             }
             Literal::Rail(place) => {
                 // What it saw itself counts.
@@ -529,7 +548,7 @@ impl<'a> Inquiry<'a> {
             return Some(Reason { place: Some(place), ..reason });
         }
         let seen = self.seen(at.scan)?;
-        let (number, sight) = seen.last(self.watched, place, at.before)?;
+        let (number, sight) = seen.last(self.watched, place, None, at.before)?;
         let key = if sight.power != 0 { "why.powered" } else { "why.unpowered" };
         let because = self.power(driver, Moment { before: number, ..at }, sight.power != 0, asked);
         let message = Message::new(key).with("instruction", self.words(place));
@@ -548,6 +567,7 @@ fn writes(driver: &Driver, has_power: bool, value: &Value) -> bool {
         // The coil of a state in a step enters it, and takes nothing away.
         Deed::Coil(CoilKind::Plain) if is_state(driver) && driver.rail.is_some() => has_power && is_on,
         Deed::Coil(_) => true,
+        Deed::Call(call) => !call.is_enabled() || has_power,
         Deed::Instruction(form) => match form.instruction.semantics {
             Semantics::Always(_) | Semantics::Basic => true,
             _ => has_power,
@@ -566,92 +586,10 @@ fn is_coil(driver: &Driver) -> bool {
     matches!(driver.action.deed, Deed::Coil(CoilKind::Plain)) && driver.action.terms.len() > 1
 }
 
+fn is_call(driver: &Driver) -> bool {
+    matches!(driver.action.deed, Deed::Call(_))
+}
+
 fn is_pulse(driver: &Driver) -> bool {
     matches!(driver.action.deed, Deed::Coil(CoilKind::Rising | CoilKind::Falling))
-}
-
-/// The literals of a rung, with their values and the sights in which these were seen.
-struct Literals<'i, 'a> {
-    inquiry: &'i Inquiry<'a>,
-    seen: &'i Seen,
-    at: Moment,
-    /// The instruction whose power they decide.
-    place: Place,
-    known: Vec<(Literal, bool, usize)>,
-}
-
-impl Literals<'_, '_> {
-    fn wire(&mut self, wire: &Wire) -> Option<Condition> {
-        match wire {
-            Wire::Pass(expression) => self.expression(expression),
-            Wire::Not(part) => Some(Condition::Not(Box::new(self.wire(part)?))),
-            Wire::Series(parts) => {
-                parts.iter().map(|part| self.wire(part)).collect::<Option<_>>().map(Condition::And)
-            }
-            Wire::Through(action) => {
-                let place = self.placed(action.span);
-                let (at, sight) = self.seen.last(self.inquiry.watched, place, self.at.before)?;
-                let is_rail = self.inquiry.drivers.rail(place).is_some();
-                let literal = if is_rail { Literal::Rail(place) } else { Literal::Through(place) };
-                Some(self.literal(literal, sight.power != 0, at))
-            }
-        }
-    }
-
-    fn expression(&mut self, expression: &Expression) -> Option<Condition> {
-        let mut all =
-            |parts: &[Expression]| parts.iter().map(|part| self.expression(part)).collect::<Option<Vec<_>>>();
-        Some(match expression {
-            Expression::Constant(value) => Condition::Constant(*value),
-            Expression::Not(part) => Condition::Not(Box::new(self.expression(part)?)),
-            Expression::And(parts) => Condition::And(all(parts)?),
-            Expression::Or(parts) => Condition::Or(all(parts)?),
-            Expression::Contact(contact) => self.contact(contact)?,
-        })
-    }
-
-    fn contact(&mut self, contact: &Contact) -> Option<Condition> {
-        let place = self.placed(contact.span);
-        let (at, sight) = self.seen.last(self.inquiry.watched, place, self.at.before)?;
-        let conducts = sight.conducts? != 0;
-        let term = contact.terms.first()?;
-        let subject = match term.operand {
-            Operand::Device(device) => self.inquiry.device_subject(device),
-            _ => self.inquiry.subject(&term.text),
-        };
-        let is_inverse = contact.test == Test::Bit(ContactKind::NormallyClosed);
-        let is_plain = is_inverse || contact.test == Test::Bit(ContactKind::NormallyOpen);
-        Some(match subject.filter(|_| is_plain) {
-            Some(subject) => {
-                let literal = self.literal(Literal::Bit(subject, place), conducts != is_inverse, at);
-                if is_inverse { Condition::Not(Box::new(literal)) } else { literal }
-            }
-            None => self.literal(Literal::Contact(place), conducts, at),
-        })
-    }
-
-    fn rail(&mut self, place: Place) -> Option<Condition> {
-        let (at, sight) = self.seen.last(self.inquiry.watched, place, self.at.before)?;
-        Some(self.literal(Literal::Rail(place), sight.power != 0, at))
-    }
-
-    /// The same device with the same value is one literal, wherever its contacts stand.
-    fn literal(&mut self, literal: Literal, value: bool, at: usize) -> Condition {
-        let same = |(known, other, _): &(Literal, bool, usize)| match (known, &literal) {
-            (Literal::Bit(known, _), Literal::Bit(subject, _)) => known == subject && *other == value,
-            (known, literal) => known == literal,
-        };
-        let number = self.known.iter().position(same).unwrap_or_else(|| {
-            self.known.push((literal, value, at));
-            self.known.len() - 1
-        });
-        Condition::Literal(number)
-    }
-
-    /// Spans of a rung count from where its chunk begins.
-    fn placed(&self, span: Span) -> Place {
-        let document = self.inquiry.documents.get(self.place.document as usize);
-        let start = document.and_then(|document| document.chunk_at(self.place.span.start as usize));
-        Place { document: self.place.document, span: span.shifted(start.map_or(0, |at| at.start)) }
-    }
 }

@@ -50,6 +50,8 @@ pub enum Fault {
     Pid(u16),
     /// A subscript of an array is outside of its bounds (IEC 61131-3 only).
     Index,
+    /// A number is outside of the subrange that its variable is declared with (IEC 61131-3 only).
+    Subrange,
     /// The simulator does not do what the operand at this place asks for, though a PLC does.
     NotSimulated(u8),
 }
@@ -65,6 +67,7 @@ impl Fault {
             | Fault::Value(_)
             | Fault::Overflow
             | Fault::Index
+            | Fault::Subrange
             | Fault::NotSimulated(_) => 6706,
             Fault::NoModule => 6708,
             Fault::Pid(code) => i64::from(code),

@@ -2,11 +2,12 @@
 //! programs with them.
 
 use crate::logic::{
-    Atom, Bounds, Formulas, Moment, Path, Place, Real, Scan, State, Step, Term, WIDE, evaluate, real_at,
+    Atom, Bounds, Formulas, Moment, Path, Place, Real, Scan, State, Step, Storage, Term, WIDE, evaluate,
+    real_at, wholes,
 };
-use crate::target::iec::ElementaryType;
+use crate::target::iec::{ElementaryType, real_spelled};
 use crate::target::{Device, DirectAddress, Model, Operand, Width};
-use crate::text::Span;
+use crate::text::{Message, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,14 +18,51 @@ use std::fmt;
 pub struct Counterexample {
     /// Inputs and states at its start, by name.
     pub inputs: BTreeMap<String, Value>,
-    /// Bits as they were one scan before, where it matters that they changed.
-    pub before: BTreeMap<String, bool>,
-    /// What differs: a bit, or an action that only one does.
+    /// What was otherwise one scan before, where that matters.
+    pub before: BTreeMap<String, Value>,
+    /// What differs: a variable, or an action that only one does.
     pub what: String,
     /// What it is on either side.
-    pub sides: [bool; 2],
+    pub sides: [Value; 2],
     /// The rungs on either side that differ, or where the stretch starts that does.
     pub at: [Option<Span>; 2],
+    /// What programs that name it otherwise call what is named here: names of one address have its spelling.
+    pub keys: BTreeMap<String, SmolStr>,
+    /// Whether the simulated PLC shows it.
+    pub shown: Shown,
+}
+
+/// Whether the simulated PLC shows a difference. Proofs are made without it; who tells of them has it tried.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Shown {
+    /// Nobody has tried.
+    Untried,
+    /// Both programs show it when they are run so.
+    Runs(Run),
+    /// They do not, for this reason.
+    Not(Message),
+}
+
+/// How programs are run to show a difference, from the moment when the PLC is switched on: some scans, the one before
+/// if there is something to set in it, the one that begins with the inputs, and some more.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Run {
+    /// Scans before anything is set.
+    pub lead: u64,
+    /// Scans behind the one that begins with the inputs. The last one shows the difference.
+    pub hold: u64,
+    /// From one scan to the next, in nanoseconds.
+    pub scan_ns: i64,
+}
+
+impl Counterexample {
+    /// How the simulated PLC shows it, if it does.
+    pub fn run(&self) -> Option<Run> {
+        match self.shown {
+            Shown::Runs(run) => Some(run),
+            Shown::Untried | Shown::Not(_) => None,
+        }
+    }
 }
 
 /// A value at the start of a scan.
@@ -38,6 +76,8 @@ pub enum Value {
     Real(f64),
     /// Of a time, in nanoseconds.
     Time(i64),
+    /// Of an enumerated type, a text or a date, as people write it.
+    Named(String),
 }
 
 impl fmt::Display for Value {
@@ -46,31 +86,75 @@ impl fmt::Display for Value {
         match self {
             Value::Bit(value) => write!(f, "{value}"),
             Value::Word(value) => write!(f, "{value}"),
-            Value::Real(value) => write!(f, "{value:?}"),
+            Value::Real(value) => f.write_str(&real_spelled(*value)),
             Value::Time(nanoseconds) => write!(f, "T#{}ms", nanoseconds / 1_000_000),
+            Value::Named(name) => f.write_str(name),
         }
     }
 }
 
+/// What a counterexample says of a state.
+pub(super) struct Inputs {
+    pub inputs: BTreeMap<String, Value>,
+    pub before: BTreeMap<String, Value>,
+    pub keys: BTreeMap<String, SmolStr>,
+}
+
 /// Inputs and states by the names that `paths` have for them, and bits as they were before, as a counterexample has
-/// them.
+/// them. Bits of a word are shown with the word.
 pub(super) fn inputs(
     state: &State,
     paths: [&[&Path]; 2],
     type_of: &dyn Fn(&str) -> Option<ElementaryType>,
-) -> (BTreeMap<String, Value>, BTreeMap<String, bool>) {
+) -> Inputs {
     let names = names_of_addresses(paths);
-    let named = |key: &str| names.get(key).map_or_else(|| key.to_string(), SmolStr::to_string);
-    let bits = state.bits.iter().map(|(key, value)| (named(key), Value::Bit(*value)));
-    let words = state.words.iter().filter(|(key, _)| !is_literal(key));
-    let words = words.map(|(key, value)| {
-        let key = key.trim_start_matches(WIDE);
-        let is_time = matches!(type_of(key), Some(ElementaryType::Time | ElementaryType::Ltime));
-        (named(key), if is_time { Value::Time(*value) } else { Value::Word(*value) })
-    });
-    let reals = state.reals.iter().map(|(key, real)| (named(key), Value::Real(real.value)));
-    let before = state.before.iter().map(|(key, value)| (named(key), *value));
-    (bits.chain(words).chain(reals).collect(), before.collect())
+    let mut keys = BTreeMap::new();
+    let mut named = |key: &str, is_bit: bool| {
+        let name = names.get(key).map_or_else(|| simulated(key, is_bit), SmolStr::to_string);
+        keys.insert(name.clone(), SmolStr::from(key));
+        name
+    };
+    let mut words = state.words.clone();
+    for (key, value) in &state.bits {
+        if let Some((word, bit)) = bit_of_word(key) {
+            let pattern = words.entry(word.into()).or_insert(0);
+            *pattern |= i64::from(*value) << bit;
+        }
+    }
+    let bits = state.bits.iter().filter(|(key, _)| bit_of_word(key).is_none());
+    let mut inputs: BTreeMap<String, Value> =
+        bits.map(|(key, value)| (named(key, true), Value::Bit(*value))).collect();
+    // The relays of a group are there as bits.
+    for (key, value) in words.iter().filter(|(key, _)| !is_literal(key) && group(key).is_none()) {
+        let own = key.trim_start_matches(WIDE);
+        let is_time = matches!(type_of(own), Some(ElementaryType::Time | ElementaryType::Ltime));
+        inputs.insert(named(key, false), if is_time { Value::Time(*value) } else { Value::Word(*value) });
+    }
+    inputs.extend(state.reals.iter().map(|(key, real)| (named(key, false), Value::Real(real.value))));
+    let before = state.before.iter().map(|(key, value)| (named(key, true), Value::Bit(*value))).collect();
+    Inputs { inputs, before, keys }
+}
+
+/// What people call a device in the simulator: the contact of a timer or counter is not its value, and a pair of
+/// registers not the first of them.
+fn simulated(key: &str, is_bit: bool) -> String {
+    let own = key.trim_start_matches(WIDE);
+    match Operand::read(own, Model::Fx3u) {
+        Operand::Device(device) if is_bit && device.kind.has_preset() => {
+            format!("{}S{}", device.kind.letter(), device.number)
+        }
+        Operand::Device(device) if own.len() < key.len() && !device.kind.has_preset() => format!("{own}:32"),
+        _ => own.to_string(),
+    }
+}
+
+/// The key of the word that the bit with this key is a part of, and its number in it.
+fn bit_of_word(key: &str) -> Option<(&str, u32)> {
+    let (word, number) = key.rsplit_once('.').filter(|(word, _)| !word.starts_with('%'))?;
+    let digits = number.trim_start_matches(['%', 'x']);
+    // Of the FX family in hexadecimal digits.
+    let radix = if key.starts_with(|letter: char| letter.is_ascii_uppercase()) { 16 } else { 10 };
+    u32::from_str_radix(digits, radix).ok().filter(|bit| *bit < 63).map(|bit| (word, bit))
 }
 
 /// The variables that programs have at addresses, by the keys of these: the first name of each, unless another place
@@ -158,11 +242,23 @@ pub(super) fn is_possible(state: &State, type_of: &dyn Fn(&str) -> Option<Elemen
     })
 }
 
-/// Whether running these with plain values is what a PLC does: nothing is stored into elements of arrays, of which
-/// nobody knows which are the same, and no two variables of different sizes share memory.
+/// Whether running these with plain values is what a PLC does: no elements of arrays are used of which nobody knows
+/// which are the same, no whole beside its parts, and no two variables of different sizes share memory.
 pub(super) fn is_plain(paths: &[&Path]) -> bool {
-    let mut stores = paths.iter().flat_map(|path| path.actions()).flat_map(|action| &action.terms);
-    if stores.any(|term| term.text.contains('[')) {
+    let variables = paths.iter().flat_map(|path| path.terms());
+    let variables = variables.filter(|term| term.operand == Operand::Variable);
+    if variables
+        .clone()
+        .any(|term| term.is_element() && !(term.is_fixed() && term.storage != Storage::Anywhere))
+    {
+        return false;
+    }
+    let wholes: FxHashSet<SmolStr> = variables
+        .clone()
+        .filter(|term| term.is_element())
+        .flat_map(|term| wholes(&term.key()).map(SmolStr::from).collect::<Vec<_>>())
+        .collect();
+    if variables.into_iter().any(|term| wholes.contains(&term.key())) {
         return false;
     }
     let terms = paths.iter().flat_map(|path| path.terms());
@@ -292,14 +388,11 @@ fn has_its_bits(state: &State) -> bool {
         }),
         _ => true,
     };
-    state.bits.iter().all(|(key, value)| match key.rsplit_once('.') {
-        Some((word, number)) if state.words.contains_key(word) => {
-            let digits = number.trim_start_matches(['%', 'x']);
-            // Of the FX family in hexadecimal digits.
-            let radix = if key.starts_with(|c: char| c.is_ascii_uppercase()) { 16 } else { 10 };
-            let bit = u32::from_str_radix(digits, radix).ok().filter(|bit| *bit < 63);
-            bit.is_some_and(|bit| (state.words[word] >> bit & 1 == 1) == *value)
-        }
+    // One bit of a word may have two names: `w.1` and `w.%X1`.
+    let mut known: FxHashMap<(&str, u32), bool> = FxHashMap::default();
+    state.bits.iter().all(|(key, value)| match bit_of_word(key) {
+        Some(bit) if *known.entry(bit).or_insert(*value) != *value => false,
+        Some((word, bit)) if state.words.contains_key(word) => (state.words[word] >> bit & 1 == 1) == *value,
         _ => is_known(key),
     })
 }

@@ -47,7 +47,7 @@ use super::source::{Program, Source};
 use crate::document::Document;
 use crate::il::iec::PouKind;
 use crate::logic::{Action, Deed, Drive, Path, Refusal};
-use crate::target::{Device, DeviceKind, DirectAddress, Form, Location, Model, Target, Width};
+use crate::target::{Device, DeviceKind, DirectAddress, Form, Location, Model, Operand, Target, Width};
 use crate::text::Message;
 use std::cell::Cell;
 use std::sync::Arc;
@@ -299,6 +299,38 @@ pub(super) fn address(device: Device) -> Option<DirectAddress> {
         },
         _ => return None,
     })
+}
+
+/// What people call the device for which a variable stands whose key is `key`: `X0` for `%IX0.0`, `TS0` for `t0.q`, the
+/// contact of a timer, `D0:32` for the double word over two registers.
+pub fn device_called(key: &str) -> Option<String> {
+    if let Operand::Direct(address) = Operand::read(key, Model::Iec) {
+        let pair = || pair_at(address).map(|first| format!("{first}:32"));
+        return device_at(address).map(|device| device.to_string()).or_else(pair);
+    }
+    let (instance, output) = key.split_once('.')?;
+    let Operand::Device(device) = Operand::read(instance, Model::Fx3u) else { return None };
+    let letter = device.kind.letter();
+    match output {
+        "q" if device.kind.has_preset() => Some(format!("{letter}S{}", device.number)),
+        "cv" if device.kind == DeviceKind::C => Some(device.to_string()),
+        _ => None,
+    }
+}
+
+/// What people call the variable that stands for the device which they call `name`, if nothing else has that name: the
+/// way back from [`device_called`].
+pub fn variable_called(name: &str) -> Option<String> {
+    if let Some(first) = name.strip_suffix(":32") {
+        let Operand::Device(device) = Operand::read(first, Model::Fx3u) else { return None };
+        return pair_address(device).map(|address| address.to_string());
+    }
+    if let Operand::Device(device) = Operand::read(name, Model::Fx3u) {
+        let value = || (device.kind == DeviceKind::C).then(|| format!("{device}.CV"));
+        return address(device).map(|address| address.to_string()).or_else(value);
+    }
+    let timer = |letter: &str| Some(format!("{letter}{}.Q", name.strip_prefix(letter)?.strip_prefix('S')?));
+    timer("T").or_else(|| timer("C"))
 }
 
 /// The address of the variable that stands for a data register and the next one as 32 bits.

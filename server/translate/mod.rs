@@ -14,9 +14,11 @@ pub use certificate::Certificate;
 mod stack;
 
 mod counterexample;
-pub use counterexample::{Counterexample, Value};
+pub use counterexample::{Counterexample, Run, Shown, Value};
 
 mod declared;
+
+mod helpers;
 
 mod paired;
 
@@ -32,6 +34,7 @@ pub use prove::{Proof, prove};
 pub mod told;
 
 mod dialect;
+pub use dialect::{device_called, variable_called};
 
 mod header;
 

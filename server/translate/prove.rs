@@ -3,24 +3,22 @@
 //! Rungs are compared in step as far as they drive the same things in the same order. Where one program does so in
 //! another way, stretches between jumps, labels and the like are compared by what comes of them.
 
-use super::counterexample::{self, Counterexample};
+use super::counterexample::{self, Counterexample, Inputs, Shown, Value};
 use super::paired::Paired;
 use super::source::{self, Source};
-use super::{To, declared, dialect, reached, types, units};
-use crate::document::{DeclaredType, Document, Scopes, Tree};
-use crate::il::iec::{SectionKind, words_of_body};
-use crate::ladder::{CoilKind, ContactKind};
+use super::{To, declared, dialect, helpers, reached, types, units};
+use crate::document::{DeclaredType, Document, Scopes};
+use crate::ladder::CoilKind;
 use crate::logic::{
-    Action, Comparison, Deed, Effort, Path, Place, State, Storage, Term, Test, compare, compare_outcome,
-    is_helper_name, may_drive, shown, touches_bits,
+    Action, Comparison, Deed, Effort, Path, Place, State, Storage, Term, compare, compare_outcome, may_drive,
+    shown, touches_bits,
 };
 use crate::target::iec::ElementaryType;
-use crate::target::{Flow, Model, Target};
+use crate::target::{DeviceKind, Flow, Model, Target};
 use crate::text::{Message, Span, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 use std::borrow::Cow;
-use std::cell::RefCell;
 
 /// What is known of two programs.
 #[derive(Clone, PartialEq, Debug)]
@@ -88,7 +86,7 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
         before: [Vec::new(), Vec::new()],
         next: [0, 0],
         may_be_off,
-        helpers: helpers([left, right], [&sources[0], &sources[1]]),
+        helpers: helpers::of([left, right], [&sources[0], &sources[1]]),
         is_reordered: false,
         is_mixed,
         scopes: [left.scopes(), right.scopes()],
@@ -113,74 +111,6 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
         }
         Ok(()) => Proof::Equal { is_reordered: prover.is_reordered },
     }
-}
-
-/// The variables, by their keys, that keep the power of a rung and that nobody outside of their program unit knows. A
-/// program of the FX family has nothing that stands for them; in one of IEC 61131-3 they are only looked at behind the
-/// store that gives them their value, so that no scan knows what they were in the one before.
-fn helpers(documents: [&Document; 2], sources: [&[Source]; 2]) -> FxHashSet<SmolStr> {
-    let mut helpers = FxHashSet::default();
-    let mut known = FxHashSet::default();
-    for scopes in documents.map(Document::scopes) {
-        known.extend(scopes.globals.keys().cloned());
-        for variable in scopes.pous.iter().flat_map(|pou| &pou.variables) {
-            let is_own = variable.section == SectionKind::Local && variable.address.is_none();
-            let kind = if is_own && is_helper_name(&variable.name) { &mut helpers } else { &mut known };
-            kind.insert(folded(&variable.name));
-        }
-    }
-    if !documents.iter().any(|document| document.target().is_fx()) {
-        sources.into_iter().for_each(|sources| known.extend(remembered(&helpers, sources)));
-    }
-    helpers.retain(|name| !known.contains(name));
-    helpers
-}
-
-/// Those of `helpers` that a program looks at without having stored to them before, or uses for something else.
-fn remembered(helpers: &FxHashSet<SmolStr>, sources: &[Source]) -> FxHashSet<SmolStr> {
-    let found = RefCell::new(FxHashSet::default());
-    let stored: RefCell<FxHashSet<SmolStr>> = RefCell::default();
-    let looks_at = |term: &Term| {
-        let key = term.key();
-        if helpers.contains(&key) && !stored.borrow().contains(&key) {
-            found.borrow_mut().insert(key);
-        }
-    };
-    let mut unit = None;
-    for source in sources {
-        if source.pou != unit || !source.rung.labels.is_empty() || source.rung.path.is_err() {
-            stored.borrow_mut().clear();
-            unit = source.pou;
-        }
-        match &source.rung.path {
-            Ok(path) => path.iter().for_each(|path| {
-                path.visit(
-                    &mut |action| match (&action.deed, &action.terms[..]) {
-                        (Deed::Coil(CoilKind::Plain | CoilKind::Negated), [term]) => {
-                            stored.borrow_mut().insert(term.key());
-                        }
-                        _ => action.terms.iter().for_each(looks_at),
-                    },
-                    &mut |condition| {
-                        for contact in condition.contacts() {
-                            match contact.test {
-                                Test::Bit(ContactKind::NormallyOpen | ContactKind::NormallyClosed) => {
-                                    contact.terms.iter().for_each(looks_at);
-                                }
-                                // What an edge remembers of it goes on to the next scan.
-                                _ => found.borrow_mut().extend(contact.terms.iter().map(Term::key)),
-                            }
-                        }
-                    },
-                );
-            }),
-            Err(_) => {
-                let words = words_of(source);
-                found.borrow_mut().extend(words.split(' ').map(SmolStr::new));
-            }
-        }
-    }
-    found.into_inner()
 }
 
 /// Whether a rung begins a part of the program in which there may be no power at the left rail.
@@ -262,7 +192,7 @@ fn stretches(sources: &[Source]) -> Vec<Stretch<'_>> {
             }
             Ok(Some(path)) => open.rungs.push((source, path)),
             Err(_) => {
-                open.end = Some(End::Unread(source, words_of(source)));
+                open.end = Some(End::Unread(source, source.words()));
                 stretches.push(std::mem::take(&mut open));
             }
         }
@@ -274,15 +204,6 @@ fn stretches(sources: &[Source]) -> Vec<Stretch<'_>> {
         _ => stretches.push(open),
     }
     stretches
-}
-
-/// The words of a rung in one spelling, comments aside.
-fn words_of(source: &Source) -> SmolStr {
-    let (text, span) = (source.chunk.text(), source.rung.span);
-    match source.chunk.tree() {
-        Tree::Iec(_) => words_of_body(text, span),
-        _ => span.of(text).split_whitespace().collect::<Vec<_>>().join(" ").into(),
-    }
 }
 
 /// Whether the rungs behind it are not executed if it is without condition.
@@ -405,12 +326,12 @@ impl<'s> Prover<'s> {
             }
             Comparison::Unlike => undecided("prove.unlike"),
             Comparison::Different { place: Place::Bit(key), .. } if self.is_driven_behind(sides, &key) => {
-                let found = self.beyond(sides).or_else(|| self.by_running(state, [&left, &right], sides));
+                let found = self.beyond(sides).or_else(|| self.by_running(state, sides));
                 found.map_or_else(|| undecided("prove.driven-again"), Err)
             }
             Comparison::Different { what, place, .. } => {
                 let found = self.different((what, place), state.clone(), [&left, &right], sides);
-                let found = found.or_else(|| self.by_running(state, [&left, &right], sides));
+                let found = found.or_else(|| self.by_running(state, sides));
                 found.map_or_else(|| undecided("prove.unconfirmed"), Err)
             }
         }
@@ -503,20 +424,35 @@ impl Prover<'_> {
         let units = [0, 1].map(|side| self.unit_around(side, sides[side]));
         self.is_plain(&units).then_some(())?;
         let (state, values) = counterexample::confirmed_near(state, paths, &place)?;
-        reached::is_reached(&units, &state, &place).then_some(())?;
+        let state = reached::reached(&units, &state, &place)?;
+        let key = match &place {
+            Place::Bit(key) => key.clone(),
+            Place::Event(_) => folded(&what),
+        };
         let at = sides.map(|side| rung_of(side, &what));
-        let (inputs, before) = counterexample::inputs(&state, paths, &type_of);
-        Some(Proof::Different(Box::new(Counterexample { inputs, before, what, sides: values, at })))
+        Some(self.found((what, key, values), &state, at, &units, &type_of))
+    }
+
+    /// The difference in `what`, as people are told it.
+    fn found(
+        &self,
+        (what, key, values): (String, SmolStr, [bool; 2]),
+        state: &State,
+        at: [Option<Span>; 2],
+        units: &[reached::Unit<'_>; 2],
+        type_of: &dyn Fn(&str) -> Option<ElementaryType>,
+    ) -> Proof {
+        let own = units.each_ref().map(|unit| unit.paths());
+        let Inputs { inputs, before, mut keys } = counterexample::inputs(state, [&own[0], &own[1]], type_of);
+        keys.insert(what.clone(), key);
+        let sides = values.map(Value::Bit);
+        let shown = Shown::Untried;
+        Proof::Different(Box::new(Counterexample { inputs, before, what, sides, at, keys, shown }))
     }
 
     /// The difference that is there at the end of a scan when both programs are run from a state in which something
     /// else differs on the way.
-    fn by_running(
-        &self,
-        state: Option<State>,
-        paths: [&[&Path]; 2],
-        sides: [Rungs<'_, '_>; 2],
-    ) -> Option<Proof> {
+    fn by_running(&self, state: Option<State>, sides: [Rungs<'_, '_>; 2]) -> Option<Proof> {
         let types = self.types(sides);
         let type_of = |key: &str| types.get(key).copied();
         let state = state.filter(|state| counterexample::is_possible(state, &type_of))?;
@@ -534,8 +470,7 @@ impl Prover<'_> {
         }
         let what = bit.text.to_string();
         let at = sides.map(|side| rung_of(side, &what));
-        let (inputs, before) = counterexample::inputs(&state, paths, &type_of);
-        Some(Proof::Different(Box::new(Counterexample { inputs, before, what, sides: values, at })))
+        Some(self.found((what, key, values), &state, at, &units, &type_of))
     }
 
     /// Whether running what is executed in one scan with plain values is what a PLC does.
@@ -585,7 +520,18 @@ impl Prover<'_> {
         if self.is_mixed && own.iter().any(|action| is_detector(&action)) {
             return false;
         }
-        let forgets = |action: &&&Action| matches!(action.deed, Deed::Instruction(_) | Deed::Compute(_));
+        // Where it stands twice, the other one may do it.
+        let count = |all: &[Source]| {
+            let actions = all.iter().filter_map(Source::path).flat_map(Path::actions);
+            actions.filter(|action| shown(action) == what).count()
+        };
+        if self.all.iter().any(|all| count(all) > 1) {
+            return false;
+        }
+        let forgets = |action: &&&Action| {
+            let is_pulse = matches!(action.deed, Deed::Coil(CoilKind::Rising | CoilKind::Falling));
+            is_pulse || matches!(action.deed, Deed::Instruction(_) | Deed::Compute(_))
+        };
         let written = own.iter().filter(forgets).flat_map(|action| action.changes());
         let written: Vec<Term> = written.map(Cow::into_owned).collect();
         let mut others = all().filter(|action| shown(action) != what);
@@ -593,7 +539,7 @@ impl Prover<'_> {
             action
                 .changes()
                 .iter()
-                .any(|term| written.iter().any(|own| own.key() == term.key() || own.may_cover(term)))
+                .any(|term| written.iter().any(|own| own.may_cover(term) || may_overlap(own, term)))
         })
     }
 
@@ -642,6 +588,13 @@ fn may_name(source: &Source, key: &str) -> bool {
     let is_device = key.starts_with(|letter: char| letter.is_ascii_uppercase());
     let name = root.trim_end_matches(|digit: char| digit.is_ascii_digit());
     key.starts_with('%') || text.contains(if is_device { name } else { &root })
+}
+
+/// Whether two operands of the FX family may have a relay in common: a group has others than its first.
+fn may_overlap(one: &Term, other: &Term) -> bool {
+    let kind = |term: &Term| term.operand.device().map(|device| device.kind);
+    let is_relay = matches!(kind(one), Some(DeviceKind::X | DeviceKind::Y | DeviceKind::M | DeviceKind::S));
+    is_relay && kind(one) == kind(other) && !(one.is_lone() && other.is_lone())
 }
 
 /// Rungs with their paths.

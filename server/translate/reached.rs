@@ -33,17 +33,24 @@ impl<'s> Unit<'s> {
         Unit { rungs, ahead: end.saturating_sub(start), numbers }
     }
 
+    /// What its rungs do, as far as they can be read.
+    pub(super) fn paths(&self) -> Vec<&'s Path> {
+        self.rungs.iter().filter_map(|rung| rung.path.as_ref().ok()?.as_ref()).collect()
+    }
+
     /// The bits that decide about jumps, by their keys.
     fn switches(&self) -> Vec<SmolStr> {
-        let paths = self.rungs.iter().filter_map(|rung| rung.path.as_ref().ok()?.as_ref());
-        let jumps = paths.filter(|path| path.actions().into_iter().any(leaves));
+        let jumps = self.paths().into_iter().filter(|path| path.actions().into_iter().any(leaves));
         jumps.flat_map(Path::terms).filter(|term| term.is_lone()).map(Term::key).collect()
     }
 
     /// The bits by themselves that coils drive.
     fn driven(&self) -> Vec<Term> {
-        let paths = self.rungs.iter().filter_map(|rung| rung.path.as_ref().ok()?.as_ref());
-        let coils = paths.flat_map(Path::actions).filter(|action| matches!(action.deed, Deed::Coil(_)));
+        let coils = self
+            .paths()
+            .into_iter()
+            .flat_map(Path::actions)
+            .filter(|action| matches!(action.deed, Deed::Coil(_)));
         coils.filter_map(|action| action.terms.first()).filter(|term| term.is_lone()).cloned().collect()
     }
 
@@ -80,14 +87,17 @@ fn ends_routine(source: &Source) -> bool {
     })
 }
 
-/// Whether a scan from `state` comes to the difference at `place`, which both programs show if they run from it.
-pub(super) fn is_reached(units: &[Unit<'_>; 2], state: &State, place: &Place) -> bool {
+/// `state`, or the one near to it from which a scan comes to the difference at `place` that both programs show if they
+/// run from it; nothing if none does.
+pub(super) fn reached(units: &[Unit<'_>; 2], state: &State, place: &Place) -> Option<State> {
     let differs = |[left, right]: [Scan<'_>; 2]| match place {
         Place::Bit(key) => left.bit(key) != right.bit(key),
         Place::Event(_) => left.events != right.events,
     };
-    let comes_to = |start: &State| scans(units, start).is_some_and(differs);
-    units.iter().all(Unit::is_straight) || starts(units, state).iter().any(comes_to)
+    if units.iter().all(Unit::is_straight) {
+        return Some(state.clone());
+    }
+    starts(units, state).into_iter().find(|start| scans(units, start).is_some_and(differs))
 }
 
 /// A bit that both programs drive, one of them to another value, in a scan that begins in `state` or in one near to it,

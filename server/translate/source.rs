@@ -1,10 +1,11 @@
 //! The rungs of a document that are to be translated.
 
 use crate::document::{Chunk, ChunkRef, Document, Notation, Scopes, Tree, both};
-use crate::il::iec::{IecTree, ItemKind};
+use crate::il::iec::{IecTree, ItemKind, words_of_body};
 use crate::ladder;
 use crate::logic::{self, Declared, Elsewhere, Path, Rung};
 use crate::text::{Message, Span};
+use smol_str::SmolStr;
 use std::sync::Arc;
 
 /// A rung with its chunk.
@@ -42,6 +43,15 @@ impl Source {
     /// What it does, if it can be read and does something.
     pub fn path(&self) -> Option<&Path> {
         self.rung.path.as_ref().ok()?.as_ref()
+    }
+
+    /// Its words in one spelling, comments aside.
+    pub(super) fn words(&self) -> SmolStr {
+        let (text, span) = (self.chunk.text(), self.rung.span);
+        match self.chunk.tree() {
+            Tree::Iec(_) => words_of_body(text, span),
+            _ => span.of(text).split_whitespace().collect::<Vec<_>>().join(" ").into(),
+        }
     }
 
     /// Its text without the comments before it.

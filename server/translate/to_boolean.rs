@@ -91,6 +91,7 @@ impl Changed {
         condition.contacts().into_iter().flat_map(|contact| &contact.terms).any(|term| {
             self.keys.contains(&term.key())
                 || !term.is_lone() && is_of_kind(term)
+                || term.is_element() && self.keys.iter().any(|key| key.contains('['))
                 || self.is_shared && is_shared(term)
         })
     }

@@ -1,11 +1,16 @@
 //! How a proof about two programs is told.
 
-use super::{Counterexample, Proof, Value};
+use super::{Counterexample, Proof, Shown, Value};
 use crate::document::Document;
+use crate::target::iec::real_spelled;
 use crate::text::{Encoding, Language, Message, Span, text_width};
 use serde_json::{Map, Value as Json, json};
+use std::collections::{BTreeMap, BTreeSet};
 
-/// The JSON of `prove`: `{"equal", "counterexample": {"inputs", "before", "left", "right", "lines"}}`.
+/// The JSON of `prove`: `{"equal", "counterexample": {"inputs", "before", "left", "right", "lines", "run", "reason"}}`.
+/// `run` says how the simulated PLC shows the difference: `{"scan_ms", "first", "last"}`, the time of a scan, the
+/// number of the one that begins with the inputs and that of the one that shows it, from 0. Where it is `null`,
+/// `reason` says why the simulated PLC does not.
 pub fn json(proof: &Proof, sides: [&Document; 2], language: Language) -> Json {
     let place = |at: &[Option<Span>; 2]| {
         let [left, right] = [0, 1].map(|side| at[side].map(|span| line(sides[side], span)));
@@ -17,17 +22,29 @@ pub fn json(proof: &Proof, sides: [&Document; 2], language: Language) -> Json {
             json!({ "equal": null, "reason": reason.render(language), "lines": place(at) })
         }
         Proof::Different(found) => {
-            let inputs: Map<_, _> =
-                found.inputs.iter().map(|(name, value)| (name.clone(), value_json(value))).collect();
-            let [left, right] = found.sides.map(|value| json!({ found.what.clone(): value }));
+            let values = |of: &BTreeMap<String, Value>| -> Map<String, Json> {
+                of.iter().map(|(name, value)| (name.clone(), value_json(value))).collect()
+            };
+            let [left, right] =
+                found.sides.each_ref().map(|value| json!({ found.what.clone(): value_json(value) }));
+            let run = found.run().map(|run| {
+                let first = run.lead + u64::from(!found.before.is_empty());
+                json!({ "scan_ms": run.scan_ns / 1_000_000, "first": first, "last": first + run.hold })
+            });
+            let reason = match &found.shown {
+                Shown::Not(reason) => Some(reason.render(language)),
+                Shown::Untried | Shown::Runs(_) => None,
+            };
             json!({
                 "equal": false,
                 "counterexample": {
-                    "inputs": inputs,
-                    "before": found.before,
+                    "inputs": values(&found.inputs),
+                    "before": values(&found.before),
                     "left": left,
                     "right": right,
                     "lines": place(&found.at),
+                    "run": run,
+                    "reason": reason,
                 },
             })
         }
@@ -38,8 +55,10 @@ fn value_json(value: &Value) -> Json {
     match value {
         Value::Bit(value) => json!(value),
         Value::Word(value) => json!(value),
+        // JSON has no number for these.
+        Value::Real(value) if !value.is_finite() => json!(real_spelled(*value).as_str()),
         Value::Real(value) => json!(value),
-        Value::Time(_) => json!(value.to_string()),
+        Value::Time(_) | Value::Named(_) => json!(value.to_string()),
     }
 }
 
@@ -69,24 +88,51 @@ pub fn text(proof: &Proof, sides: [&Document; 2], names: &[String; 2], language:
 fn picture(found: &Counterexample, names: &[String; 2], language: Language) -> String {
     let level = |on: bool| if on { "▆▆" } else { "__" };
     let mut rows: Vec<(String, String)> = Vec::new();
-    for (name, value) in &found.inputs {
-        rows.push(match value {
-            Value::Bit(value) => {
-                let before = found.before.get(name).copied().unwrap_or(*value);
-                (name.clone(), format!("{}{}", level(before), level(*value)))
-            }
-            value => (name.clone(), value.to_string()),
-        });
+    let named: BTreeSet<&String> = found.inputs.keys().chain(found.before.keys()).collect();
+    for name in named {
+        let (before, now) = (found.before.get(name), found.inputs.get(name));
+        rows.push((
+            name.clone(),
+            match (before.or(now), now) {
+                (Some(Value::Bit(before)), Some(Value::Bit(now))) => {
+                    format!("{}{}", level(*before), level(*now))
+                }
+                (Some(Value::Bit(before)), None) => level(*before).to_string(),
+                (Some(before), Some(now)) if before != now => format!("{before} → {now}"),
+                (before, _) => before.map(Value::to_string).unwrap_or_default(),
+            },
+        ));
     }
-    for (name, value) in names.iter().zip(found.sides) {
+    for (name, value) in names.iter().zip(&found.sides) {
+        let shown = match value {
+            Value::Bit(value) => format!("  {}", level(*value)),
+            value => value.to_string(),
+        };
         rows.push((
             Message::new("prove.in").with("what", &found.what).with("path", name).render(language),
-            { format!("  {}", level(value)) },
+            shown,
         ));
     }
     let width = rows.iter().map(|(name, _)| text_width(name)).max().unwrap_or(0);
     let pad = |name: &str| " ".repeat(width - text_width(name));
-    rows.iter().map(|(name, shown)| format!("  {name}{}  {shown}\n", pad(name))).collect()
+    let rows: String = rows.iter().map(|(name, shown)| format!("  {name}{}  {shown}\n", pad(name))).collect();
+    match remark(found) {
+        Some(remark) => format!("{rows}\n{}\n", remark.render(language)),
+        None => rows,
+    }
+}
+
+/// What is to be said of a picture: that it takes more scans than it shows, or that the simulated PLC does not show it.
+fn remark(found: &Counterexample) -> Option<Message> {
+    match &found.shown {
+        Shown::Not(reason) => {
+            Some(Message::new("prove.not-shown").with_messages("reason", vec![reason.clone()]))
+        }
+        Shown::Runs(run) if run.hold > 0 => {
+            Some(Message::new("prove.later").with("scans", run.hold).with("time", run.scan_ns / 1_000_000))
+        }
+        Shown::Runs(_) | Shown::Untried => None,
+    }
 }
 
 fn line(document: &Document, span: Span) -> u32 {

@@ -36,11 +36,14 @@ mod interleaved;
 
 mod translation;
 
+mod machine_code;
+
 mod cursor;
 
 mod simulation;
 
 mod link;
+mod simulation_iec;
 
 use figures::{Figures, Table, calibrate, milliseconds};
 use lsp_client::{Client, at};
@@ -73,8 +76,10 @@ fn main() {
     start(&table);
     interleaved::measure(&table);
     translation::measure(&table);
+    machine_code::measure(&table);
     cursor::measure(&table);
     simulation::measure(&table);
+    simulation_iec::measure(&table);
     link::measure(&table);
     command_line::measure(&table);
     println!("| (calibration again) | {} | | | | |", milliseconds(calibrate()));

@@ -11,6 +11,7 @@ import { FormsView } from './formsView';
 import { ProofView } from './proving';
 import { Pages } from './pages';
 import { PanelView } from './panel/panelView';
+import { PlcView } from './plcView';
 import { ServerController } from './server';
 import type { ProgramStatus, ServerState } from './status';
 import { SimulationView } from './simulationView';
@@ -55,6 +56,7 @@ export async function activate(context: vscode.ExtensionContext): Promise<Rungwi
     new ProofView(controller),
     simulation,
     new PanelView(context.extensionUri, simulation),
+    new PlcView(controller, simulation, context.workspaceState),
     new TestExplorer(controller),
     new Debuggers(controller),
     RungwiseTasks.register(controller),

@@ -7,12 +7,16 @@ export const MONITOR = 'rungwise/monitor';
 /** The command of the server with this verb. */
 export const simulate = (verb: string): string => `rungwise.simulate.${verb}`;
 
+/** Where a program runs. */
+export type Source = 'simulator' | 'plc';
+
 export type Mode = 'running' | 'paused' | 'stopped';
 
 /** What of a program is on the screen, in one scan. */
 export interface Picture {
   readonly uri: string;
   readonly version: number;
+  readonly source: Source;
   readonly mode: Mode;
   readonly scan: number;
   readonly timeMs: number;
@@ -43,6 +47,7 @@ export function parsePicture(params: unknown): Picture | undefined {
   return {
     uri: given.uri,
     version: given.version,
+    source: given.source === 'plc' ? 'plc' : 'simulator',
     mode: given.mode === 'paused' || given.mode === 'stopped' ? given.mode : 'running',
     scan: Number(given.scan),
     timeMs: Number(given.time_ms),

@@ -1,8 +1,9 @@
 /** Running a program on the simulated PLC: commands, and power in the text. */
 
 import * as vscode from 'vscode';
+import { plc } from './plc';
 import type { ServerController } from './server';
-import { clock, deviceAt, MONITOR, parsePicture, simulate, type Mode, type Picture } from './simulation';
+import { clock, deviceAt, MONITOR, parsePicture, simulate, type Mode, type Picture, type Source } from './simulation';
 import type { PlainRange } from './structuralEdits';
 import { freeName } from './testing';
 
@@ -30,7 +31,7 @@ export class SimulationView implements vscode.Disposable {
   });
   private readonly status = vscode.window.createStatusBarItem('rungwise.simulation', vscode.StatusBarAlignment.Left, 5);
   /** Programs that are simulated, by the server's address. */
-  private readonly running = new Map<string, { uri: vscode.Uri; mode: Mode }>();
+  private readonly running = new Map<string, { uri: vscode.Uri; mode: Mode; source: Source }>();
   private readonly pictures = new vscode.EventEmitter<{ readonly document: vscode.Uri; readonly params: unknown }>();
   private readonly changes = new vscode.EventEmitter<vscode.Uri>();
   /** The server's pictures of a program. */
@@ -108,16 +109,35 @@ export class SimulationView implements vscode.Disposable {
   }
 
   isRunning(document: vscode.Uri): boolean {
-    return this.running.has(this.server.protocolUri(document));
+    return this.running.get(this.server.protocolUri(document))?.source === 'simulator';
   }
 
   async start(document: vscode.Uri): Promise<void> {
     const uri = this.server.protocolUri(document);
     await this.tell(document, 'start');
-    this.running.set(uri, { uri: document, mode: 'running' });
+    this.running.set(uri, { uri: document, mode: 'running', source: 'simulator' });
     this.showContext();
     this.changes.fire(document);
     await this.watch();
+  }
+
+  /** Shows what a program does in the PLC that is connected. */
+  async followPlc(document: vscode.Uri): Promise<void> {
+    await this.stop(document);
+    this.unfollowAll();
+    this.running.set(this.server.protocolUri(document), { uri: document, mode: 'running', source: 'plc' });
+    await this.watch();
+  }
+
+  /** Shows no more of what it does there. */
+  unfollow(document: vscode.Uri): void {
+    if (this.running.get(this.server.protocolUri(document))?.source === 'plc') {
+      this.forget(document);
+    }
+  }
+
+  unfollowAll(): void {
+    [...this.running.values()].forEach(({ uri }) => this.unfollow(uri));
   }
 
   /** Lets pictures tell the values of these names. */
@@ -128,7 +148,7 @@ export class SimulationView implements vscode.Disposable {
   }
 
   async stop(document: vscode.Uri): Promise<void> {
-    if (this.forget(document)) {
+    if (this.isRunning(document) && this.forget(document)) {
       await this.tell(document, 'stop');
     }
   }
@@ -205,10 +225,11 @@ export class SimulationView implements vscode.Disposable {
   }
 
   private async watch(): Promise<void> {
-    const watched = [...this.running.values()].map(({ uri }) => {
+    const watched = [...this.running.values()].map(({ uri, source }) => {
       const editors = editorsOf(uri);
       const ranges = editors.flatMap(({ visibleRanges }) => visibleRanges.map(({ start, end }) => ({ start, end })));
-      return this.tell(uri, 'watch', { ranges });
+      const monitor = () => this.server.executeCommand(plc('monitor'), [{ uri: this.server.protocolUri(uri), ranges }]);
+      return source === 'plc' ? monitor() : this.tell(uri, 'watch', { ranges });
     });
     await Promise.all(watched);
   }
@@ -217,7 +238,10 @@ export class SimulationView implements vscode.Disposable {
     const picture = parsePicture(params);
     const running = picture && this.running.get(picture.uri);
     if (picture !== undefined && running !== undefined) {
-      if (picture.mode === 'stopped') {
+      if (picture.source !== running.source) {
+        return;
+      }
+      if (picture.mode === 'stopped' && picture.source === 'simulator') {
         // Its document was closed.
         this.forget(running.uri);
         return;
@@ -240,6 +264,12 @@ export class SimulationView implements vscode.Disposable {
         this.decorate(editor, this.value, placedValues(editor.document, picture.values));
         this.decorate(editor, this.error, picture.errors);
       }
+    }
+    if (picture.source === 'plc') {
+      this.status.text = `$(plug) ${vscode.l10n.t('PLC, look {0}', picture.scan)} · ${clock(picture.timeMs)}`;
+      this.status.command = 'rungwise.controller.monitor';
+      this.status.show();
+      return;
     }
     const icon = picture.mode === 'paused' ? '$(debug-pause)' : '$(play)';
     this.status.text = `${icon} ${vscode.l10n.t('scan {0}', picture.scan)} · ${clock(picture.timeMs)}`;
@@ -278,7 +308,8 @@ export class SimulationView implements vscode.Disposable {
 
   private showContext(): void {
     const { program } = this;
-    const mode = program && this.running.get(this.server.protocolUri(program))?.mode;
+    const running = program && this.running.get(this.server.protocolUri(program));
+    const mode = running?.source === 'simulator' ? running.mode : undefined;
     void vscode.commands.executeCommand('setContext', 'rungwise.simulation', mode ?? 'stopped');
     if (this.running.size === 0) {
       this.status.hide();

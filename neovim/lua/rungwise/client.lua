@@ -92,6 +92,9 @@ function M.config()
       ['rungwise/monitor'] = function(...)
         require('rungwise.simulation').on_monitor(...)
       end,
+      ['rungwise/plc'] = function(...)
+        require('rungwise.plc').on_state(...)
+      end,
     },
   }
 end

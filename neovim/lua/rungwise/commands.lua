@@ -90,6 +90,14 @@ M.subcommands = {
     end,
   },
   log = { run = M.log },
+  plc = {
+    run = function(words)
+      require('rungwise.plc').run(words)
+    end,
+    complete = function()
+      return require('rungwise.plc').names()
+    end,
+  },
   prove = {
     run = function(words)
       require('rungwise.pages').prove(table.concat(words, ' '))

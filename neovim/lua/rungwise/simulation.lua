@@ -9,7 +9,7 @@ local SPACE = vim.api.nvim_create_namespace('rungwise_simulation')
 --- The window is told when it stands still.
 local SCROLL_MS = 50
 
---- What runs, by URI: { buffer, mode, scan }.
+--- What runs, by URI: { buffer, mode, scan }; `watch` tells the ranges that are shown where it runs in a PLC.
 M.running = {}
 local timer
 
@@ -35,7 +35,7 @@ function M.tell(buffer, verb, more, done)
 end
 
 --- The lines that windows show of a buffer.
-local function watch(buffer)
+local function ranges_of(buffer)
   local ranges = {}
   for _, window in ipairs(vim.fn.win_findbuf(buffer)) do
     local first, last = vim.fn.line('w0', window), vim.fn.line('w$', window)
@@ -43,7 +43,16 @@ local function watch(buffer)
       start = { line = first - 1, character = 0 }, ['end'] = { line = last, character = 0 },
     })
   end
-  M.tell(buffer, 'watch', { ranges = ranges })
+  return ranges
+end
+
+local function watch(buffer)
+  local running = M.running[vim.uri_from_bufnr(buffer)]
+  if running and running.watch then
+    running.watch(ranges_of(buffer))
+  else
+    M.tell(buffer, 'watch', { ranges = ranges_of(buffer) })
+  end
 end
 
 local function scrolled()
@@ -84,7 +93,11 @@ function M.on_monitor(_, picture, context)
   if not running or not server or not vim.api.nvim_buf_is_loaded(running.buffer) then
     return
   end
-  if picture.mode == 'stopped' then
+  local is_plc = picture.source == 'plc'
+  if is_plc ~= (running.watch ~= nil) then
+    return
+  end
+  if picture.mode == 'stopped' and not is_plc then
     return forget(running.buffer)
   end
   running.mode, running.scan, running.time_ms = picture.mode, picture.scan, picture.time_ms
@@ -122,23 +135,45 @@ function M.on_monitor(_, picture, context)
   vim.cmd.redrawstatus()
 end
 
+--- Tells what windows show from now on, until the buffer goes.
+local function follow()
+  local group = vim.api.nvim_create_augroup('rungwise_simulation', { clear = true })
+  local events = { 'WinScrolled', 'BufWinEnter', 'TextChanged', 'TextChangedI' }
+  vim.api.nvim_create_autocmd(events, { group = group, callback = scrolled })
+  vim.api.nvim_create_autocmd('BufUnload', {
+    group = group,
+    callback = function(event)
+      if M.running[vim.uri_from_bufnr(event.buf)] then
+        forget(event.buf)
+      end
+    end,
+  })
+end
+
 local function start(buffer)
   M.tell(buffer, 'start', {}, function()
     M.running[vim.uri_from_bufnr(buffer)] = { buffer = buffer, mode = 'running' }
-    local group = vim.api.nvim_create_augroup('rungwise_simulation', { clear = true })
-    local events = { 'WinScrolled', 'BufWinEnter', 'TextChanged', 'TextChangedI' }
-    vim.api.nvim_create_autocmd(events, { group = group, callback = scrolled })
-    vim.api.nvim_create_autocmd('BufUnload', {
-      group = group,
-      callback = function(event)
-        if M.running[vim.uri_from_bufnr(event.buf)] then
-          forget(event.buf)
-        end
-      end,
-    })
+    follow()
     watch(buffer)
     panel.on_start(buffer)
   end)
+end
+
+--- Shows what the program of a buffer does in the PLC that is connected; `tell` is told the ranges that are shown.
+function M.follow_plc(buffer, tell)
+  M.unfollow_plc()
+  M.running[vim.uri_from_bufnr(buffer)] = { buffer = buffer, mode = 'running', watch = tell }
+  follow()
+  watch(buffer)
+end
+
+--- Shows no more of any PLC.
+function M.unfollow_plc()
+  for _, running in pairs(vim.deepcopy(M.running)) do
+    if running.watch then
+      forget(running.buffer)
+    end
+  end
 end
 
 --- The word under the cursor, or the one that is named.

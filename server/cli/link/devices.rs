@@ -5,7 +5,7 @@ use super::connection::failed;
 use crate::cli::Outcome;
 use crate::cli::input::complain;
 use crate::link::Point;
-use crate::simulate::{Setting, Value};
+use crate::simulate::Setting;
 use crate::target::Target;
 use crate::text::{Language, Message};
 use std::path::Path;
@@ -65,11 +65,6 @@ fn written(setting: &Setting, is_forced: bool, target: &Target) -> Result<(Point
     if is_forced && !point.is_bit() {
         return Err(Message::new("link.no-relay").with("device", name));
     }
-    let value = match (point.is_bit(), &setting.value) {
-        (true, value) => value.as_bit().map(i64::from),
-        (false, Value::Number(number)) => Some(*number).filter(|number| point.range().contains(number)),
-        _ => None,
-    };
     let wrong = || Message::new("link.no-value").with("device", name).with("value", &setting.value);
-    value.map(|value| (point, value)).ok_or_else(wrong)
+    point.number(&setting.value).map(|value| (point, value)).ok_or_else(wrong)
 }

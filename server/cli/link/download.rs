@@ -2,13 +2,14 @@
 
 use super::Connection;
 use super::connection::{Bar, confirmed, failed};
-use super::contents::{keep, latest, words_at};
+use super::contents::words_at;
 use crate::cli::Outcome;
 use crate::cli::colour::Colour;
 use crate::cli::diff::unified;
 use crate::cli::input::{complain, remark, say};
 use crate::link::{Identity, Mode, Plan};
 use crate::machine_code::decode;
+use crate::project::Backup;
 use crate::text::{Language, Message};
 use std::path::{Path, PathBuf};
 
@@ -39,7 +40,7 @@ pub(in crate::cli) fn run(arguments: &Arguments, colour: Colour, language: Langu
 fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Result<Outcome, Outcome> {
     let here = PathBuf::from(".");
     let beside = arguments.file.as_deref().unwrap_or(&here);
-    let backup = if arguments.rollback { latest(beside) } else { None };
+    let backup = if arguments.rollback { Backup::latest(beside) } else { None };
     if arguments.rollback && backup.is_none() {
         let reason = Message::new("link.no-backup").render(language);
         complain("no-backup", &reason, &Message::new("link.help-backup").render(language), language);
@@ -99,7 +100,7 @@ pub(super) fn changes(plan: &Plan, colour: Colour, language: Language) -> String
 }
 
 fn back_up(beside: &Path, identity: Identity, plan: &Plan, language: Language) -> Result<(), Outcome> {
-    match keep(beside, identity, &plan.before) {
+    match Backup::keep(beside, identity.target, &plan.before) {
         Ok(path) => {
             remark(&Message::new("link.backed-up").with("path", path.display()).render(language));
             Ok(())

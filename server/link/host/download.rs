@@ -148,8 +148,8 @@ impl<T: Transport> Host<T> {
         Ok(Plan { model: target.model, before, wanted })
     }
 
-    /// Carries a plan out: stop, write what has changed, read all of it back, compare the sum, and start if `is_started`
-    /// says so.
+    /// Carries a plan out: stop, write what has changed, read all of it back, compare the sum, and start if
+    /// `is_started` says so.
     ///
     /// # Errors
     /// With what has become of the program. The same download, planned again, finishes the job.

@@ -1,6 +1,9 @@
 //! Names of what can be read and written in a PLC.
 
-use crate::link::address::Part;
+use super::Dialect;
+use super::devices::Place;
+use crate::link::address::{Extended, Part, Plain};
+use crate::simulate::Value;
 use crate::target::{Device, DeviceKind, Operand, Target};
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -57,6 +60,23 @@ impl Point {
             Point::Pair(_) => wide,
             Point::Word(device) if device.kind == DeviceKind::C && device.number >= 200 => wide,
             Point::Word(_) => i64::from(i16::MIN)..=i64::from(i16::MAX),
+        }
+    }
+
+    /// The number that is written for a value, 0 or 1 for a bit; nothing if that is none of it.
+    pub fn number(self, value: &Value) -> Option<i64> {
+        match value {
+            value if self.is_bit() => value.as_bit().map(i64::from),
+            Value::Number(number) => Some(*number).filter(|number| self.range().contains(number)),
+            _ => None,
+        }
+    }
+
+    /// Whether the port of this model reaches it.
+    pub fn is_reached(self, target: &Target) -> bool {
+        match Dialect::of(target) {
+            Dialect::Plain => Place::of::<Plain>(self).is_ok(),
+            Dialect::Extended => Place::of::<Extended>(self).is_ok(),
         }
     }
 

@@ -17,4 +17,4 @@ mod faults;
 pub use faults::{Faults, Wire};
 
 mod serve;
-pub use serve::Service;
+pub use serve::{Listener, Service};

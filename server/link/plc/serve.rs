@@ -5,7 +5,7 @@ use crate::link::Transport;
 use crate::link::frame::{BITS_PER_BYTE, NAK};
 use crate::link::transport::TcpTransport;
 use std::io::{self, Read, Write};
-use std::net::{TcpListener, TcpStream};
+use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
@@ -23,6 +23,40 @@ pub struct Service<'a> {
     attend: &'a mut dyn FnMut(&mut Server, i64) -> bool,
     since: Instant,
     refused: Arc<AtomicUsize>,
+}
+
+/// Where hosts connect.
+#[derive(Debug)]
+pub struct Listener(TcpListener);
+
+impl Listener {
+    /// Listens on an address, `127.0.0.1:5551`; port 0 is any that is free.
+    ///
+    /// # Errors
+    /// If there is no such address, or somebody else listens there.
+    pub fn bind(address: &str) -> io::Result<Listener> {
+        let listener = TcpListener::bind(address)?;
+        listener.set_nonblocking(true)?;
+        Ok(Listener(listener))
+    }
+
+    /// The address.
+    ///
+    /// # Errors
+    /// If the system does not say.
+    pub fn address(&self) -> io::Result<SocketAddr> {
+        self.0.local_addr()
+    }
+
+    fn accepted(&self) -> io::Result<Option<TcpStream>> {
+        match self.0.accept() {
+            Ok((stream, _)) => Ok(Some(stream)),
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => Ok(None),
+            // The host has gone before it was served.
+            Err(error) if error.kind() == io::ErrorKind::ConnectionAborted => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
 }
 
 /// Why a connection is over.
@@ -62,10 +96,9 @@ impl<'a> Service<'a> {
     ///
     /// # Errors
     /// If the system takes the listener away.
-    pub fn on_tcp(mut self, listener: &TcpListener) -> io::Result<()> {
-        listener.set_nonblocking(true)?;
+    pub fn on_tcp(mut self, listener: &Listener) -> io::Result<()> {
         loop {
-            if let Some(stream) = accepted(listener)? {
+            if let Some(stream) = listener.accepted()? {
                 stream.set_nonblocking(false)?;
                 let mut transport = TcpTransport::over(stream)?;
                 match self.host(&mut transport, &mut |service| service.refuse_others(listener)) {
@@ -151,8 +184,8 @@ impl<'a> Service<'a> {
         self.busy_ns[direction]
     }
 
-    fn refuse_others(&self, listener: &TcpListener) {
-        let Ok(Some(stream)) = accepted(listener) else { return };
+    fn refuse_others(&self, listener: &Listener) {
+        let Ok(Some(stream)) = listener.accepted() else { return };
         if self.refused.load(Ordering::Relaxed) >= MOST_REFUSED {
             return;
         }
@@ -180,16 +213,6 @@ fn refuse(mut stream: TcpStream) -> io::Result<()> {
         stream.write_all(&[NAK])?;
     }
     Ok(())
-}
-
-fn accepted(listener: &TcpListener) -> io::Result<Option<TcpStream>> {
-    match listener.accept() {
-        Ok((stream, _)) => Ok(Some(stream)),
-        Err(error) if error.kind() == io::ErrorKind::WouldBlock => Ok(None),
-        // The host has gone before it was served.
-        Err(error) if error.kind() == io::ErrorKind::ConnectionAborted => Ok(None),
-        Err(error) => Err(error),
-    }
 }
 
 fn byte_ns(baud: u32) -> i64 {

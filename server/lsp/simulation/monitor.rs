@@ -1,8 +1,12 @@
 //! The notification `rungwise/monitor`: what of a program that runs is on the screen.
 
 use super::super::to_proto::Place;
-use crate::simulate::{Code, EnergisedKind, Lanes, Machine, Sight, Variable, power_flow};
+use crate::document::Tree;
+use crate::ide;
+use crate::il::iec::{ItemKind, ParameterValue, Run};
+use crate::simulate::{Code, EnergisedKind, Lanes, Machine, Sight, Value, Variable, power_flow};
 use crate::target::Operand;
+use crate::text::Span;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value as Json, json};
 use std::ops::Range as Bytes;
@@ -10,7 +14,7 @@ use tower_lsp::ls_types::notification::Notification;
 use tower_lsp::ls_types::{Range, Uri};
 
 /// The method.
-pub(super) enum MonitorMethod {}
+pub(in crate::lsp) enum MonitorMethod {}
 
 impl Notification for MonitorMethod {
     type Params = Picture;
@@ -19,25 +23,25 @@ impl Notification for MonitorMethod {
 
 /// The parameters.
 #[derive(Clone, PartialEq, Debug, Serialize, Deserialize)]
-pub(super) struct Picture {
-    pub(super) uri: Uri,
-    pub(super) version: i32,
+pub(in crate::lsp) struct Picture {
+    pub(in crate::lsp) uri: Uri,
+    pub(in crate::lsp) version: i32,
     #[serde(skip_deserializing)]
-    pub(super) source: &'static str,
+    pub(in crate::lsp) source: &'static str,
     #[serde(skip_deserializing)]
-    pub(super) mode: &'static str,
-    pub(super) scan: u64,
-    pub(super) time_ms: f64,
-    pub(super) edition: u64,
-    pub(super) branch: u64,
-    pub(super) elements: Vec<Json>,
-    pub(super) values: Vec<Json>,
-    pub(super) errors: Vec<Json>,
+    pub(in crate::lsp) mode: &'static str,
+    pub(in crate::lsp) scan: u64,
+    pub(in crate::lsp) time_ms: f64,
+    pub(in crate::lsp) edition: u64,
+    pub(in crate::lsp) branch: u64,
+    pub(in crate::lsp) elements: Vec<Json>,
+    pub(in crate::lsp) values: Vec<Json>,
+    pub(in crate::lsp) errors: Vec<Json>,
 }
 
 /// What the client shows.
 #[derive(Default)]
-pub(super) struct Monitor {
+pub(in crate::lsp) struct Monitor {
     ranges: Vec<Range>,
     names: Vec<String>,
     /// The ranges as bytes of the document, whole chunks each.
@@ -47,23 +51,23 @@ pub(super) struct Monitor {
 
 impl Monitor {
     /// Whether nothing is shown.
-    pub(super) fn is_empty(&self) -> bool {
+    pub(in crate::lsp) fn is_empty(&self) -> bool {
         self.ranges.is_empty() && self.names.is_empty()
     }
 
     /// Whether lines of the text are shown.
-    pub(super) fn has_text(&self) -> bool {
+    pub(in crate::lsp) fn has_text(&self) -> bool {
         !self.ranges.is_empty()
     }
 
     /// Shows other ranges, or other names; what is not given stays.
-    pub(super) fn watch(&mut self, ranges: Option<Vec<Range>>, names: Option<Vec<String>>) {
+    pub(in crate::lsp) fn watch(&mut self, ranges: Option<Vec<Range>>, names: Option<Vec<String>>) {
         self.ranges = ranges.unwrap_or_else(|| std::mem::take(&mut self.ranges));
         self.names = names.unwrap_or_else(|| std::mem::take(&mut self.names));
     }
 
     /// Finds the bytes that are shown.
-    pub(super) fn place(&mut self, number: u32, place: Place<'_>) {
+    pub(in crate::lsp) fn place(&mut self, number: u32, place: Place<'_>) {
         let document = place.document;
         self.document = number;
         let windows = self.ranges.iter().map(|range| {
@@ -76,14 +80,19 @@ impl Monitor {
         self.windows = windows.collect();
     }
 
+    /// Whether something of these bytes is shown.
+    pub(in crate::lsp) fn shows(&self, bytes: &Bytes<usize>) -> bool {
+        self.windows.iter().any(|window| bytes.start < window.end && window.start < bytes.end)
+    }
+
     /// The instructions that are shown.
-    pub(super) fn instructions(&self, code: &Code) -> Bytes<u32> {
+    pub(in crate::lsp) fn instructions(&self, code: &Code) -> Bytes<u32> {
         let all = self.windows.iter().map(|window| code.instructions_in(self.document, window.clone()));
         all.reduce(|one, other| one.start.min(other.start)..one.end.max(other.end)).unwrap_or(0..0)
     }
 
     /// Power, and the values of registers, timers and counters, in what is shown.
-    pub(super) fn elements(
+    pub(in crate::lsp) fn elements(
         &self,
         place: Place<'_>,
         code: &Code,
@@ -112,7 +121,7 @@ impl Monitor {
     }
 
     /// The values of these names, or of those that are watched.
-    pub(super) fn values(&self, names: Option<Vec<String>>, machine: &Machine<u8>) -> Vec<Json> {
+    pub(in crate::lsp) fn values(&self, names: Option<Vec<String>>, machine: &Machine<u8>) -> Vec<Json> {
         let names = names.as_deref().unwrap_or(&self.names).iter();
         let known = names.filter_map(|name| {
             let variable = machine.code().variable(name)?;
@@ -132,20 +141,74 @@ impl Monitor {
 /// The values of words, beside the operands that name them.
 fn words(place: Place<'_>, window: &Bytes<usize>, machine: &Machine<u8>) -> Vec<Json> {
     let mut elements = Vec::new();
-    let layout = &machine.code().layout;
+    let code = machine.code();
     let shown = place.document.chunks().skip_while(|at| at.start < window.start);
     for at in shown.take_while(|at| at.start < window.end) {
         let reading = at.chunk.reading();
-        for operand in reading.operations().flat_map(|operation| operation.operands) {
-            let Operand::Device(device) = operand.value else { continue };
-            let Some(slot) = layout.slot(device) else { continue };
+        let mut show = |span: Span, variable: Variable| {
+            let value = match machine.value(variable, 0) {
+                // As programs spell it: milliseconds would look like a number.
+                value @ (Value::Time(_) | Value::Text(_)) => value.to_string().into(),
+                value => value.json(),
+            };
             elements.push(json!({
-                "range": place.range(operand.span.shifted(at.start)),
+                "range": place.range(span.shifted(at.start)),
                 "kind": "value",
                 "energised": false,
-                "value": machine.value(Variable::Word(slot), 0).json(),
+                "value": value,
             }));
+        };
+        if code.target.is_fx() {
+            for operand in reading.operations().flat_map(|operation| operation.operands) {
+                let Operand::Device(device) = operand.value else { continue };
+                let word = code.layout.slot(device).map(Variable::Word);
+                word.into_iter().for_each(|word| show(operand.span, word));
+            }
+            continue;
+        }
+        let unit = ide::pou_at(place.document, at.start);
+        let unit = unit.and_then(|number| place.document.scopes().pous.get(number));
+        let unit = unit.map_or("", |unit| &unit.name);
+        for span in operands(reading.tree()) {
+            let word = span.of(reading.text());
+            // Of an instance that is called what it counts.
+            let counted =
+                || ["ET", "CV"].into_iter().find_map(|pin| code.variable_at(unit, &format!("{word}.{pin}")));
+            match code.variable_at(unit, word).or_else(counted) {
+                Some(variable @ (Variable::Typed(_) | Variable::Enumerated(..))) => show(span, variable),
+                _ => {}
+            }
         }
     }
     elements
+}
+
+/// Where operands of instructions and of drawn elements stand.
+fn operands(tree: &Tree) -> Vec<Span> {
+    match tree {
+        Tree::Ladder(tree) => {
+            let elements = tree.rungs.iter().flat_map(|rung| &rung.graph.elements);
+            elements.flat_map(|element| &element.operands).map(|operand| operand.span).collect()
+        }
+        Tree::Iec(tree) => {
+            let own = tree.items.iter().flat_map(|item| {
+                let (first, parameters) = match item.kind {
+                    ItemKind::Operation { operand, .. } | ItemKind::Open { operand, .. } => {
+                        (operand, Run::default())
+                    }
+                    ItemKind::Call { callee, parameters, .. } => (callee, parameters),
+                    ItemKind::InputOperator { instance, .. } => (Some(instance), Run::default()),
+                    ItemKind::Function { parameters, .. } => (None, parameters),
+                    _ => (None, Run::default()),
+                };
+                let handed = parameters.of(&tree.parameters).iter().filter_map(|given| match given.value {
+                    ParameterValue::Operand(id) => Some(id),
+                    ParameterValue::Instructions | ParameterValue::Missing => None,
+                });
+                first.into_iter().chain(handed)
+            });
+            own.map(|id| tree.operand(id).span).collect()
+        }
+        Tree::Fx(_) => Vec::new(),
+    }
 }

@@ -12,7 +12,8 @@ use crate::document::Document;
 use crate::scenario::{InputKind, Recording};
 use crate::simulate::{ChangeSearch, Code, Drivers, Error, Recorder, Session, Sight, Touch, Value, Variable};
 use crate::text::Message;
-use program::{around, compiled, files};
+use program::{around, files};
+pub(in crate::lsp) use program::{compiled, files_around};
 use serde_json::Value as Json;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -523,19 +524,9 @@ impl Running {
 
     fn set(&mut self, name: &str, value: &Json, is_force: bool) -> Result<(), Message> {
         let variable = self.variable(name)?;
-        let value = match value {
-            Json::Bool(on) => Some(Value::Bit(*on)),
-            Json::Number(number) => {
-                let whole = number.as_i64().map(Value::Number);
-                whole
-                    .or_else(|| number.as_u64().map(Value::Unsigned))
-                    .or_else(|| number.as_f64().map(Value::Real))
-            }
-            Json::String(word) => Value::read(word),
-            _ => None,
-        };
         let code = self.session.machine().code();
-        let value = value.ok_or_else(|| Message::new("cli.run-no-value").with("name", name))?;
+        let value =
+            Value::of_json(value).ok_or_else(|| Message::new("cli.run-no-value").with("name", name))?;
         let touch = match is_force {
             true => variable.force(code, &value),
             false => variable.set(code, &value),

@@ -10,7 +10,7 @@ use super::place::Place as Variable;
 use crate::il::iec::{Condition, Direction, ListForm, ParameterValue, PouKind, Run, SectionKind};
 use crate::simulate::code::Op;
 use crate::simulate::{Cell, Obstacle};
-use crate::target::iec::Function;
+use crate::target::iec::{EN, ENO, Function, Parameter};
 use crate::text::folded;
 use smol_str::SmolStr;
 
@@ -31,13 +31,18 @@ pub(super) struct Arguments {
     pub(super) enabled: Option<(String, bool)>,
 }
 
+/// Whether it is EN or ENO, which are no parameters like others, whether they are declared or not.
+fn is_enable(name: &str) -> bool {
+    [EN.name, ENO.name].iter().any(|own| own.eq_ignore_ascii_case(name))
+}
+
 /// Inputs, then outputs, each in the order of the declaration.
 fn formals(record: &Record) -> Vec<(SmolStr, SectionKind)> {
     let of = |wanted: fn(SectionKind) -> bool| {
         record
             .fields
             .iter()
-            .filter(move |field| wanted(field.section))
+            .filter(move |field| wanted(field.section) && !is_enable(&field.name))
             .map(|it| (it.name.clone(), it.section))
     };
     of(is_input).chain(of(|section| section == SectionKind::Output)).collect()
@@ -87,14 +92,14 @@ impl List<'_, '_> {
             };
             let section =
                 formals.iter().find(|(own, _)| folded(own) == folded(&name)).map(|(_, section)| *section);
-            let is_enable = |own: &str| name.eq_ignore_ascii_case(own) && section.is_none();
+            let is = |own: &Parameter| name.eq_ignore_ascii_case(own.name);
             let direction = match parameter.direction {
                 Direction::Out { negated } => Some(negated),
                 Direction::In if section == Some(SectionKind::Output) => Some(false),
                 Direction::In => None,
             };
             match (parameter.value, direction) {
-                (ParameterValue::Operand(id), Some(negated)) if is_enable("ENO") => {
+                (ParameterValue::Operand(id), Some(negated)) if is(&ENO) => {
                     arguments.enabled = Some((self.word(id).to_string(), negated));
                 }
                 (ParameterValue::Operand(id), Some(negated)) => {
@@ -105,7 +110,7 @@ impl List<'_, '_> {
                 }
                 (ParameterValue::Operand(id), None) => {
                     let word = self.word(id);
-                    match is_enable("EN") {
+                    match is(&EN) {
                         true => arguments.enable = Some(self.compiler.relay(word)?),
                         false => match self.compiler.whole(word)? {
                             Some(variable) => arguments.wholes.push((name, variable)),
@@ -128,12 +133,12 @@ impl List<'_, '_> {
                     self.depth -= 1;
                     let value = std::mem::replace(&mut self.current, saved);
                     let given = self.compiler.given_of(&value).ok_or(Obstacle::NoCurrentResult)?;
-                    match (is_enable("EN"), &given.input) {
+                    match (is(&EN), &given.input) {
                         (true, Input::At(spot)) => match spot.lies {
                             Lies::Cell(cell) => arguments.enable = Some(cell),
-                            _ => return Err(said("simulate.no-bit", "EN")),
+                            _ => return Err(said("simulate.no-bit", EN.name)),
                         },
-                        (true, _) => return Err(said("simulate.no-bit", "EN")),
+                        (true, _) => return Err(said("simulate.no-bit", EN.name)),
                         (false, _) => {
                             let given = self.compiler.set_aside(given);
                             arguments.inputs.push((name, given));

@@ -4,18 +4,20 @@ use super::arguments::Arguments;
 use super::compile::Compiler;
 use super::current::{Current, Given};
 use super::declarations::Part;
-use super::kind::{Extent, Field, Kind, RecordKind};
-use super::operand::{Value, cell_spot, said};
+use super::kind::{Extent, Field, Kind, RecordKind, count};
+use super::operand::{Value, cell_spot, said, word_spot};
 use super::parts::{BlockCall, Copying, Input, Spot};
 use super::place::{At, Place as Variable, lies};
 use crate::il::iec::{PouKind, SectionKind};
+use crate::simulate::builder::Position;
 use crate::simulate::code::{Op, Place};
 use crate::simulate::row::Row;
 use crate::simulate::{Cell, Obstacle};
 use crate::target::iec::semantics::NOTES;
-use crate::target::iec::{ElementaryType, Function};
+use crate::target::iec::{Datum, EN, ENO, ElementaryType, Function, Parameter};
 use crate::text::{Message, folded};
 use smol_str::SmolStr;
+use std::iter::repeat;
 
 impl Compiler<'_> {
     /// Compiles the body with this number.
@@ -29,6 +31,7 @@ impl Compiler<'_> {
         let unit = self.bodies[number].unit;
         let place = self.declared.units[unit].place.unwrap_or(Place::START);
         self.builder.at(place, 0);
+        let first = self.builder.place_number();
         self.edges();
         self.renew(number);
         let parts = self.declared.units[unit].body.clone();
@@ -50,6 +53,7 @@ impl Compiler<'_> {
         self.builder.forget_power();
         self.land();
         self.builder.op(Op::Return);
+        self.instructions.push(first..self.builder.place_number() + 1);
     }
 
     /// Variables that begin anew at each call: VAR_TEMP. Those of functions begin where they are called.
@@ -83,7 +87,7 @@ impl Compiler<'_> {
     pub(super) fn set_aside(&mut self, given: Given) -> Given {
         let Input::At(from) = given.input else { return given };
         let place = self.take(Extent { cells: 1, words: 1, texts: 1 });
-        let to = Spot { kind: given.kind, lies: lies(place, given.kind, u32::MAX as usize), index: 0 };
+        let to = Spot::new(given.kind, lies(place, given.kind, u32::MAX as usize));
         self.copy(Input::At(from), given.kind, to);
         Given::at(to)
     }
@@ -97,17 +101,17 @@ impl Compiler<'_> {
                 *self.parked.insert(place)
             }
         };
-        Spot { kind, lies: lies(place, kind, u32::MAX as usize), index: 0 }
+        Spot::new(kind, lies(place, kind, u32::MAX as usize))
     }
 
-    /// Copies a value with parts.
-    pub(super) fn copy_whole(&mut self, from: &Variable, to: &Variable) -> Result<(), Obstacle> {
-        let (At::Memory(source), At::Memory(target)) = (from.at, to.at) else {
-            return Err(Obstacle::Unreadable);
-        };
+    /// Copies a value with parts; `name` is what people call the variable that it goes to.
+    pub(super) fn copy_whole(&mut self, from: &Variable, to: &Variable, name: &str) -> Result<(), Obstacle> {
         if !from.kind.is_same(&to.kind) {
-            return Err(Obstacle::Iec(Message::new("simulate.other-type").with("name", "")));
+            return Err(said("simulate.other-type", name));
         }
+        let (At::Memory(source), At::Memory(target)) = (from.at, to.at) else {
+            return self.copy_elements(from, to);
+        };
         let size = from.kind.size();
         let copying = Copying { from: (source, from.index), to: (target, to.index), size };
         self.parts.copies.push(copying);
@@ -116,8 +120,28 @@ impl Compiler<'_> {
         Ok(())
     }
 
+    /// The same one by one, for an array at an address.
+    fn copy_elements(&mut self, from: &Variable, to: &Variable) -> Result<(), Obstacle> {
+        match (from.kind.clone(), from.spot(), to.spot()) {
+            (_, Some(from), Some(to)) => self.stored(Given::at(from), to),
+            (Kind::Array(bounds, element), ..) => {
+                let part = |whole: &Variable, number| {
+                    whole.part((*element).clone(), whole.size_of(&element).times(number))
+                };
+                for number in 0..count(&bounds) {
+                    let (Some(from), Some(to)) = (part(from, number), part(to, number)) else {
+                        return Err(Obstacle::Unreadable);
+                    };
+                    self.copy_elements(&from, &to)?;
+                }
+                Ok(())
+            }
+            _ => Err(Obstacle::Unreadable),
+        }
+    }
+
     /// Does what `inside` compiles while a cell is on.
-    fn enabled(
+    pub(super) fn enabled(
         &mut self,
         enable: Option<Cell>,
         inside: impl FnOnce(&mut Self) -> Result<(), Obstacle>,
@@ -132,7 +156,7 @@ impl Compiler<'_> {
     }
 
     /// Hands over what a call gives. Gives what is handed over to be changed.
-    fn handed_over(
+    pub(super) fn handed_over(
         &mut self,
         variable: &Variable,
         arguments: &mut Arguments,
@@ -146,14 +170,14 @@ impl Compiler<'_> {
         }
         for (name, whole) in std::mem::take(&mut arguments.wholes) {
             let field = input(&record.fields, &name)?;
-            self.copy_whole(&whole, &part(field)?)?;
+            self.copy_whole(&whole, &part(field)?, &name)?;
         }
         let mut aliases = Vec::new();
         for field in record.fields.iter().filter(|field| field.section == SectionKind::InOut) {
             let own = arguments.in_out.iter().find(|(name, _)| folded(name) == folded(&field.name));
             let (name, word) = own.ok_or_else(|| said("simulate.in-out", &field.name))?;
             let handed = self.variable(word)?;
-            if !handed.kind.is_same(&field.kind) {
+            if !handed.kind.is_like(&field.kind) {
                 return Err(said("simulate.other-type", word));
             }
             let handed = self.frozen(handed);
@@ -163,7 +187,7 @@ impl Compiler<'_> {
     }
 
     /// Writes outputs to variables behind a call.
-    fn taken_over(
+    pub(super) fn taken_over(
         &mut self,
         variable: &Variable,
         outputs: Vec<(SmolStr, String, bool)>,
@@ -183,7 +207,7 @@ impl Compiler<'_> {
                     };
                     self.stored(given, to)?;
                 }
-                _ => self.copy_whole(&from, &to)?,
+                _ => self.copy_whole(&from, &to, &word)?,
             }
         }
         Ok(())
@@ -206,7 +230,7 @@ impl Compiler<'_> {
     ) -> Result<(), Obstacle> {
         let Kind::Record(record) = variable.kind.clone() else { return Err(Obstacle::Unreadable) };
         let enabled = arguments.enabled.take();
-        let enable = arguments.enable;
+        let enable = self.enabling(variable, arguments.enable)?;
         self.enabled(enable, |own| {
             let aliases = own.handed_over(variable, &mut arguments)?;
             match record.what {
@@ -222,15 +246,121 @@ impl Compiler<'_> {
                     let number = own.parts.blocks.len() as u32 - 1;
                     own.builder.op(Op::Block { power: Row::RAIL, number });
                 }
-                RecordKind::Unit(_) if variable.index != 0 => {
-                    return Err(Obstacle::Iec(Message::new("simulate.open-instance")));
+                RecordKind::Unit(unit) if variable.index != 0 => {
+                    own.enter_one(unit, variable, &aliases, place)?;
                 }
                 RecordKind::Unit(unit) => own.enter(unit, variable, aliases, Row::RAIL, place),
                 RecordKind::Structure => return Err(Obstacle::Unreadable),
             }
             own.taken_over(variable, std::mem::take(&mut arguments.outputs))
         })?;
-        self.tell_enabled(enable.unwrap_or(Row::RAIL), enabled)
+        let told = self.flag(variable, &ENO)?.map(|told| self.cell_of(told));
+        let told = told.or(enable).unwrap_or(Row::RAIL);
+        self.tell_enabled(told, enabled)
+    }
+
+    /// Calls the body of that instance of an array that its subscripts say. Each instance has a body of its own.
+    fn enter_one(
+        &mut self,
+        unit: usize,
+        variable: &Variable,
+        aliases: &[(SmolStr, Variable)],
+        place: Place,
+    ) -> Result<(), Obstacle> {
+        let At::Memory(base) = variable.at else { return Err(Obstacle::Unreadable) };
+        let frozen = self.frozen(variable.clone());
+        let indices = self.parts.indices[frozen.index as usize - 1].clone();
+        let lengths: Vec<u64> =
+            indices.iter().map(|index| (index.greatest - index.least + 1) as u64).collect();
+        let all = lengths.iter().fold(1_u64, |all, length| all.saturating_mul(*length));
+        if all > MOST_INSTANCES {
+            return Err(Obstacle::Iec(Message::new("simulate.open-instance").with("most", MOST_INSTANCES)));
+        }
+        let equal = Function::named("EQ").ok_or(Obstacle::Unreadable)?;
+        for number in 0..all {
+            let (mut rest, mut at) = (number, base);
+            let mut is_it = Vec::new();
+            for (index, length) in indices.iter().zip(&lengths) {
+                let own = rest % length;
+                rest /= length;
+                at = at.plus(index.stride.times(own));
+                let to = self.builder.scratch();
+                let subscript = (Input::At(word_spot(index.word)), ElementaryType::Lint);
+                let wanted = Input::Constant(Datum::Whole(i128::from(index.least) + i128::from(own)));
+                let inputs = vec![subscript, (wanted, ElementaryType::Lint)];
+                self.compute(equal.formula, inputs, ElementaryType::Bool, cell_spot(to));
+                is_it.push(to);
+            }
+            self.builder.forget_power();
+            for (cell, position) in
+                is_it.into_iter().zip([Position::First].into_iter().chain(repeat(Position::Series)))
+            {
+                self.builder.connect(position, cell, false);
+            }
+            let power = self.builder.settle();
+            let instance = Variable { at: At::Memory(at), index: 0, ..variable.clone() };
+            self.enter(unit, &instance, aliases.to_vec(), power, place);
+        }
+        self.builder.forget_power();
+        self.look(&frozen)
+    }
+
+    /// Reads something of an instance, so that a subscript that is out of bounds is told.
+    fn look(&mut self, variable: &Variable) -> Result<(), Obstacle> {
+        let mut part = variable.clone();
+        while part.spot().is_none() {
+            let (kind, behind) = match &part.kind {
+                Kind::Record(record) => match record.fields.iter().find(|field| field.has_place()) {
+                    Some(field) => (field.kind.clone(), field.at),
+                    None => return Ok(()),
+                },
+                Kind::Array(_, element) => ((**element).clone(), Extent::default()),
+                _ => return Ok(()),
+            };
+            part = part.part(kind, behind).ok_or(Obstacle::Unreadable)?;
+        }
+        if let Some(spot) = part.spot() {
+            let place = self.take(Kind::of(spot.kind).size());
+            self.copy(Input::At(spot), spot.kind, Spot::new(spot.kind, lies(place, spot.kind, 0)));
+        }
+        Ok(())
+    }
+
+    /// The relay that enables a call of a declared unit, and its EN and ENO made ready where it declares them: EN is
+    /// what is given, or what the variable has; ENO is on unless the unit is not enabled, or says so itself.
+    fn enabling(&mut self, variable: &Variable, given: Option<Cell>) -> Result<Option<Cell>, Obstacle> {
+        let (input, output) = (self.flag(variable, &EN)?, self.flag(variable, &ENO)?);
+        if let (Some(input), Some(given)) = (input, given) {
+            self.copy(Input::At(cell_spot(given)), ElementaryType::Bool, input);
+        }
+        let enable = input.map(|input| self.cell_of(input)).or(given);
+        if let Some(output) = output {
+            let from = cell_spot(enable.unwrap_or(Row::RAIL));
+            self.copy(Input::At(from), ElementaryType::Bool, output);
+        }
+        Ok(enable)
+    }
+
+    /// A relay that is as the BOOL at a place is now.
+    fn cell_of(&mut self, spot: Spot) -> Cell {
+        let to = self.builder.scratch();
+        self.copy(Input::At(spot), ElementaryType::Bool, cell_spot(to));
+        to
+    }
+
+    /// EN or ENO as a unit of the program declares it.
+    fn flag(&mut self, variable: &Variable, parameter: &Parameter) -> Result<Option<Spot>, Obstacle> {
+        let Kind::Record(record) = &variable.kind else { return Ok(None) };
+        let field = match record.what {
+            RecordKind::Unit(_) => record.field(parameter.name),
+            _ => None,
+        };
+        let wrong = || said("simulate.no-bit", parameter.name);
+        let part = |field: &Field| {
+            let spot = variable.part(field.kind.clone(), field.at)?.spot()?;
+            (spot.kind == ElementaryType::Bool).then_some(spot)
+        };
+        field.map(|field| part(field).ok_or_else(wrong)).transpose()
     }
 
     /// Writes ENO to its variable.
@@ -263,17 +393,21 @@ impl Compiler<'_> {
             folded(&field.name) == folded(&self.declared.units[unit].name)
                 && self.declared.units[unit].result.is_some()
         });
-        let (enable, enabled) = (arguments.enable, arguments.enabled.take());
+        let enabled = arguments.enabled.take();
+        // Also the result of a function that is not executed is what its variable has at first.
+        let list = self.parts.initials.len();
+        self.parts.initials.push(Vec::new());
+        self.initial_of_variable(list, &variable, None, true);
+        self.builder.op(Op::Initialise(list as u32));
+        let enable = self.enabling(&variable, arguments.enable)?;
         self.enabled(enable, |own| {
-            let list = own.parts.initials.len();
-            own.parts.initials.push(Vec::new());
-            own.initial_of_variable(list, &variable, None, true);
-            own.builder.op(Op::Initialise(list as u32));
             let aliases = own.handed_over(&variable, &mut arguments)?;
             own.enter(unit, &variable, aliases, Row::RAIL, place);
             own.taken_over(&variable, std::mem::take(&mut arguments.outputs))
         })?;
-        self.tell_enabled(enable.unwrap_or(Row::RAIL), enabled)?;
+        let told = self.flag(&variable, &ENO)?.map(|told| self.cell_of(told));
+        let told = told.or(enable).unwrap_or(Row::RAIL);
+        self.tell_enabled(told, enabled)?;
         let Some(field) = result else { return Ok(None) };
         let from = variable.part(field.kind.clone(), field.at).and_then(|part| part.spot());
         let from = from.ok_or_else(|| said("simulate.not-elementary", &field.name))?;
@@ -302,6 +436,12 @@ impl Compiler<'_> {
             }
             if let Some((word, negated)) = enabled {
                 self.tell_enabled(ok, Some((word, negated)))?;
+            }
+            if let Some(enable) = enable {
+                // What is not executed has the result that a variable of its type has at first.
+                let off = self.inverse(enable);
+                let nothing = vec![(Input::Constant(Datum::default_of(to.kind)), to.kind)];
+                self.compute_with(super::compile::copied, nothing, to.kind, to, off, None);
             }
         }
         Ok(to)
@@ -347,6 +487,9 @@ impl Compiler<'_> {
         Ok(())
     }
 }
+
+/// Arrays with more instances are not called by subscripts that are known at run time only.
+const MOST_INSTANCES: u64 = 256;
 
 /// The input with a name.
 fn input<'f>(fields: &'f [Field], name: &str) -> Result<&'f Field, Obstacle> {

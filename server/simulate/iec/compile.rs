@@ -1,22 +1,24 @@
 //! Makes code of programs in IEC 61131-3: which programs run in which scans, and each unit's body in its turn.
 
-use super::declarations::{Configured, Declarations};
+use super::declarations::Declarations;
 use super::image::{Ground, Image};
 use super::kind::{Extent, Kind, Record};
 use super::list::Jumps;
-use super::parts::{Computing, Input, Parts, Spot, Task};
-use super::place::Place as Variable;
+use super::parts::{Computing, Input, Parts, Spot};
+use super::place::{At, Place as Variable};
+use super::scopes::Scope;
 use crate::document::Document;
-use crate::il::iec::{PouKind, SectionKind};
+use crate::il::iec::SectionKind;
 use crate::simulate::builder::Builder;
 use crate::simulate::code::{Code, Op, Place};
 use crate::simulate::row::{Cell, Row};
 use crate::simulate::{Layout, Obstacle, Problem};
-use crate::target::iec::{Datum, ElementaryType, Formula, LiteralValue};
-use crate::target::{Operand, Target};
-use crate::text::{Message, Span, folded};
+use crate::target::iec::{Datum, ElementaryType, Formula};
+use crate::target::{DirectAddress, Target};
+use crate::text::{Message, folded};
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Compiles documents that are one program in IEC 61131-3.
@@ -26,6 +28,7 @@ pub(in crate::simulate) fn compile(
     is_watched: bool,
 ) -> Result<Code, Vec<Problem>> {
     let mut compiler = Compiler::new(Declarations::of(documents), target, is_watched);
+    compiler.reserve();
     compiler.globals();
     compiler.main();
     let mut next = 0;
@@ -50,6 +53,8 @@ pub(super) struct Compiler<'a> {
     /// Types and units whose parts are being looked at.
     pub(super) open: Vec<SmolStr>,
     pub(super) globals: FxHashMap<SmolStr, Variable>,
+    /// Variables of instances that VAR_CONFIG lays at addresses, by where they would lie.
+    pub(super) rebound: FxHashMap<Extent, Variable>,
     /// Variables that nothing declares, of what stands outside of all units.
     pub(super) undeclared: FxHashMap<SmolStr, Cell>,
     /// The bodies of units with their variables, as far as something calls them.
@@ -60,6 +65,8 @@ pub(super) struct Compiler<'a> {
     pub(super) calls: Vec<(u32, usize)>,
     /// Where bodies begin.
     pub(super) starts: Vec<u32>,
+    /// The instructions of each body, by their numbers among the places of the code.
+    pub(super) instructions: Vec<Range<u32>>,
     /// The body that is being compiled.
     pub(super) now: usize,
     /// Places for current results of that body, by the depth of parentheses.
@@ -100,11 +107,13 @@ impl<'a> Compiler<'a> {
             records: FxHashMap::default(),
             open: Vec::new(),
             globals: FxHashMap::default(),
+            rebound: FxHashMap::default(),
             undeclared: FxHashMap::default(),
             bodies: Vec::new(),
             functions: FxHashMap::default(),
             calls: Vec::new(),
             starts: Vec::new(),
+            instructions: Vec::new(),
             now: usize::MAX,
             temporaries: Vec::new(),
             parked: None,
@@ -122,23 +131,33 @@ impl<'a> Compiler<'a> {
     }
 
     /// Where a located variable lies.
-    pub(super) fn located(
-        &mut self,
-        address: crate::target::DirectAddress,
-        kind: &Kind,
-    ) -> Result<Variable, Obstacle> {
+    pub(super) fn located(&mut self, address: DirectAddress, kind: &Kind) -> Result<Variable, Obstacle> {
         let wrong = || Obstacle::Iec(Message::new("simulate.address").with("address", address.to_string()));
-        let elementary = kind.elementary().ok_or_else(wrong)?;
         let mut ground = (&mut self.builder, &mut self.parts);
-        let lies = self.image.place(address, elementary, &mut ground).ok_or_else(wrong)?;
-        Ok(Variable { kind: kind.clone(), at: super::place::At::Other(lies), index: 0, is_constant: false })
+        let at = match kind.elementary() {
+            Some(elementary) => self.image.place(address, elementary, &mut ground).map(At::Other),
+            None => self.image.row(address, kind, &mut ground).map(At::Image),
+        };
+        let at = at.ok_or_else(wrong)?;
+        let variable = Variable { kind: kind.clone(), at, index: 0, is_constant: false };
+        let here = self.parts.names.around.located.entry(address).or_default();
+        if !here.iter().any(|own| own.kind.is_same(kind)) {
+            here.push(variable.clone());
+        }
+        Ok(variable)
+    }
+
+    /// The variable itself, where VAR_CONFIG lays the one of an instance at an address.
+    pub(super) fn bound_to(&self, variable: Variable) -> Variable {
+        let own = match variable.at {
+            At::Memory(at) if variable.kind.elementary().is_some() => self.rebound.get(&at),
+            _ => None,
+        };
+        own.cloned().unwrap_or(variable)
     }
 
     /// The global variables.
-    fn globals(&mut self) {
-        for place in std::mem::take(&mut self.declared.configs) {
-            self.refuse(place, Obstacle::Iec(Message::new("simulate.var-config")));
-        }
+    pub(super) fn globals(&mut self) {
         for section in std::mem::take(&mut self.declared.globals) {
             for mut field in self.fields(section, None) {
                 let declared = field.declared.take();
@@ -165,146 +184,6 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// What runs in a scan: programs with tasks by priority, then those without.
-    fn main(&mut self) {
-        let instances = std::mem::take(&mut self.declared.instances);
-        let tasks = self.tasks();
-        if instances.is_empty() {
-            for number in 0..self.declared.units.len() {
-                if matches!(self.declared.units[number].kind, Some(PouKind::Program) | None) {
-                    let name = self.declared.units[number].name.clone();
-                    let path = if name.is_empty() { Vec::new() } else { vec![name] };
-                    if let Some(variable) = self.instance(number, path) {
-                        self.builder.rung();
-                        self.enter(number, &variable, Vec::new(), Row::RAIL, Place::START);
-                    }
-                }
-            }
-        } else {
-            let mut runs: Vec<(u64, usize)> = Vec::new();
-            for (number, instance) in instances.iter().enumerate() {
-                let declared = self.declared.sources[instance.source].tree.instances[instance.index as usize];
-                let priority = declared.task.map(|task| {
-                    let name = folded(self.declared.word(instance.source, task));
-                    tasks
-                        .get(&(instance.resource.clone().map(|it| folded(&it)), name))
-                        .map_or(u64::MAX - 1, |it| it.1)
-                });
-                runs.push((priority.unwrap_or(u64::MAX), number));
-            }
-            runs.sort_by_key(|(priority, _)| *priority);
-            for (_, number) in runs {
-                self.configured(&instances[number], &tasks);
-            }
-        }
-        self.builder.op(Op::End);
-    }
-
-    /// The tasks, by resource and name: the relay that is on while one runs, and its priority.
-    fn tasks(&mut self) -> Tasks {
-        let mut tasks = Tasks::default();
-        for one in std::mem::take(&mut self.declared.tasks) {
-            let task = self.declared.sources[one.source].tree.tasks[one.index as usize];
-            let place = self.declared.place(one.source, one.span);
-            let name =
-                task.name.map_or(SmolStr::default(), |name| folded(self.declared.word(one.source, name)));
-            let interval = task.interval.map(|id| self.declared.sources[one.source].tree.operand(id).value);
-            let interval_ns = match interval {
-                Some(Operand::Literal(literal)) => match literal.value {
-                    LiteralValue::Time(time) => (time > 0).then_some(time),
-                    _ => None,
-                },
-                None => None,
-                Some(_) => {
-                    self.refuse(place, Obstacle::Iec(Message::new("simulate.interval")));
-                    None
-                }
-            };
-            let single = task.single.map(|id| self.declared.operand(one.source, id).to_string());
-            let single = single.and_then(|word| match self.global_spot(&word) {
-                Some(spot) if spot.kind == ElementaryType::Bool => Some((spot, self.builder.kept())),
-                _ => {
-                    self.refuse(place, Obstacle::Iec(Message::new("simulate.undeclared").with("name", word)));
-                    None
-                }
-            });
-            let priority = task.priority.and_then(|id| self.declared.operand(one.source, id).parse().ok());
-            let (next, due) = (self.builder.words(1), self.builder.kept());
-            let number = self.parts.tasks.len() as u32;
-            self.parts.tasks.push(Task { interval_ns, next, single, due });
-            self.builder.at(place, 0);
-            self.builder.op(Op::Task(number));
-            let resource = one.resource.map(|it| folded(&it));
-            tasks.insert((resource, name), (due, priority.unwrap_or(0)));
-        }
-        tasks
-    }
-
-    /// A PROGRAM of a configuration.
-    fn configured(&mut self, instance: &Configured, tasks: &Tasks) {
-        let tree = self.declared.sources[instance.source].tree;
-        let declared = tree.instances[instance.index as usize];
-        let place = self.declared.place(instance.source, instance.span);
-        let word = |span: Option<Span>| span.map(|span| self.declared.word(instance.source, span));
-        let (name, program, task) = (word(declared.name), word(declared.program), word(declared.task));
-        let unit = program.and_then(|program| self.declared.unit(program, PouKind::Program));
-        let Some(unit) = unit else {
-            let message = Message::new("simulate.no-unit").with("name", program.unwrap_or_default());
-            return self.refuse(place, Obstacle::Iec(message));
-        };
-        let power = match task {
-            None => Row::RAIL,
-            Some(task) => match tasks.get(&(instance.resource.as_deref().map(folded), folded(task))) {
-                Some((due, _)) => *due,
-                None => {
-                    let message = Message::new("simulate.no-unit").with("name", task);
-                    return self.refuse(place, Obstacle::Iec(message));
-                }
-            },
-        };
-        if !declared.parameters.is_empty() || !declared.block_tasks.is_empty() {
-            return self.refuse(place, Obstacle::Iec(Message::new("simulate.program-parameters")));
-        }
-        let path = instance.resource.iter().cloned().chain(name.map(SmolStr::from)).collect();
-        if let Some(variable) = self.instance(unit, path) {
-            self.builder.at(place, 0);
-            self.builder.rung();
-            self.enter(unit, &variable, Vec::new(), power, place);
-        }
-    }
-
-    /// The variables of a program.
-    fn instance(&mut self, unit: usize, path: Vec<SmolStr>) -> Option<Variable> {
-        let record = self.record(unit);
-        let base = self.take(record.size);
-        let variable = Variable::new(Kind::Record(record), base);
-        self.initial_of_variable(0, &variable, None, false);
-        self.name_located(&path, &variable);
-        self.parts.names.add(path, &variable);
-        Some(variable)
-    }
-
-    /// Names the variables of a program that lie at addresses.
-    fn name_located(&mut self, path: &[SmolStr], variable: &Variable) {
-        let Kind::Record(record) = variable.kind.clone() else { return };
-        for field in &record.fields {
-            let Some(address) = field.address else { continue };
-            match self.located(address, &field.kind) {
-                Ok(place) => {
-                    let path = path.iter().cloned().chain([field.name.clone()]).collect();
-                    self.parts.names.add(path, &place);
-                }
-                Err(obstacle) => {
-                    let place = field.declared.map(|at| {
-                        let span = self.declared.declaration(at.source, at.index).span;
-                        self.declared.place(at.source, span)
-                    });
-                    self.refuse(place.unwrap_or(Place::START), obstacle);
-                }
-            }
-        }
-    }
-
     /// Calls the body of a unit with these variables.
     pub(super) fn enter(
         &mut self,
@@ -314,7 +193,7 @@ impl<'a> Compiler<'a> {
         power: Cell,
         place: Place,
     ) {
-        let super::place::At::Memory(base) = variable.at else { return };
+        let At::Memory(base) = variable.at else { return };
         let is_same = |body: &Body| {
             let same = |own: &(SmolStr, Variable), other: &(SmolStr, Variable)| {
                 own.0 == other.0 && own.1.at == other.1.at && own.1.index == other.1.index
@@ -365,14 +244,6 @@ impl<'a> Compiler<'a> {
         self.compute(copied, vec![(from, kind)], to.kind, to);
     }
 
-    fn global_spot(&mut self, word: &str) -> Option<Spot> {
-        if let Operand::Direct(address) = Operand::read(word, crate::target::Model::Iec) {
-            let kind = super::image::kind_of(address.width);
-            return self.located(address, &Kind::of(kind)).ok()?.spot();
-        }
-        self.globals.get(&folded(word))?.spot()
-    }
-
     fn finish(mut self) -> Result<Code, Vec<Problem>> {
         for (op, body) in std::mem::take(&mut self.calls) {
             let start = self.starts.get(body).copied().unwrap_or(0);
@@ -386,7 +257,8 @@ impl<'a> Compiler<'a> {
             self.problems.dedup();
             return Err(self.problems);
         }
-        self.parts.names.finish(self.image);
+        self.scopes();
+        self.parts.names.finish(self.image, &self.kinds, self.rebound);
         let mut code =
             self.builder.finish().map_err(|obstacle| vec![Problem { place: Place::START, obstacle }])?;
         if code.slots > MOST_WORDS || self.parts.texts > MOST_WORDS {
@@ -394,6 +266,22 @@ impl<'a> Compiler<'a> {
         }
         code.iec = self.parts;
         Ok(code)
+    }
+
+    /// Notes what names mean in each body.
+    fn scopes(&mut self) {
+        for (number, body) in std::mem::take(&mut self.bodies).into_iter().enumerate() {
+            let (record, unit) = (self.record(body.unit), &self.declared.units[body.unit]);
+            self.parts.names.scopes.push(Scope {
+                unit: folded(&unit.name),
+                kind: unit.kind,
+                record,
+                base: body.base,
+                aliases: body.aliases,
+                instructions: self.instructions.get(number).cloned().unwrap_or_default(),
+            });
+        }
+        self.parts.names.around.globals = std::mem::take(&mut self.globals);
     }
 
     /// A unit that calls itself, through others or not, would need variables for each call.
@@ -415,8 +303,6 @@ impl<'a> Compiler<'a> {
         }
     }
 }
-
-type Tasks = FxHashMap<(Option<SmolStr>, SmolStr), (Cell, u64)>;
 
 /// More words than that are refused.
 const MOST_WORDS: usize = 1 << 24;

@@ -8,7 +8,9 @@ use super::place::Place as Variable;
 use crate::simulate::Obstacle;
 use crate::simulate::builder::Position;
 use crate::target::Operand;
-use crate::target::iec::{Datum, ElementaryType, Function, GenericType, Literal, Operator, ParameterType};
+use crate::target::iec::{
+    Datum, ElementaryType, Function, GenericType, Literal, LiteralValue, Operator, ParameterType,
+};
 use crate::text::Message;
 
 /// The current result.
@@ -74,7 +76,7 @@ pub(super) fn mismatch(own: ElementaryType, wanted: impl std::fmt::Display) -> O
 fn is_taken(own: ElementaryType, wanted: ElementaryType) -> bool {
     let is_number = |kind: ElementaryType| kind.integers().is_some() && kind != ElementaryType::Bool;
     own == wanted
-        || own != ElementaryType::Bool && own.widens_to(wanted)
+        || own.widens_to(wanted)
         || is_number(own) && is_number(wanted)
         || own == ElementaryType::Lreal && wanted == ElementaryType::Real
 }
@@ -107,7 +109,9 @@ impl Compiler<'_> {
     ) -> Result<(Input, ElementaryType), Obstacle> {
         let given = given.seen_as(wanted);
         if let Some((literal, word)) = &given.literal {
-            let is_named = literal.named_type.is_some_and(|named| named != wanted);
+            // One character in quotes is a text as well as a character.
+            let is_text = matches!(literal.value, LiteralValue::Text | LiteralValue::WideText);
+            let is_named = literal.named_type.is_some_and(|named| named != wanted) && !is_text;
             if let Some(value) = constant(Operand::Literal(*literal), word, wanted).filter(|_| !is_named) {
                 return Ok((Input::Constant(value), wanted));
             }
@@ -226,7 +230,7 @@ impl Compiler<'_> {
             self.temporaries.push(place);
         }
         let place = self.temporaries[depth];
-        Spot { kind, lies: super::place::lies(place, kind, u32::MAX as usize), index: 0 }
+        Spot::new(kind, super::place::lies(place, kind, u32::MAX as usize))
     }
 
     /// The value of the current result for a calculation; nothing if there is none, or it has parts.

@@ -69,8 +69,8 @@ pub(super) struct Declarations<'a> {
     pub(super) globals: Vec<Section>,
     pub(super) tasks: Vec<Configured>,
     pub(super) instances: Vec<Configured>,
-    /// Sections that are not simulated.
-    pub(super) configs: Vec<Place>,
+    /// What VAR_CONFIG says: sources, and the records in them.
+    pub(super) configs: Vec<(usize, usize)>,
     numbers: FxHashMap<SmolStr, usize>,
 }
 
@@ -179,7 +179,10 @@ impl<'a> Reader<'_, 'a> {
                     let section = Section { source: number, kind, is_constant: constant, declarations };
                     match kind {
                         SectionKind::Global => self.found.globals.push(section),
-                        SectionKind::Config => self.found.configs.push(place(item.span)),
+                        SectionKind::Config => {
+                            let all = declarations.start..declarations.end;
+                            self.found.configs.extend(all.map(|index| (number, index as usize)));
+                        }
                         SectionKind::Access => {}
                         _ => self.unit().sections.push(section),
                     }

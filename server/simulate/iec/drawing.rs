@@ -258,7 +258,7 @@ impl Drawing<'_, '_> {
         {
             let off = self.compiler.inverse(power);
             let skip = self.compiler.builder.op(Op::Jump { power: off, to: 0 });
-            self.compiler.copy_whole(&whole, &to)?;
+            self.compiler.copy_whole(&whole, &to, &result.text)?;
             let here = self.compiler.builder.here();
             self.compiler.send(skip, here);
         } else {

@@ -3,7 +3,7 @@
 //! Words are counted by their own size: `%QW1` is `%QX2.0` to `%QX3.7`. Values without a size of their own (TIME,
 //! dates) and addresses with more levels lie by themselves.
 
-use super::kind::Extent;
+use super::kind::{Extent, Kind};
 use super::parts::{Lies, Spot};
 use crate::simulate::Cell;
 use crate::target::iec::ElementaryType;
@@ -51,9 +51,49 @@ impl Image {
             }
             (_, Some(bits)) if bits != width => None,
             _ => {
-                let size = super::kind::Kind::of(kind).size();
+                let size = Kind::of(kind).size();
                 let at = *self.alone.entry((address, kind)).or_insert_with(|| ground.take(size));
                 Some(super::place::lies(at, kind, super::kind::TEXT_LENGTH))
+            }
+        }
+    }
+
+    /// Where an array lies from an address on: the cell of its first bit. Nothing if its elements have another size.
+    pub(super) fn row(
+        &mut self,
+        address: DirectAddress,
+        kind: &Kind,
+        ground: &mut impl Ground,
+    ) -> Option<Cell> {
+        let (first, bits) = extent(address, kind)?;
+        self.reserve(address.location, [(first, bits)], ground);
+        let block = *self.blocks.get(&(address.location, first / BLOCK))?;
+        Some(block.wrapping_add((first % BLOCK) as Cell))
+    }
+
+    /// Lets bits of a location, their first ones and how many they are, lie side by side as far as they belong
+    /// together. What has its place keeps it.
+    pub(super) fn reserve(
+        &mut self,
+        location: Location,
+        rows: impl IntoIterator<Item = (u64, u64)>,
+        ground: &mut impl Ground,
+    ) {
+        let blocks = rows.into_iter().map(|(first, bits)| (first / BLOCK, (first + bits.max(1) - 1) / BLOCK));
+        let mut blocks: Vec<(u64, u64)> = blocks.collect();
+        blocks.sort_unstable();
+        blocks.dedup_by(|next, own| {
+            let meet = next.0 <= own.1;
+            own.1 = if meet { own.1.max(next.1) } else { own.1 };
+            meet
+        });
+        for (first, last) in blocks {
+            if self.blocks.contains_key(&(location, first)) {
+                continue;
+            }
+            let cells = ground.take(Extent::BIT.times((last - first + 1).saturating_mul(BLOCK))).cells;
+            for (block, cell) in (first..=last).zip((cells..).step_by(BLOCK as usize)) {
+                self.blocks.insert((location, block), cell as Cell);
             }
         }
     }
@@ -68,7 +108,7 @@ impl Image {
             }
             None => super::place::lies(*self.alone.get(&(address, kind))?, kind, 0),
         };
-        Some(Spot { kind, lies, index: 0 })
+        Some(Spot::new(kind, lies))
     }
 
     /// The cells of a location, in blocks.
@@ -86,7 +126,22 @@ impl Image {
     }
 }
 
-fn in_block(block: Cell, first: u64, bits: u32) -> Lies {
+/// The first bit of an array at an address, and how many they are.
+pub(super) fn extent(address: DirectAddress, kind: &Kind) -> Option<(u64, u64)> {
+    let mut element = kind;
+    while let Kind::Array(_, inner) = element {
+        element = inner;
+    }
+    let first = first_bit(address).filter(|_| element.bits() == Some(u64::from(width(address.width))))?;
+    // More than all cells is refused where memory is given out.
+    kind.bits().filter(|bits| *bits <= MOST_BITS).map(|bits| (first, bits))
+}
+
+/// More bits do not lie at addresses.
+const MOST_BITS: u64 = 1 << 16;
+
+/// A value of so many bits from one on.
+pub(super) fn in_block(block: Cell, first: u64, bits: u32) -> Lies {
     let cell = block.wrapping_add((first % BLOCK) as Cell);
     if bits == 1 { Lies::Cell(cell) } else { Lies::Bits(cell, bits as u8) }
 }

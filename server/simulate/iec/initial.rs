@@ -25,6 +25,8 @@ pub(super) fn constant(operand: Operand, word: &str, kind: ElementaryType) -> Op
             }
             _ => None,
         },
+        // A bit is a bit string whose other bits are 0.
+        LiteralValue::Bool(on) if kind.belongs_to(GenericType::AnyBit) => Some(Datum::from(on)),
         LiteralValue::Integer(number) if kind.belongs_to(GenericType::AnyReal) => {
             Some(Datum::Real(number as f64))
         }
@@ -80,6 +82,18 @@ impl Compiler<'_> {
                 };
                 self.noted(list, variable, value, all);
             }
+            Kind::Subrange(kind, range) => {
+                let value = match written {
+                    Some((source, at)) => self.initial_datum(source, at, *kind)?,
+                    // The first number of the range, where 0 may be none of it.
+                    None => self
+                        .parts
+                        .ranges
+                        .get(*range as usize - 1)
+                        .map_or(Datum::Whole(0), |range| Datum::Whole(range.0)),
+                };
+                self.noted(list, variable, value, all);
+            }
             Kind::Enumeration(names) => {
                 let value = match written {
                     Some((source, at)) => {
@@ -97,7 +111,7 @@ impl Compiler<'_> {
                     Some((source, at)) => self.elements(source, at, count(bounds))?,
                     None => Vec::new(),
                 };
-                let size = element.size();
+                let size = variable.size_of(element);
                 // Elements without a value that all begin with 0 need no look.
                 let is_plain = values.is_empty() && !all && !begins_otherwise(element);
                 let count = if is_plain { 0 } else { count(bounds).min(MOST_ELEMENTS) };
@@ -148,6 +162,7 @@ impl Compiler<'_> {
         let is_nothing = matches!(&value, Datum::Whole(0))
             || matches!(&value, Datum::Real(number) if *number == 0.0)
             || matches!(&value, Datum::Text(text) if text.is_empty());
+        let variable = self.bound_to(variable.clone());
         if let (Some(spot), true) = (variable.spot(), all || !is_nothing) {
             self.parts.initials[list].push((spot, value));
         }
@@ -218,6 +233,7 @@ const MOST_ELEMENTS: u64 = 1 << 20;
 fn begins_otherwise(kind: &Kind) -> bool {
     match kind {
         Kind::Elementary(kind, _) => !is_zero(*kind),
+        Kind::Subrange(..) => true,
         Kind::Enumeration(_) => false,
         Kind::Array(_, element) => begins_otherwise(element),
         Kind::Record(record) => record.size != Extent::default(),

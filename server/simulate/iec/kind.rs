@@ -11,6 +11,8 @@ use std::sync::Arc;
 pub(in crate::simulate) enum Kind {
     /// One value; of a text how many characters it holds.
     Elementary(ElementaryType, usize),
+    /// The numbers of a type from one to another, see [`Spot::range`](super::parts::Spot).
+    Subrange(ElementaryType, u32),
     /// One of these names, counted from 0.
     Enumeration(Arc<Enumeration>),
     /// Elements, each dimension with its least and greatest index.
@@ -113,25 +115,45 @@ impl Kind {
         match self {
             Kind::Elementary(ElementaryType::Bool, _) => Extent::BIT,
             Kind::Elementary(ElementaryType::String | ElementaryType::Wstring, _) => Extent::TEXT,
-            Kind::Elementary(..) | Kind::Enumeration(_) => Extent::WORD,
+            Kind::Elementary(..) | Kind::Subrange(..) | Kind::Enumeration(_) => Extent::WORD,
             Kind::Array(bounds, element) => element.size().times(count(bounds)),
             Kind::Record(record) => record.size,
+        }
+    }
+
+    /// The bits that it takes at an address; nothing for what does not lie there, as structures do not.
+    pub(in crate::simulate) fn bits(&self) -> Option<u64> {
+        match self {
+            Kind::Array(bounds, element) => element.bits()?.checked_mul(count(bounds)),
+            _ => self.elementary()?.bits().map(u64::from),
         }
     }
 
     /// The elementary type that its values are: of an enumeration that of the numbers of its names.
     pub(in crate::simulate) fn elementary(&self) -> Option<ElementaryType> {
         match self {
-            Kind::Elementary(kind, _) => Some(*kind),
+            Kind::Elementary(kind, _) | Kind::Subrange(kind, _) => Some(*kind),
             Kind::Enumeration(_) => Some(ElementaryType::Int),
             _ => None,
         }
+    }
+
+    /// Whether a variable of the one kind may be handed over as one of the other: it may have a narrower range.
+    pub(in crate::simulate) fn is_like(&self, other: &Kind) -> bool {
+        let whole = |kind: &Kind| match kind {
+            Kind::Subrange(kind, _) => Kind::of(*kind),
+            other => other.clone(),
+        };
+        whole(self).is_same(&whole(other))
     }
 
     /// Whether values of both are the same: what one has may be copied to the other.
     pub(in crate::simulate) fn is_same(&self, other: &Kind) -> bool {
         match (self, other) {
             (Kind::Elementary(own, _), Kind::Elementary(other, _)) => own == other,
+            (Kind::Subrange(own, range), Kind::Subrange(other, other_range)) => {
+                (own, range) == (other, other_range)
+            }
             (Kind::Enumeration(own), Kind::Enumeration(other)) => own == other,
             (Kind::Array(own, element), Kind::Array(other, other_element)) => {
                 own == other && element.is_same(other_element)

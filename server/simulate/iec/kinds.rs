@@ -3,11 +3,11 @@
 use super::compile::Compiler;
 use super::declarations::Section;
 use super::kind::{Declared, Enumeration, Extent, Field, Kind, Record, RecordKind};
-use crate::il::iec::{OperandId, PouKind, SectionKind, TypeId, TypeSpec};
+use crate::il::iec::{Declaration, OperandId, PouKind, SectionKind, TypeId, TypeSpec};
 use crate::simulate::{Obstacle, Problem};
-use crate::target::Operand;
 use crate::target::iec::semantics::NOTES;
 use crate::target::iec::{ElementaryType, FunctionBlock, LiteralValue, Parameter, ParameterType};
+use crate::target::{DirectAddress, Location, Operand};
 use crate::text::{Message, Span, folded};
 use smol_str::SmolStr;
 use std::sync::Arc;
@@ -26,7 +26,22 @@ impl Compiler<'_> {
         Ok(match written.value {
             TypeSpec::Elementary(kind) => Kind::of(kind),
             TypeSpec::Named => return self.named(source, written.span, unit),
-            TypeSpec::Subrange { base, .. } => self.kind(source, base, unit)?,
+            TypeSpec::Subrange { base, least, greatest } => {
+                let base = self.kind(source, base, unit)?;
+                let [least, greatest] = [least, greatest].map(|at| self.number(source, at, unit));
+                match (base.elementary(), least, greatest) {
+                    (Some(kind), Some(least), Some(greatest)) if least <= greatest => {
+                        let range = (least, greatest);
+                        let known = self.parts.ranges.iter().position(|own| *own == range);
+                        let number = known.unwrap_or_else(|| {
+                            self.parts.ranges.push(range);
+                            self.parts.ranges.len() - 1
+                        });
+                        Kind::Subrange(kind, number as u32 + 1)
+                    }
+                    _ => return refused(self, "simulate.bounds"),
+                }
+            }
             TypeSpec::Reference { .. } => return refused(self, "simulate.reference"),
             TypeSpec::Text { wide, length } => {
                 let kind = if wide { ElementaryType::Wstring } else { ElementaryType::String };
@@ -103,17 +118,21 @@ impl Compiler<'_> {
 
     /// A number that is known before the program runs: a literal, or a constant.
     fn bound(&self, source: usize, id: OperandId, unit: Option<usize>) -> Option<i64> {
+        self.number(source, id, unit).and_then(|number| i64::try_from(number).ok())
+    }
+
+    fn number(&self, source: usize, id: OperandId, unit: Option<usize>) -> Option<i128> {
         let operand = self.declared.sources[source].tree.operand(id);
         match operand.value {
             Operand::Literal(literal) => match literal.value {
-                LiteralValue::Integer(number) => i64::try_from(number).ok(),
+                LiteralValue::Integer(number) => Some(number),
                 _ => None,
             },
             Operand::Variable => {
                 let (source, id) = self.constant(self.declared.word(source, operand.span), unit)?;
                 match self.declared.sources[source].tree.operand(id).value {
                     // A constant of constants is not followed.
-                    Operand::Literal(_) => self.bound(source, id, unit),
+                    Operand::Literal(_) => self.number(source, id, unit),
                     _ => None,
                 }
             }
@@ -197,6 +216,32 @@ impl Compiler<'_> {
             }
         }
         fields
+    }
+
+    /// Lets arrays at addresses lie side by side before anything else has its place there.
+    pub(super) fn reserve(&mut self) {
+        let globals = self.declared.globals.iter().map(|section| (*section, None));
+        let own = self.declared.units.iter().enumerate();
+        let own = own.flat_map(|(unit, at)| at.sections.iter().map(move |section| (*section, Some(unit))));
+        let sections: Vec<(Section, Option<usize>)> = globals.chain(own).collect();
+        let mut rows: Vec<(DirectAddress, (u64, u64))> = Vec::new();
+        for (section, unit) in sections {
+            let located = |at: &Declaration| at.address.is_some();
+            let tree = self.declared.sources[section.source].tree;
+            if !section.declarations.of(&tree.declarations).iter().any(located) {
+                continue;
+            }
+            for field in self.fields(section, unit) {
+                if let (Some(address), None) = (field.address, field.kind.elementary()) {
+                    rows.extend(super::image::extent(address, &field.kind).map(|extent| (address, extent)));
+                }
+            }
+        }
+        let mut ground = (&mut self.builder, &mut self.parts);
+        for location in [Location::Input, Location::Output, Location::Memory] {
+            let own = rows.iter().filter(|(address, _)| address.location == location);
+            self.image.reserve(location, own.map(|(_, extent)| *extent), &mut ground);
+        }
     }
 
     /// The variables of a unit; behind those of a function lies its result.

@@ -5,8 +5,7 @@ use super::current::{Current, Given};
 use super::declarations::Source;
 use super::kind::Kind;
 use super::operand::{Value, cell_spot, said};
-use super::parts::{Copying, Input, Lies, Spot};
-use super::place::At;
+use super::parts::{Input, Lies, Spot};
 use crate::il::iec::{Condition, Item, ItemKind, ListForm, OperandId, Operation, Parameter};
 use crate::simulate::builder::Position;
 use crate::simulate::code::Op;
@@ -130,6 +129,31 @@ impl<'a> Compiler<'a> {
     }
 }
 
+/// What an instruction tells of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sees {
+    /// What it sees before it acts on something else than the current result.
+    First,
+    /// What has become of the current result.
+    Result,
+    Nothing,
+}
+
+fn sees(kind: &ItemKind) -> Sees {
+    match kind {
+        ItemKind::Operation { operation, .. } => match operation.operator.role {
+            OperatorRole::Store | OperatorRole::Latch { .. } => Sees::First,
+            _ => Sees::Result,
+        },
+        ItemKind::Call { .. }
+        | ItemKind::InputOperator { .. }
+        | ItemKind::Jump { .. }
+        | ItemKind::Return { .. } => Sees::First,
+        ItemKind::Label { .. } => Sees::Nothing,
+        _ => Sees::Result,
+    }
+}
+
 /// Whether an instruction goes on with the current result.
 fn uses_result(kind: &ItemKind) -> bool {
     match kind {
@@ -153,6 +177,11 @@ impl<'a> List<'_, 'a> {
         while at < items.end {
             let item = self.items[at];
             self.at(item.span);
+            let place = self.compiler.builder.place_number();
+            let sees = sees(&item.kind);
+            if sees == Sees::First {
+                self.saw(place);
+            }
             let next = self.item(at, item);
             at = match next {
                 Ok(next) => next,
@@ -163,10 +192,20 @@ impl<'a> List<'_, 'a> {
                     self.behind(at)
                 }
             };
-            if self.compiler.builder.is_watched() && matches!(self.current, Current::Bit) {
-                let power = self.compiler.builder.settle();
-                self.compiler.builder.saw(power);
+            if sees == Sees::Result {
+                self.saw(place);
             }
+        }
+    }
+
+    /// Says that the instruction at a place is executed, with the current result if that is a BOOL.
+    fn saw(&mut self, place: u32) {
+        if self.compiler.builder.is_watched() {
+            let power = match self.current {
+                Current::Bit => self.compiler.builder.settle(),
+                _ => Row::RAIL,
+            };
+            self.compiler.builder.saw_at(place, power);
         }
     }
 
@@ -336,7 +375,12 @@ impl<'a> List<'_, 'a> {
 
     fn combine(&mut self, at: usize, operation: Operation, word: &str) -> Outcome {
         let is_logic = matches!(operation.operator.operand, Some(GenericType::AnyBit));
-        if let (Current::Bit, true) = (&self.current, is_logic) {
+        let is_bit = match self.compiler.value(word)? {
+            Value::Variable(variable) => variable.kind.elementary() == Some(ElementaryType::Bool),
+            // A literal is what the current result is.
+            _ => true,
+        };
+        if let (Current::Bit, true) = (&self.current, is_logic && is_bit) {
             let cell = self.compiler.relay(word)?;
             self.logic(operation, cell);
             return Ok(());
@@ -459,18 +503,11 @@ impl<'a> List<'_, 'a> {
             return Ok(());
         }
         if let Current::Whole(source) = &self.current {
-            let (At::Memory(from), At::Memory(to)) = (source.at, target.at) else {
-                return Err(Obstacle::Unreadable);
-            };
-            if negated || !source.kind.is_same(&target.kind) {
+            if negated {
                 return Err(said("simulate.other-type", word));
             }
-            let copying =
-                Copying { from: (from, source.index), to: (to, target.index), size: source.kind.size() };
-            self.compiler.parts.copies.push(copying);
-            let number = self.compiler.parts.copies.len() as u32 - 1;
-            self.compiler.builder.op(Op::Copy { power: Row::RAIL, number });
-            return Ok(());
+            let source = source.clone();
+            return self.compiler.copy_whole(&source, &target, word);
         }
         let spot = target.spot().ok_or_else(|| said("simulate.not-elementary", word))?;
         let depth = self.depth();

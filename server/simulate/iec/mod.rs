@@ -15,6 +15,9 @@ pub use parts::{Lies, Spot};
 mod image;
 
 mod names;
+pub(super) use names::Leaf;
+
+mod scopes;
 
 mod run;
 pub(super) use run::{call_block, compute, copy, initialise, of_pattern, put, read, schedule};
@@ -36,6 +39,8 @@ mod arguments;
 mod call;
 
 mod drawing;
+
+mod configuration;
 
 mod compile;
 pub(super) use compile::compile;

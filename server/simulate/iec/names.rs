@@ -1,31 +1,44 @@
 //! Names of variables, and what they lead to.
 
 use super::image::Image;
-use super::kind::{Enumeration, Kind, RecordKind};
+use super::kind::{Enumeration, Extent, Kind, RecordKind};
 use super::parts::{Lies, Spot};
 use super::place::{At, Place as Variable};
+use super::scopes::{Around, Scope};
 use crate::il::iec::SectionKind;
 use crate::target::iec::ElementaryType;
 use crate::target::iec::semantics::NOTES;
 use crate::target::{Model, Operand};
 use crate::text::folded;
+use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 use std::sync::Arc;
 
 /// The variables of a program by name.
 #[derive(Debug, Default)]
 pub(in crate::simulate) struct Names {
-    roots: Vec<Root>,
-    enumerations: Vec<Arc<Enumeration>>,
+    pub(super) roots: Vec<Root>,
+    pub(super) scopes: Vec<Scope>,
+    pub(super) around: Around,
+    enumerations: Vec<Enumerated>,
     pub(in crate::simulate) image: Image,
+    /// Variables of instances that lie at addresses, by where they would lie.
+    rebound: FxHashMap<Extent, Variable>,
+}
+
+/// An enumerated type, with the folded names that it is declared by.
+#[derive(Debug)]
+struct Enumerated {
+    values: Arc<Enumeration>,
+    names: Vec<SmolStr>,
 }
 
 /// A global variable, a program, or a variable that lies at an address.
 #[derive(Debug)]
-struct Root {
+pub(super) struct Root {
     /// As declared, with what stands around it: `Resource`, `Main`.
-    path: Vec<SmolStr>,
-    variable: Variable,
+    pub(super) path: Vec<SmolStr>,
+    pub(super) variable: Variable,
 }
 
 /// An elementary value with a name.
@@ -38,7 +51,7 @@ pub(in crate::simulate) struct Leaf {
 
 /// A step of a path.
 #[derive(PartialEq, Debug)]
-enum Step {
+pub(super) enum Step {
     Member(SmolStr),
     Element(Vec<i64>),
 }
@@ -53,11 +66,22 @@ impl Names {
         self.roots.push(Root { path, variable: variable.clone() });
     }
 
-    pub(super) fn finish(&mut self, image: Image) {
-        self.image = image;
+    /// Takes in where addresses lie, and what types are called; names are folded.
+    pub(super) fn finish(
+        &mut self,
+        image: Image,
+        kinds: &FxHashMap<SmolStr, Kind>,
+        rebound: FxHashMap<Extent, Variable>,
+    ) {
+        (self.image, self.rebound) = (image, rebound);
         let mut found = Vec::new();
         self.roots.iter().for_each(|root| enumerations(&root.variable.kind, &mut found));
-        self.enumerations = found;
+        let named = |values: Arc<Enumeration>| {
+            let is_own = |kind: &Kind| matches!(kind, Kind::Enumeration(own) if Arc::ptr_eq(own, &values));
+            let names = kinds.iter().filter(|(_, kind)| is_own(kind)).map(|(name, _)| name.clone()).collect();
+            Enumerated { values, names }
+        };
+        self.enumerations = found.into_iter().map(named).collect();
     }
 
     /// What a name leads to, letter case aside. What stands around a program may be left out, and the program, too,
@@ -86,15 +110,16 @@ impl Names {
         best.filter(|_| is_unique).map(|(_, leaf)| leaf)
     }
 
-    fn leaf(&self, variable: &Variable, steps: &[Step]) -> Option<Leaf> {
+    pub(super) fn leaf(&self, variable: &Variable, steps: &[Step]) -> Option<Leaf> {
         let Some((step, rest)) = steps.split_first() else {
             let enumeration = match &variable.kind {
                 Kind::Enumeration(own) => {
-                    self.enumerations.iter().position(|other| Arc::ptr_eq(own, other)).map(|at| at as u32)
+                    let is_own = |other: &Enumerated| Arc::ptr_eq(own, &other.values);
+                    self.enumerations.iter().position(is_own).map(|at| at as u32)
                 }
                 _ => None,
             };
-            return Some(Leaf { spot: variable.spot()?, enumeration });
+            return Some(Leaf { spot: self.spot(variable)?, enumeration });
         };
         let part = match (step, &variable.kind) {
             (Step::Member(name), Kind::Record(record)) => {
@@ -109,23 +134,37 @@ impl Names {
                     }
                     number = number * (greatest - least + 1) as u64 + (subscript - least) as u64;
                 }
-                variable.part((**element).clone(), element.size().times(number))?
+                variable.part((**element).clone(), variable.size_of(element).times(number))?
             }
             _ => return None,
         };
         self.leaf(&part, rest)
     }
 
-    /// The name of a value of an enumerated type.
-    pub(in crate::simulate) fn name_of(&self, enumeration: u32, value: i128) -> Option<&SmolStr> {
-        self.enumerations.get(enumeration as usize)?.values.get(usize::try_from(value).ok()?)
+    /// The value that a variable is, wherever it lies.
+    fn spot(&self, variable: &Variable) -> Option<Spot> {
+        let bound = match variable.at {
+            At::Memory(at) if variable.kind.elementary().is_some() => self.rebound.get(&at),
+            _ => None,
+        };
+        bound.unwrap_or(variable).spot()
     }
 
-    /// The value of an enumerated type with a name.
+    /// The name of a value of an enumerated type.
+    pub(in crate::simulate) fn name_of(&self, enumeration: u32, value: i128) -> Option<&SmolStr> {
+        let values = &self.enumerations.get(enumeration as usize)?.values.values;
+        values.get(usize::try_from(value).ok()?)
+    }
+
+    /// The value of an enumerated type with a name, before which that of the type may stand: `Red`, `Colour#Red`.
     pub(in crate::simulate) fn value_of(&self, enumeration: u32, name: &str) -> Option<i128> {
-        let values = &self.enumerations.get(enumeration as usize)?.values;
-        let name = folded(name.rsplit('#').next().unwrap_or(name));
-        values.iter().position(|own| folded(own) == name).map(|place| place as i128)
+        let Enumerated { values, names } = self.enumerations.get(enumeration as usize)?;
+        let (kind, name) = name.split_once('#').map_or((None, name), |(kind, name)| (Some(kind), name));
+        if kind.is_some_and(|kind| !names.contains(&folded(kind))) {
+            return None;
+        }
+        let name = folded(name);
+        values.values.iter().position(|own| folded(own) == name).map(|place| place as i128)
     }
 
     /// The names of variables that are worth watching, as short as they lead to one.
@@ -133,7 +172,7 @@ impl Names {
         let mut names = Vec::new();
         for root in &self.roots {
             let mut leaves = Vec::new();
-            walk(&root.variable, String::new(), &mut leaves, true);
+            self.walk(&root.variable, String::new(), &mut leaves, true);
             for (name, spot) in leaves {
                 names.push(self.shortest(root, &name, spot));
             }
@@ -167,11 +206,62 @@ impl Names {
         (0..=least).rev().map(path).find(leads).unwrap_or_else(|| path(0))
     }
 
+    /// Finds the elementary parts of a variable. Those that are worth watching are its own, what blocks give, and the first
+    /// elements of arrays.
+    fn walk(&self, variable: &Variable, name: String, found: &mut Vec<(String, Spot)>, is_watched: bool) {
+        match &variable.kind {
+            Kind::Elementary(..) | Kind::Subrange(..) | Kind::Enumeration(_) => {
+                if let (Some(spot), false) = (self.spot(variable), is_watched && variable.is_constant) {
+                    found.push((name, spot));
+                }
+            }
+            Kind::Array(bounds, element) => {
+                let most = if is_watched { WATCHED_ELEMENTS } else { MOST_ELEMENTS };
+                for number in 0..super::kind::count(bounds).min(most) {
+                    let mut rest = number;
+                    let mut subscripts: Vec<String> = Vec::new();
+                    for (least, greatest) in bounds.iter().rev() {
+                        let length = (greatest - least + 1) as u64;
+                        subscripts.insert(0, (least + (rest % length) as i64).to_string());
+                        rest /= length;
+                    }
+                    let Some(part) =
+                        variable.part((**element).clone(), variable.size_of(element).times(number))
+                    else {
+                        return;
+                    };
+                    self.walk(&part, format!("{name}[{}]", subscripts.join(",")), found, is_watched);
+                }
+            }
+            Kind::Record(record) => {
+                let is_block = matches!(record.what, RecordKind::Block(_));
+                for field in &record.fields {
+                    let is_shown = !is_watched
+                        || !field.is_constant && (!is_block || field.section == SectionKind::Output);
+                    if !is_shown || !field.has_place() {
+                        continue;
+                    }
+                    let Some(part) = variable.part(field.kind.clone(), field.at) else { continue };
+                    let own = &field.name;
+                    let name = if name.is_empty() { own.to_string() } else { format!("{name}.{own}") };
+                    self.walk(&part, name, found, is_watched);
+                }
+                if let (At::Memory(at), true, false) = (variable.at, is_block, is_watched) {
+                    let first = at.plus(record.size).words - NOTES as u32;
+                    for note in 0..NOTES as u32 {
+                        let lies = Lies::Word(first + note);
+                        found.push((format!("{name}.#{note}"), Spot::new(ElementaryType::Lint, lies)));
+                    }
+                }
+            }
+        }
+    }
+
     /// The name of what lies at a place.
     pub(in crate::simulate) fn name_at(&self, wanted: Spot) -> Option<String> {
         for root in &self.roots {
             let mut leaves = Vec::new();
-            walk(&root.variable, String::new(), &mut leaves, false);
+            self.walk(&root.variable, String::new(), &mut leaves, false);
             if let Some((name, spot)) = leaves.into_iter().find(|(_, spot)| *spot == wanted) {
                 return Some(self.shortest(root, &name, spot));
             }
@@ -180,18 +270,19 @@ impl Names {
         direct.filter(|address| self.image.find(**address) == Some(wanted)).map(ToString::to_string).next()
     }
 
-    /// All values with their whole names, also what instances of blocks note.
+    /// All values with their whole names, folded, also what instances of blocks note.
     pub(in crate::simulate) fn all(&self) -> Vec<(String, Spot)> {
         let mut all = Vec::new();
         for root in &self.roots {
-            walk(&root.variable, folded(&root.path.join(".")).to_string(), &mut all, false);
+            self.walk(&root.variable, root.path.join("."), &mut all, false);
         }
+        all.iter_mut().for_each(|(name, _)| *name = folded(name).to_string());
         all
     }
 }
 
 /// The steps of a name: members, and subscripts that are numbers.
-fn steps(name: &str) -> Option<Vec<Step>> {
+pub(super) fn steps(name: &str) -> Option<Vec<Step>> {
     let mut steps = Vec::new();
     for part in name.trim().split('.') {
         let (member, mut rest) = part.split_at(part.find('[').unwrap_or(part.len()));
@@ -215,7 +306,7 @@ fn steps(name: &str) -> Option<Vec<Step>> {
 
 fn enumerations(kind: &Kind, found: &mut Vec<Arc<Enumeration>>) {
     match kind {
-        Kind::Elementary(..) => {}
+        Kind::Elementary(..) | Kind::Subrange(..) => {}
         Kind::Enumeration(own) => {
             if !found.iter().any(|other| Arc::ptr_eq(own, other)) {
                 found.push(Arc::clone(own));
@@ -223,57 +314,5 @@ fn enumerations(kind: &Kind, found: &mut Vec<Arc<Enumeration>>) {
         }
         Kind::Array(_, element) => enumerations(element, found),
         Kind::Record(record) => record.fields.iter().for_each(|field| enumerations(&field.kind, found)),
-    }
-}
-
-/// Finds the elementary parts of a variable. Those that are worth watching are its own, what blocks give, and the first
-/// elements of arrays.
-fn walk(variable: &Variable, name: String, found: &mut Vec<(String, Spot)>, is_watched: bool) {
-    match &variable.kind {
-        Kind::Elementary(..) | Kind::Enumeration(_) => {
-            if let (Some(spot), false) = (variable.spot(), is_watched && variable.is_constant) {
-                found.push((name, spot));
-            }
-        }
-        Kind::Array(bounds, element) => {
-            let most = if is_watched { WATCHED_ELEMENTS } else { MOST_ELEMENTS };
-            for number in 0..super::kind::count(bounds).min(most) {
-                let mut rest = number;
-                let mut subscripts: Vec<String> = Vec::new();
-                for (least, greatest) in bounds.iter().rev() {
-                    let length = (greatest - least + 1) as u64;
-                    subscripts.insert(0, (least + (rest % length) as i64).to_string());
-                    rest /= length;
-                }
-                let Some(part) = variable.part((**element).clone(), element.size().times(number)) else {
-                    return;
-                };
-                walk(&part, format!("{name}[{}]", subscripts.join(",")), found, is_watched);
-            }
-        }
-        Kind::Record(record) => {
-            let is_block = matches!(record.what, RecordKind::Block(_));
-            for field in &record.fields {
-                let is_shown =
-                    !is_watched || !field.is_constant && (!is_block || field.section == SectionKind::Output);
-                if !is_shown || !field.has_place() {
-                    continue;
-                }
-                let Some(part) = variable.part(field.kind.clone(), field.at) else { continue };
-                let shown = if is_watched { field.name.clone() } else { folded(&field.name) };
-                let name = if name.is_empty() { shown.to_string() } else { format!("{name}.{shown}") };
-                walk(&part, name, found, is_watched);
-            }
-            if let (At::Memory(at), true, false) = (variable.at, is_block, is_watched) {
-                let first = at.plus(record.size).words - NOTES as u32;
-                for note in 0..NOTES as u32 {
-                    let lies = Lies::Word(first + note);
-                    found.push((
-                        format!("{name}.#{note}"),
-                        Spot { kind: ElementaryType::Lint, lies, index: 0 },
-                    ));
-                }
-            }
-        }
     }
 }

@@ -143,7 +143,7 @@ impl Compiler<'_> {
                 None => {
                     // The unit sees the edge of such an input, which lies two cells behind it.
                     let behind = if field.edge.is_some() { Extent::BIT.times(2) } else { Extent::default() };
-                    Variable::new(field.kind.clone(), base.plus(field.at).plus(behind))
+                    self.bound_to(Variable::new(field.kind.clone(), base.plus(field.at).plus(behind)))
                 }
             };
             variable.is_constant =
@@ -178,7 +178,8 @@ impl Compiler<'_> {
         Ok(Variable { kind, at, index: 0, is_constant: false })
     }
 
-    fn member(&mut self, variable: &Variable, name: &str) -> Result<Variable, Obstacle> {
+    /// The part of a structure or an instance with a name.
+    pub(super) fn member(&mut self, variable: &Variable, name: &str) -> Result<Variable, Obstacle> {
         let unknown = || said("simulate.no-member", name);
         let Kind::Record(record) = variable.kind.clone() else { return Err(unknown()) };
         let field = record.field(name).ok_or_else(unknown)?;
@@ -188,7 +189,7 @@ impl Compiler<'_> {
         if !field.has_place() {
             return Err(unknown());
         }
-        variable.part(field.kind.clone(), field.at).ok_or_else(unknown)
+        variable.part(field.kind.clone(), field.at).map(|part| self.bound_to(part)).ok_or_else(unknown)
     }
 
     /// The element with these subscripts.
@@ -202,7 +203,7 @@ impl Compiler<'_> {
         }
         let mut behind = Extent::default();
         let mut open = Vec::new();
-        let mut stride = element.size();
+        let mut stride = variable.size_of(&element);
         for (word, (least, greatest)) in words.iter().zip(bounds.iter()).rev() {
             match self.subscript(word)? {
                 Subscript::Known(number) if (*least..=*greatest).contains(&number) => {
@@ -377,11 +378,11 @@ impl Compiler<'_> {
 
 /// A BOOL in a cell.
 pub(super) fn cell_spot(cell: Cell) -> Spot {
-    Spot { kind: ElementaryType::Bool, lies: Lies::Cell(cell), index: 0 }
+    Spot::of_cell(cell)
 }
 
-fn word_spot(slot: Slot) -> Spot {
-    Spot { kind: ElementaryType::Lint, lies: Lies::Word(slot), index: 0 }
+pub(super) fn word_spot(slot: Slot) -> Spot {
+    Spot::new(ElementaryType::Lint, Lies::Word(slot))
 }
 
 /// A part of a bit string: `.3`, `.%X3`, `.%B1`.

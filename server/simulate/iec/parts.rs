@@ -13,6 +13,8 @@ use std::ops::Range;
 pub(in crate::simulate) struct Parts {
     pub(super) computings: Vec<Computing>,
     pub(super) indices: Vec<Vec<Index>>,
+    /// The least and the greatest numbers of subranges.
+    pub(super) ranges: Vec<(i128, i128)>,
     pub(super) copies: Vec<Copying>,
     pub(super) blocks: Vec<BlockCall>,
     /// The first list has the initial values of the program; others are those of units that begin anew at each call.
@@ -49,7 +51,9 @@ pub struct Spot {
     pub(in crate::simulate) kind: ElementaryType,
     pub(in crate::simulate) lies: Lies,
     /// The subscripts that are known at run time only, a place among the indices and 1; 0 for none.
-    pub(super) index: u32,
+    pub(in crate::simulate) index: u32,
+    /// The subrange that it is of, a place among the ranges and 1; 0 for none.
+    pub(super) range: u32,
 }
 
 /// Where something lies in memory.
@@ -116,6 +120,11 @@ impl Parts {
         self.names.find(name)
     }
 
+    /// What names mean.
+    pub(in crate::simulate) fn names(&self) -> &Names {
+        &self.names
+    }
+
     /// The names of variables that are worth watching.
     pub(in crate::simulate) fn watched(&self) -> Vec<String> {
         self.names.watched()
@@ -136,6 +145,11 @@ impl Parts {
         self.names.value_of(enumeration, name)
     }
 
+    /// The numbers that a subrange has; nothing for a value of a whole type.
+    pub(in crate::simulate) fn range(&self, spot: Spot) -> Option<(i128, i128)> {
+        self.ranges.get((spot.range as usize).checked_sub(1)?).copied()
+    }
+
     /// The cells of a location, in rows.
     pub(in crate::simulate) fn cells(&self, location: Location) -> Vec<Range<usize>> {
         self.names.image.cells(location)
@@ -143,8 +157,13 @@ impl Parts {
 }
 
 impl Spot {
+    /// A value of a type at a place that is known.
+    pub(super) fn new(kind: ElementaryType, lies: Lies) -> Spot {
+        Spot { kind, lies, index: 0, range: 0 }
+    }
+
     /// A BOOL in a cell.
     pub(in crate::simulate) fn of_cell(cell: Cell) -> Spot {
-        Spot { kind: ElementaryType::Bool, lies: Lies::Cell(cell), index: 0 }
+        Spot::new(ElementaryType::Bool, Lies::Cell(cell))
     }
 }

@@ -21,6 +21,8 @@ pub(super) struct Place {
 pub(super) enum At {
     /// From here on.
     Memory(Extent),
+    /// An array at an address, from this cell on: elements are as wide as their types.
+    Image(Cell),
     /// At an address, or a part of a bit string.
     Other(Lies),
 }
@@ -48,22 +50,39 @@ impl Place {
         };
         let lies = match self.at {
             At::Memory(at) => lies(at, kind, length),
+            At::Image(cell) => super::image::in_block(cell, 0, kind.bits()?),
             At::Other(lies) => lies,
         };
-        Some(Spot { kind, lies, index: self.index })
+        let range = match self.kind {
+            Kind::Subrange(_, range) => range,
+            _ => 0,
+        };
+        Some(Spot { kind, lies, index: self.index, range })
     }
 
     /// The relay that it is; nothing where that is known at run time only.
     pub(super) fn cell(&self) -> Option<Cell> {
         match self.spot()? {
-            Spot { kind: ElementaryType::Bool, lies: Lies::Cell(cell), index: 0 } => Some(cell),
+            Spot { kind: ElementaryType::Bool, lies: Lies::Cell(cell), index: 0, .. } => Some(cell),
             _ => None,
         }
     }
 
     /// Its part of this kind that begins so far behind its start.
     pub(super) fn part(&self, kind: Kind, behind: Extent) -> Option<Place> {
-        let At::Memory(at) = self.at else { return None };
-        Some(Place { kind, at: At::Memory(at.plus(behind)), ..self.clone() })
+        let at = match self.at {
+            At::Memory(at) => At::Memory(at.plus(behind)),
+            At::Image(cell) => At::Image(cell.checked_add(Cell::try_from(behind.cells).ok()?)?),
+            At::Other(_) => return None,
+        };
+        Some(Place { kind, at, ..self.clone() })
+    }
+
+    /// What a part of this kind takes where it lies.
+    pub(super) fn size_of(&self, kind: &Kind) -> Extent {
+        match self.at {
+            At::Image(_) => Extent::BIT.times(kind.bits().unwrap_or(0)),
+            _ => kind.size(),
+        }
     }
 }

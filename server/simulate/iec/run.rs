@@ -99,6 +99,12 @@ impl<L: Lanes> Store<'_, L> {
     fn write(&mut self, spot: Spot, value: Datum) -> Result<(), Fault> {
         let lies = moved(self.memory, self.parts, spot, self.lane).ok_or(Fault::Index)?;
         let (value, is_all) = value.held(spot.kind);
+        let range = self.parts.range(spot);
+        let beyond = range.filter(|(least, greatest)| !(least..=greatest).contains(&&value.whole()));
+        let value = match beyond {
+            Some((least, greatest)) => Datum::Whole(value.whole().clamp(least, greatest)),
+            None => value,
+        };
         match lies {
             Lies::Cell(cell) => self.memory.set_bit(cell, self.lane, value.whole() != 0),
             Lies::Word(slot) => self.memory.set_word(slot, self.lane, packed(&value, spot.kind)),
@@ -122,7 +128,11 @@ impl<L: Lanes> Store<'_, L> {
                 self.memory.set_word(slot, self.lane, (before & !mask | pattern) as i64);
             }
         }
-        if is_all { Ok(()) } else { Err(Fault::Overflow) }
+        match (is_all, beyond) {
+            (true, None) => Ok(()),
+            (true, Some(_)) => Err(Fault::Subrange),
+            (false, _) => Err(Fault::Overflow),
+        }
     }
 }
 

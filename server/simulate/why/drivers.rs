@@ -1,19 +1,26 @@
 //! Which instructions drive a device, under which rails.
 
 use crate::document::{ChunkRef, Document, Tree};
+use crate::il::iec::ItemKind;
 use crate::logic::{self, Action, Declared, Deed, Drive, Expression, Gate, Path, Rung};
-use crate::simulate::Place;
+use crate::simulate::{Code, Place, Variable};
 use crate::target::{Device, DeviceKind, Flow, Operand};
-use crate::text::Span;
+use crate::text::{Span, folded};
 use rustc_hash::FxHashMap;
 use smol_str::{SmolStr, ToSmolStr};
+use std::cell::OnceCell;
 
 /// What drives each device of a program, in the order of execution.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Drivers {
     by_name: FxHashMap<SmolStr, Vec<Driver>>,
     /// Master controls and steps by their places.
     rails: FxHashMap<Place, Driver>,
+    /// Those of IEC 61131-3, and what each drives: of which body, and the number of the driver.
+    all: Vec<Driver>,
+    by_variable: OnceCell<FxHashMap<Variable, Vec<(usize, usize)>>>,
+    /// Calculations that stand in several lines, by their ends.
+    lines: FxHashMap<Place, Place>,
 }
 
 /// An instruction that drives something.
@@ -28,6 +35,10 @@ pub(super) struct Driver {
     pub(super) rail: Option<Place>,
     /// Whether it takes a step away that it hands on.
     pub(super) leaves: bool,
+    /// The folded name of the IEC 61131-3 unit in which it stands.
+    unit: SmolStr,
+    /// The body of that unit which is meant.
+    pub(super) frame: Option<usize>,
 }
 
 /// The condition of power at an instruction.
@@ -47,21 +58,28 @@ impl Drivers {
     /// Reads documents that are one program, in the order of execution.
     pub fn of(documents: &[&Document]) -> Drivers {
         let mut reader = Reader {
-            drivers: Drivers { by_name: FxHashMap::default(), rails: FxHashMap::default() },
+            drivers: Drivers::default(),
+            unit: SmolStr::default(),
+            is_fx: true,
             sections: Vec::new(),
             step: None,
             document: 0,
             start: 0,
         };
         for (number, document) in (0..).zip(documents) {
-            reader.document = number;
+            (reader.document, reader.is_fx) = (number, document.target().is_fx());
+            reader.unit = SmolStr::default();
             for (at, pous) in with_pous(document) {
                 reader.start = at.start;
+                let is_open = reader.enter(document, at, pous);
                 let declared = Declared { scopes: document.scopes(), pous };
                 let reading = at.chunk.reading();
                 let is_drawn = matches!(reading.tree(), Tree::Ladder(_));
                 for rung in logic::rungs_with(&reading, document.target(), declared) {
                     reader.rung(&rung, is_drawn);
+                }
+                if !is_open {
+                    reader.unit = SmolStr::default();
                 }
             }
         }
@@ -73,6 +91,40 @@ impl Drivers {
         self.by_name.get(name).map_or(&[], Vec::as_slice)
     }
 
+    /// What drives a variable of an IEC 61131-3 program, each with the body that does it.
+    pub(super) fn of_variable(&self, variable: Variable, code: &Code) -> Vec<Driver> {
+        let by_variable = self.by_variable.get_or_init(|| self.resolved(code));
+        let own = by_variable.get(&variable).into_iter().flatten();
+        own.map(|(frame, number)| Driver { frame: Some(*frame), ..self.all[*number].clone() }).collect()
+    }
+
+    fn resolved(&self, code: &Code) -> FxHashMap<Variable, Vec<(usize, usize)>> {
+        let mut found: FxHashMap<Variable, Vec<(usize, usize)>> = FxHashMap::default();
+        for frame in 0..code.iec.names().scope_count() {
+            let unit = code.iec.names().unit_of(frame);
+            let own = self.all.iter().enumerate().filter(|(_, driver)| driver.unit == unit);
+            for (number, driver) in own {
+                for term in driver.action.changes() {
+                    if let Some(variable) = code.variable_in(frame, &term.text) {
+                        let drivers = found.entry(variable).or_default();
+                        if drivers.last() != Some(&(frame, number)) {
+                            drivers.push((frame, number));
+                        }
+                    }
+                }
+            }
+        }
+        found
+    }
+
+    /// The whole of a calculation that stands in several lines, at its place or at that of its last line.
+    pub(super) fn several_lines(&self, place: Place) -> Option<Place> {
+        self.lines
+            .get(&ending(place))
+            .copied()
+            .filter(|own| own.span.start <= place.span.start && *own == place)
+    }
+
     /// The master control or the step at a place.
     pub(super) fn rail(&self, place: Place) -> Option<&Driver> {
         self.rails.get(&place)
@@ -81,8 +133,10 @@ impl Drivers {
 
 fn with_pous(document: &Document) -> Vec<(ChunkRef<'_>, usize)> {
     let numbers: FxHashMap<usize, usize> = document.iec_chunks().map(|(at, pous)| (at.start, pous)).collect();
+    let mut pous = 0;
     let all = document.chunks().map(|at| {
-        let pous = numbers.get(&at.start).copied().unwrap_or(0);
+        // A drawing belongs to the unit that is open where it stands.
+        pous = numbers.get(&at.start).copied().unwrap_or(pous);
         (at, pous)
     });
     all.collect()
@@ -90,6 +144,9 @@ fn with_pous(document: &Document) -> Vec<(ChunkRef<'_>, usize)> {
 
 struct Reader {
     drivers: Drivers,
+    /// The folded name of the unit that is open.
+    unit: SmolStr,
+    is_fx: bool,
     /// Master controls that are open, with their levels.
     sections: Vec<(u32, Place)>,
     step: Option<(Place, Device)>,
@@ -98,6 +155,24 @@ struct Reader {
 }
 
 impl Reader {
+    /// Comes to a chunk. Gives whether the unit goes on behind it.
+    fn enter(&mut self, document: &Document, at: ChunkRef<'_>, pous: usize) -> bool {
+        let Some(tree) = at.chunk.iec() else { return true };
+        let mut is_open = true;
+        for item in &tree.items {
+            match item.kind {
+                ItemKind::Pou { .. } => {
+                    let unit = document.scopes().pous.get(pous.wrapping_sub(1));
+                    self.unit = unit.map(|unit| folded(&unit.name)).unwrap_or_default();
+                    is_open = true;
+                }
+                ItemKind::PouEnd(_) => is_open = false,
+                _ => {}
+            }
+        }
+        is_open
+    }
+
     fn rung(&mut self, rung: &Rung, is_drawn: bool) {
         let Ok(Some(path)) = &rung.path else { return };
         // Of a list that a drawing carries along the places within are not known.
@@ -137,8 +212,21 @@ impl Reader {
         let place = self.place(whole.unwrap_or(action.span));
         let step = self.step.map(|(place, _)| place);
         let rail = step.or_else(|| self.sections.last().map(|(_, place)| *place));
-        let driver =
-            Driver { place, action: action.clone(), wire: wires.map(Wire::Series), rail, leaves: false };
+        let driver = Driver {
+            place,
+            action: action.clone(),
+            wire: wires.map(Wire::Series),
+            rail,
+            leaves: false,
+            unit: self.unit.clone(),
+            frame: None,
+        };
+        if !self.is_fx {
+            if whole.is_none() && matches!(action.deed, Deed::Compute(_)) {
+                self.drivers.lines.insert(ending(place), place);
+            }
+            return self.drivers.all.push(driver);
+        }
         let first = action.terms.first().and_then(|term| term.operand.device());
         let flow = match &action.deed {
             Deed::Instruction(form) => form.instruction.flow(),
@@ -167,6 +255,10 @@ impl Reader {
             self.drivers.by_name.entry(name).or_default().push(driver.clone());
         }
     }
+}
+
+fn ending(place: Place) -> Place {
+    Place { span: Span { start: place.span.end, ..place.span }, ..place }
 }
 
 /// The names of what an action may write.

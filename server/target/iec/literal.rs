@@ -6,7 +6,7 @@ use smol_str::{SmolStr, format_smolstr};
 
 mod number;
 mod spelling;
-pub use spelling::{characters_of, spelled};
+pub use spelling::{characters_of, real_spelled, shortest, spelled};
 mod text;
 mod time;
 

@@ -7,7 +7,7 @@ mod names;
 pub use names::{KEYWORDS, is_identifier, is_keyword};
 
 mod literal;
-pub use literal::{Literal, LiteralProblem, LiteralValue, characters_of, spelled};
+pub use literal::{Literal, LiteralProblem, LiteralValue, characters_of, real_spelled, shortest, spelled};
 
 mod operand;
 pub(super) use operand::read_operand;

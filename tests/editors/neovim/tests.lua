@@ -485,6 +485,79 @@ check('a program runs, holds itself, shows its power and goes back', function()
   end)
 end)
 
+check('a program goes into a PLC after a look at what changes, and its power is shown', function()
+  local listening
+  local plc = vim.system({ vim.env.RUNGWISE_SERVER, 'plc', '--listen', '127.0.0.1:0' }, {
+    stdin = true,
+    text = true,
+    stdout = function(_, data)
+      listening = listening or data and data:match('tcp://%S+')
+    end,
+  })
+  until_true('a virtual PLC', function()
+    return listening
+  end)
+  open('motor.lad')
+  local program = vim.api.nvim_get_current_buf()
+  local state = function()
+    return require('rungwise.plc').state
+  end
+  vim.cmd('Rungwise plc connect ' .. listening)
+  until_true('the connection', function()
+    return state().connected
+  end)
+  local questions = {}
+  local confirm = vim.fn.confirm
+  vim.fn.confirm = function(question)
+    table.insert(questions, question)
+    return 1
+  end
+  vim.cmd('Rungwise plc download start')
+  until_true('the PLC in RUN with the program', function()
+    return #questions == 1 and state().mode == 'RUN' and state().sum ~= 'E0D0'
+  end)
+  vim.fn.confirm = confirm
+  assert(questions[1]:find('machine may move', 1, true), questions[1])
+  -- What changes stands side by side in a tab of its own.
+  local shown = vim.tbl_map(vim.api.nvim_win_get_buf, vim.api.nvim_tabpage_list_wins(0))
+  assert(#shown == 2 and vim.wo.diff, vim.inspect(shown))
+  assert(vim.api.nvim_buf_get_lines(shown[1], 0, -1, false)[1] == 'END')
+  vim.cmd.tabclose()
+  assert(vim.api.nvim_get_current_buf() == program)
+  local space = vim.api.nvim_get_namespaces().rungwise_simulation
+  local function has_coil()
+    local marks = vim.api.nvim_buf_get_extmarks(0, space, { 2, 0 }, { 2, -1 }, { details = true })
+    return vim.iter(marks):any(function(found)
+      local cells = vim.fn.getline(3):sub(found[3] + 1, found[4].end_col or found[3])
+      return found[4].hl_group == 'RungwiseEnergised' and cells:find('( )', 1, true) ~= nil
+    end)
+  end
+  vim.cmd('Rungwise plc monitor')
+  until_true('power at the rail', function()
+    return #vim.api.nvim_buf_get_extmarks(0, space, 0, -1, {}) > 0
+  end)
+  assert(not has_coil())
+  vim.cmd('Rungwise plc force X0 1')
+  until_true('the motor on in the PLC', has_coil)
+  vim.cmd('Rungwise plc stop')
+  until_true('the PLC in STOP', function()
+    return state().mode == 'STOP' and not has_coil()
+  end)
+  vim.cmd('Rungwise plc monitor')
+  until_true('a text without power', function()
+    return #vim.api.nvim_buf_get_extmarks(0, space, 0, -1, {}) == 0
+  end)
+  vim.cmd('Rungwise plc upload')
+  until_true('the program of the PLC', function()
+    return vim.fn.getline(1) == 'LD X0' and vim.fn.getline('$') == 'END'
+  end)
+  vim.cmd.bwipeout({ bang = true })
+  plc:kill('sigkill')
+  until_true('the loss of the line', function()
+    return not state().connected
+  end)
+end)
+
 check('scenario tests fill the quickfix list, and what was done becomes one', function()
   local folder = vim.fn.tempname()
   vim.fn.mkdir(folder)

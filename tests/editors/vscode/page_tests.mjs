@@ -7,6 +7,7 @@ import { DEBUGGING_FILES, DEBUGGING_TESTS } from './page_debugging.mjs';
 import { DEVICE_FILES, DEVICE_TESTS } from './page_devices.mjs';
 import { DRAWING_TESTS } from './page_drawing.mjs';
 import { PANEL_FILES, PANEL_TESTS } from './page_panel.mjs';
+import { PLC_FILES, PLC_TESTS } from './page_plc.mjs';
 import { SIMULATION_FILES, SIMULATION_TESTS } from './page_simulation.mjs';
 import { TESTING_FILES, TESTING_TESTS } from './page_testing.mjs';
 import { TRANSLATION_FILES, TRANSLATION_TESTS } from './page_translation.mjs';
@@ -17,7 +18,7 @@ import { Workbench } from './workbench.mjs';
 const REPAIR_LIMIT_MS = 20_000;
 
 export async function runPageTests(server, workspace, home, report, artefacts) {
-  for (const [name, fixture] of Object.entries({ ...VIEW_FILES, ...DEVICE_FILES, ...TRANSLATION_FILES, ...SIMULATION_FILES, ...PANEL_FILES, ...TESTING_FILES, ...DEBUGGING_FILES })) {
+  for (const [name, fixture] of Object.entries({ ...VIEW_FILES, ...DEVICE_FILES, ...TRANSLATION_FILES, ...SIMULATION_FILES, ...PLC_FILES, ...PANEL_FILES, ...TESTING_FILES, ...DEBUGGING_FILES })) {
     copyFileSync(join(workspace, fixture), join(workspace, name));
   }
   await server.start(workspace);
@@ -26,7 +27,7 @@ export async function runPageTests(server, workspace, home, report, artefacts) {
     const workbench = new Workbench(await browser.newPage(), artefacts);
     await report.check('page: the workbench opens', () => workbench.load(`http://${server.authority}/?folder=${workspace}`));
     // The last one leaves VS Code without a server.
-    const tests = { ...FIRST_TESTS, ...DRAWING_TESTS, ...VIEW_TESTS, ...DEVICE_TESTS, ...TRANSLATION_TESTS, ...SIMULATION_TESTS, ...PANEL_TESTS, ...TESTING_TESTS, ...DEBUGGING_TESTS, ...LAST_TESTS };
+    const tests = { ...FIRST_TESTS, ...DRAWING_TESTS, ...VIEW_TESTS, ...DEVICE_TESTS, ...TRANSLATION_TESTS, ...SIMULATION_TESTS, ...PLC_TESTS, ...PANEL_TESTS, ...TESTING_TESTS, ...DEBUGGING_TESTS, ...LAST_TESTS };
     const chosen = new RegExp(process.env.RUNGWISE_TESTS_NAMED ?? '');
     for (const [name, test] of Object.entries(tests).filter(([name]) => chosen.test(name))) {
       await report.check(`page: ${name}`, async () => {

@@ -24,7 +24,7 @@ pub(super) fn files(around: &Around) -> Vec<(Uri, i32, Document)> {
 }
 
 /// Code that is fast, and code that says what it sees.
-pub(super) fn compiled(files: &[(Uri, i32, Document)]) -> Result<(Arc<Code>, Arc<Code>), Message> {
+pub(in crate::lsp) fn compiled(files: &[(Uri, i32, Document)]) -> Result<(Arc<Code>, Arc<Code>), Message> {
     let documents: Vec<&Document> = files.iter().map(|(_, _, document)| document).collect();
     let make = |is_watched| {
         compile(&documents, is_watched).map(Arc::new).map_err(|problems| {
@@ -40,4 +40,9 @@ pub(super) fn compiled(files: &[(Uri, i32, Document)]) -> Result<(Arc<Code>, Arc
         })
     };
     Ok((make(false)?, make(true)?))
+}
+
+/// The files of the program that the document at `uri` is a part of, as the editor has them now.
+pub(in crate::lsp) fn files_around(workspace: &Workspace, uri: &Uri) -> Option<Vec<(Uri, i32, Document)>> {
+    around(workspace, uri).map(|around| files(&around))
 }

@@ -258,7 +258,8 @@ pub const ROWS: &[Function] = &[
             about: "IN1 divided by IN2, numbers of one type; in Instruction List the current result is \
                     IN1. Integers are truncated towards zero: -7 divided by 2 gives -3. Division by zero \
                     is an error: with EN and ENO the call reports it on ENO instead of stopping the \
-                    controller.",
+                    controller. In the simulator the result is then 0, as it is where EN keeps a \
+                    function from being executed.",
             variables: &["Sum AT %IW0 : INT", "Samples : INT := 10", "Mean AT %QW0 : INT"],
             body: &["LD Sum", "DIV Samples", "ST Mean"],
         }),

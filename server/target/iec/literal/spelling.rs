@@ -12,7 +12,7 @@ pub fn spelled(value: &Datum, kind: ElementaryType) -> SmolStr {
     let number = value.whole();
     match (value, kind) {
         (Datum::Text(text), _) => text.clone(),
-        (Datum::Real(number), _) => format_smolstr!("{number:?}"),
+        (Datum::Real(number), _) => real_spelled(shortest(*number, kind)),
         (_, Bool) => if number == 0 { "FALSE" } else { "TRUE" }.into(),
         (_, Time) => format_smolstr!("T#{}", duration(number)),
         (_, Ltime) => format_smolstr!("LT#{}", duration(number)),
@@ -26,6 +26,31 @@ pub fn spelled(value: &Datum, kind: ElementaryType) -> SmolStr {
         (_, Char | Wchar) => char::from_u32(number as u32).into_iter().collect(),
         _ if kind.belongs_to(GenericType::AnyBit) => format_smolstr!("16#{number:X}"),
         _ => number.to_smolstr(),
+    }
+}
+
+/// The number with the fewest digits that a variable of type `kind` takes for this one: of the REAL nearest to 0.1 it is
+/// 0.1, and not what is left behind its seventh digit.
+pub fn shortest(number: f64, kind: ElementaryType) -> f64 {
+    match kind {
+        ElementaryType::Real => format!("{:?}", number as f32).parse().unwrap_or(number),
+        _ => number,
+    }
+}
+
+/// A real number as a literal, with a digit on both sides of the point: `0.1`, `1.0e20`. What is no number of the
+/// standard's is `Infinity`, `-Infinity` or `NaN`.
+pub fn real_spelled(number: f64) -> SmolStr {
+    if number.is_nan() {
+        return "NaN".into();
+    }
+    if number.is_infinite() {
+        return if number > 0.0 { "Infinity" } else { "-Infinity" }.into();
+    }
+    let digits = format!("{number:?}");
+    match digits.split_once('e') {
+        Some((mantissa, exponent)) if !mantissa.contains('.') => format_smolstr!("{mantissa}.0e{exponent}"),
+        _ => digits.into(),
     }
 }
 

@@ -33,8 +33,9 @@ pub const ROWS: &[Operator] = &[
             about: "Calls an instance of a function block. `CALC` calls only if the current result, a BOOL, is 1 and \
                     `CALCN` only if it is 0. Parameters stand in parentheses, either by name, one on each line, with \
                     `:=` for inputs and `=>` for outputs, or by position on one line, inputs then outputs in the \
-                    order of the declaration. Inputs that are left out keep their last value. Do not rely on the \
-                    current result after a call: the third edition leaves it undefined.",
+                    order of the declaration. Inputs that are left out keep their last value. `EN := FALSE` leaves out \
+                    the call, and ENO is then FALSE. Do not rely on the current result after a call: the third \
+                    edition leaves it undefined, the simulator keeps it.",
             variables: &["Start AT %IX0.0 : BOOL", "Delay : TON", "Motor AT %QX0.0 : BOOL"],
             body: &["CAL Delay(", "    IN := Start,", "    PT := T#5s", ")", "LD Delay.Q", "ST Motor"],
         },

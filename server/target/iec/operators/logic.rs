@@ -35,7 +35,8 @@ pub const ROWS: &[Operator] = &[
             about: "Copies the current result into a variable of the same type. The current result stays as it is, so \
                     several `ST` may follow each other. `STN` stores the complement and needs a BOOL or a bit string. \
                     An input, a constant and a literal cannot be stored to, and nothing is converted on the way: an \
-                    INT result needs a conversion function before it goes into a REAL variable.",
+                    INT result needs a conversion function before it goes into a REAL variable. A number outside of \
+                    the subrange of its variable is an error; the simulator stores the nearest one within, and tells.",
             variables: &["Door AT %IX0.0 : BOOL", "Lamp AT %QX0.0 : BOOL", "Lock AT %QX0.1 : BOOL"],
             body: &["LD Door", "ST Lamp", "STN Lock"],
         },

@@ -1,0 +1,189 @@
+--- A PLC on a line: `:Rungwise plc VERB …`. Nothing is said to a PLC but what these ask for.
+local client = require('rungwise.client')
+local simulation = require('rungwise.simulation')
+local t = require('rungwise.words').t
+local M = {}
+
+local PREFIX = 'rungwise.plc.'
+
+--- What the server told of the PLC last.
+M.state = { connected = false }
+
+--- Has something done about the program of a buffer; `done` gets the answer.
+local function tell(buffer, verb, more, done)
+  local server = client.expect(buffer)
+  if not server then
+    return
+  end
+  local argument = vim.tbl_extend('force', { uri = vim.uri_from_bufnr(buffer) }, more or {})
+  client.request(server, 'workspace/executeCommand', { command = PREFIX .. verb, arguments = { argument } },
+    function(err, result)
+      if err then
+        client.notify(err.message or vim.inspect(err), vim.log.levels.ERROR)
+      elseif done then
+        done(result)
+      end
+    end, buffer)
+end
+
+--- What the PLC is and does, in a line.
+local function line_of(state)
+  if not state.connected then
+    return t('no PLC is connected')
+  end
+  local words = { ('%s %s %s'):format(state.title, state.version, state.mode), state.port }
+  for _, failed in ipairs(state.errors or {}) do
+    table.insert(words, ('%s = %d'):format(failed.register, failed.code))
+  end
+  if state.match == 'same' then
+    table.insert(words, t('the program in the PLC is the same'))
+  elseif state.match == 'different' then
+    table.insert(words, t('the program in the PLC is another one'))
+  end
+  return table.concat(words, ', ')
+end
+
+--- The notification `rungwise/plc`.
+function M.on_state(_, state)
+  if type(state) ~= 'table' then
+    return
+  end
+  local before = M.state
+  M.state = state
+  if before.connected and state.reason then
+    client.notify(state.reason, vim.log.levels.ERROR)
+  end
+  if before.monitoring and not state.monitoring then
+    simulation.unfollow_plc()
+  end
+  vim.cmd.redrawstatus()
+end
+
+--- Shows what is in the PLC beside what shall be there, in a tab of their own.
+local function show_difference(plan)
+  vim.cmd.tabnew()
+  for number, side in ipairs({ 'before', 'after' }) do
+    if number == 2 then
+      vim.cmd('rightbelow vsplit')
+    end
+    local buffer = vim.api.nvim_create_buf(false, true)
+    vim.api.nvim_win_set_buf(0, buffer)
+    vim.api.nvim_buf_set_lines(buffer, 0, -1, false, vim.split(vim.trim(plan[side]), '\n'))
+    vim.bo[buffer].modifiable = false
+    vim.bo[buffer].bufhidden = 'wipe'
+    vim.api.nvim_buf_set_name(buffer, ('rungwise://plc/%d/%s.il'):format(buffer, side))
+    vim.cmd.diffthis()
+  end
+  vim.cmd.redraw()
+end
+
+local function is_confirmed(question)
+  return vim.fn.confirm(question, t('&Yes\n&No'), 2) == 1
+end
+
+--- What `:Rungwise plc VERB …` does.
+M.verbs = {
+  connect = function(buffer, words)
+    tell(buffer, 'connect', { port = words[1] }, function(state)
+      client.notify(line_of(state))
+    end)
+  end,
+  disconnect = function(buffer)
+    tell(buffer, 'disconnect')
+  end,
+  ports = function(buffer)
+    tell(buffer, 'ports', {}, function(found)
+      local lines = vim.tbl_map(function(port)
+        return vim.trim(port.name .. '  ' .. port.description)
+      end, found.ports)
+      client.notify(#lines > 0 and table.concat(lines, '\n') or t('this computer has no serial port'))
+    end)
+  end,
+  status = function(buffer)
+    tell(buffer, 'state', {}, function(state)
+      client.notify(line_of(state))
+    end)
+  end,
+  --- Whether the program in the PLC is that of the buffer.
+  verify = function(buffer)
+    tell(buffer, 'verify', {}, function(plan)
+      if plan.same then
+        client.notify(t('the program in the PLC is the same'))
+      else
+        show_difference(plan)
+      end
+    end)
+  end,
+  --- Shows what changes, asks, and writes; `start` as its word starts the PLC afterwards.
+  download = function(buffer, words)
+    local is_start = words[1] == 'start'
+    tell(buffer, 'plan', {}, function(plan)
+      if not plan.same then
+        show_difference(plan)
+      end
+      local question = t('Stop the PLC and write %d bytes into it?', plan.bytes)
+      if is_start then
+        question = t('Stop the PLC, write %d bytes into it and start it? The machine may move.', plan.bytes)
+      end
+      if is_confirmed(question) then
+        tell(buffer, 'download', { confirmed = true, start = is_start }, function(done)
+          client.notify(t('%d bytes written, %d read back and compared; the PLC is in %s',
+            done.written, done.compared, done.mode))
+        end)
+      end
+    end)
+  end,
+  --- The program of the PLC in a new buffer.
+  upload = function(buffer)
+    tell(buffer, 'upload', {}, function(found)
+      vim.cmd.new()
+      vim.bo.filetype = 'plc-il'
+      vim.api.nvim_buf_set_lines(0, 0, -1, false, vim.split(vim.trim(found.text), '\n'))
+    end)
+  end,
+  start = function(buffer)
+    if is_confirmed(t('Start the PLC? The machine may move.')) then
+      tell(buffer, 'start', { confirmed = true })
+    end
+  end,
+  stop = function(buffer)
+    tell(buffer, 'stop')
+  end,
+  --- Shows the power of the PLC in the text, or no longer.
+  monitor = function(buffer)
+    if M.state.monitoring == vim.uri_from_bufnr(buffer) then
+      simulation.unfollow_plc()
+      tell(buffer, 'unmonitor')
+    else
+      simulation.follow_plc(buffer, function(ranges)
+        tell(buffer, 'monitor', { ranges = ranges })
+      end)
+    end
+  end,
+  write = function(buffer, words)
+    tell(buffer, 'write', { name = words[1], value = words[2] })
+  end,
+  force = function(buffer, words)
+    tell(buffer, 'force', { name = words[1], value = words[2] })
+  end,
+}
+
+--- The verbs, sorted.
+function M.names()
+  local names = vim.tbl_keys(M.verbs)
+  table.sort(names)
+  return names
+end
+
+--- Runs `:Rungwise plc VERB WORD…`; without a verb it tells the state.
+function M.run(words)
+  local verb = M.verbs[words[1] or 'status']
+  if not verb then
+    client.notify(t('there is no ":Rungwise plc %s"; there are %s', words[1], table.concat(M.names(), ', ')),
+      vim.log.levels.ERROR)
+    return
+  end
+  verb(vim.api.nvim_get_current_buf(), vim.list_slice(words, 2))
+end
+
+return M

@@ -1,0 +1,177 @@
+//! `rungwise.plc.…`: a PLC on a line, beside the editor.
+//!
+//! Nothing is said to a PLC but by these commands (`workspace/executeCommand`). Each takes an object, which may be left
+//! out where no member is needed:
+//!
+//! ```text
+//! rungwise.plc.ports        { }                          → { ports: { name, description }[] }
+//! rungwise.plc.connect      { uri?, port?: string, timeout?: ms = 1000 }   // the port of the project of `uri`
+//! rungwise.plc.disconnect   { }
+//! rungwise.plc.state        { uri? }                     // with what of `uri` is not in the PLC as it stands there
+//! rungwise.plc.plan         { uri }                      → { same, bytes, steps, before, after }
+//! rungwise.plc.verify       { uri }                      // the same
+//! rungwise.plc.download     { uri, start?: boolean, confirmed?: boolean }
+//!                                                        → { written, compared, steps, mode, backup? }
+//! rungwise.plc.upload       { }                          → { text, model, steps, unread }
+//! rungwise.plc.start        { confirmed?: boolean }
+//! rungwise.plc.stop         { }
+//! rungwise.plc.monitor      { uri, ranges?: Range[], names?: string[] }
+//! rungwise.plc.unmonitor    { }
+//! rungwise.plc.write        { name, value }              // "D0", 5; "T0", 0; "M5", true
+//! rungwise.plc.force        { name, value }              // of a relay alone
+//! ```
+//!
+//! `before` and `after` are the instruction lists of what is in the PLC and of what shall be. Whoever does not send
+//! `confirmed` is asked by the server before a PLC is written or started. A request that is cancelled ends at the next
+//! exchange on the line; what has become of the PLC is then told in a message. The others answer the state, which is
+//! also the notification `rungwise/plc` when it changes:
+//!
+//! ```text
+//! { connected: boolean, port?, model?, version?, mode?: "RUN" | "STOP", capacity?, sum?, scan_time_ms?,
+//!   errors?: { register, code }[], monitoring?: uri, match?: "same" | "different" | "unknown", drift?: Range[],
+//!   reason? }                 // why the line is gone
+//! ```
+//!
+//! `drift` are the instructions of `uri` that are not so in the PLC, as far as that is known: from the last upload,
+//! download or comparison. While a program is monitored, `rungwise/monitor` comes as in a simulation, with
+//! `source: "plc"`: values are those that were read in one exchange, and the power is computed from them.
+
+mod desk;
+
+mod drift;
+
+mod watching;
+
+use super::answering::{refused, snapshot, wrong_argument};
+use super::workspace::Workspace;
+use crate::link::transport::ports;
+use crate::text::Message;
+use desk::{Desk, Order};
+use serde::Deserialize;
+use serde_json::{Value, json};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+use tower_lsp::jsonrpc::Result;
+use tower_lsp::ls_types::{LSPAny, MessageActionItem, MessageType, NumberOrString, Range, Uri};
+
+/// What all commands begin with; [`COMMANDS`](super::capabilities::COMMANDS) has them.
+pub(super) const PREFIX: &str = "rungwise.plc.";
+
+/// The argument of any of them.
+#[derive(Clone, Debug, Default, Deserialize)]
+struct Asked {
+    uri: Option<Uri>,
+    port: Option<String>,
+    timeout: Option<u64>,
+    #[serde(default)]
+    start: bool,
+    #[serde(default)]
+    confirmed: bool,
+    name: Option<String>,
+    value: Option<Value>,
+    ranges: Option<Vec<Range>>,
+    names: Option<Vec<String>>,
+}
+
+/// How long an answer may take to begin if nobody says otherwise.
+const PATIENCE_MS: u64 = 1_000;
+
+/// The PLC that is connected, if any.
+#[derive(Default)]
+pub(super) struct Plcs(Mutex<Option<Desk>>);
+
+impl Plcs {
+    /// Answers a command; `token` is where the client shows how far it is.
+    pub(super) async fn answer(
+        &self,
+        command: &str,
+        argument: Option<&Value>,
+        token: Option<NumberOrString>,
+        workspace: &Arc<Workspace>,
+    ) -> Result<Option<LSPAny>> {
+        let wrong = |reason: String| refused(wrong_argument(command, reason));
+        let none = json!({});
+        let asked =
+            Asked::deserialize(argument.unwrap_or(&none)).map_err(|reason| wrong(reason.to_string()))?;
+        let verb = command.strip_prefix(PREFIX).unwrap_or_default();
+        if verb == "ports" {
+            let ports = tokio::task::spawn_blocking(ports).await.unwrap_or_default();
+            let ports =
+                ports.iter().map(|port| json!({ "name": port.name, "description": port.description }));
+            return Ok(Some(json!({ "ports": ports.collect::<Vec<_>>() })));
+        }
+        let desk = self.desk(verb, workspace);
+        let Some(desk) = desk else {
+            return match verb {
+                "state" | "disconnect" => Ok(Some(json!({ "connected": false }))),
+                _ => Err(refused(Message::new("link.not-connected"))),
+            };
+        };
+        let order = order(command, verb, &asked).map_err(refused)?;
+        if let Some(question) = order.question().filter(|_| !asked.confirmed)
+            && !is_confirmed(workspace, question).await
+        {
+            return Err(refused(Message::new("link.cancelled")));
+        }
+        let answer = desk.ask(order, token).await;
+        if verb == "disconnect" || !desk.is_alive() {
+            self.0.lock().unwrap_or_else(PoisonError::into_inner).take_if(|own| !own.is_alive());
+        }
+        answer.map(Some).map_err(refused)
+    }
+
+    /// The desk that orders go to; a new one for who connects.
+    fn desk(&self, verb: &str, workspace: &Arc<Workspace>) -> Option<Desk> {
+        let mut desk = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        desk.take_if(|own| !own.is_alive());
+        if verb == "connect" && desk.is_none() {
+            *desk = Some(Desk::new(workspace));
+        }
+        desk.clone()
+    }
+}
+
+fn order(command: &str, verb: &str, asked: &Asked) -> std::result::Result<Order, Message> {
+    let missing = |member: &str| wrong_argument(command, member);
+    let uri = || asked.uri.clone().ok_or_else(|| missing("uri"));
+    let set = |is_force| {
+        let name = asked.name.clone().ok_or_else(|| missing("name"))?;
+        let value = asked.value.clone().ok_or_else(|| missing("value"))?;
+        Ok(Order::Write { name, value, is_force })
+    };
+    Ok(match verb {
+        "connect" => {
+            let port = asked.port.clone().or_else(|| port_of(asked.uri.as_ref()));
+            let port = port.ok_or_else(|| Message::new("link.which-port"))?;
+            Order::Connect { port, patience: Duration::from_millis(asked.timeout.unwrap_or(PATIENCE_MS)) }
+        }
+        "disconnect" => Order::Disconnect,
+        "plan" | "verify" => Order::Plan { uri: uri()? },
+        "download" => Order::Download { uri: uri()?, is_started: asked.start },
+        "upload" => Order::Upload,
+        "start" => Order::Start,
+        "stop" => Order::Stop,
+        "monitor" => Order::Monitor { uri: uri()?, ranges: asked.ranges.clone(), names: asked.names.clone() },
+        "unmonitor" => Order::Unmonitor,
+        "write" => set(false)?,
+        "force" => set(true)?,
+        _ => Order::State { uri: asked.uri.clone() },
+    })
+}
+
+/// The port that the project of a document names.
+fn port_of(uri: Option<&Uri>) -> Option<String> {
+    snapshot().open(uri?)?.manifest.port.clone()
+}
+
+/// Asks the person at the editor.
+async fn is_confirmed(workspace: &Workspace, question: Message) -> bool {
+    let language = workspace.snapshot().manner.language;
+    let action =
+        |key| MessageActionItem { title: Message::new(key).render(language), properties: Default::default() };
+    let (yes, no) = (action("link.yes"), action("link.no"));
+    let text = question.render(language);
+    let actions = Some(vec![yes.clone(), no]);
+    let chosen = workspace.client.show_message_request(MessageType::WARNING, text, actions).await;
+    chosen.ok().flatten().is_some_and(|chosen| chosen.title == yes.title)
+}

@@ -1,0 +1,441 @@
+//! The thread that has the line to a PLC: it does what it is told, one thing after the other, and looks at what is
+//! watched meanwhile.
+
+use super::super::progress::Progress as Bar;
+use super::super::projects::file_path;
+use super::super::simulation::MonitorMethod;
+use super::super::workspace::Workspace;
+use super::drift::{Encoded, drift, encoded};
+use super::watching::Watching;
+use crate::link::transport;
+use crate::link::{Host, Line, LinkError, Mode, Patience, Plan, Point, Progress, Stage, Status, Transport};
+use crate::machine_code::{Image, decode};
+use crate::project::Backup;
+use crate::simulate::Value;
+use crate::text::Message;
+use serde_json::{Value as Json, json};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Weak};
+use std::time::{Duration, Instant};
+use tokio::sync::oneshot;
+use tower_lsp::ls_types::notification::Notification;
+use tower_lsp::ls_types::{NumberOrString, Range, Uri};
+
+/// What is to be done with a PLC.
+#[derive(Clone, Debug)]
+pub(super) enum Order {
+    Connect { port: String, patience: Duration },
+    Disconnect,
+    State { uri: Option<Uri> },
+    Plan { uri: Uri },
+    Download { uri: Uri, is_started: bool },
+    Upload,
+    Start,
+    Stop,
+    Monitor { uri: Uri, ranges: Option<Vec<Range>>, names: Option<Vec<String>> },
+    Unmonitor,
+    Write { name: String, value: Json, is_force: bool },
+}
+
+impl Order {
+    /// What a person is asked before it is done.
+    pub(super) fn question(&self) -> Option<Message> {
+        match self {
+            Order::Download { is_started: true, .. } => Some(Message::new("link.ask-replace-start")),
+            Order::Download { .. } => Some(Message::new("link.ask-replace")),
+            Order::Start => Some(Message::new("link.ask-start")),
+            _ => None,
+        }
+    }
+}
+
+/// The notification about the state.
+pub(super) enum StateMethod {}
+
+impl Notification for StateMethod {
+    type Params = Json;
+    const METHOD: &'static str = "rungwise/plc";
+}
+
+type Reply = Result<Json, Message>;
+
+/// An order, where it reports to, and who waits for its end.
+struct Job {
+    order: Order,
+    bar: Bar,
+    reply: oneshot::Sender<Reply>,
+}
+
+/// The other end of the thread.
+#[derive(Clone)]
+pub(super) struct Desk {
+    sender: Sender<Job>,
+    is_alive: Arc<AtomicBool>,
+    cancel: Arc<AtomicBool>,
+    workspace: Weak<Workspace>,
+}
+
+/// Ends what is under way when nobody waits for it any more.
+struct Waiting(Arc<AtomicBool>);
+
+impl Drop for Waiting {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Says when dropped, also by a panic, that the thread has ended.
+struct Mark(Arc<AtomicBool>);
+
+impl Drop for Mark {
+    fn drop(&mut self) {
+        self.0.store(false, Ordering::Release);
+    }
+}
+
+impl Desk {
+    /// A desk without a line.
+    pub(super) fn new(workspace: &Arc<Workspace>) -> Desk {
+        let (sender, receiver) = channel();
+        let (is_alive, cancel) = (Arc::new(AtomicBool::new(true)), Arc::<AtomicBool>::default());
+        let desk = Desk {
+            sender,
+            is_alive: Arc::clone(&is_alive),
+            cancel: Arc::clone(&cancel),
+            workspace: Arc::downgrade(workspace),
+        };
+        let workspace = Arc::downgrade(workspace);
+        let tokio = tokio::runtime::Handle::current();
+        std::thread::spawn(move || {
+            let _mark = Mark(is_alive);
+            Thread { workspace, tokio, cancel, plc: None }.run(&receiver);
+        });
+        desk
+    }
+
+    /// Whether it still listens.
+    pub(super) fn is_alive(&self) -> bool {
+        self.is_alive.load(Ordering::Acquire)
+    }
+
+    /// Has something done, and gives its answer.
+    pub(super) async fn ask(&self, order: Order, token: Option<NumberOrString>) -> Reply {
+        let gone = || Message::new("link.not-connected");
+        let workspace = self.workspace.upgrade().ok_or_else(gone)?;
+        let takes_long = matches!(order, Order::Plan { .. } | Order::Download { .. } | Order::Upload);
+        let title = Message::new("link.title");
+        let bar = match token {
+            Some(token) => {
+                let title = title.render(workspace.snapshot().manner.language);
+                Bar::of_request(&workspace.client, Some(token), title)
+            }
+            None if takes_long => workspace.progress(title).await,
+            None => Bar::silent(),
+        };
+        let (reply, answer) = oneshot::channel();
+        self.cancel.store(false, Ordering::Relaxed);
+        let waiting = Waiting(Arc::clone(&self.cancel));
+        self.sender.send(Job { order, bar, reply }).map_err(|_| gone())?;
+        let answer = answer.await.map_err(|_| gone())?;
+        std::mem::forget(waiting);
+        answer
+    }
+}
+
+/// The PLC at the other end.
+struct Connected {
+    port: String,
+    host: Host<Box<dyn Transport>>,
+    status: Status,
+    /// What is in its program memory, as far as that was read.
+    image: Option<Image>,
+    watching: Option<Watching>,
+}
+
+struct Thread {
+    workspace: Weak<Workspace>,
+    tokio: tokio::runtime::Handle,
+    cancel: Arc<AtomicBool>,
+    plc: Option<Connected>,
+}
+
+/// How often what is watched is looked at, if the line is that fast.
+const PICTURE: Duration = Duration::from_millis(33);
+/// How often the mode is asked for beside that.
+const STATUS: Duration = Duration::from_secs(2);
+
+impl Thread {
+    fn run(&mut self, receiver: &Receiver<Job>) {
+        let mut asked = Instant::now();
+        loop {
+            let is_watching = self.plc.as_ref().is_some_and(|plc| plc.watching.is_some());
+            match receiver.recv_timeout(if is_watching { PICTURE } else { STATUS }) {
+                Ok(Job { order, bar, reply }) => {
+                    let is_end = matches!(order, Order::Disconnect);
+                    let answer = self.obey(order, &bar);
+                    drop(bar);
+                    // Who asked may have gone.
+                    let _ = reply.send(answer);
+                    if is_end {
+                        return;
+                    }
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+            if self.workspace.strong_count() == 0 {
+                return;
+            }
+            self.cancel.store(false, Ordering::Relaxed);
+            let looked = self.look(&mut asked);
+            if let Err(error) = looked {
+                self.lose(&error);
+                return;
+            }
+            if self.plc.is_none() {
+                return;
+            }
+        }
+    }
+
+    /// Looks at what is watched, and now and then at the PLC as a whole.
+    fn look(&mut self, asked: &mut Instant) -> Result<(), LinkError> {
+        let Some(workspace) = self.workspace.upgrade() else { return Ok(()) };
+        let Some(plc) = &mut self.plc else { return Ok(()) };
+        if let Some(watching) = &mut plc.watching
+            && let Some(picture) = watching.picture(&mut plc.host, &workspace, plc.status.mode)?
+        {
+            let client = workspace.client.clone();
+            self.tokio.spawn(async move { client.send_notification::<MonitorMethod>(picture).await });
+        }
+        if asked.elapsed() >= STATUS {
+            *asked = Instant::now();
+            let before = (plc.status.mode, plc.status.errors.clone(), plc.status.parameters.sum());
+            plc.status = plc.host.status()?;
+            if before != (plc.status.mode, plc.status.errors.clone(), plc.status.parameters.sum()) {
+                // Somebody else has been at it.
+                if plc
+                    .image
+                    .as_ref()
+                    .is_some_and(|image| image.parameters().sum() != plc.status.parameters.sum())
+                {
+                    plc.image = None;
+                }
+                self.tell(None);
+            }
+        }
+        Ok(())
+    }
+
+    /// The line is gone: says so.
+    fn lose(&mut self, error: &LinkError) {
+        self.plc = None;
+        let Some(workspace) = self.workspace.upgrade() else { return };
+        let reason = error.message().render(workspace.snapshot().manner.language);
+        self.send(json!({ "connected": false, "reason": reason }));
+    }
+
+    fn send(&self, state: Json) {
+        let Some(workspace) = self.workspace.upgrade() else { return };
+        let client = workspace.client.clone();
+        self.tokio.spawn(async move { client.send_notification::<StateMethod>(state).await });
+    }
+
+    fn tell(&self, uri: Option<&Uri>) {
+        self.send(self.state(uri));
+    }
+
+    fn state(&self, uri: Option<&Uri>) -> Json {
+        let Some(plc) = &self.plc else { return json!({ "connected": false }) };
+        let identity = plc.host.identity();
+        let mut state = json!({
+            "connected": true,
+            "port": plc.port,
+            "model": identity.target.name,
+            "title": identity.target.title,
+            "version": identity.version(),
+            "mode": word_of(plc.status.mode),
+            "capacity": plc.status.parameters.capacity(),
+            "sum": format!("{:04X}", plc.status.parameters.sum()),
+            "scan_time_ms": plc.status.scan_time_ms,
+            "errors": plc.status.errors,
+        });
+        if let Some(watching) = &plc.watching {
+            state["monitoring"] = json!(watching.uri());
+        }
+        if let (Some(uri), Some(workspace)) = (uri, self.workspace.upgrade()) {
+            let encoded = encoded(&workspace, uri).ok();
+            match (encoded, &plc.image) {
+                (Some(encoded), Some(image)) => {
+                    let ranges = drift(&encoded, image, &workspace, uri);
+                    let is_same = encoded.words == image.program();
+                    state["match"] = if is_same { "same" } else { "different" }.into();
+                    state["drift"] = json!(ranges);
+                }
+                _ => state["match"] = "unknown".into(),
+            }
+        }
+        state
+    }
+
+    fn obey(&mut self, order: Order, bar: &Bar) -> Reply {
+        let gone = || Message::new("link.not-connected");
+        if let Order::Connect { port, patience } = &order {
+            self.connect(port, *patience).map_err(|error| told(&error))?;
+            self.tell(None);
+            return Ok(self.state(None));
+        }
+        if matches!(order, Order::Disconnect) {
+            self.plc = None;
+            self.send(json!({ "connected": false }));
+            return Ok(json!({ "connected": false }));
+        }
+        let workspace = self.workspace.upgrade().ok_or_else(gone)?;
+        let plc = self.plc.as_mut().ok_or_else(gone)?;
+        let mut answer = None;
+        let mut about = None;
+        match order {
+            Order::Connect { .. } | Order::Disconnect => {}
+            Order::State { uri } => return Ok(self.state(uri.as_ref())),
+            Order::Plan { uri } => {
+                let (encoded, plan) = plc.plan(&workspace, &uri, bar)?;
+                answer = Some(planned(&encoded, &plan));
+                about = Some(uri);
+            }
+            Order::Download { uri, is_started } => {
+                answer = Some(plc.download(&workspace, &uri, is_started, bar)?);
+                about = Some(uri);
+            }
+            Order::Upload => answer = Some(plc.upload(bar)?),
+            Order::Start => {
+                if !plc.host.start().map_err(|error| told(&error))? {
+                    return Err(Message::new("link.does-not-run"));
+                }
+            }
+            Order::Stop => plc.host.stop().map_err(|error| told(&error))?,
+            Order::Monitor { uri, ranges, names } => {
+                let target = plc.host.identity().target;
+                let watching = plc.watching.take().filter(|watching| *watching.uri() == uri);
+                let mut watching = watching.unwrap_or_else(|| Watching::new(uri));
+                watching.watch(ranges, names);
+                watching.follow(&workspace, target)?;
+                plc.watching = Some(watching);
+            }
+            Order::Unmonitor => plc.watching = None,
+            Order::Write { name, value, is_force } => plc.write(&name, &value, is_force)?,
+        }
+        plc.status = plc.host.status().map_err(|error| told(&error))?;
+        self.tell(about.as_ref());
+        Ok(answer.unwrap_or_else(|| self.state(None)))
+    }
+
+    fn connect(&mut self, port: &str, patience: Duration) -> Result<(), LinkError> {
+        self.plc = None;
+        let patience = Patience { answer: patience, ..Patience::default() };
+        let line = Line::new(transport::open(port)?, patience, Arc::clone(&self.cancel));
+        let mut host = Host::connect(line)?;
+        let status = host.status()?;
+        self.plc = Some(Connected { port: port.to_string(), host, status, image: None, watching: None });
+        Ok(())
+    }
+}
+
+impl Connected {
+    fn plan(&mut self, workspace: &Workspace, uri: &Uri, bar: &Bar) -> Result<(Encoded, Plan), Message> {
+        let encoded = encoded(workspace, uri)?;
+        let plan = self.host.plan(&encoded.words, encoded.target, &mut |progress| report(bar, progress));
+        let plan = plan.map_err(|error| told(&error))?;
+        self.image = Some(plan.before.clone());
+        Ok((encoded, plan))
+    }
+
+    fn download(&mut self, workspace: &Workspace, uri: &Uri, is_started: bool, bar: &Bar) -> Reply {
+        let (encoded, plan) = self.plan(workspace, uri, bar)?;
+        let path = file_path(uri);
+        let kept = |path: &Path| Backup::keep(path, encoded.target, &plan.before);
+        let cannot = |error: std::io::Error| Message::new("link.cannot-back-up").with("reason", error);
+        let backup = path.as_deref().map(kept).transpose().map_err(cannot)?;
+        let report = self.host.download(&plan, is_started, &mut |progress| report(bar, progress));
+        match report {
+            Ok(report) => {
+                self.image = Some(plan.wanted);
+                Ok(json!({
+                    "written": report.written,
+                    "compared": report.compared,
+                    "steps": encoded.words.len(),
+                    "mode": word_of(report.mode),
+                    "backup": backup.map(|path| path.display().to_string()),
+                }))
+            }
+            Err(failure) => {
+                self.image = None;
+                let reasons = vec![failure.cause.message(), failure.state(), failure.cause.help()];
+                Err(Message::new("link.failed").with_messages("reasons", reasons))
+            }
+        }
+    }
+
+    fn upload(&mut self, bar: &Bar) -> Reply {
+        let image = self.host.upload(&mut |progress| report(bar, progress)).map_err(|error| told(&error))?;
+        let target = self.host.identity().target;
+        let listing = decode(image.program(), target.model);
+        let unread = listing.lines.iter().filter(|line| !line.is_read).count();
+        let answer = json!({
+            "text": listing.text,
+            "model": target.name,
+            "steps": image.program().len(),
+            "unread": unread,
+        });
+        self.image = Some(image);
+        Ok(answer)
+    }
+
+    fn write(&mut self, name: &str, value: &Json, is_force: bool) -> Result<(), Message> {
+        let target = self.host.identity().target;
+        let unknown = || Message::new("link.no-device").with("device", name);
+        let point = Point::named(name, target).ok_or_else(unknown)?;
+        if is_force && !point.is_bit() {
+            return Err(Message::new("link.no-relay").with("device", name));
+        }
+        let wrong = || Message::new("link.no-value").with("device", name).with("value", value);
+        let value = Value::of_json(value).ok_or_else(wrong)?;
+        let number = point.number(&value).ok_or_else(wrong)?;
+        self.host.write(point, number).map_err(|error| told(&error))
+    }
+}
+
+/// What went wrong on the line, and what helps.
+fn told(error: &LinkError) -> Message {
+    Message::new("link.failed").with_messages("reasons", vec![error.message(), error.help()])
+}
+
+fn planned(encoded: &Encoded, plan: &Plan) -> Json {
+    let list = |words: &[u16]| decode(words, plan.model).text;
+    json!({
+        "same": plan.before.program() == plan.wanted.program(),
+        "bytes": plan.bytes(),
+        "steps": encoded.words.len(),
+        "before": list(plan.before.program()),
+        "after": list(plan.wanted.program()),
+    })
+}
+
+fn word_of(mode: Mode) -> &'static str {
+    match mode {
+        Mode::Run => "RUN",
+        Mode::Stop => "STOP",
+    }
+}
+
+/// The three stages of a download, one behind the other, in percent.
+fn report(bar: &Bar, progress: Progress) {
+    let stage = match progress.stage {
+        Stage::Reading => 0,
+        Stage::Writing => 1,
+        Stage::Comparing => 2,
+    };
+    let done = progress.done * 100 / progress.total.max(1);
+    bar.report(stage * 100 + done, 300);
+}

@@ -1,0 +1,206 @@
+//! What of a program in a PLC is on the screen: the devices there are watched, and power is computed from their values.
+
+use super::super::simulation::{Monitor, Picture, compiled, files_around};
+use super::super::to_proto::Place;
+use super::super::workspace::Workspace;
+use crate::document::Document;
+use crate::link::{Host, LinkError, Mode, Part, Point, Transport, Watch};
+use crate::simulate::{Code, Machine, Value, Variable};
+use crate::target::{Device, Flow, Operand, Target};
+use crate::text::Message;
+use serde_json::json;
+use std::collections::BTreeSet;
+use std::sync::Arc;
+use tower_lsp::ls_types::{Range, Uri};
+
+/// A program that is watched in a PLC.
+pub(super) struct Watching {
+    uri: Uri,
+    files: Vec<(Uri, i32, Document)>,
+    code: Option<Arc<Code>>,
+    monitor: Monitor,
+    names: Vec<String>,
+    watch: Watch,
+    /// Which variable of the code each point is.
+    variables: Vec<Option<Variable>>,
+    /// The names of the first of the points.
+    known: Vec<String>,
+    /// The program in a PLC that has what was read, for what contacts of edges saw before.
+    machine: Option<Machine<u8>>,
+    looks: u64,
+    edition: u64,
+    started_ns: Option<i64>,
+}
+
+/// The longest list of devices; each 64 bytes of values are an exchange of their own.
+const MOST_POINTS: usize = 400;
+
+impl Watching {
+    /// Nothing of this program yet.
+    pub(super) fn new(uri: Uri) -> Watching {
+        Watching {
+            uri,
+            files: Vec::new(),
+            code: None,
+            monitor: Monitor::default(),
+            names: Vec::new(),
+            watch: Watch::default(),
+            variables: Vec::new(),
+            known: Vec::new(),
+            machine: None,
+            looks: 0,
+            edition: 0,
+            started_ns: None,
+        }
+    }
+
+    /// The document.
+    pub(super) fn uri(&self) -> &Uri {
+        &self.uri
+    }
+
+    /// Shows other ranges, or other names; what is not given stays.
+    pub(super) fn watch(&mut self, ranges: Option<Vec<Range>>, names: Option<Vec<String>>) {
+        if let Some(names) = &names {
+            self.names = names.clone();
+        }
+        self.monitor.watch(ranges, names);
+    }
+
+    /// Takes over the text as it is now, and finds what is to be read.
+    ///
+    /// # Errors
+    /// If the program has no FX devices, or names what the PLC does not have.
+    pub(super) fn follow(&mut self, workspace: &Workspace, target: &'static Target) -> Result<(), Message> {
+        let gone = || Message::new("request.no-document").with("command", super::PREFIX);
+        self.files = files_around(workspace, &self.uri).ok_or_else(gone)?;
+        let number = self.number().ok_or_else(gone)?;
+        let document = &self.files[number].2;
+        if !document.target().is_fx() {
+            return Err(Message::new("link.no-monitor-iec"));
+        }
+        self.edition += 1;
+        self.monitor.place(number as u32, Place::new(document, workspace.snapshot().manner));
+        // A text that cannot be run shows values, and no power.
+        self.code = compiled(&self.files).ok().map(|(_, watched)| watched);
+        let named = self.names.iter().filter_map(|name| {
+            let point = Point::named(name, target).filter(|point| point.is_reached(target))?;
+            Some((name.clone(), point))
+        });
+        let (known, mut points): (Vec<String>, Vec<Point>) = named.unzip();
+        self.known = known;
+        let mut shown = BTreeSet::new();
+        for (file, (_, _, document)) in self.files.iter().enumerate() {
+            let is_own = file == number;
+            for at in document.chunks() {
+                let span = at.start..at.start + at.chunk.len();
+                let is_shown = is_own && self.monitor.shows(&span);
+                let reading = at.chunk.reading();
+                // Power in what is shown depends on the sections and steps around it.
+                let is_wanted = is_shown
+                    || reading.operations().any(|operation| {
+                        let flow = operation.form.map(|form| form.instruction.flow());
+                        flow.is_some_and(|flow| {
+                            !matches!(flow, Flow::Straight | Flow::Nothing | Flow::ProgramEnd)
+                        })
+                    });
+                if is_wanted {
+                    shown.extend(reading.operations().flat_map(|operation| devices(operation.operands)));
+                }
+            }
+        }
+        points.extend(shown.into_iter().flat_map(points_of).filter(|point| point.is_reached(target)));
+        points.truncate(MOST_POINTS.max(self.known.len()));
+        let code = self.code.as_ref();
+        let variable = |point: &Point| code.and_then(|code| code.variable(&point.to_string()));
+        self.variables = points.iter().map(variable).collect();
+        self.watch = Watch::new(points);
+        self.machine = None;
+        Ok(())
+    }
+
+    fn number(&self) -> Option<usize> {
+        self.files.iter().position(|(file, ..)| *file == self.uri)
+    }
+
+    /// Reads what is watched; gives what the client is to show, if it shows anything.
+    pub(super) fn picture<T: Transport>(
+        &mut self,
+        host: &mut Host<T>,
+        workspace: &Workspace,
+        mode: Mode,
+    ) -> Result<Option<Picture>, LinkError> {
+        let is_same = |(uri, version, document): &(Uri, i32, Document)| {
+            let snapshot = workspace.snapshot();
+            snapshot
+                .open(uri)
+                .is_none_or(|open| open.version == *version && open.document.is_instance(document))
+        };
+        if !self.files.iter().all(is_same) && self.follow(workspace, host.identity().target).is_err() {
+            return Ok(None);
+        }
+        if self.monitor.is_empty() {
+            return Ok(None);
+        }
+        let values = host.poll(&mut self.watch)?;
+        let now_ns = host.line().now().as_nanos() as i64;
+        let start = *self.started_ns.get_or_insert(now_ns);
+        self.looks += 1;
+        let Some(number) = self.number() else { return Ok(None) };
+        let (_, version, document) = &self.files[number];
+        let place = Place::new(document, workspace.snapshot().manner);
+        let mut elements = Vec::new();
+        if let Some(code) = &self.code {
+            let machine = self.machine.get_or_insert_with(|| Machine::new(Arc::clone(code)));
+            let held = self.variables.iter().zip(self.watch.points().iter().zip(&values));
+            let held = held.filter_map(|(variable, (point, value))| {
+                let value = if point.is_bit() { Value::Bit(*value != 0) } else { Value::Number(*value) };
+                Some(((*variable)?, value))
+            });
+            machine.hold_only(held);
+            let shown = self.monitor.instructions(code);
+            let mut sights = Vec::new();
+            machine.scan_watched(now_ns - start, &mut |sight| {
+                if shown.contains(&sight.instruction) {
+                    sights.push(sight);
+                }
+                true
+            });
+            elements = self.monitor.elements(place, code, &sights, machine);
+        }
+        let named = self.known.iter().zip(self.watch.points().iter().zip(&values));
+        let values = named.map(|(name, (point, value))| {
+            let value = if point.is_bit() { json!(*value != 0) } else { json!(value) };
+            json!({ "device": name, "value": value, "forced": false })
+        });
+        Ok(Some(Picture {
+            uri: self.uri.clone(),
+            version: *version,
+            source: "plc",
+            mode: if mode == Mode::Run { "running" } else { "stopped" },
+            scan: self.looks - 1,
+            time_ms: (now_ns - start) as f64 / 1e6,
+            edition: self.edition,
+            branch: 0,
+            elements,
+            values: values.collect(),
+            errors: Vec::new(),
+        }))
+    }
+}
+
+/// The devices that operands name.
+fn devices(operands: &[crate::text::Spanned<Operand>]) -> impl Iterator<Item = Device> {
+    operands.iter().filter_map(|operand| match operand.value {
+        Operand::Device(device) => Some(device),
+        _ => None,
+    })
+}
+
+/// What is read of a device: of timers and counters the contact, the coil and the current value.
+fn points_of(device: Device) -> Vec<Point> {
+    match device.kind.has_preset() {
+        true => vec![Point::Bit(device, Part::Contact), Point::Bit(device, Part::Coil), Point::Word(device)],
+        false => Point::of_device(device).into_iter().collect(),
+    }
+}

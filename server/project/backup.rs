@@ -1,0 +1,82 @@
+//! What was in a PLC before a download, kept beside the project in `.rungwise/backup`.
+
+use super::Project;
+use crate::machine_code::Image;
+use crate::target::Target;
+use jiff::Timestamp;
+use serde::{Deserialize, Serialize};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// What was in a PLC before a download. `rungwise decode` reads such a file too.
+#[derive(Clone, PartialEq, Eq, Debug, Serialize, Deserialize)]
+pub struct Backup {
+    /// The name of the model, as in `rungwise.toml`.
+    pub model: String,
+    /// When it was read.
+    time: String,
+    steps: usize,
+    /// Parameters, in words as they lie in memory.
+    parameters: Vec<u16>,
+    /// The program up to END.
+    pub words: Vec<u16>,
+}
+
+impl Backup {
+    /// The backup in a file; nothing if there is none, or none that can be read.
+    pub fn read(path: &Path) -> Option<Backup> {
+        serde_json::from_str(&std::fs::read_to_string(path).ok()?).ok()
+    }
+
+    /// Whether a file may be one, by its name.
+    pub fn is_named_so(path: &Path) -> bool {
+        path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+    }
+
+    /// Keeps what was read from a PLC for the project of `beside`, for nobody else to read.
+    ///
+    /// # Errors
+    /// If that cannot be written.
+    pub fn keep(beside: &Path, target: &Target, image: &Image) -> io::Result<PathBuf> {
+        let folder = folder(beside);
+        private_folder(&folder)?;
+        let time = Timestamp::now();
+        let backup = Backup {
+            model: target.name.into(),
+            time: time.to_string(),
+            steps: image.program().len(),
+            parameters: image.parameters().to_words().to_vec(),
+            words: image.program().to_vec(),
+        };
+        let mut file = tempfile::NamedTempFile::new_in(&folder)?;
+        serde_json::to_writer_pretty(&mut file, &backup)?;
+        file.flush()?;
+        let path = folder.join(format!("{}-{}.json", time.strftime("%Y%m%dT%H%M%S%.3fZ"), target.name));
+        file.persist(&path)?;
+        Ok(path)
+    }
+
+    /// The latest one of the project of `beside`.
+    pub fn latest(beside: &Path) -> Option<PathBuf> {
+        let files = std::fs::read_dir(folder(beside)).ok()?.flatten().map(|entry| entry.path());
+        files.filter(|path| Backup::is_named_so(path)).max()
+    }
+}
+
+fn folder(beside: &Path) -> PathBuf {
+    let own = if beside.is_dir() { Some(beside) } else { beside.parent() };
+    let near = own.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let root = Project::folder_of(beside).unwrap_or_else(|| near.to_path_buf());
+    root.join(".rungwise").join("backup")
+}
+
+#[cfg(unix)]
+fn private_folder(folder: &Path) -> io::Result<()> {
+    use std::os::unix::fs::DirBuilderExt;
+    std::fs::DirBuilder::new().recursive(true).mode(0o700).create(folder)
+}
+
+#[cfg(not(unix))]
+fn private_folder(folder: &Path) -> io::Result<()> {
+    std::fs::create_dir_all(folder)
+}

@@ -1,0 +1,142 @@
+//! Parts of IEC 61131-3 that are more than operators: EN and ENO, subranges, configurations, located arrays.
+
+use crate::binary::{folder, run};
+use crate::simulate_iec::{Plc, result};
+use rungwise::simulate::ErrorKind;
+use rungwise::target::Fault;
+
+const UNITS: &str = "FUNCTION Half : INT\nVAR_INPUT\nn : INT;\nEND_VAR\nVAR_OUTPUT\nodd : BOOL;\nEND_VAR\n\
+    LD n\nMOD 2\nEQ 1\nST odd\nLD n\nDIV 2\nST Half\nEND_FUNCTION\n\
+    FUNCTION Safe : INT\nVAR_INPUT\nEN : BOOL := 1;\nn, by : INT;\nEND_VAR\nVAR_OUTPUT\nENO : BOOL;\nEND_VAR\n\
+    LD by\nEQ 0\nJMPC no\nLD n\nDIV by\nST Safe\nRET\nno:\nLD FALSE\nST ENO\nLD -1\nST Safe\nEND_FUNCTION\n\
+    FUNCTION_BLOCK Count\nVAR_INPUT\nEN : BOOL := 1;\nEND_VAR\nVAR_OUTPUT\nENO : BOOL;\nn : INT;\nEND_VAR\n\
+    LD n\nADD 1\nST n\nEND_FUNCTION_BLOCK\n";
+
+fn program(declared: &str, body: &str) -> String {
+    format!("{UNITS}PROGRAM Main\nVAR\n{declared}\nEND_VAR\n{body}\nEND_PROGRAM\n")
+}
+
+#[test]
+fn a_function_that_is_not_enabled_has_the_result_of_a_new_variable() {
+    let declared = "go, ok, odd, big : BOOL; n, m : INT := 7; r : REAL; s : STRING := 'x';";
+    let body = "Half(\nEN := go,\nn := n,\nodd => odd,\nENO => ok\n)\nST m\n\
+        GT(\nEN := go,\nIN1 := n,\nIN2 := 3\n)\nST big\nSQRT(\nEN := go,\nIN := 4.0\n)\nST r\n\
+        LEFT(\nEN := go,\nIN := 'abc',\nL := 2\n)\nST s";
+    let mut plc = Plc::new(&program(declared, body));
+    let all = |plc: &Plc| ["m", "odd", "ok", "big", "r", "s"].map(|name| plc.get(name));
+    plc.set("go", "1").scan();
+    assert_eq!(all(&plc), ["3", "1", "1", "1", "2.0", "'ab'"]);
+    // Outputs keep what they have, results do not.
+    plc.set("go", "0").set("n", "4").scan();
+    assert_eq!(all(&plc), ["0", "1", "0", "0", "0.0", "''"]);
+}
+
+#[test]
+fn eno_tells_errors_of_standard_functions_and_what_units_say_themselves() {
+    let declared = "by : INT; a, b, c : BOOL; m : INT;";
+    let body = "DIV(\nIN1 := 8,\nIN2 := by,\nENO => a\n)\nST m\nSafe(\nn := 8,\nby := by,\nENO => b\n)\nST m\n\
+        Half(\nn := by,\nENO => c\n)";
+    let mut plc = Plc::new(&program(declared, body));
+    plc.scan();
+    assert_eq!(["a", "b", "c", "m"].map(|name| plc.get(name)), ["0", "0", "1", "-1"]);
+    plc.set("by", "4").scan();
+    assert_eq!(["a", "b", "c", "m"].map(|name| plc.get(name)), ["1", "1", "1", "2"]);
+    // A block that declares EN stands still without it, and keeps it from call to call.
+    let mut plc = Plc::new(&program("t : Count; ok : BOOL;", "CAL t(ENO => ok)"));
+    plc.scan();
+    assert_eq!((plc.get("t.n"), plc.get("ok")), ("1".into(), "1".into()));
+    plc.set("t.EN", "0").scan();
+    assert_eq!((plc.get("t.n"), plc.get("ok"), plc.get("t.ENO")), ("1".into(), "0".into(), "0".into()));
+}
+
+#[test]
+fn subranges_hold_and_say_where_they_are_left() {
+    let text = "TYPE\nDigit : INT(0..9);\nEND_TYPE\nPROGRAM Main\nVAR\nn : INT;\nd : Digit;\n\
+        all : ARRAY[1..2] OF SINT(-5..5);\nlow : UINT(3..8);\nEND_VAR\n\
+        LD n\nST d\nLD n\nINT_TO_SINT\nST all[2]\nEND_PROGRAM\n";
+    let mut plc = Plc::new(text);
+    plc.scan();
+    assert_eq!(["d", "all[1]", "low"].map(|name| plc.get(name)), ["0", "-5", "3"]);
+    plc.set("n", "12").scan();
+    assert_eq!(["d", "all[2]"].map(|name| plc.get(name)), ["9", "5"]);
+    assert_eq!(plc.errors, [ErrorKind::Calculation(Fault::Subrange); 2]);
+    plc.set("n", "-3").scan();
+    assert_eq!((["d", "all[2]"].map(|name| plc.get(name)), plc.errors.len()), (["0".into(), "-3".into()], 1));
+    let files = folder(&[("main.il", text)]);
+    let (code, _, err) = run(&files, &["run", "main.il", "--set", "n=12@50ms"]);
+    assert!(code == 1 && err.contains("main.il:12:1: the value is outside of the subrange"), "{err}");
+    let (_, _, err) = run(&files, &["run", "main.il", "--set", "d=10"]);
+    assert!(err.contains("`d` takes 0 to 9") || err.contains("from 0 to 9"), "{err}");
+    assert_eq!(result("v : INT(1..5) := 4;", "LD v\nADD 10\nSUB 10\nST v", "v"), "4");
+}
+
+#[test]
+fn programs_are_connected_by_their_configuration() {
+    let text = "CONFIGURATION Plant\nVAR_GLOBAL\nwanted : INT := 5; made : INT; done : BOOL; ramp : ARRAY[0..1] OF INT;\nEND_VAR\n\
+        RESOURCE PLC ON Cpu\nTASK Slow(INTERVAL := T#20ms, PRIORITY := 1);\n\
+        PROGRAM A WITH Slow : Maker(goal := wanted, each := 2, sum => made, busy => done, table := ramp);\n\
+        PROGRAM B : Maker(goal := %IW3, sum => %QW7);\nEND_RESOURCE\nEND_CONFIGURATION\n\
+        PROGRAM Maker\nVAR_INPUT\ngoal : INT; each : INT := 1; table : ARRAY[0..1] OF INT;\nEND_VAR\n\
+        VAR_OUTPUT\nsum : INT; busy : BOOL;\nEND_VAR\nLD sum\nLT goal\nST busy\nJMPCN full\nLD sum\nADD each\nADD table[1]\nST sum\n\
+        full:\nEND_PROGRAM\n";
+    let mut plc = Plc::new(text);
+    plc.set("%IW3", "3").set("ramp[1]", "1").scan();
+    assert_eq!(["made", "done", "B.sum", "%QW7"].map(|name| plc.get(name)), ["3", "1", "1", "1"]);
+    // A task that does not run takes nothing over.
+    plc.set("made", "0").scan();
+    assert_eq!(["made", "A.sum", "%QW7"].map(|name| plc.get(name)), ["0", "3", "2"]);
+    plc.scan().scan().scan();
+    assert_eq!(["made", "A.sum", "done", "%QW7"].map(|name| plc.get(name)), ["6", "6", "0", "3"]);
+}
+
+#[test]
+fn arrays_lie_at_addresses() {
+    let text = "PROGRAM Main\nVAR\nrow AT %MW10 : ARRAY[0..9] OF INT := [1, 2, 3];\nbits AT %QX0.6 : ARRAY[0..3] OF BOOL;\n\
+        grid AT %IB8 : ARRAY[0..1, 0..2] OF BYTE;\ncopy : ARRAY[0..9] OF INT;\nk : INT; one : BYTE; got : WORD;\nEND_VAR\n\
+        LD k\nADD 10\nST row[k]\nLD TRUE\nST bits[k]\nLD grid[1, k]\nST one\nLD row\nST copy\nLD %MW12\nST got\n\
+        LD 7\nST %MW19\nEND_PROGRAM\n";
+    let mut plc = Plc::new(text);
+    plc.set("k", "2").set("grid[1,2]", "33").scan();
+    assert_eq!(
+        ["row[2]", "copy[2]", "got", "one", "%IB13"].map(|name| plc.get(name)),
+        ["12", "12", "12", "33", "33"]
+    );
+    assert_eq!(["row[0]", "row[9]", "%MW10", "%MB20"].map(|name| plc.get(name)), ["1", "7", "1", "1"]);
+    assert_eq!(["bits[1]", "bits[2]", "%QX0.7", "%QX1.0"].map(|name| plc.get(name)), ["0", "1", "0", "1"]);
+    plc.set("k", "3").scan();
+    assert_eq!(plc.errors, [ErrorKind::Calculation(Fault::Index)]);
+}
+
+#[test]
+fn var_config_lays_variables_of_instances_at_addresses() {
+    let text = "CONFIGURATION Plant\nRESOURCE PLC ON Cpu\nPROGRAM A : Main;\nPROGRAM B : Main;\nEND_RESOURCE\n\
+        VAR_CONFIG\nPLC.A.start AT %IX0.3 : BOOL;\nPLC.A.left.lamp AT %QX1.0 : BOOL;\nPLC.B.start AT %IX0.4 : BOOL;\n\
+        PLC.B.left.limit : INT := 9;\nEND_VAR\nEND_CONFIGURATION\n\
+        FUNCTION_BLOCK Light\nVAR_INPUT\non_ : BOOL;\nEND_VAR\nVAR\nlamp AT %Q* : BOOL; limit : INT := 4;\nEND_VAR\n\
+        LD on_\nST lamp\nEND_FUNCTION_BLOCK\n\
+        PROGRAM Main\nVAR\nstart AT %I* : BOOL;\nleft : Light;\nEND_VAR\nLD start\nST left.on_\nCAL left\nEND_PROGRAM\n";
+    let text = text.replace("on_", "lit");
+    let mut plc = Plc::new(&text);
+    plc.set("%IX0.3", "1").scan();
+    assert_eq!(["%QX1.0", "A.left.lamp", "B.left.lamp"].map(|name| plc.get(name)), ["1", "1", "0"]);
+    assert_eq!(["A.left.limit", "B.left.limit"].map(|name| plc.get(name)), ["4", "9"]);
+    plc.set("A.start", "0").set("B.start", "1").scan();
+    assert_eq!(["%IX0.3", "%IX0.4", "%QX1.0", "B.left.lamp"].map(|name| plc.get(name)), ["0", "1", "0", "1"]);
+    let files = folder(&[("main.il", &text.replace("PLC.B.start", "PLC.C.start"))]);
+    let (code, _, err) = run(&files, &["run", "main.il"]);
+    assert!(code == 1 && err.contains("main.il:9:1: PLC.C.start is not declared"), "{err}");
+}
+
+#[test]
+fn instances_are_called_by_subscripts() {
+    let text = format!(
+        "{UNITS}PROGRAM Main\nVAR\nall : ARRAY[1..3, 0..1] OF Count;\ni, j : INT := 1;\nlast : INT;\nEND_VAR\n\
+         CAL all[i, j](n => last)\nEND_PROGRAM\n"
+    );
+    let mut plc = Plc::new(&text);
+    plc.scan().set("i", "3").scan().scan().set("j", "0").scan();
+    let names = ["all[1,1].n", "all[3,1].n", "all[3,0].n", "all[2,0].n", "last"];
+    assert_eq!(names.map(|name| plc.get(name)), ["1", "2", "1", "0", "1"]);
+    plc.set("i", "4").scan();
+    assert_eq!((plc.get("all[3,0].n"), plc.errors.is_empty()), ("1".into(), false));
+}

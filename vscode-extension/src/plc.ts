@@ -1,0 +1,84 @@
+/** A PLC on a line, as the server tells of it: its state, and the rows that the view shows of it. Pure. */
+
+import type { PlainRange } from './structuralEdits';
+import { t } from './words';
+
+/** The notification of the server that has a {@link PlcState}. */
+export const PLC_STATE = 'rungwise/plc';
+/** The command of the server with this verb. */
+export const plc = (verb: string): string => `rungwise.plc.${verb}`;
+
+/** What the server knows of the PLC. */
+export interface PlcState {
+  readonly connected: boolean;
+  readonly port?: string;
+  readonly title?: string;
+  readonly version?: string;
+  readonly mode?: 'RUN' | 'STOP';
+  readonly capacity?: number;
+  readonly sum?: string;
+  readonly scanTimeMs?: number;
+  readonly errors: readonly { readonly register: string; readonly code: number }[];
+  readonly monitoring?: string;
+  readonly match?: 'same' | 'different' | 'unknown';
+  readonly drift: readonly PlainRange[];
+  /** Why the line is gone. */
+  readonly reason?: string;
+}
+
+export const NO_PLC: PlcState = { connected: false, errors: [], drift: [] };
+
+/** Reads a state; what is none says that no PLC is connected. */
+export function parseState(params: unknown): PlcState {
+  const given = (params ?? {}) as Partial<PlcState> & { readonly scan_time_ms?: number };
+  if (given.connected !== true) {
+    return typeof given.reason === 'string' ? { ...NO_PLC, reason: given.reason } : NO_PLC;
+  }
+  const errors = Array.isArray(given.errors) ? given.errors : [];
+  const drift = Array.isArray(given.drift) ? given.drift : [];
+  return { ...given, connected: true, errors, drift, ...(given.scan_time_ms === undefined ? {} : { scanTimeMs: given.scan_time_ms }) };
+}
+
+/** A row of the view. */
+export interface PlcRow {
+  readonly id: string;
+  readonly label: string;
+  readonly description: string;
+  readonly icon: string;
+}
+
+/** What the view shows of a PLC; nothing while none is connected. */
+export function rowsOf(state: PlcState): PlcRow[] {
+  if (!state.connected) {
+    return [];
+  }
+  const runs = state.mode === 'RUN';
+  const rows = [
+    { id: 'model', label: state.title ?? '', description: state.version ?? '', icon: 'circuit-board' },
+    { id: 'port', label: t('Port'), description: state.port ?? '', icon: 'plug' },
+    { id: 'mode', label: t('Mode'), description: state.mode ?? '', icon: runs ? 'play-circle' : 'stop-circle' },
+    { id: 'match', label: t('Program'), ...match(state) },
+    { id: 'memory', label: t('Memory'), description: t('{0} steps, sum {1}', state.capacity ?? 0, state.sum ?? ''), icon: 'database' },
+    { id: 'scan', label: t('Scan time'), description: `${state.scanTimeMs ?? 0} ms`, icon: 'watch' },
+  ];
+  const errors = state.errors.map(({ register, code }) => ({ id: `error ${register}`, label: t('Error'), description: `${register} = ${code}`, icon: 'error' }));
+  return [...rows, ...errors];
+}
+
+function match(state: PlcState): Pick<PlcRow, 'description' | 'icon'> {
+  switch (state.match) {
+    case 'same':
+      return { description: t('as in the editor'), icon: 'check' };
+    case 'different':
+      return { description: t('not as in the editor'), icon: 'diff' };
+    default:
+      return { description: t('not compared yet'), icon: 'question' };
+  }
+}
+
+/** What the status bar says: the model, its mode, and a sign where the program is another one. */
+export function statusText(state: PlcState): string {
+  const icon = state.mode === 'RUN' ? '$(play-circle)' : '$(stop-circle)';
+  const drift = state.match === 'different' ? ' $(diff)' : '';
+  return `${icon} ${state.title ?? 'PLC'} ${state.mode ?? ''}${drift}`;
+}
