@@ -6,7 +6,7 @@ SHELL := /bin/bash
 .DEFAULT_GOAL := help
 RUNGWISE := target/release/rungwise
 
-.PHONY: help demo test test-rust test-editors lint bench fuzz vscode neovim clean linker
+.PHONY: help demo test test-rust test-clients test-editors lint bench fuzz vscode neovim clean linker
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -31,7 +31,7 @@ demo: $(RUNGWISE) ## build, check, translate, run and test the example project, 
 	@$(RUNGWISE) test examples/motor
 	@echo "Next: make vscode, then open the folder examples/ in VS Code."
 
-test: lint test-rust test-editors ## everything that has to pass before a change lands
+test: lint test-rust test-clients test-editors ## everything that has to pass before a change lands
 
 lint: linker ## format and lint
 	cargo fmt --check
@@ -40,6 +40,9 @@ lint: linker ## format and lint
 test-rust: linker ## tests of the server
 	cargo test
 	cargo build --release
+
+test-clients: $(RUNGWISE) ## the virtual PLC under a client that was not written with it
+	cd tests/clients && npm ci --no-audit --no-fund && RUNGWISE_SERVER=$(abspath $(RUNGWISE)) node --test fxplc.mjs
 
 test-editors: $(RUNGWISE) ## extension, grammars, real Neovim, real VS Code
 	RUNGWISE_SERVER=$(abspath $(RUNGWISE)) tests/editors/run.sh all

@@ -101,7 +101,12 @@ impl Example {
         assert!(err.contains("read back and compared") && err.contains("the PLC stands still"), "{err}");
         verb(&["verify", name], 0);
         for form in ["il", "lad"] {
-            let file = format!("uploaded.{form}");
+            // A file says nothing of its model; its project does.
+            let project = self.folder.path().join(form);
+            std::fs::create_dir_all(&project).unwrap();
+            let manifest = format!("target = \"{}\"\n", self.target.name);
+            std::fs::write(project.join("rungwise.toml"), manifest).unwrap();
+            let file = format!("{form}/uploaded.{form}");
             verb(&["upload", "-o", &file], 0);
             assert_eq!(self.words(&file), self.words(name), "{name}: {form}");
             // A program of several files is proved by nothing but its words.
@@ -213,7 +218,7 @@ fn examples_do_in_the_virtual_plc_what_they_do_in_the_simulator() {
         let arguments = ["--stepped", "--scan-time", "10ms", "--model", example.target.name];
         let plc = VirtualPlc::start(example.folder.path(), &arguments);
         example.goes_there_and_back(&plc.port);
-        example.does_as_the_simulator(&plc.port, 900);
+        example.does_as_the_simulator(&plc.port, 600);
         assert_eq!(plc.quit(), Some(0));
     }
 }

@@ -76,6 +76,16 @@ pub fn program(kind: usize) -> Vec<u16> {
     words(&format!("{list}END\n"), Model::Fx2n)
 }
 
+/// The same program with three contacts the other way round, far from each other.
+pub fn three_changed(program: &[u16]) -> Vec<u16> {
+    let mut after = program.to_vec();
+    let contacts: Vec<usize> = (0..after.len()).filter(|at| after[*at] >> 12 == 2).collect();
+    for place in [10, contacts.len() / 2, contacts.len() - 10] {
+        after[contacts[place]] ^= 0x1000;
+    }
+    after
+}
+
 /// A PLC that runs `before`, in the place of which a host puts `after`; `changed` are the lengths in words of the
 /// stretches in which they differ.
 pub fn download(before: &[u16], after: &[u16], changed: &[usize]) -> LineTime {

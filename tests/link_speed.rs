@@ -1,6 +1,6 @@
 //! Nothing takes much longer on the line than the bytes that must travel; in the time of the line, so everywhere the same.
 
-use crate::line_time::{LineTime, download, look, program};
+use crate::line_time::{LineTime, download, look, program, three_changed};
 
 fn check(what: &str, time: &LineTime) {
     println!("{what}: {:?}, at least {:?}: {:.3}", time.took, time.least, time.ratio());
@@ -21,12 +21,7 @@ fn a_download_takes_little_more_than_its_bytes() {
 #[test]
 fn a_download_of_three_words_takes_little_more_than_its_bytes() {
     let before = program(0);
-    let mut after = before.clone();
-    // Contacts become others.
-    let contacts: Vec<usize> = (0..after.len()).filter(|at| after[*at] >> 12 == 2).collect();
-    for place in [10, contacts.len() / 2, contacts.len() - 10] {
-        after[contacts[place]] ^= 0x1000;
-    }
+    let after = three_changed(&before);
     check("three words", &download(&before, &after, &[1, 1, 1]));
 }
 

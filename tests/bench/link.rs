@@ -1,7 +1,7 @@
 //! The programming port: how much longer things take than the bytes that must travel, and what the computer has to do.
 
 use super::figures::{Figures, Table, milliseconds};
-use super::line_time::{LineTime, download, look, program};
+use super::line_time::{LineTime, download, look, program, three_changed};
 use cpu_time::ProcessTime;
 
 pub fn measure(table: &Table) {
@@ -9,11 +9,7 @@ pub fn measure(table: &Table) {
         return;
     }
     let [before, after] = [0, 1].map(program);
-    let mut changed = before.clone();
-    for at in [1_000, 2_000, 3_000] {
-        // A number of one digit more or less is the same instruction.
-        changed[at] ^= 1;
-    }
+    let changed = three_changed(&before);
     let blank = [0x000F];
     table_row(table, "first download of 4,000 steps", &download(&blank, &before, &[before.len()]));
     table_row(table, "4,000 steps for 4,000 others", &download(&before, &after, &[after.len()]));

@@ -19,9 +19,9 @@ async function connected(context, ...options) {
   const plc = spawn(server, ['plc', '--listen', '127.0.0.1:0', ...options], { stdio: ['pipe', 'pipe', 'inherit'] });
   const lines = createInterface({ input: plc.stdout })[Symbol.asyncIterator]();
   const [, host, port] = /tcp:\/\/(.*):(\d+)$/.exec((await lines.next()).value);
-  const transport = new TransportTCP({ host, port: Number(port), flushDelay: 0, timeout: 20_000 });
+  const transport = new TransportTCP({ host, port: Number(port), flushDelay: 0, timeout: 5000 });
   await transport.connect();
-  const client = new FXPLCClient(transport, { timeoutMs: 20_000 });
+  const client = new FXPLCClient(transport, { timeoutMs: 5000 });
   // Node ends a program in which an error is heard by nobody.
   client.on('error', () => {});
   context.after(() => {

@@ -140,7 +140,7 @@ impl<T: Transport> Host<T> {
 /// before, should it come twice, is not taken for this one.
 fn piece(done: usize, total: usize) -> usize {
     let pair = 2 * MOST_DATA - 2;
-    let most = if done % pair == 0 { MOST_DATA } else { MOST_DATA - 2 };
+    let most = if done.is_multiple_of(pair) { MOST_DATA } else { MOST_DATA - 2 };
     most.min(total - done)
 }
 

@@ -76,7 +76,8 @@ impl Plc {
         }
     }
 
-    /// What somebody in front of the PLC reads of a device: what a host does, in the names of hosts and of the simulator.
+    /// What somebody in front of the PLC reads of a device: what a host does, by the names of hosts and of the
+    /// simulator.
     pub fn shown(&self, name: &str) -> Option<Value> {
         if let Some(Point::Bit(device, part)) = Point::named(name, self.target) {
             return Some(Value::Bit(self.bit(device, part)));
