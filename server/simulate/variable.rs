@@ -82,8 +82,8 @@ impl Code {
         scope.and_then(|scope| self.variable_in(scope, name)).or_else(|| self.variable(name))
     }
 
-    /// A name for [`Code::variable`] of what is called `name` in the instance or function that an instruction belongs to;
-    /// nothing if that has no such variable.
+    /// A name for [`Code::variable`] of what is called `name` in the instance or function that an instruction belongs
+    /// to; nothing if that has no such variable.
     pub fn whole_name(&self, instruction: u32, name: &str) -> Option<String> {
         let names = self.iec.names();
         let scope = names.scope_at(instruction)?;
