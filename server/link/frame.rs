@@ -1,8 +1,8 @@
 //! Frames of the programming port: how bytes on the line become requests and replies.
 //!
 //! A frame is `STX body ETX sum`: the body is ASCII, the sum the low eight bits of the sum of all bytes behind STX up
-//! to and with ETX, in two hexadecimal digits. Sources: recordings of the maker's tools with FX1S, FX1N and FX2N, and four
-//! independent clients and firmwares that agree.
+//! to and with ETX, in two hexadecimal digits. Sources: recordings of the maker's tools with FX1S, FX1N and FX2N, and
+//! four independent clients and firmwares that agree.
 
 use std::fmt::Write;
 
