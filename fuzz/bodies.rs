@@ -194,7 +194,7 @@ impl Transport for Scripted {
         let take = |byte: &u8| self.server.take(*byte, 0);
         let mut answer: Vec<u8> = bytes.iter().filter_map(take).flat_map(|answer| answer.bytes).collect();
         let kind = self.next();
-        if kind % 4 != 0 {
+        if !kind.is_multiple_of(4) {
             let length = self.next();
             let piece: Vec<u8> = (0..length).map(|_| self.next()).collect();
             match kind % 4 {
