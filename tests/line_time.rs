@@ -12,6 +12,7 @@ use rungwise::link::plc::{Faults, Plc, Server};
 use rungwise::link::{Address, Command, Extended, Mode, Point, Program, Switch, Watch};
 use rungwise::machine_code::ParameterBlock;
 use rungwise::target::{Model, Target};
+use std::ops::Range;
 use std::time::Duration;
 
 /// How long something took, and how long it has to take.
@@ -84,6 +85,21 @@ pub fn three_changed(program: &[u16]) -> Vec<u16> {
         after[contacts[place]] ^= 0x1000;
     }
     after
+}
+
+/// The lengths of what is written at least: words that differ, with those between them where that is shorter than
+/// another request.
+pub fn stretches(before: &[u16], after: &[u16]) -> Vec<usize> {
+    // A request and its answer are 14 bytes beyond the digits, four of which are a word.
+    const GAP: usize = 3;
+    let mut stretches: Vec<Range<usize>> = Vec::new();
+    for at in (0..after.len()).filter(|at| before[*at] != after[*at]) {
+        match stretches.last_mut() {
+            Some(last) if at - last.end <= GAP => last.end = at + 1,
+            _ => stretches.push(at..at + 1),
+        }
+    }
+    stretches.into_iter().map(|stretch| stretch.len()).collect()
 }
 
 /// A PLC that runs `before`, in the place of which a host puts `after`; `changed` are the lengths in words of the

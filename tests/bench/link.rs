@@ -1,7 +1,7 @@
 //! The programming port: how much longer things take than the bytes that must travel, and what the computer has to do.
 
 use super::figures::{Figures, Table, milliseconds};
-use super::line_time::{LineTime, download, look, program, three_changed};
+use super::line_time::{LineTime, download, look, program, stretches, three_changed};
 use cpu_time::ProcessTime;
 
 pub fn measure(table: &Table) {
@@ -12,12 +12,12 @@ pub fn measure(table: &Table) {
     let changed = three_changed(&before);
     let blank = [0x000F];
     table_row(table, "first download of 4,000 steps", &download(&blank, &before, &[before.len()]));
-    table_row(table, "4,000 steps for 4,000 others", &download(&before, &after, &[after.len()]));
+    table_row(table, "4,000 steps for 4,000 others", &download(&before, &after, &stretches(&before, &after)));
     table_row(table, "3 words of 4,000 steps changed", &download(&before, &changed, &[1, 1, 1]));
     table_row(table, "a look at 50 relays and 50 registers", &look());
     let processor = Figures::of(9, |_| {
         let started = ProcessTime::now();
-        download(&before, &after, &[after.len()]);
+        download(&before, &after, &[]);
         started.elapsed()
     });
     table.row("programming port, processor time of both ends for 4,000 steps", "", &processor);
