@@ -29,6 +29,13 @@ demo: $(RUNGWISE) ## build, check, translate, run and test the example project, 
 	  --watch X0,X2,Y0,Y1 --why Y0@300ms
 	@echo "== rungwise test examples/motor"
 	@$(RUNGWISE) test examples/motor
+	@echo "== rungwise plc: a virtual PLC gets the program, is started, and its inputs are switched"
+	@folder=$$(mktemp -d); cp -r examples/motor $$folder; $(RUNGWISE) plc --listen 127.0.0.1:0 > $$folder/said & plc=$$!; \
+	  trap "kill $$plc; rm -rf $$folder" EXIT; \
+	  until grep -q tcp $$folder/said; do sleep 0.1; done; cat $$folder/said; port=$$(grep -o 'tcp://[^ ]*' $$folder/said); \
+	  $(RUNGWISE) download $$folder/motor --port $$port --yes --start; \
+	  $(RUNGWISE) force X2=on X3=on X0=on --port $$port; sleep 0.1; $(RUNGWISE) force X0=off --port $$port; sleep 0.1; \
+	  $(RUNGWISE) monitor X0 X2 X3 Y0 Y1 --count 1 --port $$port; $(RUNGWISE) verify $$folder/motor --port $$port
 	@echo "Next: make vscode, then open the folder examples/ in VS Code."
 
 test: lint test-rust test-clients test-editors ## everything that has to pass before a change lands

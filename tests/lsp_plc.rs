@@ -94,6 +94,8 @@ fn a_program_is_compared_downloaded_watched_and_driven() {
     editor.tell("write", json!({ "name": "D0", "value": -7 }));
     let on = editor.picture(|picture| energised(picture, 3, "line") == Some(true));
     assert_eq!(energised(&on, 0, "line"), Some(true), "{on}");
+    // Nothing is held in the PLC, whatever the values of the picture come from.
+    assert!(on["elements"].as_array().unwrap().iter().all(|element| element["kind"] != "forced"), "{on}");
     let moved = editor.picture(|picture| picture["values"][1]["value"] == -7);
     assert_eq!(moved["values"][0]["value"], true);
     let shown = moved["elements"].as_array().unwrap();

@@ -117,9 +117,13 @@ impl Monitor {
                 elements.push(element);
             }
             elements.extend(words(place, window, machine));
-            elements.extend(forced(place, window, code, machine));
         }
         elements
+    }
+
+    /// The marks of what is forced, in what is shown.
+    pub(in crate::lsp) fn forced(&self, place: Place<'_>, code: &Code, machine: &Machine<u8>) -> Vec<Json> {
+        self.windows.iter().flat_map(|window| forced(place, window, code, machine)).collect()
     }
 
     /// The values of these names, or of those that are watched.

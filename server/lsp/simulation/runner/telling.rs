@@ -99,7 +99,9 @@ impl Running {
             true => Vec::new(),
             false => {
                 let machine = self.session.machine();
-                self.monitor.elements(place, &self.watched, &self.sights, machine)
+                let mut elements = self.monitor.elements(place, &self.watched, &self.sights, machine);
+                elements.extend(self.monitor.forced(place, &self.watched, machine));
+                elements
             }
         };
         Some(Picture {
