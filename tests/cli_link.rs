@@ -3,8 +3,8 @@
 use crate::binary::{command, folder, run};
 use crate::virtual_plc::VirtualPlc;
 use rungwise::link::frame::STX;
-use rungwise::link::{Host, Line, Mode, Patience, Point, Transport, Watch, transport};
-use rungwise::target::Target;
+use rungwise::link::{Host, Line, Map, Mode, Part, Patience, Plain, Point, Transport, Watch, transport};
+use rungwise::target::{Device, DeviceKind, Target};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io;
@@ -133,7 +133,8 @@ impl Example {
         let mut host = Host::connect(Line::new(line, patience, Arc::default())).unwrap();
         let point = |name: &str| Point::named(name, self.target).unwrap();
         assert_eq!(host.mode().unwrap(), Mode::Stop);
-        host.write(point("M8037"), 0).unwrap();
+        let stop = Plain::bit(Device::new(DeviceKind::M, 8037), Part::Contact).unwrap();
+        host.line().ask(&stop.force(false)).unwrap();
         let started = requests.load(Ordering::Relaxed);
         let scan = || requests.load(Ordering::Relaxed) - started - 1;
         let outputs = ["Y0", "Y1", "Y2", "Y3", "Y4", "Y5"];

@@ -201,13 +201,28 @@ fn what_does_not_belong_into_a_plc_is_refused_before_anything_is_changed() {
     };
     let wrong = LinkError::WrongModel { wanted: "FX2N", found: "FX1S" };
     assert_eq!(plan(&mut host, "LD X0\nOUT Y0\nEND\n", Model::Fx2n), Err(wrong));
-    let large = vec![0x2400; 2001];
+    let mut large = vec![0x2400; 2001];
+    assert_eq!(host.plan(&large, Target::of(Model::Fx1s), &mut |_| {}).map(|_| ()), Err(LinkError::NoEnd));
+    large[2000] = 0x000F;
     let found = host.plan(&large, Target::of(Model::Fx1s), &mut |_| {}).map(|_| ());
     assert_eq!(found, Err(LinkError::TooLarge { steps: 2001, capacity: 2000 }));
     // A keyword in the parameters.
     assert_eq!(answers(&line, &framed(b"18008021234")), [ACK]);
     assert_eq!(answers(&line, &framed(b"B")), [ACK]);
     assert_eq!(plan(&mut host, "LD X0\nOUT Y0\nEND\n", Model::Fx1s), Err(LinkError::Keyword));
+    // The keyword is gone; file registers, which nobody knows where to find, and a capacity that no FX1S has.
+    for (address, word, wanted) in [
+        ("1800802", "2020", None),
+        ("1804A02", "0200", Some(LinkError::FileRegisters)),
+        ("1804A02", "0000", None),
+        ("1800002", "00FF", Some(LinkError::Parameters { capacity: 65_280_000 })),
+    ] {
+        assert_eq!(answers(&line, &framed(format!("{address}{word}").as_bytes())), [ACK]);
+        let Some(wanted) = wanted else { continue };
+        assert_eq!(plan(&mut host, "LD X0\nOUT Y0\nEND\n", Model::Fx1s), Err(wanted));
+    }
+    let order = Point::named("M8037", Target::of(Model::Fx1s)).unwrap();
+    assert_eq!(host.write(order, 0), Err(LinkError::IsOrder { device: "M8037".into() }));
 }
 
 #[test]

@@ -157,7 +157,7 @@ fn what_is_wrong_is_said_and_the_server_goes_on() {
     editor.tell("connect", json!({ "port": port }));
     drop(editor.plc.take());
     let lost =
-        |message: &Value| message["method"] == "rungwise/plc" && message["params"]["connected"] == false;
+        |message: &Value| message["method"] == "rungwise/plc" && message["params"]["reason"].is_string();
     let lost = editor.client.wait_for("the loss of the line", lost);
     assert!(lost["params"]["reason"].as_str().unwrap().contains("the line is gone"), "{lost}");
     assert_eq!(editor.tell("state", json!({})), json!({ "connected": false }));

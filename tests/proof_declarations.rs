@@ -113,6 +113,28 @@ fn variables_are_looked_for_in_the_units_that_correspond() {
     assert_eq!(word(&global("AT %MW0 : INT"), &global("AT %MW1 : INT")), "undecided");
 }
 
+/// What runs when, and what it is connected to, is as much of a program as its rungs.
+#[test]
+fn what_a_configuration_runs_counts() {
+    let program = "PROGRAM P\nVAR_INPUT go : BOOL; END_VAR\nVAR_OUTPUT lit : BOOL; END_VAR\nLD go\nST lit\nEND_PROGRAM\n";
+    let configured = |task: &str, connected: &str| {
+        format!(
+            "{program}CONFIGURATION C\nRESOURCE R ON X\nTASK t({task}, PRIORITY := 1);\n\
+             PROGRAM p1 WITH t : P(go := %IX0.0, lit => {connected});\nEND_RESOURCE\nEND_CONFIGURATION\n"
+        )
+    };
+    let own = configured("INTERVAL := T#10ms", "%QX0.0");
+    for (other, expected) in [
+        (configured("INTERVAL := T#10ms", "%QX0.0"), "equal"),
+        (configured("INTERVAL := T#10ms", "%QX0.1"), "not decided"),
+        (configured("INTERVAL := T#10s", "%QX0.0"), "not decided"),
+    ] {
+        let folder = folder(&[("a.il", &own), ("b.il", &other)]);
+        let (_, out, err) = run(&folder, &["prove", "a.il", "b.il"]);
+        assert!(out.starts_with(expected), "{other}: {out}{err}");
+    }
+}
+
 #[test]
 fn what_a_configuration_sets_counts() {
     let text = |set: &str| {

@@ -83,6 +83,20 @@ pub enum LinkError {
     },
     /// This model cannot do that, or nobody knows how.
     NotOnThisModel,
+    /// A program without END.
+    NoEnd,
+    /// The PLC keeps file registers or comments in its program memory; where they lie there is not certain.
+    FileRegisters,
+    /// The parameters of the PLC are none that this model can have.
+    Parameters {
+        /// Steps of memory that they say.
+        capacity: u32,
+    },
+    /// What runs and stops a PLC, or lets it be written, is no relay to be switched by the way.
+    IsOrder {
+        /// Its name.
+        device: String,
+    },
     /// A line has no such speed.
     NoSpeed {
         /// Bits a second.
@@ -108,6 +122,8 @@ impl LinkError {
             LinkError::Cancelled
                 | LinkError::NotOnThisModel
                 | LinkError::NoSpeed { .. }
+                | LinkError::NoEnd
+                | LinkError::IsOrder { .. }
                 | LinkError::NoDevice { .. }
                 | LinkError::StillRunning
         )
@@ -134,6 +150,10 @@ impl LinkError {
             LinkError::Mismatch { .. } => "mismatch",
             LinkError::Sum { .. } => "sum",
             LinkError::NotOnThisModel => "not-on-this-model",
+            LinkError::NoEnd => "no-end",
+            LinkError::FileRegisters => "file-registers",
+            LinkError::Parameters { .. } => "bad-parameters",
+            LinkError::IsOrder { .. } => "is-order",
             LinkError::NoSpeed { .. } => "no-speed",
             LinkError::NoDevice { .. } => "no-device",
         }
@@ -169,6 +189,10 @@ impl LinkError {
                 .with("wanted", format!("{wanted:04X}"))
                 .with("found", format!("{found:04X}")),
             LinkError::NotOnThisModel => Message::new("link.not-on-this-model"),
+            LinkError::NoEnd => Message::new("link.no-end"),
+            LinkError::FileRegisters => Message::new("link.file-registers"),
+            LinkError::Parameters { capacity } => Message::new("link.parameters").with("capacity", capacity),
+            LinkError::IsOrder { device } => Message::new("link.is-order").with("device", device),
             LinkError::NoSpeed { baud } => Message::new("link.no-speed").with("baud", baud),
             LinkError::NoDevice { device } => Message::new("link.no-device").with("device", device),
         }
@@ -194,6 +218,10 @@ impl LinkError {
             LinkError::StillRunning => "link.help-still-running",
             LinkError::Mismatch { .. } | LinkError::Sum { .. } => "link.help-mismatch",
             LinkError::NotOnThisModel => "link.help-not-on-this-model",
+            LinkError::NoEnd => "link.help-no-end",
+            LinkError::FileRegisters => "link.help-file-registers",
+            LinkError::Parameters { .. } => "link.help-parameters",
+            LinkError::IsOrder { .. } => "link.help-is-order",
             LinkError::NoSpeed { .. } => "link.help-no-speed",
             LinkError::NoDevice { .. } => "link.help-no-device",
         })

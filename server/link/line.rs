@@ -145,6 +145,11 @@ impl<T: Transport> Line<T> {
         Ok(())
     }
 
+    /// From now on this ends what goes on.
+    pub fn set_cancel(&mut self, cancel: Arc<AtomicBool>) {
+        self.cancel = cancel;
+    }
+
     /// Its speed in bits a second.
     pub fn baud(&self) -> u32 {
         self.baud

@@ -14,7 +14,13 @@ pub struct Backup {
     /// The name of the model, as in `rungwise.toml`.
     pub model: String,
     /// When it was read.
-    time: String,
+    pub time: String,
+    /// Through which port.
+    #[serde(default)]
+    pub port: String,
+    /// Whether it was a program that the PLC had taken over, and not one that was written in part.
+    #[serde(default)]
+    pub whole: bool,
     steps: usize,
     /// Parameters, in words as they lie in memory.
     parameters: Vec<u16>,
@@ -37,13 +43,19 @@ impl Backup {
     ///
     /// # Errors
     /// If that cannot be written.
-    pub fn keep(beside: &Path, target: &Target, image: &Image) -> io::Result<PathBuf> {
+    pub fn keep(
+        beside: &Path,
+        (target, port): (&Target, &str),
+        (image, is_whole): (&Image, bool),
+    ) -> io::Result<PathBuf> {
         let folder = folder(beside);
         private_folder(&folder)?;
         let time = Timestamp::now();
         let backup = Backup {
             model: target.name.into(),
             time: time.to_string(),
+            port: port.into(),
+            whole: is_whole,
             steps: image.program().len(),
             parameters: image.parameters().to_words().to_vec(),
             words: image.program().to_vec(),
@@ -51,15 +63,17 @@ impl Backup {
         let mut file = tempfile::NamedTempFile::new_in(&folder)?;
         serde_json::to_writer_pretty(&mut file, &backup)?;
         file.flush()?;
+        file.as_file().sync_all()?;
         let path = folder.join(format!("{}-{}.json", time.strftime("%Y%m%dT%H%M%S%.3fZ"), target.name));
         file.persist(&path)?;
         Ok(path)
     }
 
-    /// The latest one of the project of `beside`.
-    pub fn latest(beside: &Path) -> Option<PathBuf> {
+    /// The latest whole one of the project of `beside`. What a download left that did not end is none to go back to.
+    pub fn latest(beside: &Path) -> Option<(PathBuf, Backup)> {
         let files = std::fs::read_dir(folder(beside)).ok()?.flatten().map(|entry| entry.path());
-        files.filter(|path| Backup::is_named_so(path)).max()
+        let backups = files.filter_map(|path| Backup::read(&path).map(|backup| (path, backup)));
+        backups.filter(|(_, backup)| backup.whole).max_by(|(_, one), (_, other)| one.time.cmp(&other.time))
     }
 }
 
@@ -72,8 +86,10 @@ fn folder(beside: &Path) -> PathBuf {
 
 #[cfg(unix)]
 fn private_folder(folder: &Path) -> io::Result<()> {
-    use std::os::unix::fs::DirBuilderExt;
-    std::fs::DirBuilder::new().recursive(true).mode(0o700).create(folder)
+    use std::os::unix::fs::{DirBuilderExt, PermissionsExt};
+    std::fs::DirBuilder::new().recursive(true).mode(0o700).create(folder)?;
+    // It may have been made by something else.
+    std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o700))
 }
 
 #[cfg(not(unix))]

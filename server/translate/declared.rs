@@ -2,8 +2,8 @@
 
 use super::paired::Paired;
 use super::source::Source;
-use crate::document::{DeclaredType, Document, Pou, Scopes, Variable};
-use crate::il::iec::{ItemKind, SectionKind, words_of_body};
+use crate::document::{DeclaredType, Document, Pou, Scopes, Tree, Variable};
+use crate::il::iec::{self, ItemKind, SectionKind, words_of_body};
 use crate::ladder::CompareOperator;
 use crate::logic::{Deed, Path, Term, Test};
 use crate::target::{Operand, Width};
@@ -65,9 +65,26 @@ pub(super) fn difference(
         return None;
     }
     let [left, right] = scopes.map(|scopes| &scopes.configured);
-    let path = left.keys().chain(right.keys()).find(|path| left.get(*path) != right.get(*path))?;
-    let name: String = path.split(' ').collect();
-    Some((Message::new("prove.declared").with("name", name), [None, None]))
+    if let Some(path) = left.keys().chain(right.keys()).find(|path| left.get(*path) != right.get(*path)) {
+        let name: String = path.split(' ').collect();
+        return Some((Message::new("prove.declared").with("name", name), [None, None]));
+    }
+    // Which programs run, how often, in which order, and what their variables are connected to.
+    let [left, right] = documents.map(configurations);
+    let is_other = !left.is_empty() && !right.is_empty() && left != right;
+    is_other.then(|| (Message::new("prove.declared").with("name", "CONFIGURATION"), [None, None]))
+}
+
+/// The words of the configurations in a document.
+fn configurations(document: &Document) -> Vec<SmolStr> {
+    let configured = document.chunks().filter_map(|at| {
+        let reading = at.chunk.reading();
+        let Tree::Iec(tree) = reading.tree() else { return None };
+        let is_one = |kind: &ItemKind| matches!(kind, ItemKind::Configuration { .. });
+        let text = reading.text();
+        tree.items.iter().any(|item| is_one(&item.kind)).then(|| iec::words(text, Span::new(0, text.len())))
+    });
+    configured.collect()
 }
 
 /// All that is said of a variable: the section in which it stands, its declaration, and what its words mean.

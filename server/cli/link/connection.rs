@@ -34,13 +34,18 @@ fn speed(word: &str) -> Result<u32, String> {
 pub(super) type AnyHost = Host<Box<dyn Transport>>;
 
 impl Connection {
+    /// The port that the user or the project of `beside` names.
+    pub(super) fn port(&self, beside: &Path) -> Option<String> {
+        let of_project = || Project::of(beside).and_then(|project| project.manifest.port);
+        self.port.clone().or_else(of_project)
+    }
+
     /// Connects to the PLC that the user or the project of `beside` names.
     ///
     /// # Errors
     /// With the outcome, after a complaint.
     pub(super) fn open(&self, beside: &Path, language: Language) -> Result<AnyHost, Outcome> {
-        let of_project = || Project::of(beside).and_then(|project| project.manifest.port);
-        let Some(port) = self.port.clone().or_else(of_project) else {
+        let Some(port) = self.port(beside) else {
             let reason = Message::new("link.which-port").render(language);
             complain("no-port", &reason, &Message::new("link.help-which-port").render(language), language);
             return Err(Outcome::Unusable);

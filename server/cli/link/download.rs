@@ -7,9 +7,10 @@ use crate::cli::Outcome;
 use crate::cli::colour::Colour;
 use crate::cli::diff::unified;
 use crate::cli::input::{complain, remark, say};
-use crate::link::{Identity, Mode, Plan};
+use crate::link::{Mode, Plan};
 use crate::machine_code::decode;
 use crate::project::Backup;
+use crate::target::Target;
 use crate::text::{Language, Message};
 use std::path::{Path, PathBuf};
 
@@ -41,12 +42,17 @@ fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Resul
     let here = PathBuf::from(".");
     let beside = arguments.file.as_deref().unwrap_or(&here);
     let backup = if arguments.rollback { Backup::latest(beside) } else { None };
+    if let Some((path, backup)) = &backup {
+        let told = Message::new("link.rolls-back").with("path", path.display());
+        let told = told.with("time", &backup.time).with("port", &backup.port).with("model", &backup.model);
+        remark(&told.render(language));
+    }
     if arguments.rollback && backup.is_none() {
         let reason = Message::new("link.no-backup").render(language);
         complain("no-backup", &reason, &Message::new("link.help-backup").render(language), language);
         return Err(Outcome::Unusable);
     }
-    let (words, target) = words_at(backup.as_deref().unwrap_or(beside), language)?;
+    let (words, target) = words_at(backup.as_ref().map_or(beside, |(path, _)| path), language)?;
     let mut host = arguments.connection.open(beside, language)?;
     let mut bar = Bar::new(language);
     let plan = host.plan(&words, target, &mut |progress| bar.show(progress));
@@ -66,7 +72,11 @@ fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Resul
     if !confirmed(&question, arguments.yes, language) {
         return Err(Outcome::Findings);
     }
-    back_up(beside, host.identity(), &plan, language)?;
+    // What changes nothing leaves nothing to go back to.
+    if plan.bytes() > 0 {
+        let port = arguments.connection.port(beside).unwrap_or_default();
+        back_up(beside, (host.identity().target, &port), &plan, language)?;
+    }
     let report = host.download(&plan, arguments.start, &mut |progress| bar.show(progress));
     bar.clear();
     match report {
@@ -99,8 +109,8 @@ pub(super) fn changes(plan: &Plan, colour: Colour, language: Language) -> String
     unified(&Message::new("link.program-in-plc").render(language), &before, &after, colour)
 }
 
-fn back_up(beside: &Path, identity: Identity, plan: &Plan, language: Language) -> Result<(), Outcome> {
-    match Backup::keep(beside, identity.target, &plan.before) {
+fn back_up(beside: &Path, plc: (&Target, &str), plan: &Plan, language: Language) -> Result<(), Outcome> {
+    match Backup::keep(beside, plc, (&plan.before, plan.is_whole)) {
         Ok(path) => {
             remark(&Message::new("link.backed-up").with("path", path.display()).render(language));
             Ok(())

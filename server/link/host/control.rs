@@ -56,12 +56,19 @@ impl<T: Transport> Host<T> {
             return Ok(true);
         }
         self.order(FORCED_STOP, false)?;
-        if self.mode()? == Mode::Run {
+        if self.comes_to(Mode::Run)? {
             return Ok(true);
         }
         self.order(FORCED_MODE, true)?;
         self.order(FORCED_RUN, true)?;
-        self.comes_to(Mode::Run)
+        if self.comes_to(Mode::Run)? {
+            return Ok(true);
+        }
+        // These orders stand: the next program would start by itself.
+        self.order(FORCED_RUN, false)?;
+        self.order(FORCED_MODE, false)?;
+        self.order(FORCED_STOP, true)?;
+        Ok(false)
     }
 
     /// Clears the program, or all devices, of a CPU that stands still.
@@ -74,6 +81,9 @@ impl<T: Transport> Host<T> {
         }
         if self.dialect() == Dialect::Plain {
             return Err(LinkError::NotOnThisModel);
+        }
+        if self.raw_parameters()?.has_keyword() {
+            return Err(LinkError::Keyword);
         }
         let steps: &[u8] = if is_program { &CLEAR_PROGRAM } else { &CLEAR_DEVICES };
         for step in steps {

@@ -9,6 +9,8 @@ use crate::target::{Device, DeviceKind};
 /// Bytes that it costs to ask once more, frames and digits included: what lies between two devices is read too, as long
 /// as that is cheaper.
 const GAP: usize = 8;
+/// Relays that let a CPU run and stop, and a host write its program.
+const ORDERS: [u32; 4] = [8035, 8036, 8037, 8118];
 
 /// Where a point lies in a map: its first byte, how many there are, and the place of its bit.
 #[derive(Clone, Copy)]
@@ -96,8 +98,17 @@ impl<T: Transport> Host<T> {
     /// Writes a register or a current value, or switches a relay once; the program may write it again.
     ///
     /// # Errors
-    /// If there is no such device, or the line fails.
+    /// If there is no such device, if it is an order to the CPU, or if the line fails.
     pub fn write(&mut self, point: Point, value: i64) -> Result<(), LinkError> {
+        match point {
+            Point::Bit(relay, _) if relay.kind == DeviceKind::M && ORDERS.contains(&relay.number) => {
+                Err(LinkError::IsOrder { device: relay.to_string() })
+            }
+            _ => self.put(point, value),
+        }
+    }
+
+    fn put(&mut self, point: Point, value: i64) -> Result<(), LinkError> {
         match self.dialect() {
             Dialect::Plain => self.write_in::<Plain>(point, value),
             Dialect::Extended => self.write_in::<Extended>(point, value),
@@ -119,6 +130,6 @@ impl<T: Transport> Host<T> {
 
     /// Switches a special relay.
     pub(super) fn order(&mut self, number: u32, on: bool) -> Result<(), LinkError> {
-        self.write(Point::Bit(Device::new(DeviceKind::M, number), Part::Contact), i64::from(on))
+        self.put(Point::Bit(Device::new(DeviceKind::M, number), Part::Contact), i64::from(on))
     }
 }

@@ -4,7 +4,7 @@ use super::program::Teller;
 use super::{Dialect, Host};
 use crate::link::frame::MOST_DATA;
 use crate::link::{Command, LinkError, Mode, Transport};
-use crate::machine_code::{Image, PARAMETER_ADDRESS, PROGRAM_ADDRESS, ParameterBlock};
+use crate::machine_code::{END, Image, PARAMETER_ADDRESS, PROGRAM_ADDRESS, ParameterBlock};
 use crate::target::{Model, Target};
 use crate::text::Message;
 use std::time::Duration;
@@ -51,6 +51,8 @@ pub struct Plan {
     pub model: Model,
     /// What was read from the PLC.
     pub before: Image,
+    /// Whether that is a program that was taken over, and not one that is written in part.
+    pub is_whole: bool,
     /// What shall be there.
     pub wanted: Image,
 }
@@ -116,7 +118,7 @@ impl Plan {
 
     /// The plan that undoes this one.
     pub fn undone(&self) -> Plan {
-        Plan { model: self.model, before: self.wanted.clone(), wanted: self.before.clone() }
+        Plan { before: self.wanted.clone(), is_whole: true, wanted: self.before.clone(), model: self.model }
     }
 }
 
@@ -137,15 +139,22 @@ impl<T: Transport> Host<T> {
         if found.model != target.model {
             return Err(LinkError::WrongModel { wanted: target.title, found: found.title });
         }
-        let before = self.upload(tell)?;
-        let parameters = *before.parameters();
-        if parameters.has_keyword() {
+        let Some(end) = program.iter().position(|word| *word == END) else { return Err(LinkError::NoEnd) };
+        // Nobody executes what is behind END.
+        let program = &program[..=end];
+        let raw = self.raw_parameters()?;
+        if raw.has_keyword() {
             return Err(LinkError::Keyword);
         }
+        if raw.file_register_blocks() > 0 || raw.comment_blocks() > 0 {
+            return Err(LinkError::FileRegisters);
+        }
+        let (before, is_whole) = self.read_memory(tell)?;
+        let parameters = *before.parameters();
         let capacity = parameters.program_steps() as usize;
         let wanted = Image::new(parameters, program).filter(|_| program.len() <= capacity);
         let wanted = wanted.ok_or(LinkError::TooLarge { steps: program.len(), capacity })?;
-        Ok(Plan { model: target.model, before, wanted })
+        Ok(Plan { model: target.model, before, is_whole, wanted })
     }
 
     /// Carries a plan out: stop, write what has changed, read all of it back, compare the sum, and start if
@@ -190,8 +199,11 @@ impl<T: Transport> Host<T> {
         }
         self.compare_sum(plan, fate, &mut written, tell)?;
         *fate = Fate::Verified;
-        let is_running = is_started && self.start()?;
-        Ok(Report { written, compared, mode: if is_running { Mode::Run } else { Mode::Stop } })
+        if is_started {
+            self.start()?;
+        }
+        // Somebody may have turned the switch meanwhile.
+        Ok(Report { written, compared, mode: self.mode()? })
     }
 
     fn write_changes(
@@ -204,6 +216,8 @@ impl<T: Transport> Host<T> {
         let chunks = wanted.changed_chunks(held, MOST_DATA);
         let total = chunks.iter().map(|chunk| chunk.bytes.len()).sum();
         if chunks.is_empty() && matches!(fate, Fate::Untouched | Fate::Stopped) {
+            // The same words may never have been taken over.
+            self.line.ask(&Command::Commit)?;
             return Ok(0);
         }
         let is_guarded = self.dialect() == Dialect::Extended;

@@ -33,6 +33,8 @@ impl Identity {
     fn of(codes: [u16; 2]) -> Option<Identity> {
         let model = match (codes[0] / 1000, codes[1] / 1000) {
             (24, 16) => Model::Fx3u,
+            // Others say the same twice, or nothing the second time; an FX3G or FX3S says something else.
+            _ if codes[1] != codes[0] && codes[1] != 0 => return None,
             (24, _) => Model::Fx2n,
             (26, _) => Model::Fx1n,
             (22, _) => Model::Fx1s,

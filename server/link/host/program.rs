@@ -9,6 +9,8 @@ use std::time::Duration;
 
 /// Readings of a program before the line is given up.
 const MOST_READINGS: usize = 3;
+/// The most steps that addresses of 16 bits reach, in whole thousands.
+const MOST_STEPS: u32 = 16_000;
 
 /// Tells how far something long is, at most once for each request.
 pub(super) struct Teller<'a> {
@@ -39,57 +41,88 @@ impl<'a> Teller<'a> {
 }
 
 impl<T: Transport> Host<T> {
-    /// Parameters and program of the PLC, read until what was read is certain: its sum is the one that the PLC has
-    /// computed, and nothing went wrong on the line; or two readings say the same.
+    /// Parameters and program of the PLC, read until what was read is certain.
     ///
     /// # Errors
-    /// If the line fails, or does not say the same twice.
+    /// See [`Host::read_memory`].
     pub fn upload(&mut self, tell: &mut dyn FnMut(Progress)) -> Result<Image, LinkError> {
+        self.read_memory(tell).map(|(image, _)| image)
+    }
+
+    /// Parameters and program of the PLC, and whether they are whole: their sum is the one that the PLC has computed.
+    ///
+    /// What is behind END is read only if the sum is another. That of a download that did not end is; so is that of
+    /// memory with something behind END.
+    ///
+    /// # Errors
+    /// If the line fails, or does not say the same twice; if no PLC of this model can have such parameters.
+    pub(super) fn read_memory(&mut self, tell: &mut dyn FnMut(Progress)) -> Result<(Image, bool), LinkError> {
         let mut last: Option<Image> = None;
+        let mut is_all = false;
         for _ in 0..MOST_READINGS {
             let troubles = self.line().troubles();
-            let (image, sum) = self.read_image(tell)?;
+            let (image, sum) = self.read_image(is_all, tell)?;
             let is_summed = image.parameters().sum() == sum;
             let is_quiet = self.line().troubles() == troubles;
-            if (is_summed && is_quiet) || last.as_ref() == Some(&image) {
-                return Ok(image);
+            if (is_quiet && (is_summed || is_all)) || last.as_ref() == Some(&image) {
+                return Ok((image, is_summed));
             }
+            is_all |= !is_summed;
             last = Some(image);
         }
         Err(LinkError::Noise)
     }
 
-    /// One reading, and the sum that the PLC has computed. What is behind END is not read.
-    fn read_image(&mut self, tell: &mut dyn FnMut(Progress)) -> Result<(Image, u16), LinkError> {
+    /// One reading up to END, or of all memory, and the sum that the PLC has computed.
+    fn read_image(
+        &mut self,
+        is_all: bool,
+        tell: &mut dyn FnMut(Progress),
+    ) -> Result<(Image, u16), LinkError> {
         let since = self.line().now();
-        let block = self.read_program(PARAMETER_ADDRESS, 2 * ParameterBlock::WORDS, &mut |_, _| {})?;
-        let parameters = self.usable(&block);
+        let parameters = self.parameters()?;
         let capacity = 2 * parameters.capacity() as usize;
-        let length = match self.end()? {
+        // Where END is tells only how long it will take: a firmware is known that answers something else.
+        let hint = match self.end()?.filter(|_| !is_all) {
             Some(end) => (end as usize + 2).saturating_sub(PROGRAM_ADDRESS as usize).min(capacity),
             None => capacity,
         };
-        let mut teller = Teller::new(Stage::Reading, length, since, tell);
-        let mut bytes: Vec<u8> = Vec::with_capacity(length);
-        while bytes.len() < length && !has_end(&bytes) {
-            let piece = piece(bytes.len(), length);
+        let mut teller = Teller::new(Stage::Reading, hint, since, tell);
+        let mut bytes: Vec<u8> = Vec::with_capacity(hint);
+        let mut has_end = false;
+        while bytes.len() < capacity && (is_all || !has_end) {
+            let piece = piece(bytes.len(), if bytes.len() < hint { hint } else { capacity });
             let at = PROGRAM_ADDRESS + bytes.len() as u32;
-            bytes.extend(self.read_program(at, piece, &mut |_, _| {})?);
+            let read = self.read_program(at, piece, &mut |_, _| {})?;
+            has_end |= words_of(&read).contains(&END);
+            bytes.extend(read);
             teller.add(piece, self.line.now());
         }
-        let words: Vec<u16> = bytes.as_chunks::<2>().0.iter().map(|word| u16::from_le_bytes(*word)).collect();
-        let used = words.iter().position(|word| *word == END).map_or(words.len(), |end| end + 1);
-        let sum = ParameterBlock::from_words(&words_of(&block)).sum();
-        let image = Image::new(parameters, &words[..used]).ok_or(LinkError::Noise)?;
-        Ok((image, sum))
+        let mut words = words_of(&bytes);
+        if let Some(end) = words.iter().position(|word| *word == END).filter(|_| !is_all) {
+            words.truncate(end + 1);
+        }
+        let image = Image::new(parameters, &words).ok_or(LinkError::Noise)?;
+        Ok((image, parameters.sum()))
     }
 
-    /// The parameters, if a PLC of this model can have them; else those of a new one.
-    fn usable(&self, block: &[u8]) -> ParameterBlock {
-        let target = self.identity.target;
-        let own = ParameterBlock::from_words(&words_of(block));
-        let is_usable = (1..=target.limits.steps_at_most).contains(&own.capacity());
-        if is_usable { own } else { ParameterBlock::new(target.model) }
+    /// The parameters.
+    ///
+    /// # Errors
+    /// If the line fails, or no PLC of this model can have them.
+    fn parameters(&mut self) -> Result<ParameterBlock, LinkError> {
+        let own = self.raw_parameters()?;
+        let most = self.identity.target.limits.steps_at_most.min(MOST_STEPS);
+        match own.capacity() {
+            capacity if (1..=most).contains(&capacity) => Ok(own),
+            capacity => Err(LinkError::Parameters { capacity }),
+        }
+    }
+
+    /// The parameters, whatever they are.
+    pub(super) fn raw_parameters(&mut self) -> Result<ParameterBlock, LinkError> {
+        let block = self.read_program(PARAMETER_ADDRESS, 2 * ParameterBlock::WORDS, &mut |_, _| {})?;
+        Ok(ParameterBlock::from_words(&words_of(&block)))
     }
 
     /// The address of END, where the PLC can look for it.
@@ -142,10 +175,6 @@ fn piece(done: usize, total: usize) -> usize {
     let pair = 2 * MOST_DATA - 2;
     let most = if done.is_multiple_of(pair) { MOST_DATA } else { MOST_DATA - 2 };
     most.min(total - done)
-}
-
-fn has_end(bytes: &[u8]) -> bool {
-    bytes.as_chunks::<2>().0.iter().any(|word| u16::from_le_bytes(*word) == END)
 }
 
 fn words_of(bytes: &[u8]) -> Vec<u16> {

@@ -14,14 +14,13 @@ use crate::project::Backup;
 use crate::simulate::Value;
 use crate::text::Message;
 use serde_json::{Value as Json, json};
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
 use tokio::sync::oneshot;
 use tower_lsp::ls_types::notification::Notification;
-use tower_lsp::ls_types::{NumberOrString, Range, Uri};
+use tower_lsp::ls_types::{MessageType, NumberOrString, Range, Uri};
 
 /// What is to be done with a PLC.
 #[derive(Clone, Debug)]
@@ -66,6 +65,8 @@ struct Job {
     order: Order,
     bar: Bar,
     reply: oneshot::Sender<Reply>,
+    /// Set when nobody waits for it any more.
+    cancel: Arc<AtomicBool>,
 }
 
 /// The other end of the thread.
@@ -73,7 +74,6 @@ struct Job {
 pub(super) struct Desk {
     sender: Sender<Job>,
     is_alive: Arc<AtomicBool>,
-    cancel: Arc<AtomicBool>,
     workspace: Weak<Workspace>,
 }
 
@@ -99,18 +99,13 @@ impl Desk {
     /// A desk without a line.
     pub(super) fn new(workspace: &Arc<Workspace>) -> Desk {
         let (sender, receiver) = channel();
-        let (is_alive, cancel) = (Arc::new(AtomicBool::new(true)), Arc::<AtomicBool>::default());
-        let desk = Desk {
-            sender,
-            is_alive: Arc::clone(&is_alive),
-            cancel: Arc::clone(&cancel),
-            workspace: Arc::downgrade(workspace),
-        };
+        let is_alive = Arc::new(AtomicBool::new(true));
+        let desk = Desk { sender, is_alive: Arc::clone(&is_alive), workspace: Arc::downgrade(workspace) };
         let workspace = Arc::downgrade(workspace);
         let tokio = tokio::runtime::Handle::current();
         std::thread::spawn(move || {
             let _mark = Mark(is_alive);
-            Thread { workspace, tokio, cancel, plc: None }.run(&receiver);
+            Thread { workspace, tokio, cancel: Arc::default(), plc: None }.run(&receiver);
         });
         desk
     }
@@ -135,9 +130,9 @@ impl Desk {
             None => Bar::silent(),
         };
         let (reply, answer) = oneshot::channel();
-        self.cancel.store(false, Ordering::Relaxed);
-        let waiting = Waiting(Arc::clone(&self.cancel));
-        self.sender.send(Job { order, bar, reply }).map_err(|_| gone())?;
+        let cancel = Arc::<AtomicBool>::default();
+        let waiting = Waiting(Arc::clone(&cancel));
+        self.sender.send(Job { order, bar, reply, cancel }).map_err(|_| gone())?;
         let answer = answer.await.map_err(|_| gone())?;
         std::mem::forget(waiting);
         answer
@@ -157,6 +152,7 @@ struct Connected {
 struct Thread {
     workspace: Weak<Workspace>,
     tokio: tokio::runtime::Handle,
+    /// That of the job that is done.
     cancel: Arc<AtomicBool>,
     plc: Option<Connected>,
 }
@@ -172,12 +168,20 @@ impl Thread {
         loop {
             let is_watching = self.plc.as_ref().is_some_and(|plc| plc.watching.is_some());
             match receiver.recv_timeout(if is_watching { PICTURE } else { STATUS }) {
-                Ok(Job { order, bar, reply }) => {
+                Ok(Job { order, bar, reply, cancel }) => {
+                    // What nobody waits for any more is not begun.
+                    if cancel.load(Ordering::Relaxed) || reply.is_closed() {
+                        continue;
+                    }
                     let is_end = matches!(order, Order::Disconnect);
+                    self.serve(cancel);
                     let answer = self.obey(order, &bar);
                     drop(bar);
-                    // Who asked may have gone.
-                    let _ = reply.send(answer);
+                    // Whoever has gone is still told what has become of the PLC.
+                    if let Err(Err(reason)) = reply.send(answer) {
+                        self.show(&reason);
+                    }
+                    self.serve(Arc::default());
                     if is_end {
                         return;
                     }
@@ -188,7 +192,6 @@ impl Thread {
             if self.workspace.strong_count() == 0 {
                 return;
             }
-            self.cancel.store(false, Ordering::Relaxed);
             let looked = self.look(&mut asked);
             if let Err(error) = looked {
                 self.lose(&error);
@@ -200,12 +203,28 @@ impl Thread {
         }
     }
 
+    /// What is done from now on ends when this is set.
+    fn serve(&mut self, cancel: Arc<AtomicBool>) {
+        self.cancel = cancel;
+        if let Some(plc) = &mut self.plc {
+            plc.host.line().set_cancel(Arc::clone(&self.cancel));
+        }
+    }
+
+    /// Says something to the person at the editor.
+    fn show(&self, reason: &Message) {
+        let Some(workspace) = self.workspace.upgrade() else { return };
+        let text = reason.render(workspace.snapshot().manner.language);
+        let client = workspace.client.clone();
+        self.tokio.spawn(async move { client.show_message(MessageType::ERROR, text).await });
+    }
+
     /// Looks at what is watched, and now and then at the PLC as a whole.
     fn look(&mut self, asked: &mut Instant) -> Result<(), LinkError> {
         let Some(workspace) = self.workspace.upgrade() else { return Ok(()) };
         let Some(plc) = &mut self.plc else { return Ok(()) };
         if let Some(watching) = &mut plc.watching
-            && let Some(picture) = watching.picture(&mut plc.host, &workspace, plc.status.mode)?
+            && let Some(picture) = watching.picture(&mut plc.host, &workspace, &plc.status)?
         {
             let client = workspace.client.clone();
             self.tokio.spawn(async move { client.send_notification::<MonitorMethod>(picture).await });
@@ -265,6 +284,9 @@ impl Thread {
         if let Some(watching) = &plc.watching {
             state["monitoring"] = json!(watching.uri());
         }
+        if plc.image.is_none() {
+            state["match"] = "unknown".into();
+        }
         if let (Some(uri), Some(workspace)) = (uri, self.workspace.upgrade()) {
             let encoded = encoded(&workspace, uri).ok();
             match (encoded, &plc.image) {
@@ -283,8 +305,9 @@ impl Thread {
     fn obey(&mut self, order: Order, bar: &Bar) -> Reply {
         let gone = || Message::new("link.not-connected");
         if let Order::Connect { port, patience } = &order {
-            self.connect(port, *patience).map_err(|error| told(&error))?;
+            let connected = self.connect(port, *patience);
             self.tell(None);
+            connected.map_err(|error| told(&error))?;
             return Ok(self.state(None));
         }
         if matches!(order, Order::Disconnect) {
@@ -317,16 +340,25 @@ impl Thread {
             Order::Stop => plc.host.stop().map_err(|error| told(&error))?,
             Order::Monitor { uri, ranges, names } => {
                 let target = plc.host.identity().target;
-                let watching = plc.watching.take().filter(|watching| *watching.uri() == uri);
-                let mut watching = watching.unwrap_or_else(|| Watching::new(uri));
+                let before = plc.watching.take();
+                let mut watching = match before {
+                    Some(watching) if *watching.uri() == uri => watching,
+                    _ => Watching::new(uri),
+                };
                 watching.watch(ranges, names);
-                watching.follow(&workspace, target)?;
+                if let Err(reason) = watching.follow(&workspace, target, &plc.status) {
+                    self.tell(None);
+                    return Err(reason);
+                }
                 plc.watching = Some(watching);
             }
             Order::Unmonitor => plc.watching = None,
             Order::Write { name, value, is_force } => plc.write(&name, &value, is_force)?,
         }
-        plc.status = plc.host.status().map_err(|error| told(&error))?;
+        // What was done is done; a line that has failed meanwhile is found out soon.
+        if let Ok(status) = plc.host.status() {
+            plc.status = status;
+        }
         self.tell(about.as_ref());
         Ok(answer.unwrap_or_else(|| self.state(None)))
     }
@@ -353,10 +385,16 @@ impl Connected {
 
     fn download(&mut self, workspace: &Workspace, uri: &Uri, is_started: bool, bar: &Bar) -> Reply {
         let (encoded, plan) = self.plan(workspace, uri, bar)?;
-        let path = file_path(uri);
-        let kept = |path: &Path| Backup::keep(path, encoded.target, &plan.before);
-        let cannot = |error: std::io::Error| Message::new("link.cannot-back-up").with("reason", error);
-        let backup = path.as_deref().map(kept).transpose().map_err(cannot)?;
+        // What changes nothing leaves nothing to go back to.
+        let backup = match plan.bytes() {
+            0 => None,
+            _ => {
+                let path = file_path(uri).ok_or_else(|| Message::new("link.save-first"))?;
+                let plc = (encoded.target, self.port.as_str());
+                let kept = Backup::keep(&path, plc, (&plan.before, plan.is_whole));
+                Some(kept.map_err(|error| Message::new("link.cannot-back-up").with("reason", error))?)
+            }
+        };
         let report = self.host.download(&plan, is_started, &mut |progress| report(bar, progress));
         match report {
             Ok(report) => {

@@ -3,11 +3,13 @@
 use super::super::simulation::{Monitor, Picture, compiled, files_around};
 use super::super::to_proto::Place;
 use super::super::workspace::Workspace;
+use super::drift::encoded;
 use crate::document::Document;
-use crate::link::{Host, LinkError, Mode, Part, Point, Transport, Watch};
+use crate::link::{Host, LinkError, Mode, Part, Point, Status, Transport, Watch};
+use crate::machine_code::Image;
 use crate::simulate::{Code, Machine, Value, Variable};
 use crate::target::{Device, Flow, Operand, Target};
-use crate::text::Message;
+use crate::text::{Message, Span};
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -28,6 +30,10 @@ pub(super) struct Watching {
     /// The program in a PLC that has what was read, for what contacts of edges saw before.
     machine: Option<Machine<u8>>,
     looks: u64,
+    /// The sum of the text in a PLC with these parameters.
+    sum: Option<u16>,
+    /// Bytes of rungs that depend on something that is not read.
+    unknown: Vec<std::ops::Range<usize>>,
     edition: u64,
     started_ns: Option<i64>,
 }
@@ -49,6 +55,8 @@ impl Watching {
             known: Vec::new(),
             machine: None,
             looks: 0,
+            sum: None,
+            unknown: Vec::new(),
             edition: 0,
             started_ns: None,
         }
@@ -71,7 +79,12 @@ impl Watching {
     ///
     /// # Errors
     /// If the program has no FX devices, or names what the PLC does not have.
-    pub(super) fn follow(&mut self, workspace: &Workspace, target: &'static Target) -> Result<(), Message> {
+    pub(super) fn follow(
+        &mut self,
+        workspace: &Workspace,
+        target: &'static Target,
+        status: &Status,
+    ) -> Result<(), Message> {
         let gone = || Message::new("request.no-document").with("command", super::PREFIX);
         self.files = files_around(workspace, &self.uri).ok_or_else(gone)?;
         let number = self.number().ok_or_else(gone)?;
@@ -81,8 +94,12 @@ impl Watching {
         }
         self.edition += 1;
         self.monitor.place(number as u32, Place::new(document, workspace.snapshot().manner));
-        // A text that cannot be run shows values, and no power.
+        // A text that cannot be run, or is not what the PLC runs, shows values, and no power.
+        let encoded = encoded(workspace, &self.uri).ok();
+        let image = encoded.and_then(|encoded| Image::new(status.parameters, &encoded.words));
+        self.sum = image.map(|image| image.parameters().sum());
         self.code = compiled(&self.files).ok().map(|(_, watched)| watched);
+        self.unknown.clear();
         let named = self.names.iter().filter_map(|name| {
             let point = Point::named(name, target).filter(|point| point.is_reached(target))?;
             Some((name.clone(), point))
@@ -104,13 +121,25 @@ impl Watching {
                             !matches!(flow, Flow::Straight | Flow::Nothing | Flow::ProgramEnd)
                         })
                     });
+                let is_known = |operation: crate::document::Operation<'_>| {
+                    let operands = operation.operands.iter();
+                    !operands.clone().any(|operand| is_computed(&operand.value))
+                };
+                if is_shown && !reading.operations().all(is_known) {
+                    self.unknown.push(span);
+                }
                 if is_wanted {
                     shown.extend(reading.operations().flat_map(|operation| devices(operation.operands)));
                 }
             }
         }
         points.extend(shown.into_iter().flat_map(points_of).filter(|point| point.is_reached(target)));
-        points.truncate(MOST_POINTS.max(self.known.len()));
+        let most = MOST_POINTS.max(self.known.len());
+        if points.len() > most {
+            points.truncate(most);
+            // More than is read: what is shown depends on something that is not.
+            self.unknown.push(0..usize::MAX);
+        }
         let code = self.code.as_ref();
         let variable = |point: &Point| code.and_then(|code| code.variable(&point.to_string()));
         self.variables = points.iter().map(variable).collect();
@@ -128,15 +157,20 @@ impl Watching {
         &mut self,
         host: &mut Host<T>,
         workspace: &Workspace,
-        mode: Mode,
+        status: &Status,
     ) -> Result<Option<Picture>, LinkError> {
+        let mode = status.mode;
+        if workspace.snapshot().open(&self.uri).is_none_or(|open| !open.is_open) {
+            return Ok(None);
+        }
         let is_same = |(uri, version, document): &(Uri, i32, Document)| {
             let snapshot = workspace.snapshot();
             snapshot
                 .open(uri)
                 .is_none_or(|open| open.version == *version && open.document.is_instance(document))
         };
-        if !self.files.iter().all(is_same) && self.follow(workspace, host.identity().target).is_err() {
+        if !self.files.iter().all(is_same) && self.follow(workspace, host.identity().target, status).is_err()
+        {
             return Ok(None);
         }
         if self.monitor.is_empty() {
@@ -161,7 +195,7 @@ impl Watching {
             let shown = self.monitor.instructions(code);
             let mut sights = Vec::new();
             // No power flows in a program that is not executed.
-            if mode == Mode::Run {
+            if mode == Mode::Run && self.sum == Some(status.parameters.sum()) {
                 machine.scan_watched(now_ns - start, &mut |sight| {
                     if shown.contains(&sight.instruction) {
                         sights.push(sight);
@@ -170,6 +204,16 @@ impl Watching {
                 });
             }
             elements = self.monitor.elements(place, code, &sights, machine);
+            let unknown: Vec<Range> = self
+                .unknown
+                .iter()
+                .map(|bytes| place.range(Span::new(bytes.start, bytes.end.min(document.len()))))
+                .collect();
+            elements.retain(|element| {
+                let line = element["range"]["start"]["line"].as_u64().unwrap_or(0) as u32;
+                element["kind"] == "value"
+                    || !unknown.iter().any(|range| range.start.line <= line && line < range.end.line.max(1))
+            });
         }
         let named = self.known.iter().zip(self.watch.points().iter().zip(&values));
         let values = named.map(|(name, (point, value))| {
@@ -206,4 +250,9 @@ fn points_of(device: Device) -> Vec<Point> {
         true => vec![Point::Bit(device, Part::Contact), Point::Bit(device, Part::Coil), Point::Word(device)],
         false => Point::of_device(device).into_iter().collect(),
     }
+}
+
+/// Whether which devices an operand reads depends on its digits or an index: those are not read.
+fn is_computed(operand: &Operand) -> bool {
+    matches!(operand, Operand::Indexed { .. } | Operand::Nibbles { .. })
 }
