@@ -100,11 +100,17 @@ async function repair(workbench) {
 
 async function hover(workbench) {
   await workbench.openFile('conveyor_fx.il');
+  // Lenses move the lines below them.
+  await workbench.page.locator('.codelens-decoration', { hasText: 'steps' }).first().waitFor({ timeout: 45_000 });
   const word = workbench.page.locator('.editor-instance .view-line span span', { hasText: /^MOV$/ }).first();
   await word.hover();
   const text = await workbench.until('a hover', async () => {
     const shown = workbench.page.locator('.monaco-hover:visible').first();
     const content = (await shown.count()) > 0 ? await shown.innerText() : '';
+    if (content !== '' && !content.includes('MOV')) {
+      await workbench.page.mouse.move(5, 5);
+      await word.hover();
+    }
     return content.includes('MOV') && content;
   });
   if (/Loading/.test(text)) {
