@@ -69,11 +69,6 @@ impl<T: Transport> Host<T> {
         &mut self.line
     }
 
-    /// The line, when the host has done what it had to.
-    pub fn into_line(self) -> Line<T> {
-        self.line
-    }
-
     fn dialect(&self) -> Dialect {
         Dialect::of(self.identity.target)
     }

@@ -165,11 +165,6 @@ impl<T: Transport> Line<T> {
         self.transport.now()
     }
 
-    /// The transport, when the line is no longer needed.
-    pub fn into_transport(self) -> T {
-        self.transport
-    }
-
     fn check_cancelled(&self) -> Result<(), LinkError> {
         if self.cancel.load(Ordering::Relaxed) { Err(LinkError::Cancelled) } else { Ok(()) }
     }

@@ -2,7 +2,7 @@
 
 use super::{Host, Point};
 use crate::link::{LinkError, Mode, Part, Transport};
-use crate::machine_code::{PARAMETER_ADDRESS, ParameterBlock};
+use crate::machine_code::ParameterBlock;
 use crate::target::{Device, DeviceKind};
 
 /// How a PLC is.
@@ -39,8 +39,7 @@ impl<T: Transport> Host<T> {
     /// If the line fails.
     pub fn status(&mut self) -> Result<Status, LinkError> {
         let mode = self.mode()?;
-        let block = self.read_program(PARAMETER_ADDRESS, 2 * ParameterBlock::WORDS, &mut |_, _| {})?;
-        let words: Vec<u16> = block.as_chunks::<2>().0.iter().map(|word| u16::from_le_bytes(*word)).collect();
+        let parameters = self.raw_parameters()?;
         let relays = ERRORS.map(|number| Point::Bit(Device::new(DeviceKind::M, number), Part::Contact));
         let registers = ERRORS.map(|number| Point::Word(Device::new(DeviceKind::D, number)));
         let points: Vec<Point> = relays.chain(registers).chain([Point::Word(SCAN_TIME)]).collect();
@@ -55,7 +54,7 @@ impl<T: Transport> Host<T> {
         };
         Ok(Status {
             mode,
-            parameters: ParameterBlock::from_words(&words),
+            parameters,
             scan_time_ms: values.last().map_or(0.0, |tenths| *tenths as f64 / 10.0),
             errors: (0..count).filter_map(error).collect(),
         })
