@@ -2,6 +2,7 @@
 //! and a plain answer wherever there is one.
 
 use rungwise::document::{Document, Notation};
+use rungwise::scenario::shown;
 use rungwise::target::{Model, Target};
 use rungwise::translate::{Proof, prove};
 
@@ -11,7 +12,20 @@ fn verdict(left: &str, right: &str) -> &'static str {
         let text = format!("{}\nEND\n", text.replace(';', "\n"));
         Document::new(&text, Notation::FxIl, Target::of(Model::Fx3u))
     };
-    word(&prove(&document(left), &document(right)))
+    let names = ["left", "right"].map(String::from);
+    let [left, right] = [document(left), document(right)];
+    word(&shown(prove(&left, &right), [&left, &right], &names))
+}
+
+#[test]
+fn what_a_master_control_leaves_out_differs_where_that_is_seen() {
+    check(
+        &[
+            ("LD X0;MC N0 M100;LD X1;OUT Y0;MCR N0", "LD X0;MC N0 M100;LD X2;OUT Y0;MCR N0"),
+            ("LD X0;MC N0 M100;LD X1;SET Y0;MCR N0", "LD X0;MC N0 M100;LD X1;OUT Y0;MCR N0"),
+        ],
+        |verdict| verdict == "different",
+    );
 }
 
 fn word(proof: &Proof) -> &'static str {
@@ -66,6 +80,11 @@ fn what_looks_elsewhere_is_never_equal() {
                 "LD= K1M8020 K1;OUT Y20;LD X0;ADD D0 D1 D2;LD= K1M8020 K1;OUT Y21",
                 "LD= K1M8020 K1;OUT Y20;LD X0;ADD D0 D1 D2;LD Y20;OUT Y21",
             ),
+            // The contact for an edge of these relays that is executed first takes it from the others.
+            ("LDP M2800;AND X1;OUT Y0;LDP M2800;OUT Y1", "LDP M2800;OUT Y1;LDP M2800;AND X1;OUT Y0"),
+            ("LDP M2800;AND X1;ORP M2800;OUT Y0", "LDP M2800;OUT Y0"),
+            ("LD X0;LDP M2800;AND X0;ORB;OUT Y0;LDP M2800;OUT Y1", "LD X0;OUT Y0;LDP M2800;OUT Y1"),
+            ("LDF M3071;OUT Y0;LD X0;OUT M3071", "LD X0;OUT M3071;LDF M3071;OUT Y0"),
             // Power may be missing at the left rail.
             ("LD X7;MC N0 M100;LD X0;OUT Y0;MCR N0", "LD X7;MC N0 M100;LD X0;SET Y0;LDI X0;RST Y0;MCR N0"),
         ],
@@ -91,6 +110,11 @@ fn what_ends_each_scan_alike_is_never_different() {
             ("LD>= D0 D1;AND>= D1 D2;OUT Y0", "LD>= D0 D1;AND>= D1 D2;AND>= D0 D2;OUT Y0"),
             ("LD= K1X0 K0;OUT Y0", "LDI X0;ANI X1;ANI X2;ANI X3;OUT Y0"),
             ("LDD= D0 K0;OUT Y0", "LD= D0 K0;AND= D1 K0;OUT Y0"),
+            // What a master control leaves out has the power that switches it on.
+            (
+                "LD X0;MC N0 M100;LD X1;AND X0;OUT Y0;MCR N0",
+                "LD X0;MC N0 M100;LD X1;OUT Y0;MCR N0",
+            ),
             // An edge of a bit that was not changed in between is the same edge.
             ("LD M0;OUT M0;LDP M0;OUT Y0", "LDP M0;OUT Y0;LD M0;OUT M0"),
         ],
@@ -106,6 +130,8 @@ fn what_is_the_same_is_equal() {
             ("LD M8000;AND X0;OUT Y0", "LD X0;ANI M8001;OUT Y0"),
             ("LD X0;OUT Y0;END;LD X1;OUT Y1", "LD X0;OUT Y0;END;LD X2;OUT Y1"),
             ("LD X0;OUT M0;LD M0;OUT Y0", "LD X0;OUT M0;LD X0;OUT Y0"),
+            ("LDP M2799;AND X1;ORP M2799;OUT Y0", "LDP M2799;OUT Y0"),
+            ("LDP M2800;AND X1;OUT Y0;LDP M2800;OUT Y1", "LD X1;ANDP M2800;OUT Y0;LDP M2800;OUT Y1"),
             ("LD X0;OR X1;OUT Y0", "LDI X0;ANI X1;INV;OUT Y0"),
         ],
         |verdict| verdict == "equal",

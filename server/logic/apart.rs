@@ -53,13 +53,13 @@ pub fn apart(text: &str, graph: &Graph) -> Option<Path> {
 /// first output.
 fn is_proved(text: &str, graph: &Graph, outputs: &[(VertexId, ElementId)], path: &Path) -> bool {
     let mut formulas = Formulas::default();
-    let start = Run::new();
+    let mut start = Run::new();
     let mut powers: FxHashMap<VertexId, Formula> = FxHashMap::default();
     let mut run = Run::new();
     run.path(path, &mut formulas);
     run.effects.len() == outputs.len()
         && outputs.iter().zip(&run.effects).all(|((vertex, _), effect)| {
-            let power = power_before(*vertex, text, graph, &start, &mut powers, &mut formulas);
+            let power = power_before(*vertex, text, graph, &mut start, &mut powers, &mut formulas);
             power.is_some_and(|power| equal(&mut formulas, power, effect.guard) == Verdict::Equal)
         })
 }
@@ -69,7 +69,7 @@ fn power_before(
     at: VertexId,
     text: &str,
     graph: &Graph,
-    start: &Run<'_>,
+    start: &mut Run<'_>,
     powers: &mut FxHashMap<VertexId, Formula>,
     formulas: &mut Formulas,
 ) -> Option<Formula> {

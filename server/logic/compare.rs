@@ -36,6 +36,8 @@ pub enum Comparison {
     Doubtful,
     /// This action finds other values on either side, and nobody knows what it makes of them.
     Open(String),
+    /// Contacts for edges of this relay, which gives each edge to one of them, are not executed alike.
+    AsksOtherwise(SmolStr),
 }
 
 /// What differs between two runs.
@@ -67,6 +69,9 @@ pub fn compare_but(
             let is_driven = effect.event.is_none() && effect.deed() == Deed::Coil(CoilKind::Plain);
             !is_driven || !helpers.contains(&term.key())
         });
+    }
+    if let Some(relay) = left.asks_otherwise(&right) {
+        return Comparison::AsksOtherwise(relay.clone());
     }
     let pairs = left.effects.iter().zip(&right.effects);
     if left.effects.len() != right.effects.len() || pairs.clone().any(|(left, right)| !left.is_like(right)) {
@@ -106,6 +111,9 @@ pub fn compare_outcome(
     };
     if events(&left) != events(&right) || pairs().any(|(left, right)| !left.is_like(right)) {
         return Comparison::Unlike;
+    }
+    if let Some(relay) = left.asks_otherwise(&right) {
+        return Comparison::AsksOtherwise(relay.clone());
     }
     let in_step = in_step([&left, &right], known, formulas);
     let mut open = None;

@@ -226,7 +226,7 @@ pub(super) fn axioms(formulas: &mut Formulas, wanted: &[Formula]) -> Vec<Formula
     let mut numbers: BTreeMap<Moment, Vec<i64>> = BTreeMap::new();
     for atom in atoms {
         match formulas.atom_at(atom).clone() {
-            Atom::Bit(_) | Atom::NoNumber(_) | Atom::Behind(_) | Atom::Rail => {}
+            Atom::Bit(_) | Atom::SingleEdge(_) | Atom::NoNumber(_) | Atom::Behind(_) | Atom::Rail => {}
             Atom::Edge { of, value, rising } => {
                 let edge = formulas.atom(Atom::Edge { of: of.clone(), value, rising });
                 let bit = value.unwrap_or_else(|| formulas.atom(Atom::Bit(of)));

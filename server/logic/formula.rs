@@ -40,6 +40,9 @@ pub enum Atom {
         /// On, or off.
         rising: bool,
     },
+    /// What a contact for an edge finds whose relay has [one memory](crate::target::Device::has_single_edge) for all of
+    /// them: the step that asking is.
+    SingleEdge(u32),
     /// Whether a word is at least as large as a number.
     Reaches {
         /// The word.
@@ -80,6 +83,17 @@ pub enum Step {
         number: u32,
         /// The step before, where more is left of that than the event itself leaves.
         before: u32,
+    },
+    /// A contact for an edge was executed that takes it from those behind it.
+    Asked {
+        /// The one of the same relay that was executed before.
+        before: u32,
+        /// The relay when it was asked.
+        of: Moment,
+        /// Its value then, if the run gave it one.
+        value: Option<Formula>,
+        /// On, or off.
+        rising: bool,
     },
     /// A bit that was driven.
     Driven {

@@ -70,6 +70,8 @@ pub struct Run<'p> {
     flags: u32,
     /// The last event that may have changed whatever is no plain variable of the own program unit.
     known: u32,
+    /// The last contact for an edge of each relay that has one memory for all of them.
+    asked: FxHashMap<SmolStr, u32>,
     /// Whether states are relays like others, as in a program without steps.
     has_plain_states: bool,
 }
@@ -104,6 +106,7 @@ impl<'p> Run<'p> {
             rail: Formulas::TRUE,
             flags: 0,
             known: 0,
+            asked: FxHashMap::default(),
             has_plain_states: false,
         }
     }
@@ -147,6 +150,12 @@ impl<'p> Run<'p> {
     /// How many events there were.
     pub fn events(&self) -> u32 {
         self.events
+    }
+
+    /// A relay whose edges contacts of the two runs took in different ways, so that those of later scans differ.
+    pub fn asks_otherwise<'r>(&'r self, other: &'r Run<'_>) -> Option<&'r SmolStr> {
+        let mut relays = self.asked.keys().chain(other.asked.keys());
+        relays.find(|relay| self.asked.get(*relay) != other.asked.get(*relay))
     }
 
     /// Whether only bits were driven.
@@ -205,7 +214,7 @@ impl<'p> Run<'p> {
     }
 
     /// Whether `expression` lets power pass where the run stands.
-    pub fn condition(&self, expression: &Expression, formulas: &mut Formulas) -> Formula {
+    pub fn condition(&mut self, expression: &Expression, formulas: &mut Formulas) -> Formula {
         match expression {
             Expression::Constant(value) => Formulas::constant(*value),
             Expression::Contact(contact) => self.contact(contact, formulas),
@@ -224,8 +233,8 @@ impl<'p> Run<'p> {
         }
     }
 
-    /// Whether a contact conducts where the run stands.
-    pub fn contact(&self, contact: &Contact, formulas: &mut Formulas) -> Formula {
+    /// Whether a contact conducts where the run stands, which may take an edge from those behind it.
+    pub fn contact(&mut self, contact: &Contact, formulas: &mut Formulas) -> Formula {
         match (contact.test, &contact.terms[..]) {
             (Test::Bit(kind), [term]) => match kind {
                 ContactKind::NormallyOpen => self.bit(term, formulas),
@@ -236,8 +245,16 @@ impl<'p> Run<'p> {
                 ContactKind::Rising | ContactKind::Falling => {
                     let name = term.key();
                     let value = self.value(term, &name);
-                    let of = self.moment(term, name, formulas);
-                    formulas.atom(Atom::Edge { of, value, rising: kind == ContactKind::Rising })
+                    let rising = kind == ContactKind::Rising;
+                    let is_single = matches!(term.operand, Operand::Device(device) if device.has_single_edge());
+                    let of = self.moment(term, name.clone(), formulas);
+                    if !is_single {
+                        return formulas.atom(Atom::Edge { of, value, rising });
+                    }
+                    let before = self.asked.get(&name).copied().unwrap_or(0);
+                    let step = formulas.step(Step::Asked { before, of, value, rising });
+                    self.asked.insert(name, step);
+                    formulas.atom(Atom::SingleEdge(step))
                 }
             },
             (Test::Compare(operator), [left, right]) => self.compare(operator, left, right, formulas),

@@ -32,15 +32,21 @@ const SCANS_NS: [i64; 3] = [USUAL_SCAN_NS, 1_000_000_000, 60_000_000_000];
 /// The current value of a timer that has run out, whatever its preset.
 const RUN_OUT: i64 = i16::MAX as i64;
 
-/// `proof` with the difference, if there is one, as the two programs show it on the simulated PLC.
+/// `proof` with the difference, if there is one, as the two programs show it on the simulated PLC. One that rungs may be
+/// left out of is none if they do not.
 pub fn shown(proof: Proof, documents: [&Document; 2], names: &[String; 2]) -> Proof {
     let Proof::Different(found) = proof else { return proof };
     let shown = match Trial::of(&found, documents, names) {
         Ok(mut trial) => trial.shown(&found),
         Err(reason) => Err(reason),
     };
-    let told = shown.unwrap_or_else(|reason| Counterexample { shown: Shown::Not(reason), ..*found });
-    Proof::Different(Box::new(told))
+    match shown {
+        Ok(told) => Proof::Different(Box::new(told)),
+        Err(_) if found.may_be_off => {
+            Proof::Undecided { reason: Message::new("prove.left-out"), at: found.at }
+        }
+        Err(reason) => Proof::Different(Box::new(Counterexample { shown: Shown::Not(reason), ..*found })),
+    }
 }
 
 /// Two programs that are tried.
@@ -186,6 +192,7 @@ impl Trial {
             sides: seen.values.each_ref().map(held),
             at: found.at,
             keys: BTreeMap::new(),
+            may_be_off: found.may_be_off,
             shown: Shown::Runs(attempt.run),
         })
     }

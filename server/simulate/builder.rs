@@ -15,8 +15,6 @@ use smol_str::SmolStr;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Relays whose edge only the contact sees that is executed first.
-const SINGLE_EDGES: std::ops::RangeInclusive<u32> = 2800..=3071;
 
 /// Where a contact stands.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -384,13 +382,13 @@ impl Builder {
     }
 
     /// The edge that a contact sees: of M2800 to M3071 on an FX2N and later the first one that is executed after the
-    /// change, so that one signal takes a sequence on by one step. Source: the FX programming manuals on these relays.
+    /// change, so that one signal takes a sequence on by one step.
     fn contact_edge(&mut self, cell: Cell, is_rising: bool) -> Cell {
         let is_single = matches!(self.target.model, Model::Fx2n | Model::Fx3u)
             && self
                 .layout
                 .device_of_cell(cell)
-                .is_some_and(|device| device.kind == DeviceKind::M && SINGLE_EDGES.contains(&device.number));
+                .is_some_and(Device::has_single_edge);
         if !is_single {
             return self.edge(cell, is_rising);
         }

@@ -138,6 +138,12 @@ impl Device {
         self.kind == DeviceKind::T && self.number < 246
     }
 
+    /// Whether contacts for its edge share one memory, so that only the first one that is executed after a change sees
+    /// it: M2800 to M3071, which the FX2N and FX3U have. Source: the FX programming manuals on these relays.
+    pub fn has_single_edge(self) -> bool {
+        self.kind == DeviceKind::M && (2800..=3071).contains(&self.number)
+    }
+
     /// Its value in every scan of a running CPU, if it has only one.
     pub fn always(self) -> Option<bool> {
         match self {

@@ -159,7 +159,10 @@ fn judge(
         Comparison::Different { .. } | Comparison::Unlike => {
             (Certificate::Undecided, Some("translate.different"))
         }
-        Comparison::Undecided | Comparison::Doubtful | Comparison::Open(_) => {
+        Comparison::Undecided
+        | Comparison::Doubtful
+        | Comparison::Open(_)
+        | Comparison::AsksOtherwise(_) => {
             (Certificate::Undecided, Some("translate.undecided"))
         }
     }

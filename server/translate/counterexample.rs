@@ -28,6 +28,8 @@ pub struct Counterexample {
     pub at: [Option<Span>; 2],
     /// What programs that name it otherwise call what is named here: names of one address have its spelling.
     pub keys: BTreeMap<String, SmolStr>,
+    /// Whether a master control or a step may leave out what differs: then it counts only if the simulated PLC shows it.
+    pub may_be_off: bool,
     /// Whether the simulated PLC shows it.
     pub shown: Shown,
 }
@@ -307,7 +309,7 @@ pub(super) fn state(formulas: &Formulas, values: &BTreeMap<u32, bool>) -> Option
             Atom::Behind(event) => state.left_behind.entry(*event).or_default().passes = *value,
             // What a PLC makes of it, nobody knows.
             Atom::NoNumber(_) if *value => return None,
-            Atom::NoNumber(_) | Atom::Rail | Atom::Reaches { .. } | Atom::AtLeast { .. } => {}
+            Atom::NoNumber(_) | Atom::SingleEdge(_) | Atom::Rail | Atom::Reaches { .. } | Atom::AtLeast { .. } => {}
         }
     }
     for (of, driven, rising) in idle {
@@ -417,7 +419,7 @@ fn may_hold(word: DirectAddress, bit: DirectAddress) -> bool {
 fn event(formulas: &Formulas, of: &Moment) -> Option<u32> {
     match formulas.step_at(of.since)? {
         Step::Event { number, .. } => Some(*number),
-        Step::Driven { .. } => None,
+        Step::Driven { .. } | Step::Asked { .. } => None,
     }
 }
 

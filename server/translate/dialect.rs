@@ -40,7 +40,7 @@ mod to_devices;
 mod to_variables;
 
 use self::guarded::Guard;
-use self::lack::{Lack, without};
+use self::lack::{Lack, single_edge, without};
 use self::registers::Registers;
 use super::To;
 use super::source::{Program, Source};

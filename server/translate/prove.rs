@@ -324,6 +324,9 @@ impl<'s> Prover<'s> {
             Comparison::Open(what) => {
                 Err(Proof::Undecided { reason: Message::new("prove.open").with("what", what), at })
             }
+            Comparison::AsksOtherwise(relay) => {
+                Err(Proof::Undecided { reason: Message::new("prove.single-edge").with("relay", relay), at })
+            }
             Comparison::Unlike => undecided("prove.unlike"),
             Comparison::Different { place: Place::Bit(key), .. } if self.is_driven_behind(sides, &key) => {
                 let found = self.beyond(sides).or_else(|| self.by_running(state, sides));
@@ -446,8 +449,17 @@ impl Prover<'_> {
         let Inputs { inputs, before, mut keys } = counterexample::inputs(state, [&own[0], &own[1]], type_of);
         keys.insert(what.clone(), key);
         let sides = values.map(Value::Bit);
-        let shown = Shown::Untried;
-        Proof::Different(Box::new(Counterexample { inputs, before, what, sides, at, keys, shown }))
+        let (may_be_off, shown) = (self.may_be_off, Shown::Untried);
+        Proof::Different(Box::new(Counterexample {
+            inputs,
+            before,
+            what,
+            sides,
+            at,
+            keys,
+            may_be_off,
+            shown,
+        }))
     }
 
     /// The difference that is there at the end of a scan when both programs are run from a state in which something

@@ -398,7 +398,8 @@ fn possible(slice: &Slice, formulas: &Formulas, values: &BTreeMap<u32, bool>) ->
             Atom::Edge { of, rising, .. } if *value => {
                 inputs.push(format!("`{}{}`", slice.name(&of.name), if *rising { '↑' } else { '↓' }));
             }
-            Atom::Bit(_) | Atom::NoNumber(_) | Atom::Edge { .. } | Atom::Behind(_) | Atom::Rail => {}
+            Atom::Bit(_) | Atom::NoNumber(_) | Atom::Edge { .. } => {}
+            Atom::SingleEdge(_) | Atom::Behind(_) | Atom::Rail => {}
             Atom::Reaches { word, number } => {
                 let sign = if *value { ">=" } else { "<" };
                 inputs.push(format!("`{} {sign} {number}`", slice.name(&word.name)));

@@ -220,7 +220,7 @@ impl<'p> Part<'p> {
 
     /// Why it makes no difference, in one line, and the contact that does its work.
     fn reason(&self, formulas: &mut Formulas) -> (Message, Option<&'p Contact>) {
-        let run = logic::Run::new();
+        let mut run = logic::Run::new();
         let mut of = |expression: &Expression| run.condition(expression, formulas);
         let own = of(self.expression);
         let series: Vec<Formula> = self.series.iter().map(|part| of(part)).collect();

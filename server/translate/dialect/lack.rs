@@ -1,6 +1,8 @@
 //! Why something has no words in the other language.
 
-use crate::logic::{Action, Contact, Deed, Refusal, Test};
+use crate::ladder::ContactKind;
+use crate::logic::{Action, Contact, Deed, Refusal, Term, Test};
+use crate::target::Operand;
 use crate::text::Message;
 use smol_str::{SmolStr, format_smolstr};
 
@@ -77,4 +79,15 @@ impl Lack {
 /// A lack where nothing stands for it in the other language.
 pub(super) fn without<T>(counterpart: Option<T>) -> Result<T, Lack> {
     counterpart.ok_or(Lack::Unnamed)
+}
+
+/// Whether a contact of this kind has a counterpart for `term`, a device: edges that go to one contact alone have none.
+pub(super) fn single_edge(kind: ContactKind, term: &Term) -> Result<(), Lack> {
+    let is_edge = matches!(kind, ContactKind::Rising | ContactKind::Falling);
+    match term.operand {
+        Operand::Device(device) if is_edge && device.has_single_edge() => {
+            Err(Lack::Reason("translate.single-edge", term.text.clone()))
+        }
+        _ => Ok(()),
+    }
 }

@@ -3,7 +3,7 @@
 use super::super::source::Program;
 mod calculation;
 
-use super::{Lack, PULSE, Registers, device_at, devices_at, pair_at, without};
+use super::{Lack, PULSE, Registers, device_at, devices_at, pair_at, single_edge, without};
 use crate::document::{DeclaredType, Scopes};
 use crate::il::iec::SectionKind;
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
@@ -258,7 +258,9 @@ impl Converter<'_> {
                         _ => Err(Lack::Unnamed),
                     };
                 }
-                (contact.test, vec![self.bit(term)?])
+                let term = self.bit(term)?;
+                single_edge(kind, &term)?;
+                (contact.test, vec![term])
             }
             (Test::Compare(operator), [left, right]) => {
                 let width = self.types.width(&contact.terms);

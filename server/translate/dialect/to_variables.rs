@@ -3,7 +3,7 @@
 mod applied;
 
 use super::registers::is_wide_counter;
-use super::{Lack, PULSE, Registers, address, pair_address, without};
+use super::{Lack, PULSE, Registers, address, pair_address, single_edge, without};
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{
     Action, Call, Callee, Computation, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test,
@@ -78,7 +78,10 @@ impl Converter<'_> {
             (Test::Bit(kind), [term]) => match (term.always(), kind) {
                 (Some(value), ContactKind::NormallyOpen) => return Ok(Expression::Constant(value)),
                 (Some(value), ContactKind::NormallyClosed) => return Ok(Expression::Constant(!value)),
-                _ => (contact.test, vec![self.bit(term)?]),
+                _ => {
+                    single_edge(kind, term)?;
+                    (contact.test, vec![self.bit(term)?])
+                }
             },
             // What is compared tells how wide it is.
             (Test::Compare(operator), [left, right]) => {
