@@ -13,7 +13,7 @@ const KEPT: &str = "LD X0\nOUT Y0\nOR X1\nOUT Y1\nEND\n";
 fn a_list_is_drawn_listed_and_written_as_equations_with_proof() {
     let folder = folder(&[("motor.il", MOTOR)]);
     let (code, drawn, err) = run(&folder, &["translate", "motor.il", "--to", "ladder", "--prove"]);
-    assert_eq!((code, err.contains("1 proved equal, 1 equal by construction")), (0, true), "{err}");
+    assert_eq!((code, err.contains("2 rungs: 1 proved equal, 1 equal by construction")), (0, true), "{err}");
     assert!(drawn.contains("; start\n|   X0        X1 "), "{drawn}");
     let (code, out, _) = run(&folder, &["translate", "motor.il", "--to", "ladder", "-o", "motor.lad"]);
     assert_eq!((code, out.as_str()), (0, ""));
@@ -41,8 +41,9 @@ fn what_has_no_other_form_is_carried_along_and_told() {
     let (code, out, err) = run(&folder, &["translate", "bridge.lad", "--to", "fx"]);
     assert_eq!((code, out.contains("; +---| |---+")), (1, true), "{out}");
     assert!(err.contains("neither series nor parallel"), "{err}");
-    let (code, out, _) = run(&folder, &["translate", "bridge.lad", "--to", "fx", "--prove", "-o", "x.il"]);
+    let (code, out, err) = run(&folder, &["translate", "bridge.lad", "--to", "fx", "--prove", "-o", "x.il"]);
     assert_eq!((code, out.as_str(), folder.path().join("x.il").exists()), (1, "", false));
+    assert!(err.contains("nothing is written to x.il: not all of it is proved"), "{err}");
 }
 
 #[test]
@@ -110,8 +111,14 @@ fn a_scenario_of_a_proof_passes_with_the_first_program_and_fails_with_the_second
 
 #[test]
 fn a_proof_of_other_structures_is_not_decided() {
-    let folder =
-        folder(&[("one.il", "LD X0\nCJ P0\nLD X1\nOUT Y0\nP0\nLD X2\nOUT Y1\nEND\n"), ("two.il", MOTOR)]);
+    let jumping = "LD X0\nCJ P0\nLD X1\nOUT Y0\nP0\nLD X2\nOUT Y1\nEND\n";
+    let same = "LD X0\nCJ P0\nP1\nLD X1\nOUT Y0\nP0\nLD X2\nOUT Y1\nEND\n";
+    let folder = folder(&[("one.il", jumping), ("two.il", same), ("motor.il", MOTOR)]);
+    // Running both shows no difference, or one.
+    assert_eq!(
+        run(&folder, &["prove", "one.il", "motor.il"]).1.lines().next(),
+        Some("different: Y1 (one.il:1)")
+    );
     let (code, out, _) = run(&folder, &["prove", "one.il", "two.il", "--format", "json"]);
     let answer: Value = serde_json::from_str(&out).unwrap();
     assert_eq!((code, &answer["equal"]), (1, &Value::Null), "{out}");

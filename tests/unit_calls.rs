@@ -376,7 +376,7 @@ fn the_files_of_a_project_know_each_others_units() {
     let folder = folder(&files);
     let (code, drawn, err) = run(&folder, &["translate", "main.il", "--to", "ladder", "--prove"]);
     assert_eq!(code, 0, "{err}");
-    assert!(err.contains("0 proved equal, 2 equal by construction, 0 not decided"), "{err}");
+    assert!(err.contains("2 rungs: 0 proved equal, 2 equal by construction, 0 not decided"), "{err}");
     assert!(drawn.contains("Pump") && !drawn.contains("{il"), "{drawn}");
     // A file beside those of the project stands for the one that it is compared with.
     std::fs::write(folder.path().join("other.lad"), &drawn).unwrap();

@@ -6,6 +6,7 @@ use super::fmt::style_of;
 use super::input::{Program, complain, put, remark};
 use super::prove;
 use crate::document::{Document, Notation};
+use crate::ide::rungs_counted;
 use crate::target::{Model, Target};
 use crate::text::{Encoding, Language, Message, position_of};
 use crate::translate::to_boolean::Notation as Equations;
@@ -74,6 +75,10 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     tell(program, &translation, arguments.prove, language);
     let is_certain = translation.is_certain();
     if arguments.prove && !is_certain {
+        if let Some(output) = &arguments.output {
+            let message = Message::new("cli.not-written").with("path", output.display());
+            remark(&message.render(language));
+        }
         return Outcome::Findings;
     }
     if !put(&translation.text, arguments.output.as_deref(), language) {
@@ -137,7 +142,7 @@ fn tell(program: &Program, translation: &Translation, proves: bool, language: La
         let rungs = || translation.rungs.iter().filter(|rung| !rung.result.is_empty());
         let count = |certificate| rungs().filter(|rung| rung.certificate == Some(certificate)).count();
         let summary = Message::new("cli.certificates")
-            .with("rungs", rungs().count())
+            .with_messages("rungs", vec![rungs_counted(rungs().count())])
             .with("proved", count(Certificate::Proved))
             .with("construction", count(Certificate::Construction))
             .with("undecided", count(Certificate::Undecided));

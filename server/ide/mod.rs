@@ -79,7 +79,7 @@ mod allowing;
 mod status;
 
 mod summary;
-pub use summary::Summary;
+pub use summary::{Summary, rungs_counted};
 
 mod drawing;
 pub use drawing::{EditKind, Edited, Object, ObjectKind, applicable_edits, edit};

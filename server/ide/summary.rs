@@ -39,7 +39,7 @@ impl Summary {
 
     /// `check passed: 4 rungs, 31 of 8000 steps`, or the numbers of what was found.
     pub fn sentence(&self) -> Message {
-        let rungs = counted(self.rungs, "counted.rung", "counted.rungs");
+        let rungs = rungs_counted(self.rungs);
         let hints = counted(self.hints, "counted.hint", "counted.hints");
         let size = match self.capacity {
             0 => rungs,
@@ -59,6 +59,11 @@ impl Summary {
         };
         message.with_messages("size", vec![size])
     }
+}
+
+/// `1 rung`, `2 rungs`.
+pub fn rungs_counted(count: usize) -> Message {
+    counted(count, "counted.rung", "counted.rungs")
 }
 
 fn counted(count: usize, one: &'static str, many: &'static str) -> Message {

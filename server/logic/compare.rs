@@ -28,8 +28,9 @@ pub enum Comparison {
         /// Values of atoms for which they do, by the number of the atom.
         values: BTreeMap<u32, bool>,
     },
-    /// They do not the same things in the same order.
-    Unlike,
+    /// They do not the same things in the same order: what comes on either side where they part, as people read it;
+    /// nothing where a side is at its end, or where both have the same words and mean something else.
+    Unlike([Option<String>; 2]),
     /// Too large a question.
     Undecided,
     /// They differ for values only that words need not have.
@@ -73,11 +74,10 @@ pub fn compare_but(
     if let Some(relay) = left.asks_otherwise(&right) {
         return Comparison::AsksOtherwise(relay.clone());
     }
-    let pairs = left.effects.iter().zip(&right.effects);
-    if left.effects.len() != right.effects.len() || pairs.clone().any(|(left, right)| !left.is_like(right)) {
-        return Comparison::Unlike;
+    if let Some(unlike) = unlike(left.effects.iter(), right.effects.iter()) {
+        return unlike;
     }
-    for (left, right) in pairs {
+    for (left, right) in left.effects.iter().zip(&right.effects) {
         let sides = [left.guard, right.guard];
         if let Some(difference) = difference(formulas, sides, || place_of(left)) {
             return difference;
@@ -104,20 +104,18 @@ pub fn compare_outcome(
     let known = known.map(|run| run.effects.len());
     let rail = if may_be_off { formulas.atom(Atom::Rail) } else { Formulas::TRUE };
     let [left, right] = [left, right].map(|paths| run(Run::by_outcome(rail), paths, formulas));
-    let events = |run: &Run<'_>| run.events() as usize;
-    let pairs = || {
-        let [left, right] = [&left, &right].map(|run| run.effects.iter().filter(|e| e.event.is_some()));
-        left.zip(right)
-    };
-    if events(&left) != events(&right) || pairs().any(|(left, right)| !left.is_like(right)) {
-        return Comparison::Unlike;
+    let events = || [&left, &right].map(|run| run.effects.iter().filter(|e| e.event.is_some()));
+    let [own, other] = events();
+    if let Some(unlike) = unlike(own, other) {
+        return unlike;
     }
     if let Some(relay) = left.asks_otherwise(&right) {
         return Comparison::AsksOtherwise(relay.clone());
     }
     let in_step = in_step([&left, &right], known, formulas);
     let mut open = None;
-    for (left, right) in pairs().skip(skipped) {
+    let [own, other] = events();
+    for (left, right) in own.zip(other).skip(skipped) {
         let sides = [left.guard, right.guard];
         if let Some(difference) = difference(formulas, sides, || place_of(left)) {
             return difference;
@@ -194,6 +192,35 @@ fn difference(
             let (what, place) = what();
             Some(Comparison::Different { what, place, sides: [sides[0], sides[1]], values })
         }
+    }
+}
+
+/// Where two rows of effects part; nothing if they do the same to the same operands.
+fn unlike<'a, 'p: 'a>(
+    left: impl Iterator<Item = &'a Effect<'p>>,
+    right: impl Iterator<Item = &'a Effect<'p>>,
+) -> Option<Comparison> {
+    let (mut left, mut right) = (left.fuse(), right.fuse());
+    loop {
+        let sides = [left.next(), right.next()];
+        match sides {
+            [None, None] => return None,
+            [Some(left), Some(right)] if left.is_like(right) => {}
+            _ => return Some(Comparison::Unlike(sides.map(|side| side.map(|effect| worded(effect.action))))),
+        }
+    }
+}
+
+/// An action with its operands: `MOV K5 D0`, `(S Y0)`, `(T0 K50)`, `T1(IN, T#1s)`.
+fn worded(action: &Action) -> String {
+    let words: Vec<&str> = action.terms.iter().map(|term| term.text.as_str()).collect();
+    match &action.deed {
+        Deed::Instruction(_) => shown(action),
+        Deed::Coil(kind) => format!("({})", format!("{} {}", kind.mark(), words.join(" ")).trim()),
+        Deed::Compute(computation) => format!("{}({})", computation.name(), words.join(", ")),
+        Deed::Call(_) => format!("{}({})", shown(action), words.get(1..).unwrap_or_default().join(", ")),
+        Deed::Jump => format!("-> {}", words.join(" ")),
+        Deed::Return => "RET".into(),
     }
 }
 

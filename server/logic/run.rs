@@ -246,7 +246,8 @@ impl<'p> Run<'p> {
                     let name = term.key();
                     let value = self.value(term, &name);
                     let rising = kind == ContactKind::Rising;
-                    let is_single = matches!(term.operand, Operand::Device(device) if device.has_single_edge());
+                    let is_single =
+                        matches!(term.operand, Operand::Device(device) if device.has_single_edge());
                     let of = self.moment(term, name.clone(), formulas);
                     if !is_single {
                         return formulas.atom(Atom::Edge { of, value, rising });

@@ -32,20 +32,23 @@ const SCANS_NS: [i64; 3] = [USUAL_SCAN_NS, 1_000_000_000, 60_000_000_000];
 /// The current value of a timer that has run out, whatever its preset.
 const RUN_OUT: i64 = i16::MAX as i64;
 
-/// `proof` with the difference, if there is one, as the two programs show it on the simulated PLC. One that rungs may be
-/// left out of is none if they do not.
+/// `proof` with the difference, if there is one, as the two programs show it on the simulated PLC. Where nothing was
+/// proved, a difference that they show is one all the same.
 pub fn shown(proof: Proof, documents: [&Document; 2], names: &[String; 2]) -> Proof {
-    let Proof::Different(found) = proof else { return proof };
-    let shown = match Trial::of(&found, documents, names) {
-        Ok(mut trial) => trial.shown(&found),
-        Err(reason) => Err(reason),
-    };
-    match shown {
-        Ok(told) => Proof::Different(Box::new(told)),
-        Err(_) if found.may_be_off => {
-            Proof::Undecided { reason: Message::new("prove.left-out"), at: found.at }
+    let seen = |found: &Counterexample| Trial::of(found, documents, names)?.shown(found);
+    match proof {
+        Proof::Equal { .. } => proof,
+        Proof::Different(found) => Proof::Different(Box::new(match seen(&found) {
+            Ok(told) => told,
+            Err(reason) => Counterexample { shown: Shown::Not(reason), ..*found },
+        })),
+        Proof::Undecided { ref suspect, at, .. } => {
+            // Programs of two families have timers and memory of different kinds.
+            let is_mixed = documents[0].target().is_fx() != documents[1].target().is_fx();
+            let nothing = Counterexample::unknown(at);
+            let found = suspect.as_deref().or((!is_mixed).then_some(&nothing));
+            found.and_then(|found| seen(found).ok()).map_or(proof, |told| Proof::Different(Box::new(told)))
         }
-        Err(reason) => Proof::Different(Box::new(Counterexample { shown: Shown::Not(reason), ..*found })),
     }
 }
 
@@ -146,7 +149,10 @@ impl Trial {
         }
         let handles = handles.into_iter().map(|(name, (own, other))| {
             let is_relay = matches!(own, Variable::Relay(_));
-            let is_settable = !is_relay || own.set(&codes[0], &Value::Bit(false)).is_some();
+            // Without a state from a proof to begin with, only those are set that any values go together of.
+            let is_loose = || !name.contains('.') && parts_of(&name).get(1).is_none_or(|own| *own == name);
+            let is_free = !found.what.is_empty() || is_loose();
+            let is_settable = is_free && (!is_relay || own.set(&codes[0], &Value::Bit(false)).is_some());
             Handle { name, own, is_settable, other }
         });
         let handles: Vec<Handle> = handles.collect();
@@ -192,7 +198,6 @@ impl Trial {
             sides: seen.values.each_ref().map(held),
             at: found.at,
             keys: BTreeMap::new(),
-            may_be_off: found.may_be_off,
             shown: Shown::Runs(attempt.run),
         })
     }

@@ -15,7 +15,6 @@ use smol_str::SmolStr;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-
 /// Where a contact stands.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Position {
@@ -385,10 +384,7 @@ impl Builder {
     /// change, so that one signal takes a sequence on by one step.
     fn contact_edge(&mut self, cell: Cell, is_rising: bool) -> Cell {
         let is_single = matches!(self.target.model, Model::Fx2n | Model::Fx3u)
-            && self
-                .layout
-                .device_of_cell(cell)
-                .is_some_and(Device::has_single_edge);
+            && self.layout.device_of_cell(cell).is_some_and(Device::has_single_edge);
         if !is_single {
             return self.edge(cell, is_rising);
         }

@@ -156,13 +156,10 @@ fn judge(
     match effort.ask(|formulas| compare_but(own, written, helpers, formulas)) {
         Comparison::Same { is_boolean: true } => (Certificate::Proved, None),
         Comparison::Same { is_boolean: false } => (Certificate::Construction, None),
-        Comparison::Different { .. } | Comparison::Unlike => {
+        Comparison::Different { .. } | Comparison::Unlike(_) => {
             (Certificate::Undecided, Some("translate.different"))
         }
-        Comparison::Undecided
-        | Comparison::Doubtful
-        | Comparison::Open(_)
-        | Comparison::AsksOtherwise(_) => {
+        Comparison::Undecided | Comparison::Doubtful | Comparison::Open(_) | Comparison::AsksOtherwise(_) => {
             (Certificate::Undecided, Some("translate.undecided"))
         }
     }

@@ -28,8 +28,6 @@ pub struct Counterexample {
     pub at: [Option<Span>; 2],
     /// What programs that name it otherwise call what is named here: names of one address have its spelling.
     pub keys: BTreeMap<String, SmolStr>,
-    /// Whether a master control or a step may leave out what differs: then it counts only if the simulated PLC shows it.
-    pub may_be_off: bool,
     /// Whether the simulated PLC shows it.
     pub shown: Shown,
 }
@@ -58,6 +56,19 @@ pub struct Run {
 }
 
 impl Counterexample {
+    /// A difference of which nothing is known but where the programs part.
+    pub fn unknown(at: [Option<Span>; 2]) -> Counterexample {
+        Counterexample {
+            inputs: BTreeMap::new(),
+            before: BTreeMap::new(),
+            what: String::new(),
+            sides: [Value::Bit(false), Value::Bit(true)],
+            at,
+            keys: BTreeMap::new(),
+            shown: Shown::Untried,
+        }
+    }
+
     /// How the simulated PLC shows it, if it does.
     pub fn run(&self) -> Option<Run> {
         match self.shown {
@@ -309,7 +320,11 @@ pub(super) fn state(formulas: &Formulas, values: &BTreeMap<u32, bool>) -> Option
             Atom::Behind(event) => state.left_behind.entry(*event).or_default().passes = *value,
             // What a PLC makes of it, nobody knows.
             Atom::NoNumber(_) if *value => return None,
-            Atom::NoNumber(_) | Atom::SingleEdge(_) | Atom::Rail | Atom::Reaches { .. } | Atom::AtLeast { .. } => {}
+            Atom::NoNumber(_)
+            | Atom::SingleEdge(_)
+            | Atom::Rail
+            | Atom::Reaches { .. }
+            | Atom::AtLeast { .. } => {}
         }
     }
     for (of, driven, rising) in idle {

@@ -36,7 +36,15 @@ pub enum Proof {
         reason: Message,
         /// The rung of the first program from which on, and that of the second, if there is one.
         at: [Option<Span>; 2],
+        /// A difference, if one is suspected: it counts if running both programs shows it.
+        suspect: Option<Box<Counterexample>>,
     },
+}
+
+impl Proof {
+    fn undecided(reason: Message, at: [Option<Span>; 2]) -> Proof {
+        Proof::Undecided { reason, at, suspect: None }
+    }
 }
 
 /// Compares two programs. If one is for the FX family and the other of IEC 61131-3, the devices of the one are the
@@ -69,14 +77,14 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
     let unlike = declared::difference([left, right], [&sources[0], &sources[1]], &paired)
         .or_else(|| declared::other_type([left, right], [&sources[0], &sources[1]]));
     if let Some((reason, at)) = unlike {
-        return Proof::Undecided { reason, at };
+        return Proof::undecided(reason, at);
     }
     for (document, sources) in [left, right].into_iter().zip(&mut sources).filter(|_| is_mixed) {
         dialect::refuse_other_types(document, sources);
     }
     let stretches = [0, 1].map(|side| stretches(&sources[side]));
     if let Some((reason, at)) = units::unlike([left, right], [&sources[0], &sources[1]]) {
-        return Proof::Undecided { reason, at };
+        return Proof::undecided(reason, at);
     }
     let may_be_off = sources.iter().flatten().any(leaves_out);
     let mut effort = Effort::of_program();
@@ -98,7 +106,7 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
         && !prover.paired.are(left.pou, right.pou)
     {
         let at = [left, right].map(|source| Some(source.span()));
-        return Proof::Undecided { reason: Message::new("prove.structure"), at };
+        return Proof::undecided(Message::new("prove.structure"), at);
     }
     let [left, right] = &stretches;
     let outcome = left.iter().zip(right).try_for_each(|(left, right)| prover.stretches(left, right));
@@ -107,7 +115,7 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
         Ok(()) if left.len() != right.len() => {
             let least = left.len().min(right.len());
             let at = [left, right].map(|side| side.get(least).and_then(Stretch::span));
-            Proof::Undecided { reason: Message::new("prove.structure"), at }
+            Proof::undecided(Message::new("prove.structure"), at)
         }
         Ok(()) => Proof::Equal { is_reordered: prover.is_reordered },
     }
@@ -244,7 +252,7 @@ impl<'s> Prover<'s> {
         };
         if !is_alike {
             let at = [left, right].map(|side| side.end.as_ref().map(End::span));
-            return Err(Proof::Undecided { reason: Message::new("prove.structure"), at });
+            return Err(Proof::undecided(Message::new("prove.structure"), at));
         }
         self.rungs([&left.rungs, &right.rungs])?;
         match (&left.end, &right.end) {
@@ -310,7 +318,7 @@ impl<'s> Prover<'s> {
             [0, 1].map(|side| self.before[side].iter().chain(&paths[side]).copied().collect::<Vec<&Path>>());
         let known = [self.before[0].len(), self.before[1].len()];
         let at = sides.map(|side| side.first().map(|(source, _)| source.span()));
-        let undecided = |key| Err(Proof::Undecided { reason: Message::new(key), at });
+        let undecided = |key| Err(Proof::undecided(Message::new(key), at));
         let (comparison, state) = self.compared([&left, &right], known, false);
         match comparison {
             // With no power at the rail they may do otherwise.
@@ -322,20 +330,20 @@ impl<'s> Prover<'s> {
             Comparison::Undecided => undecided("prove.undecided"),
             Comparison::Doubtful => undecided("prove.unconfirmed"),
             Comparison::Open(what) => {
-                Err(Proof::Undecided { reason: Message::new("prove.open").with("what", what), at })
+                Err(Proof::undecided(Message::new("prove.open").with("what", what), at))
             }
             Comparison::AsksOtherwise(relay) => {
-                Err(Proof::Undecided { reason: Message::new("prove.single-edge").with("relay", relay), at })
+                Err(Proof::undecided(Message::new("prove.single-edge").with("relay", relay), at))
             }
-            Comparison::Unlike => undecided("prove.unlike"),
+            Comparison::Unlike(sides) => Err(Proof::undecided(unlike(sides), at)),
             Comparison::Different { place: Place::Bit(key), .. } if self.is_driven_behind(sides, &key) => {
                 let found = self.beyond(sides).or_else(|| self.by_running(state, sides));
-                found.map_or_else(|| undecided("prove.driven-again"), Err)
+                found.map_or_else(|| undecided("prove.driven-again"), |found| Err(self.told(found)))
             }
             Comparison::Different { what, place, .. } => {
                 let found = self.different((what, place), state.clone(), [&left, &right], sides);
                 let found = found.or_else(|| self.by_running(state, sides));
-                found.map_or_else(|| undecided("prove.unconfirmed"), Err)
+                found.map_or_else(|| undecided("prove.unconfirmed"), |found| Err(self.told(found)))
             }
         }
     }
@@ -360,7 +368,7 @@ impl<'s> Prover<'s> {
 
     /// Looks beyond the calls of units that follow for a difference that lasts: one side drives before a call what the
     /// other drives behind it.
-    fn beyond(&mut self, sides: [Rungs<'_, 's>; 2]) -> Option<Proof> {
+    fn beyond(&mut self, sides: [Rungs<'_, 's>; 2]) -> Option<Counterexample> {
         if self.may_be_off {
             return None;
         }
@@ -398,12 +406,32 @@ impl<'s> Prover<'s> {
     }
 }
 
+/// That two sides do not the same, where they part.
+fn unlike(sides: [Option<String>; 2]) -> Message {
+    match sides {
+        [Some(left), Some(right)] if left != right => {
+            Message::new("prove.unlike").with("left", left).with("right", right)
+        }
+        [Some(what), None] | [None, Some(what)] => Message::new("prove.one-side").with("what", what),
+        _ => Message::new("prove.otherwise"),
+    }
+}
+
 /// The number of the first rung behind the one at `span`.
 fn behind(all: &[Source], span: Span) -> usize {
     all.partition_point(|source| source.span().start <= span.start)
 }
 
 impl Prover<'_> {
+    /// A proof that there is this difference, unless a master control or a step may leave out what differs.
+    fn told(&self, found: Counterexample) -> Proof {
+        let (at, found) = (found.at, Box::new(found));
+        match self.may_be_off {
+            true => Proof::Undecided { reason: Message::new("prove.left-out"), at, suspect: Some(found) },
+            false => Proof::Different(found),
+        }
+    }
+
     /// The difference that running both programs from `state` confirms. Formulas know less than a PLC: what they leave
     /// open may be what it never does.
     fn different(
@@ -412,7 +440,7 @@ impl Prover<'_> {
         state: Option<State>,
         paths: [&[&Path]; 2],
         sides: [Rungs<'_, '_>; 2],
-    ) -> Option<Proof> {
+    ) -> Option<Counterexample> {
         let types = self.types(sides);
         let type_of = |key: &str| types.get(key).copied();
         let state = state.filter(|state| counterexample::is_possible(state, &type_of))?;
@@ -444,27 +472,18 @@ impl Prover<'_> {
         at: [Option<Span>; 2],
         units: &[reached::Unit<'_>; 2],
         type_of: &dyn Fn(&str) -> Option<ElementaryType>,
-    ) -> Proof {
+    ) -> Counterexample {
         let own = units.each_ref().map(|unit| unit.paths());
         let Inputs { inputs, before, mut keys } = counterexample::inputs(state, [&own[0], &own[1]], type_of);
         keys.insert(what.clone(), key);
         let sides = values.map(Value::Bit);
-        let (may_be_off, shown) = (self.may_be_off, Shown::Untried);
-        Proof::Different(Box::new(Counterexample {
-            inputs,
-            before,
-            what,
-            sides,
-            at,
-            keys,
-            may_be_off,
-            shown,
-        }))
+        let shown = Shown::Untried;
+        Counterexample { inputs, before, what, sides, at, keys, shown }
     }
 
     /// The difference that is there at the end of a scan when both programs are run from a state in which something
     /// else differs on the way.
-    fn by_running(&self, state: Option<State>, sides: [Rungs<'_, '_>; 2]) -> Option<Proof> {
+    fn by_running(&self, state: Option<State>, sides: [Rungs<'_, '_>; 2]) -> Option<Counterexample> {
         let types = self.types(sides);
         let type_of = |key: &str| types.get(key).copied();
         let state = state.filter(|state| counterexample::is_possible(state, &type_of))?;

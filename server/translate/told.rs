@@ -18,7 +18,7 @@ pub fn json(proof: &Proof, sides: [&Document; 2], language: Language) -> Json {
     };
     match proof {
         Proof::Equal { is_reordered } => json!({ "equal": true, "reordered": is_reordered }),
-        Proof::Undecided { reason, at } => {
+        Proof::Undecided { reason, at, .. } => {
             json!({ "equal": null, "reason": reason.render(language), "lines": place(at) })
         }
         Proof::Different(found) => {
@@ -67,12 +67,13 @@ pub fn text(proof: &Proof, sides: [&Document; 2], names: &[String; 2], language:
     let place = |at: &[Option<Span>; 2]| {
         let places = [0, 1].map(|side| at[side].map(|span| (side, line(sides[side], span))));
         let shown = places.iter().flatten().map(|(side, line)| format!("{}:{line}", names[*side]));
-        shown.collect::<Vec<_>>().join(", ")
+        let shown: Vec<String> = shown.collect();
+        if shown.is_empty() { names.join(", ") } else { shown.join(", ") }
     };
     match proof {
         Proof::Equal { is_reordered: false } => Message::new("prove.equal").render(language) + "\n",
         Proof::Equal { is_reordered: true } => Message::new("prove.equal-reordered").render(language) + "\n",
-        Proof::Undecided { reason, at } => {
+        Proof::Undecided { reason, at, .. } => {
             let message = Message::new("prove.not-decided").with_messages("reason", vec![reason.clone()]);
             format!("{}\n", message.with("places", place(at)).render(language))
         }

@@ -14,7 +14,9 @@ mod current_result;
 pub(super) use current_result::follow;
 
 mod words;
-pub(super) use words::{misplaced_words, operand_counts, unknown_instructions, unreadable_operands};
+pub(super) use words::{
+    misplaced_words, operand_counts, unknown_instructions, unknown_values, unreadable_operands,
+};
 
 mod initial;
 pub(super) use initial::initial_values;

@@ -1,10 +1,14 @@
 //! What is written in an instruction: unknown words, numbers of operands, words that are no operand.
 
 use super::{Callee, View, out_of_range};
+use crate::document::DeclaredType;
 use crate::il::iec::{Item, ItemKind, ListForm, Parameter, PouKind};
-use crate::target::iec::{ElementaryType, FunctionBlock, LiteralProblem, OperatorRole, suggestions};
+use crate::target::iec::{
+    ElementaryType, FunctionBlock, Literal, LiteralProblem, LiteralValue, OperatorRole, nearest, suggestions,
+};
 use crate::target::{Operand, OperandProblem};
 use crate::text::{Diagnostic, Message, Span, TextEdit, folded};
+use smol_str::SmolStr;
 
 /// Words at the place of an instruction that are none: the IEC part of `unknown-instruction`.
 pub fn unknown_instructions(view: &View<'_>, found: &mut Vec<Diagnostic>) {
@@ -205,5 +209,32 @@ pub fn misplaced_words(view: &View<'_>, found: &mut Vec<Diagnostic>) {
             _ => continue,
         };
         found.push(Diagnostic::new("operand-kind", operand.span, Message::new(key).with("word", word)));
+    }
+}
+
+/// Values that their enumerated type does not have, as `Mode#Runing`: a part of `operand-kind`.
+pub fn unknown_values(view: &View<'_>, found: &mut Vec<Diagnostic>) {
+    let is_value = |literal: &Literal| literal.value == LiteralValue::Enumerated;
+    for operand in &view.tree.operands {
+        if !matches!(&operand.value, Operand::Literal(literal) if is_value(literal)) {
+            continue;
+        }
+        let Some((of, value)) = operand.span.of(view.text).split_once('#') else { continue };
+        let Some(DeclaredType::Enumeration(values)) = view.scopes.resolved(DeclaredType::Named(folded(of)))
+        else {
+            continue;
+        };
+        if values.contains(&folded(value)) {
+            continue;
+        }
+        let message = Message::new("operand-kind.value").with("value", value).with("type", of);
+        let mut diagnostic =
+            Diagnostic::new("operand-kind", operand.span, message.with("values", values.join(", ")));
+        for near in nearest(value, values.iter().map(SmolStr::as_str)) {
+            let word = format!("{of}#{near}");
+            let title = Message::new("operand-kind.write").with("word", &word);
+            diagnostic = diagnostic.fix(title, vec![TextEdit::new(operand.span, word)]);
+        }
+        found.push(diagnostic);
     }
 }

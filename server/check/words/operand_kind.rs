@@ -81,9 +81,34 @@
 //!     S Ready
 //! END_PROGRAM
 //! ```
+//!
+//! A value of an enumeration is one of those that its type lists.
+//!
+//! ```iec
+//! TYPE Mode : (Idle, Running); END_TYPE
+//! PROGRAM Main
+//! VAR
+//!     Now : Mode;
+//! END_VAR
+//!     LD Mode#Runing
+//!        ^^^^^^^^^^^
+//!     ST Now
+//! END_PROGRAM
+//! ```
+//!
+//! ```iec
+//! TYPE Mode : (Idle, Running); END_TYPE
+//! PROGRAM Main
+//! VAR
+//!     Now : Mode;
+//! END_VAR
+//!     LD Mode#Running
+//!     ST Now
+//! END_PROGRAM
+//! ```
 
 use crate::check::declarations::boxes;
-use crate::check::iec::{View, initial_values, misplaced_words};
+use crate::check::iec::{View, initial_values, misplaced_words, unknown_values};
 use crate::check::{ChunkContext, Rule, Run};
 use crate::document::Operation;
 use crate::target::{Accepts, Access, Constant, DeviceKind, Form, Opcode, Operand, Target, Wide};
@@ -100,6 +125,7 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
     if let Some(view) = View::of(context) {
         // What the operators take is judged on the way of the current result, by `no-current-result`.
         initial_values(&view, found);
+        unknown_values(&view, found);
         return misplaced_words(&view, found);
     }
     if !context.target.is_fx() {
