@@ -830,7 +830,7 @@ fn mistakes_in_declarations() {
             error 5:7 `;` syntax-error: expected type, found `;`
             error 6:11 `=` syntax-error: expected `(`, `;`, `:=`, `.`, `R_EDGE` or `F_EDGE`, found `=`
             error 7:3 `x__y` syntax-error: `x__y` cannot be a name: it may not start with a digit, end in `_` or hold two `_` side by side
-            error 7:9 `on` syntax-error: expected identifier, found `on`
+            error 7:9 `on` syntax-error: ON is a reserved word and cannot be a name
             hint 9:8 `;` lenient-form: no `;` belongs here
         "#]],
     );

@@ -123,9 +123,13 @@ impl<'a> Reader<'a> {
             let before = self.end_of_word_before(token);
             return self.expected_at_end(before, expected);
         };
+        let word = self.word(found.span);
+        if expected.split(", ").any(|one| one == "identifier") && iec::is_keyword(word) {
+            return self.check_name(found.span);
+        }
         let message = Message::new("syntax-error.expected")
             .with_alternatives("expected", expected.split(", "))
-            .with("found", shortened(self.word(found.span)));
+            .with("found", shortened(word));
         self.problem("syntax-error", found.span, message);
     }
 
