@@ -111,17 +111,21 @@ fn arrays_lie_at_addresses() {
 fn var_config_lays_variables_of_instances_at_addresses() {
     let text = "CONFIGURATION Plant\nRESOURCE PLC ON Cpu\nPROGRAM A : Main;\nPROGRAM B : Main;\nEND_RESOURCE\n\
         VAR_CONFIG\nPLC.A.start AT %IX0.3 : BOOL;\nPLC.A.left.lamp AT %QX1.0 : BOOL;\nPLC.B.start AT %IX0.4 : BOOL;\n\
-        PLC.B.left.limit : INT := 9;\nEND_VAR\nEND_CONFIGURATION\n\
+        PLC.B.left.limit : INT := 9;\nPLC.B.row[2].lamp AT %QX1.5 : BOOL;\nPLC.B.row[1].limit : INT := 8;\n\
+        END_VAR\nEND_CONFIGURATION\n\
         FUNCTION_BLOCK Light\nVAR_INPUT\non_ : BOOL;\nEND_VAR\nVAR\nlamp AT %Q* : BOOL; limit : INT := 4;\nEND_VAR\n\
         LD on_\nST lamp\nEND_FUNCTION_BLOCK\n\
-        PROGRAM Main\nVAR\nstart AT %I* : BOOL;\nleft : Light;\nEND_VAR\nLD start\nST left.on_\nCAL left\nEND_PROGRAM\n";
+        PROGRAM Main\nVAR\nstart AT %I* : BOOL;\nleft : Light;\nrow : ARRAY[1..2] OF Light;\nEND_VAR\n\
+        LD start\nST left.on_\nST row[2].on_\nCAL left\nCAL row[2]\nEND_PROGRAM\n";
     let text = text.replace("on_", "lit");
     let mut plc = Plc::new(&text);
     plc.set("%IX0.3", "1").scan();
     assert_eq!(["%QX1.0", "A.left.lamp", "B.left.lamp"].map(|name| plc.get(name)), ["1", "1", "0"]);
     assert_eq!(["A.left.limit", "B.left.limit"].map(|name| plc.get(name)), ["4", "9"]);
+    assert_eq!(["B.row[1].limit", "B.row[2].limit", "%QX1.5"].map(|name| plc.get(name)), ["8", "4", "0"]);
     plc.set("A.start", "0").set("B.start", "1").scan();
     assert_eq!(["%IX0.3", "%IX0.4", "%QX1.0", "B.left.lamp"].map(|name| plc.get(name)), ["0", "1", "0", "1"]);
+    assert_eq!(["%QX1.5", "A.row[2].lamp"].map(|name| plc.get(name)), ["1", "0"]);
     let files = folder(&[("main.il", &text.replace("PLC.B.start", "PLC.C.start"))]);
     let (code, _, err) = run(&files, &["run", "main.il"]);
     assert!(code == 1 && err.contains("main.il:9:1: PLC.C.start is not declared"), "{err}");

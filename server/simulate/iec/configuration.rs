@@ -265,9 +265,10 @@ impl Compiler<'_> {
         steps: &[SmolStr],
         address: Option<DirectAddress>,
     ) -> Result<Variable, Obstacle> {
-        let mut variable = instance.clone();
-        for step in steps {
-            variable = self.member(&variable, step)?;
+        let path: String = steps.iter().map(|step| format!(".{step}")).collect();
+        let variable = self.within(instance.clone(), &path)?;
+        if variable.index != 0 {
+            return Err(Obstacle::Unreadable);
         }
         let Some(address) = address else { return Ok(variable) };
         let At::Memory(at) = variable.at else { return Err(Obstacle::Unreadable) };

@@ -94,8 +94,14 @@ impl Compiler<'_> {
     /// The variable that a path leads to.
     pub(super) fn variable(&mut self, path: &str) -> Result<Variable, Obstacle> {
         let end = path.find(|c: char| ".[^".contains(c) || c.is_whitespace()).unwrap_or(path.len());
-        let (root, mut rest) = path.split_at(end);
-        let mut variable = self.root(root)?;
+        let (root, rest) = path.split_at(end);
+        let root = self.root(root)?;
+        self.within(root, rest)
+    }
+
+    /// The part of a variable to which `rest` of its path leads: `.Arms[2].Speed`.
+    pub(super) fn within(&mut self, variable: Variable, rest: &str) -> Result<Variable, Obstacle> {
+        let (mut variable, mut rest) = (variable, rest);
         loop {
             rest = rest.trim_start();
             let Some(mark) = rest.chars().next() else { return Ok(variable) };
