@@ -376,7 +376,7 @@ fn body(document: &Document) -> String {
 }
 
 fn cases() -> u64 {
-    std::env::var("RUNGWISE_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(150)
+    std::env::var("RUNGWISE_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(60)
 }
 
 #[test]
