@@ -5,7 +5,7 @@ use super::source::Source;
 use super::to_iec::{Helper, Helpers};
 use crate::document::{DeclaredType, Document, Scopes, Tree};
 use crate::il::iec::{self, SectionKind};
-use crate::logic::{Action, Deed, Expression, Path, Term, Test, is_helper_name};
+use crate::logic::{Action, Deed, Expression, Path, Term, Test, is_fall_name, is_helper_name};
 use crate::target::iec::{ENO, ElementaryType, LiteralValue};
 use crate::target::{DeviceKind, DirectAddress, Model, Operand, Target, Width};
 use crate::text::folded;
@@ -49,16 +49,18 @@ pub(super) fn with_spare(mut helpers: Helpers, document: &Document, sources: &[S
             }
         }
     }
+    let keeps = |name: &str| is_helper_name(name) || is_fall_name(name);
     for (unit, pou) in document.scopes().own_pous().iter().enumerate() {
         for variable in &pou.variables {
-            let is_plain = variable.section == SectionKind::Local && variable.address.is_none();
+            let is_plain = variable.section == SectionKind::Local
+                && variable.address.is_none()
+                && !variable.has_value();
             if !is_plain || named.contains(&(Some(unit), folded(&variable.name))) {
                 continue;
             }
             let type_name = match &variable.declared {
-                DeclaredType::Elementary(ElementaryType::Bool) if is_helper_name(&variable.name) => "BOOL",
+                DeclaredType::Elementary(ElementaryType::Bool) if keeps(&variable.name) => "BOOL",
                 DeclaredType::Named(name) if name.eq_ignore_ascii_case("R_TRIG") => "R_TRIG",
-                DeclaredType::Named(name) if name.eq_ignore_ascii_case("F_TRIG") => "F_TRIG",
                 _ => continue,
             };
             helpers.spare(Some(unit), type_name, variable.name.clone());
