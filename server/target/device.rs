@@ -1,6 +1,6 @@
 //! Devices of the FX family: kinds, numbers, and what each model has of them.
 
-use super::Target;
+use super::{Model, Target};
 use std::fmt;
 
 /// A kind of device.
@@ -160,6 +160,13 @@ impl Device {
     /// The range of `target` in which it lies, if any.
     pub fn range_on(self, target: &Target) -> Option<&'static DeviceRange> {
         target.ranges(self.kind).find(|range| range.first <= self.number && self.number <= range.last)
+    }
+
+    /// Whether its edges are seen by the first contact alone that asks for them in a scan: M2800 to M3071 of an FX2N
+    /// and later (FX programming manuals, on these relays).
+    pub fn shares_edges(self, target: &Target) -> bool {
+        let is_late = matches!(target.model, Model::Fx2n | Model::Fx3u);
+        is_late && self.kind == DeviceKind::M && (2800..=3071).contains(&self.number)
     }
 
     /// The device after it, if both lie in one range of `target`.

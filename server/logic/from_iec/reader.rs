@@ -407,7 +407,11 @@ impl<'s, 'a> Reader<'s, 'a> {
             let driven = self.driven.get(&term.key()).copied();
             let is_late = driven.max(ran).is_some_and(|driven| driven > edge.called_at);
             return match !is_late {
-                true => Ok(Contact { test: Test::Bit(ContactKind::Rising), terms: vec![term], span: operand.span }),
+                true => Ok(Contact {
+                    test: Test::Bit(ContactKind::Rising),
+                    terms: vec![term],
+                    span: operand.span,
+                }),
                 false => Err(Refusal::NotBoolean),
             };
         }

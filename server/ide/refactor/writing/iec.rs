@@ -118,7 +118,9 @@ fn spare(around: &Neighbourhood<'_>, name: &str, helpers: &mut Helpers) {
     let unit = around.unit.number;
     let Some(variable) = around.document.scopes().variable(unit, name) else { return };
     let type_name = match &variable.declared {
-        DeclaredType::Elementary(ElementaryType::Bool) if is_helper_name(name) || is_fall_name(name) => "BOOL",
+        DeclaredType::Elementary(ElementaryType::Bool) if is_helper_name(name) || is_fall_name(name) => {
+            "BOOL"
+        }
         DeclaredType::Named(block) if block == "r_trig" => "R_TRIG",
         _ => return,
     };

@@ -198,6 +198,10 @@ impl Converter<'_> {
         let (Operand::Device(first), Operand::Device(last)) = (first.operand, last.operand) else {
             return Err(Lack::Unnamed);
         };
+        // RST holds a counter back for as long as it has power, ZRST does not.
+        if first.kind == DeviceKind::C {
+            return Err(Lack::Unnamed);
+        }
         let count = last.number.checked_sub(first.number).map(|more| more + 1);
         let count = without(count.filter(|_| first.kind == last.kind))?;
         few(count)?;
