@@ -14,6 +14,7 @@ pub use helpers::{Helper, Helpers};
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{
     Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test,
+    is_helper_name,
 };
 use crate::text::Message;
 use rustc_hash::FxHashSet;
@@ -37,15 +38,14 @@ pub fn lines(path: &Path, helpers: &mut Helpers) -> Result<Vec<String>, Message>
         driven: FxHashSet::default(),
         changed: Vec::new(),
         has_run: false,
-        last: None,
+        last: 0,
         held: 0,
         helpers,
     };
     writer.path(path, true)?;
-    // What keeps the power of a coil of a falling edge belongs to the rung only at its end.
-    match writer.last {
-        Some(last) if last < writer.lines.len() => Err(Message::new("translate.fall-beside")),
-        _ => Ok(writer.lines),
+    match writer.goes_back() {
+        true => Err(Message::new("translate.fall-beside")),
+        false => Ok(writer.lines),
     }
 }
 
@@ -61,8 +61,8 @@ struct Writer<'h> {
     changed: Vec<Term>,
     /// Whether they ran a unit of the program, which may change whatever others know.
     has_run: bool,
-    /// The line behind a coil of a falling edge.
-    last: Option<usize>,
+    /// The line behind the last coil of a falling edge.
+    last: usize,
     /// How many powers are kept in helpers.
     held: usize,
     helpers: &'h mut Helpers,
@@ -172,6 +172,10 @@ impl Writer<'_> {
                 }
                 is_lost = true;
             }
+            // Power that was kept before a coil of a falling edge is kept anew behind it.
+            if is_fall(drive) {
+                self.held -= usize::from(held.take().is_some());
+            }
             match drive {
                 _ if !computed.is_empty() => self.computations(&computed)?,
                 Drive::Action(action) => self.action(action, inverse)?,
@@ -200,6 +204,18 @@ impl Writer<'_> {
             self.lines.push("NOT".into());
         }
         Ok(())
+    }
+
+    /// Whether power is wanted behind a coil of a falling edge that a helper kept before it: a list goes on from the
+    /// coil alone.
+    fn goes_back(&self) -> bool {
+        let behind = self.lines.iter().enumerate().skip(self.last);
+        let mut loads = behind.filter_map(|(at, line)| Some((at, line.strip_prefix("LD ")?)));
+        loads.any(|(at, name)| {
+            let stores = |line: &String| line.strip_prefix("ST ") == Some(name);
+            is_helper_name(name)
+                && self.lines[..at].iter().rposition(stores).is_some_and(|store| store < self.last)
+        })
     }
 
     /// A load outside of parentheses follows.
@@ -352,7 +368,7 @@ impl Writer<'_> {
             let [was, _] = self.helpers.fall(false);
             self.lines.extend([format!("ST {power}"), format!("LD {was}"), format!("ANDN {power}")]);
             self.lines.extend([format!("ST {term}"), format!("LD {power}"), format!("ST {was}")]);
-            self.last = Some(self.lines.len());
+            self.last = self.lines.len();
             return Ok(());
         }
         let name = self.helpers.pulse(coil, "R_TRIG", &term.text);
@@ -524,11 +540,15 @@ fn is_invertible(drive: &Drive) -> bool {
     }
 }
 
+/// Whether it is a coil of a falling edge.
+fn is_fall(drive: &Drive) -> bool {
+    matches!(drive, Drive::Action(Action { deed: Deed::Coil(CoilKind::Falling), .. }))
+}
+
 /// Whether the current result is no longer the power behind this.
 fn loses(drive: &Drive) -> bool {
-    use CoilKind::{Falling, Rising};
     let calls = |action: &Action| {
-        matches!(action.deed, Deed::Call(_) | Deed::Compute(_) | Deed::Coil(Rising | Falling))
+        matches!(action.deed, Deed::Call(_) | Deed::Compute(_) | Deed::Coil(CoilKind::Rising))
     };
     match drive {
         Drive::Action(action) => calls(action),

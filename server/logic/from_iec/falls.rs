@@ -94,7 +94,7 @@ impl Source<'_> {
         let mut falls = Vec::new();
         let mut count = 0;
         while let [one, two, rest @ ..] = &rungs[count..]
-            && let Some(fall) = self.fall(pou, one, two)
+            && let Some((fall, [])) = self.fall(pou, one, two)
             && rest.first().is_some_and(|next| self.goes_on(two, next))
         {
             falls.push(fall);
@@ -111,11 +111,11 @@ impl Source<'_> {
                 rungs[0].clone()
             }
         };
-        if let [before, one, two, ..] = &rungs[count..]
+        while let [before, one, two, ..] = &rungs[count..]
             && self.goes_on(before, one)
-            && let Some(fall) = self.fall(pou, one, two)
+            && let Some((fall, others)) = self.fall(pou, one, two)
             && let Ok(Some(path)) = &rung.path
-            && let Some(path) = self.with_coil(pou, path, &fall)
+            && let Some(path) = self.with_coil(pou, path, &fall, others)
         {
             let last = two.span;
             rung = Rung { path: Ok(Some(path)), span: rung.span.to(last), ..rung };
@@ -140,20 +140,24 @@ impl Source<'_> {
             && between.of(self.text).matches('\n').count() <= 1
     }
 
-    /// The falling edge that two rungs find: `LD Was1 / ANDN a / ST Fall1` and `LD a / ST Was1`.
-    fn fall(&self, pou: Option<usize>, one: &Rung, two: &Rung) -> Option<Fall> {
+    /// The falling edge that two rungs find: `LD Was1 / ANDN a / ST Fall1` and `LD a / ST Was1`. What else the second
+    /// one drives has the power that is looked at.
+    fn fall<'r>(&self, pou: Option<usize>, one: &Rung, two: &'r Rung) -> Option<(Fall, &'r [Drive])> {
         let (Ok(Some(finds)), Ok(Some(keeps))) = (&one.path, &two.path) else { return None };
-        let ([Gate::Pass(Expression::And(parts))], [found]) = (&finds.gates[..], plain(finds)?) else {
+        let ([Gate::Pass(Expression::And(parts))], [found]) = (&finds.gates[..], &finds.drives[..]) else {
             return None;
         };
-        let ([Gate::Pass(kept)], [keeper]) = (&keeps.gates[..], plain(keeps)?) else { return None };
-        let [was, is] = &parts[..] else { return None };
+        let ([Gate::Pass(kept)], [keeper, others @ ..]) = (&keeps.gates[..], &keeps.drives[..]) else {
+            return None;
+        };
+        let ([was, is], (found, action), (keeper, _)) = (&parts[..], plain(found)?, plain(keeper)?) else {
+            return None;
+        };
         let of = bit(is, ContactKind::NormallyClosed)?;
         let was = bit(was, ContactKind::NormallyOpen)?;
         let is_it = bit(kept, ContactKind::NormallyOpen)? == of && keeper == was && found != was && of != was;
-        let action = finds.actions().into_iter().next()?;
-        (is_it && self.mentions(pou, was) == Some(2) && self.goes_on(one, two))
-            .then(|| Fall { of: of.clone(), found: action.clone() })
+        let fall = || (Fall { of: of.clone(), found: action.clone() }, others);
+        (is_it && self.mentions(pou, was) == Some(2) && self.goes_on(one, two)).then(fall)
     }
 
     /// `path`, which stands in `span`, with edge contacts for the variables that find the edges; nothing where these
@@ -182,28 +186,29 @@ impl Source<'_> {
         replaced(path, (falls, &is_late), false)
     }
 
-    /// `path`, the last thing that it does being to keep its power for a coil of an edge, with that coil.
-    fn with_coil(&self, pou: Option<usize>, path: &Path, fall: &Fall) -> Option<Path> {
+    /// `path`, the last thing that it does being to keep its power for a coil of an edge, with that coil and the others
+    /// behind it.
+    fn with_coil(&self, pou: Option<usize>, path: &Path, fall: &Fall, others: &[Drive]) -> Option<Path> {
         let mut path = path.clone();
-        let last = last_drive(&mut path)?;
-        let [power] = &last.terms[..] else { return None };
-        let is_kept = last.deed == Deed::Coil(CoilKind::Plain) && *power == fall.of;
-        let is_alone = is_kept && self.mentions(pou, power) == Some(3);
         // The coil is no variable that finds an edge for others.
-        let is_coil = fall.found.terms.first().is_some_and(|coil| self.mentions(pou, coil).is_none());
-        if !is_alone || !is_coil {
-            return None;
-        }
-        *last = Action { deed: Deed::Coil(CoilKind::Falling), ..fall.found.clone() };
+        fall.found.terms.first().filter(|coil| self.mentions(pou, coil).is_none())?;
+        change_last(&mut path, |drives| {
+            let (power, _) = plain(drives.last()?)?;
+            (*power == fall.of && self.mentions(pou, power) == Some(3)).then_some(())?;
+            drives.pop();
+            drives.push(Drive::Action(Action { deed: Deed::Coil(CoilKind::Falling), ..fall.found.clone() }));
+            drives.extend_from_slice(others);
+            Some(())
+        })?;
         Some(path)
     }
 }
 
-/// What a rung drives, if that is one plain coil.
-fn plain(path: &Path) -> Option<[&Term; 1]> {
-    match &path.drives[..] {
-        [Drive::Action(Action { deed: Deed::Coil(CoilKind::Plain), terms, .. })] => match &terms[..] {
-            [term] => Some([term]),
+/// What a plain coil drives, and the coil.
+fn plain(drive: &Drive) -> Option<(&Term, &Action)> {
+    match drive {
+        Drive::Action(action) if action.deed == Deed::Coil(CoilKind::Plain) => match &action.terms[..] {
+            [term] => Some((term, action)),
             _ => None,
         },
         _ => None,
@@ -218,11 +223,11 @@ fn bit(expression: &Expression, kind: ContactKind) -> Option<&Term> {
     }
 }
 
-/// The last thing that a path does.
-fn last_drive(path: &mut Path) -> Option<&mut Action> {
-    match path.drives.last_mut()? {
-        Drive::Action(action) => Some(action),
-        Drive::Path(path) => last_drive(path),
+/// Changes what the path drives that does the last thing, of this one and those that leave it.
+fn change_last(path: &mut Path, change: impl FnOnce(&mut Vec<Drive>) -> Option<()>) -> Option<()> {
+    match path.drives.last_mut() {
+        Some(Drive::Path(last)) => change_last(last, change),
+        _ => change(&mut path.drives),
     }
 }
 
