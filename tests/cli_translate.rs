@@ -142,8 +142,7 @@ fn symbols_of_a_project_stay_and_are_proved() {
 
 #[test]
 fn a_list_for_another_model_says_what_that_lacks() {
-    let head =
-        "PROGRAM P\nVAR\nStart AT %IX0.0 : BOOL; Far AT %MX500.0 : BOOL; Lamp AT %QX0.0 : BOOL;\nEND_VAR\n";
+    let head = "PROGRAM P\nVAR\nStart AT %IX0.0 : BOOL; Lamp AT %QX0.0 : BOOL;\nEND_VAR\nVAR RETAIN Far AT %MX500.0 : BOOL; END_VAR\n";
     let text = format!("{head}LD Start\nST Lamp\nLD Start\nST Far\nEND_PROGRAM\n");
     let folder = folder(&[("motor.il", MOTOR), ("other.il", &text)]);
     let (code, out, err) = run(&folder, &["translate", "other.il", "--to", "fx"]);

@@ -290,7 +290,7 @@ fn the_header_of_a_network_is_all_of_it_and_a_comment_the_rung_below() {
 fn an_fx_list_is_for_the_model_that_the_project_or_the_client_names() {
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path().canonicalize().unwrap();
-    let text = "PROGRAM P\nVAR\nStart AT %IX0.0 : BOOL; Far AT %MX500.0 : BOOL;\nEND_VAR\nLD Start\nST Far\nEND_PROGRAM\n";
+    let text = "PROGRAM P\nVAR\nStart AT %IX0.0 : BOOL; END_VAR VAR RETAIN Far AT %MX500.0 : BOOL;\nEND_VAR\nLD Start\nST Far\nEND_PROGRAM\n";
     std::fs::write(place.join("rungwise.toml"), "[translate]\ntarget = \"fx3u\"\n").unwrap();
     std::fs::write(place.join("main.il"), text).unwrap();
     let uri = format!("file://{}", place.join("main.il").display());

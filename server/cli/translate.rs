@@ -130,7 +130,7 @@ fn tell(program: &Program, translation: &Translation, proves: bool, language: La
         let Some(note) = &rung.note else { continue };
         let line = program.document.line_of(rung.span.start as usize) + 1;
         remark(
-            &Message::new("cli.not-translated")
+            &Message::new(if rung.is_kept { "cli.not-translated" } else { "cli.not-certain" })
                 .with("path", program.path.display())
                 .with("line", line)
                 .with_messages("reason", vec![note.clone()])

@@ -80,6 +80,18 @@ pub struct Variable {
     pub words: SmolStr,
 }
 
+impl Variable {
+    /// Whether it is declared RETAIN, so that it is kept while the PLC is off.
+    pub fn is_retained(&self) -> bool {
+        self.words.starts_with("retain ")
+    }
+
+    /// Whether its declaration says what it is at first.
+    pub fn has_value(&self) -> bool {
+        self.words.contains(":=")
+    }
+}
+
 /// A type, resolved as far as the declaration goes.
 #[derive(Clone, PartialEq, Debug)]
 pub enum DeclaredType {

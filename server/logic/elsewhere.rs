@@ -4,7 +4,10 @@
 //! output, a jump only skips calculations if nobody else jumps to its label, and a helper keeps power only if it does
 //! so wherever the unit names it. The pages of the document know where names stand, so little else is looked at.
 
-use super::from_iec::{self, Detector, block_of, edge_kind, is_declared_helper, is_helper_name};
+use super::from_iec::{
+    self, Detector, block_of, detects_rise, is_declared_fall, is_declared_helper, is_fall_name,
+    is_helper_name,
+};
 use super::{Declared, stretch};
 use crate::document::{Chunk, Document, Scopes, Symbol, Unit};
 use crate::il::iec::{Condition, IecTree, ItemKind, Operation};
@@ -24,7 +27,8 @@ pub struct Elsewhere {
     pub(super) labels: FxHashMap<SmolStr, usize>,
     /// How instances that may be detectors of edges are used.
     pub(super) detectors: FxHashMap<SmolStr, Detector>,
-    /// The helpers that are used for something else than to keep the power of a rung.
+    /// The helpers that are used for something else than to keep the power of a rung, and those that find falling
+    /// edges and are named there.
     pub(super) loose: FxHashSet<SmolStr>,
 }
 
@@ -47,12 +51,15 @@ impl Elsewhere {
     pub fn of(document: &Document, unit: Unit, bytes: Span, own: &Chunk) -> Option<Elsewhere> {
         let (text, tree, scopes) = (own.text(), own.iec()?, document.scopes());
         let mut helpers: FxHashSet<SmolStr> = FxHashSet::default();
+        let mut falls: FxHashSet<SmolStr> = FxHashSet::default();
         let mut detectors: FxHashMap<SmolStr, Detector> = FxHashMap::default();
         for operand in tree.operands.iter().filter(|operand| operand.value == Operand::Variable) {
             let name = operand.span.of(text);
             let instance = name.split('.').next().unwrap_or_default();
             if is_helper_name(name) {
                 helpers.insert(folded(name));
+            } else if is_fall_name(name) {
+                falls.insert(folded(name));
             } else if is_detector(scopes, unit.number, instance) {
                 detectors.entry(folded(instance)).or_default();
             }
@@ -65,12 +72,18 @@ impl Elsewhere {
                 loose.insert(name);
             }
         }
+        falls.retain(|name| is_declared_fall(scopes, unit.number, name));
+        let symbols: Vec<Symbol> = falls.iter().cloned().map(Symbol::Variable).collect();
+        each_naming((document, unit, bytes), &symbols, &mut |chunk, tree| {
+            let words = tree.operands.iter().map(|operand| folded(operand.span.of(chunk.text())));
+            loose.extend(words.filter(|word| falls.contains(word)));
+        });
         Some(Elsewhere { labels, detectors, loose })
     }
 }
 
 fn is_detector(scopes: &Scopes, pou: Option<usize>, instance: &str) -> bool {
-    block_of(scopes, pou, instance).is_some_and(|block| edge_kind(&block).is_some())
+    block_of(scopes, pou, instance).is_some_and(|block| detects_rise(&block))
 }
 
 /// Calls `see` with the chunks of the unit outside of these bytes that name any of `symbols`.

@@ -6,19 +6,24 @@
 //! rung of several loads, unless a comment or a blank line stands between them:
 //!
 //! - A call of a function block and the load of its output, `--[TON]--( )`, if the output is only gone on from.
-//! - Calls of R_TRIG and F_TRIG and the rung behind them, if nobody else asks for their output: edge contacts.
-//! - The call of `PLS_M7` and the store of its output in `M7`: a coil of an edge.
+//! - Calls of R_TRIG and the rung behind them, if nobody else asks for their output: contacts of rising edges.
+//! - The call of `PLS_M7` and the store of its output in `M7`: a coil of a rising edge.
+//! - Two variables `Was1` and `Fall1` that find a falling edge, and the rung behind them: contacts of falling edges, or
+//!   a coil of one, see [`falls`].
 //! - A helper `Held1` that is stored and loaded again: the rung branches there.
 //! - A jump over calculations: they are done under its condition.
 
 mod computing;
+mod falls;
 mod loose;
 mod reader;
 
 use self::computing::Skips;
+pub(super) use self::falls::is_declared_fall;
+pub use self::falls::{FALLS, is_fall_name};
 use self::loose::Helper;
 use self::reader::Reader;
-pub(super) use self::reader::edge_kind;
+pub(super) use self::reader::detects_rise;
 use super::{Callee, Declared, Elsewhere, Path, Refusal, Rung, Term};
 use crate::document::{DeclaredType, Scopes};
 use crate::il::iec::{Condition, IecTree, Item, ItemKind, ListForm, OperandId, SectionKind};
@@ -55,7 +60,9 @@ fn read_all(source: &Source<'_>) -> Vec<Rung> {
         comments.skip_to(region.start);
         let segments = &source.segments[first..region.segments];
         first = region.segments;
+        let own = rungs.len();
         source.read(segments, &mut comments, &mut rungs);
+        source.join_falls(segments.first().and_then(|first| first.pou), own, &mut rungs);
     }
     let rest = comments.rest();
     if !source.ends_declared && !rest.is_empty() {
@@ -209,6 +216,8 @@ struct Source<'a> {
     mistakes: Vec<u32>,
     /// Helpers that are used in other ways than to keep the power of a rung.
     shown: FxHashSet<Helper>,
+    /// How often variables are named that may find falling edges.
+    falls: FxHashMap<Helper, usize>,
     skips: Skips,
 }
 
@@ -232,6 +241,7 @@ impl<'a> Source<'a> {
             detectors: FxHashMap::default(),
             mistakes,
             shown: FxHashSet::default(),
+            falls: FxHashMap::default(),
             skips: Skips::default(),
         };
         let pou = pous.checked_sub(1);
@@ -241,6 +251,8 @@ impl<'a> Source<'a> {
         source.detectors.extend(detectors.map(|(name, detector)| ((pou, name.clone()), detector.clone())));
         source.find_detectors(&starts, pous);
         source.shown = source.loose_helpers(&starts, pous);
+        source.falls = source.count_falls(&starts, pous);
+        source.falls.retain(|(_, name), _| !elsewhere.loose.contains(name));
         source.shown.extend(elsewhere.loose.iter().map(|name| (pou, name.clone())));
         source
     }
@@ -345,7 +357,7 @@ impl<'a> Source<'a> {
         };
         let instance = self.tree.operand(callee).span.of(self.text);
         let Some(block) = self.block(pou, instance) else { return false };
-        let detects = edge_kind(&block).is_some();
+        let detects = detects_rise(&block);
         let asks = match item.kind {
             ItemKind::Operation { operation, operand: Some(id) } => {
                 operation.operator.role == OperatorRole::Load
@@ -414,7 +426,7 @@ impl<'a> Source<'a> {
             let path = operand.span.of(self.text);
             let (instance, member) =
                 path.split_once('.').map_or((path, None), |(root, rest)| (root, Some(rest)));
-            if self.block(pou, instance).is_none_or(|block| edge_kind(&block).is_none()) {
+            if self.block(pou, instance).is_none_or(|block| !detects_rise(&block)) {
                 continue;
             }
             self.detectors.entry((pou, folded(instance))).or_default().count(member, operand.span);

@@ -31,7 +31,7 @@ mod builder;
 mod from_fx;
 
 mod from_iec;
-pub use from_iec::{HELPER, declarations, is_helper_name, pulse_name};
+pub use from_iec::{FALLS, HELPER, declarations, is_fall_name, is_helper_name, pulse_name};
 
 mod elsewhere;
 pub use elsewhere::Elsewhere;

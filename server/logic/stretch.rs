@@ -5,7 +5,7 @@
 //! of rungs, so the stretch around the cursor begins and ends where none of these goes on. What it depends on in the
 //! rest of the unit, names used there as well, is what [`Elsewhere`](super::Elsewhere) finds.
 
-use super::from_iec::{end_of_line, is_helper_name};
+use super::from_iec::{end_of_line, is_fall_name, is_helper_name};
 use crate::document::{Chunk, ChunkRef, DeclaredType, Document, Unit};
 use crate::il::iec::{Condition, IecTree, Item, ItemKind};
 use crate::target::iec::{ElementaryType, OperatorRole};
@@ -134,7 +134,14 @@ pub fn begins_rung(document: &Document, offset: usize, pou: Option<usize>) -> bo
         return true;
     }
     let is_parted = are_parted(before.chunk, at.chunk);
-    let goes_on = is_call(last) || loads_helper(first, tree, at.chunk.text());
+    let finds_falls = |item: &Item, tree: &IecTree, chunk: &Chunk| match item.kind {
+        ItemKind::Operation { operand: Some(id), .. } => is_fall_name(tree.operand(id).span.of(chunk.text())),
+        _ => false,
+    };
+    let goes_on = is_call(last)
+        || loads_helper(first, tree, at.chunk.text())
+        || finds_falls(last, tree_before, before.chunk)
+        || finds_falls(first, tree, at.chunk);
     (is_parted || !goes_on) && !may_be_skipped(document, before, pou)
 }
 

@@ -8,7 +8,7 @@ use super::{Layout, Obstacle, Slot};
 use crate::ladder::ContactKind;
 use crate::logic::{Term, Test};
 use crate::target::semantics::NOTES;
-use crate::target::{Device, DeviceKind, Form, Model, Operand, Role, Semantics, Target};
+use crate::target::{Device, DeviceKind, Form, Operand, Role, Semantics, Target};
 use crate::text::Span;
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
@@ -380,12 +380,11 @@ impl Builder {
         Ok(to)
     }
 
-    /// The edge that a contact sees: of M2800 to M3071 on an FX2N and later the first one that is executed after the
-    /// change, so that one signal takes a sequence on by one step.
+    /// The edge that a contact sees: of some relays the first one that is executed after the change, so that one signal
+    /// takes a sequence on by one step.
     fn contact_edge(&mut self, cell: Cell, is_rising: bool) -> Cell {
-        let is_single = matches!(self.target.model, Model::Fx2n | Model::Fx3u)
-            && self.layout.device_of_cell(cell).is_some_and(Device::has_single_edge);
-        if !is_single {
+        let device = self.layout.device_of_cell(cell);
+        if !device.is_some_and(|device| device.shares_edges(self.target)) {
             return self.edge(cell, is_rising);
         }
         let before = match self.shared.get(&cell) {

@@ -1,6 +1,6 @@
 //! Devices of the FX family: kinds, numbers, and what each model has of them.
 
-use super::Target;
+use super::{Model, Target};
 use std::fmt;
 
 /// A kind of device.
@@ -166,6 +166,11 @@ impl Device {
     /// The range of `target` in which it lies, if any.
     pub fn range_on(self, target: &Target) -> Option<&'static DeviceRange> {
         target.ranges(self.kind).find(|range| range.first <= self.number && self.number <= range.last)
+    }
+
+    /// Whether it [has a single edge](Device::has_single_edge) on `target`.
+    pub fn shares_edges(self, target: &Target) -> bool {
+        matches!(target.model, Model::Fx2n | Model::Fx3u) && self.has_single_edge()
     }
 
     /// The device after it, if both lie in one range of `target`.

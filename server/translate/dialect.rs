@@ -9,11 +9,15 @@
 //! | `D20` | `D20 AT %MW1020 : INT`, from word 1,000 on, behind the states |
 //! | `D20` and `D21` as 32 bits | `D20 AT %MD510 : DINT`, the double word over both |
 //! | `D21` and `D22` as 32 bits | `D21 AT %MD10021 : DINT`: no double word lies over both, so they have their own |
+//! | `M500`, `S500`, `D200` … that the model keeps while it is off | the same in `VAR RETAIN` |
 //! | `OUT T0 K50` | the instance `T0 : TON`, called with `PT := T#5s` by the unit of the timer; contact `T0.Q` |
-//! | `OUT C0 K10` | the instance `C0 : CTU`, called with `PV := 10`; contact `C0.Q`, value `C0.CV` |
-//! | `RST C0` | `R C0`, a call of the block with this input alone |
-//! | `PLS M0`, `PLF M0` | coils of edges: `PLS_M0 : R_TRIG`, `PLF_M0 : F_TRIG`, the output stored in `M0` |
+//! | `OUT C0 K10` | the instance `C0 : CTU`, called with `PV := 10`; contact `C0.Q`, value `C0.CV` beside a constant |
+//! | `RST C0` | `R C0`, a call of the block with this input alone; `C0 : CTU := (PV := 10)` |
+//! | `LDP M0`, `PLS M0` | `Rise1 : R_TRIG`; `PLS_M0 : R_TRIG`, the output stored in `M0` |
+//! | `LDF M0`, `PLF M0` | two variables that find the falling edge, as F_TRIG is on in its first call |
+//! | an `F_TRIG` that is called in each scan | `LDF X0` in parallel with `LD M8002`, `ANI X0` |
 //! | `CJ P0` | `JMPC P0` |
+//! | `CJ P63`, `END` before other rungs | `RETC`, `RET` |
 //! | `LD>=`, `LDD>=` and their kin | `GE` and its kin on variables of type INT, DINT |
 //! | `MOV`, `ADD`, `SUB`, `DMOV` … | `LD`, `ADD`, `SUB`, `ST`, jumped over where power does not reach them |
 //! | `INC D0`, `DEC D0`, `DINC D0` … | the same with the operand `1`; `INT#1` is the `K1` of an ADD or SUB |
@@ -33,22 +37,28 @@
 //! how words lie in a double word. The way back takes variables by their addresses, and by their names where they
 //! have none and these are names of devices that nothing else is.
 
+mod counted;
+mod doubts;
 mod guarded;
 mod lack;
 mod registers;
 mod to_devices;
 mod to_variables;
 
+use self::counted::{Coils, Instances};
 use self::guarded::Guard;
 use self::lack::{Lack, single_edge, without};
 use self::registers::Registers;
 use super::To;
-use super::source::{Program, Source};
+use super::source::{self, Program, Source};
 use crate::document::Document;
 use crate::il::iec::PouKind;
-use crate::logic::{Action, Deed, Drive, Path, Refusal};
+use crate::ladder::ContactKind;
+use crate::logic::{Action, Contact, Deed, Drive, Path, Refusal, Term, Test};
 use crate::target::{Device, DeviceKind, DirectAddress, Form, Location, Model, Operand, Target, Width};
-use crate::text::Message;
+use crate::text::{Message, Span};
+use rustc_hash::FxHashMap;
+use smol_str::ToSmolStr;
 use std::cell::Cell;
 use std::sync::Arc;
 
@@ -113,6 +123,9 @@ impl Work {
     }
 }
 
+/// The pointer that stands for END.
+const END_POINTER: &str = "P63";
+
 /// What the instances begin with that detect the power of a pulse form.
 const PULSE: &str = "Pulse";
 
@@ -134,23 +147,47 @@ pub(super) fn target(document: &Document, to: To, wanted: Option<Model>) -> &'st
     }
 }
 
+/// What a program is put into other words for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Purpose {
+    /// To be written; the whole of it, or a part.
+    Text {
+        /// Whether it is the whole.
+        is_whole: bool,
+    },
+    /// To be compared with a program of the other family. What is doubtful is refused, and the relay of the first scan
+    /// stays what it is.
+    Proof,
+}
+
 /// Puts the rungs of `program`, which is `document` or a part of it, into the words of `target`. Those that have none
 /// there are refused.
 pub(super) fn convert(
     document: &Document,
     (to, target): (To, &'static Target),
     program: &mut Program,
-    is_whole: bool,
+    purpose: Purpose,
 ) {
-    for source in &mut program.rungs {
-        let is_end = |path: &Path| to == To::Iec && to_variables::is_end(path);
-        if matches!(&source.rung.path, Ok(Some(path)) if is_end(path)) {
-            source.rung.path = Ok(None);
-        }
+    if to == To::Iec {
+        end(&mut program.rungs);
     }
     if document.target().is_fx() == target.is_fx() {
         return;
     }
+    let is_whole = purpose != Purpose::Text { is_whole: false };
+    // What timers and counters do depends on all that is done with them.
+    let whole =
+        (!is_whole && program.rungs.iter().any(counts)).then(|| source::program(document, None).rungs);
+    let all = whole.as_deref().unwrap_or(&program.rungs);
+    let coils = Coils::of(all);
+    let instances = Instances::of(document, all);
+    let family = if target.is_fx() { target } else { document.target() };
+    let doubts: FxHashMap<Span, Message> = doubts::all(document, all, family, &instances)
+        .into_iter()
+        .zip(all)
+        .filter_map(|(doubt, source)| Some((source.span(), doubt?)))
+        .collect();
+    let presets = coils.declared();
     let pulses = Cell::new(0);
     let registers = match target.is_fx() {
         true => Registers::of_variables(document.scopes(), program, target),
@@ -158,16 +195,16 @@ pub(super) fn convert(
     };
     let names = to_devices::Names::of(program, document.scopes(), target);
     if target.is_fx() {
-        join_divisions(document, target, (&names, &registers), program);
+        join_divisions(document, target, (&names, &registers, &instances), program);
     }
     let convert_path = |path: &Path, unit: Option<usize>| match target.is_fx() {
-        false => to_variables::path(path, document.target(), &registers, &pulses),
+        false => to_variables::path(path, (document.target(), purpose), (&registers, &coils), &pulses),
         // What a function or a block does it does for whoever calls it.
         true if !is_of_program(document, unit) => {
             let unit = unit.and_then(|unit| document.scopes().pous.get(unit));
             Err(unit.map_or(Lack::Unnamed, |unit| Lack::Word(unit.name.clone())))
         }
-        true => to_devices::path(path, target, (&names, &registers), (document.scopes(), unit)),
+        true => to_devices::path(path, target, (&names, &registers, &instances), (document.scopes(), unit)),
     };
     let guards = guarded::all(&program.rungs);
     let mut open: Vec<Guard> = Vec::new();
@@ -179,6 +216,7 @@ pub(super) fn convert(
         guarded::close_before(&mut open, source);
         let guard = open.last().map(|guard| Message::new("translate.guarded").with("word", &guard.word));
         guarded::close_with(&mut open, source);
+        source.doubt = doubts.get(&source.span()).cloned();
         if target.is_fx() {
             source.rung.labels.iter_mut().for_each(|label| *label = names.of_label(label));
         }
@@ -188,6 +226,9 @@ pub(super) fn convert(
             (Ok(None), _) => continue,
             (Err(_), _) => None,
             (Ok(Some(_)), Some(guard)) => Some(Err(guard)),
+            (Ok(Some(_)), None) if purpose == Purpose::Proof && source.doubt.is_some() => {
+                Some(Err(source.doubt.clone().unwrap_or_else(|| Lack::Unnamed.message())))
+            }
             (Ok(Some(path)), None) => Some(convert_path(path, source.pou).map_err(|lack| lack.message())),
         };
         if let Some(converted) = converted {
@@ -198,6 +239,32 @@ pub(super) fn convert(
             open.extend(own);
         }
     }
+    program.presets = presets;
+}
+
+/// Whether what lies at an address is kept while the PLC of the FX `family` is off.
+pub(super) fn is_kept(address: DirectAddress, family: &Target) -> bool {
+    devices_at(address).any(|device| doubts::is_latched(device, family))
+}
+
+/// Drops the END behind all other rungs, and makes a return of one before others.
+fn end(sources: &mut [Source]) {
+    let is_end = |source: &Source| source.path().is_some_and(to_variables::is_end);
+    let does = |source: &Source| !matches!(source.rung.path, Ok(None)) && !is_end(source);
+    let last = sources.iter().rposition(does).map_or(0, |last| last + 1);
+    for (number, source) in sources.iter_mut().enumerate().filter(|(_, source)| is_end(source)) {
+        let leaves = |span| Path::of_action(Action { deed: Deed::Return, terms: Vec::new(), span });
+        source.rung.path = Ok((number < last).then(|| leaves(source.rung.span)));
+    }
+}
+
+/// Whether a rung has a timer, a counter or the instance of a block.
+fn counts(source: &Source) -> bool {
+    let Some(path) = source.path() else { return false };
+    let is_counted = |term: &Term| term.operand.device().is_some_and(|device| device.kind.has_preset());
+    path.terms().into_iter().any(is_counted)
+        || path.actions().into_iter().any(|action| matches!(action.deed, Deed::Call(_)))
+        || path.terms().into_iter().any(|term| term.operand == Operand::Variable && term.text.contains('.'))
 }
 
 /// Makes one rung of a quotient and a remainder that are two, each without a condition, where one instruction writes
@@ -205,7 +272,7 @@ pub(super) fn convert(
 fn join_divisions(
     document: &Document,
     target: &Target,
-    known: (&to_devices::Names, &Registers),
+    known: (&to_devices::Names, &Registers, &Instances),
     program: &mut Program,
 ) {
     for second in 1..program.rungs.len() {
@@ -257,18 +324,60 @@ pub(super) fn part_calculations(program: &mut Program) {
     program.rungs = parted.collect();
 }
 
-/// Takes out of `program`, which is one of IEC 61131-3, the rungs that mean another thing than the same words would on
-/// the FX family: types decide how numbers compare and divide.
-pub(super) fn refuse_other_types(document: &Document, sources: &mut [Source]) {
+/// Takes out of a program of IEC 61131-3 the rungs that mean another thing than the same words would on a model of the
+/// FX `family`: types decide how numbers compare and divide, declarations what there is at first. An F_TRIG becomes what
+/// it is there.
+pub(super) fn refuse_others(document: &Document, family: &Target, sources: &mut [Source]) {
     if document.target().is_fx() {
         return;
     }
+    let instances = Instances::of(document, sources);
+    let doubts = doubts::all(document, sources, family, &instances);
+    for (source, doubt) in sources.iter_mut().zip(doubts) {
+        let Ok(Some(path)) = &source.rung.path else { continue };
+        let other = match to_devices::is_of_family(path, document.scopes(), source.pou) {
+            true => doubt.map(Some).or_else(|| to_devices::counted(path, &instances).map(Some)),
+            false => Some(None),
+        };
+        source.rung.path = match other {
+            Some(note) => {
+                source.note = note;
+                Err(Refusal::NoCounterpart)
+            }
+            None => Ok(Some(to_devices::with_first_scan(path, &instances))),
+        };
+    }
+}
+
+/// Takes out the rungs that ask more than once for the edge of a relay whose edge only one contact sees: how many
+/// contacts there are, and in which order, is not what is compared.
+pub(super) fn refuse_shared_edges(document: &Document, sources: &mut [Source]) {
+    let family = document.target();
+    let edges = |source: &Source| {
+        let mut found: Vec<Device> = Vec::new();
+        let Some(path) = source.path() else { return found };
+        path.visit(&mut |_| {}, &mut |condition| {
+            let edges = condition.contacts().into_iter().filter(|contact| is_edge(contact));
+            let devices = edges.filter_map(|contact| contact.terms.first()?.operand.device());
+            found.extend(devices.filter(|device| device.shares_edges(family)));
+        });
+        found
+    };
+    let mut count: FxHashMap<Device, usize> = FxHashMap::default();
+    for device in sources.iter().flat_map(edges) {
+        *count.entry(device).or_default() += 1;
+    }
     for source in sources {
-        let is_other = |path: &Path| !to_devices::is_of_family(path, document.scopes(), source.pou);
-        if matches!(&source.rung.path, Ok(Some(path)) if is_other(path)) {
+        if let Some(shared) = edges(source).into_iter().find(|device| count.get(device) > Some(&1)) {
+            source.note = Some(Lack::Reason("translate.single-edge", shared.to_smolstr()).message());
             source.rung.path = Err(Refusal::NoCounterpart);
         }
     }
+}
+
+/// Whether a contact asks for an edge.
+fn is_edge(contact: &Contact) -> bool {
+    matches!(contact.test, Test::Bit(ContactKind::Rising | ContactKind::Falling))
 }
 
 /// Whether a rung belongs to a program, not to a function or a block.

@@ -1,11 +1,12 @@
 //! What a translation to instruction list of IEC 61131-3 declares: a program around the rungs where the source has
 //! none, and the helpers that it needs.
 
-use super::source::Source;
+use super::dialect;
+use super::source::{Program, Source};
 use super::to_iec::{Helper, Helpers};
 use crate::document::{DeclaredType, Document, Scopes, Tree};
 use crate::il::iec::{self, SectionKind};
-use crate::logic::{Action, Deed, Expression, Path, Term, Test, is_helper_name};
+use crate::logic::{Action, Deed, Expression, Path, Term, Test, is_fall_name, is_helper_name};
 use crate::target::iec::{ENO, ElementaryType, LiteralValue};
 use crate::target::{DeviceKind, DirectAddress, Model, Operand, Target, Width};
 use crate::text::folded;
@@ -49,16 +50,17 @@ pub(super) fn with_spare(mut helpers: Helpers, document: &Document, sources: &[S
             }
         }
     }
+    let keeps = |name: &str| is_helper_name(name) || is_fall_name(name);
     for (unit, pou) in document.scopes().own_pous().iter().enumerate() {
         for variable in &pou.variables {
-            let is_plain = variable.section == SectionKind::Local && variable.address.is_none();
+            let is_plain =
+                variable.section == SectionKind::Local && variable.address.is_none() && !variable.has_value();
             if !is_plain || named.contains(&(Some(unit), folded(&variable.name))) {
                 continue;
             }
             let type_name = match &variable.declared {
-                DeclaredType::Elementary(ElementaryType::Bool) if is_helper_name(&variable.name) => "BOOL",
+                DeclaredType::Elementary(ElementaryType::Bool) if keeps(&variable.name) => "BOOL",
                 DeclaredType::Named(name) if name.eq_ignore_ascii_case("R_TRIG") => "R_TRIG",
-                DeclaredType::Named(name) if name.eq_ignore_ascii_case("F_TRIG") => "F_TRIG",
                 _ => continue,
             };
             helpers.spare(Some(unit), type_name, variable.name.clone());
@@ -139,11 +141,21 @@ fn root(term: &Term) -> &str {
 }
 
 /// The header of a program without one: its variables, typed by the declarations of the source if there are any, else
-/// by their use, and the helpers. Global variables of other files stay where they are.
-pub(super) fn header(document: &Document, sources: &[Source], helpers: &[Helper]) -> String {
+/// by their use, and the helpers. Those that stand for latched devices are RETAIN. Global variables of other files stay
+/// where they are.
+pub(super) fn header(document: &Document, program: &Program, helpers: &[Helper]) -> String {
+    let sources = &program.rungs;
+    let is_kept = |term: &Term| match (term.address(), Operand::read(root(term), document.target().model)) {
+        _ if !document.target().is_fx() => false,
+        (Some(address), _) => dialect::is_kept(address, document.target()),
+        (None, Operand::Device(device)) => {
+            device.range_on(document.target()).is_some_and(|range| range.latched)
+        }
+        _ => false,
+    };
     let scopes = document.scopes();
     let mut known: FxHashSet<SmolStr> = FxHashSet::default();
-    let mut variables: Vec<(SmolStr, SmolStr)> = Vec::new();
+    let (mut variables, mut kept): (Vec<(SmolStr, SmolStr)>, Vec<(SmolStr, SmolStr)>) = Default::default();
     let paths = || sources.iter().filter_map(|source| source.rung.path.as_ref().ok()?.as_ref());
     // Instances first, for a member of one says nothing of its type.
     for is_instance in [true, false] {
@@ -157,13 +169,16 @@ pub(super) fn header(document: &Document, sources: &[Source], helpers: &[Helper]
                 let by_use = type_by_use(&usage).filter(|_| is_whole);
                 let calls = matches!(usage, Use::Type(_));
                 let type_name = if calls { by_use.or(declared) } else { declared.or(by_use) };
-                let Some(type_name) = type_name else { return };
+                let Some(mut type_name) = type_name else { return };
+                if let Some(preset) = program.presets.get(name).filter(|_| type_name == "CTU") {
+                    type_name = format_smolstr!("{type_name} := (PV := {preset})");
+                }
                 if term.operand == Operand::Variable && calls == is_instance && known.insert(folded(name)) {
                     let name = match address {
                         Some(address) => format_smolstr!("{name} AT {address}"),
                         None => name.into(),
                     };
-                    variables.push((name, type_name));
+                    if is_kept(term) { &mut kept } else { &mut variables }.push((name, type_name));
                 }
             });
         }
@@ -172,7 +187,9 @@ pub(super) fn header(document: &Document, sources: &[Source], helpers: &[Helper]
     let (external, mut variables): (Vec<_>, Vec<_>) =
         variables.into_iter().partition(|(name, _)| is_elsewhere(name));
     variables.extend(helpers.iter().map(|helper| (helper.name.clone(), helper.type_name.into())));
-    format!("PROGRAM {PROGRAM}\n{}{}\n", section("VAR_EXTERNAL", &external), section("VAR", &variables))
+    let sections = [("VAR_EXTERNAL", &external), ("VAR RETAIN", &kept), ("VAR", &variables)]
+        .map(|(keyword, own)| section(keyword, own));
+    format!("PROGRAM {PROGRAM}\n{}\n", sections.concat())
 }
 
 /// The declarations of the helpers of a program unit; empty if it has none.

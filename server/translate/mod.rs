@@ -34,6 +34,7 @@ pub use prove::{Proof, prove};
 pub mod told;
 
 mod dialect;
+use dialect::Purpose;
 pub use dialect::{device_called, variable_called};
 
 mod header;
@@ -140,6 +141,8 @@ pub struct Translated {
     pub certificate: Option<Certificate>,
     /// Why it was not translated but kept as it is, or why nothing is proved.
     pub note: Option<Message>,
+    /// Whether it is kept as it is.
+    pub is_kept: bool,
 }
 
 impl Translation {
@@ -212,7 +215,7 @@ pub fn rewritten(document: &Document, source: &Source, path: Path) -> Result<Str
         ..source.rung.clone()
     };
     let rungs = vec![Source { rung, declarations: String::new(), ..source.clone() }];
-    let program = source::Program { rungs, tail: String::new() };
+    let program = source::Program { rungs, ..source::Program::default() };
     let options = Options { is_whole: false, ..Options::default() };
     let written = page::write(document, &program, (to, document.target()), &options, false, &|| false);
     let no_words = || Message::new("translate.no-drawing");
@@ -233,12 +236,18 @@ fn written(
     is_cancelled: &dyn Fn() -> bool,
 ) -> Option<Translation> {
     let target = dialect::target(document, to, options.model);
-    dialect::convert(document, (to, target), &mut program, is_whole);
+    dialect::convert(document, (to, target), &mut program, Purpose::Text { is_whole });
     let (mut translation, helpers) =
         page::write(document, &program, (to, target), options, is_whole, is_cancelled)?;
     if options.proves {
         let sources = (&program.rungs[..], &helpers[..]);
         certificate::add((document, target), sources, to, &mut translation, is_cancelled)?;
+    }
+    for (source, rung) in program.rungs.iter().zip(&mut translation.rungs) {
+        if let (Some(doubt), None) = (&source.doubt, &rung.note) {
+            rung.note = Some(doubt.clone());
+            rung.certificate = rung.certificate.map(|_| Certificate::Undecided);
+        }
     }
     Some(translation)
 }

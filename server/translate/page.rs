@@ -58,7 +58,7 @@ pub(super) fn write(
     let mut page = Page { text: String::new(), to, rail };
     let needs_header = to == To::Iec && is_whole && !sources.is_empty() && !header::has_units(document);
     if needs_header {
-        page.declare(&header::header(document, sources, &helpers.declared));
+        page.declare(&header::header(document, program, &helpers.declared));
     }
     let mut rungs = Vec::with_capacity(sources.len());
     for (source, body) in sources.iter().zip(bodies) {
@@ -71,7 +71,9 @@ pub(super) fn write(
         let note = page.body(body, source);
         let end = page.text.len();
         page.comments(source, true);
-        rungs.push(Translated { span: source.span(), result: start..end, certificate: None, note });
+        let is_kept = note.is_some();
+        let result = start..end;
+        rungs.push(Translated { span: source.span(), result, certificate: None, note, is_kept });
     }
     page.declare(&program.tail);
     if needs_header {

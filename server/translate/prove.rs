@@ -6,7 +6,7 @@
 use super::counterexample::{self, Counterexample, Inputs, Shown, Value};
 use super::paired::Paired;
 use super::source::{self, Source};
-use super::{To, declared, dialect, helpers, reached, types, units};
+use super::{Purpose, To, declared, dialect, helpers, reached, types, units};
 use crate::document::{DeclaredType, Document, Scopes};
 use crate::ladder::CoilKind;
 use crate::logic::{
@@ -64,9 +64,9 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
     let mut sources = [left, right].map(|document| {
         let mut program = source::program(document, None);
         match document.target().is_fx() {
-            _ if !is_mixed => {}
+            true if !is_mixed => dialect::refuse_shared_edges(document, &mut program.rungs),
             true => {
-                dialect::convert(document, (To::Iec, Target::of(Model::Iec)), &mut program, true);
+                dialect::convert(document, (To::Iec, Target::of(Model::Iec)), &mut program, Purpose::Proof);
                 dialect::part_calculations(&mut program);
             }
             false => {}
@@ -79,8 +79,9 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
     if let Some((reason, at)) = unlike {
         return Proof::undecided(reason, at);
     }
+    let family = if left.target().is_fx() { left.target() } else { right.target() };
     for (document, sources) in [left, right].into_iter().zip(&mut sources).filter(|_| is_mixed) {
-        dialect::refuse_other_types(document, sources);
+        dialect::refuse_others(document, family, sources);
     }
     let stretches = [0, 1].map(|side| stretches(&sources[side]));
     if let Some((reason, at)) = units::unlike([left, right], [&sources[0], &sources[1]]) {
@@ -160,6 +161,14 @@ impl End<'_> {
         match self {
             End::Label(span, _) | End::Unit(span, _) => *span,
             End::Rung(source, _) | End::Unread(source, _) => source.span(),
+        }
+    }
+
+    /// Why it is not compared, if that is known.
+    fn note(&self) -> Option<&Message> {
+        match self {
+            End::Unread(source, _) => source.note.as_ref(),
+            _ => None,
         }
     }
 
@@ -252,7 +261,9 @@ impl<'s> Prover<'s> {
         };
         if !is_alike {
             let at = [left, right].map(|side| side.end.as_ref().map(End::span));
-            return Err(Proof::undecided(Message::new("prove.structure"), at));
+            let notes = [left, right].into_iter().filter_map(|side| side.end.as_ref()?.note());
+            let reason = notes.cloned().next().unwrap_or(Message::new("prove.structure"));
+            return Err(Proof::undecided(reason, at));
         }
         self.rungs([&left.rungs, &right.rungs])?;
         match (&left.end, &right.end) {

@@ -5,6 +5,7 @@ use crate::il::iec::{IecTree, ItemKind, words_of_body};
 use crate::ladder;
 use crate::logic::{self, Declared, Elsewhere, Path, Rung};
 use crate::text::{Message, Span};
+use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 use std::sync::Arc;
 
@@ -23,6 +24,8 @@ pub struct Source {
     pub pou: Option<usize>,
     /// Why it has no words in the language that it is translated to.
     pub note: Option<Message>,
+    /// Why it is doubtful whether it does the same with its words there.
+    pub doubt: Option<Message>,
 }
 
 /// A program, or a part of one.
@@ -32,6 +35,8 @@ pub(super) struct Program {
     pub rungs: Vec<Source>,
     /// The declarations behind the last rung, as written.
     pub tail: String,
+    /// The presets that declarations of counters have to say once the program is one of IEC 61131-3, by their names.
+    pub presets: FxHashMap<SmolStr, i64>,
 }
 
 impl Source {
@@ -93,6 +98,7 @@ impl Source {
             declarations: String::new(),
             pou: pous.checked_sub(1),
             note: None,
+            doubt: None,
         };
         rungs.map(source).collect()
     }
@@ -235,7 +241,8 @@ impl Reader<'_> {
             }
             let declarations = std::mem::take(&mut self.program.tail);
             let pou = self.pous.checked_sub(1);
-            let source = Source { start, chunk: chunk.clone(), rung, declarations, pou, note: None };
+            let source =
+                Source { start, chunk: chunk.clone(), rung, declarations, pou, note: None, doubt: None };
             match !source.is_blank() && self.touches(source.span()) {
                 true => self.program.rungs.push(source),
                 false => self.program.tail = source.declarations,

@@ -3,8 +3,9 @@
 //!
 //! The current result survives ST, S and R, so outputs that share their power need no stack. Behind a conditional path
 //! the power is loaded again: a single contact that nothing changed meanwhile as it is, anything else from a helper, a
-//! variable that was stored before. An edge contact is the output of a detector called before the load, a coil of an
-//! edge that of one called behind it; a function block is called with its first input stored, and its first output is
+//! variable that was stored before. A contact of a rising edge is the output of a detector called before the load, a coil
+//! of one that of a detector called behind it. F_TRIG is on in its first call if its input is off, which no contact of a
+//! falling edge is, so two variables find these: `Was1` keeps what the bit was, `Fall1` is on where it fell. A function block is called with its first input stored, and its first output is
 //! loaded. Calculations with words are jumped over where power does not reach them.
 
 mod helpers;
@@ -13,10 +14,12 @@ pub use helpers::{Helper, Helpers};
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{
     Action, Call, Computation, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test,
+    is_helper_name,
 };
 use crate::text::Message;
 use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
+use std::borrow::Cow;
 
 /// The lines of `path`, not yet laid out, or why it has none.
 pub fn lines(path: &Path, helpers: &mut Helpers) -> Result<Vec<String>, Message> {
@@ -28,17 +31,38 @@ pub fn lines(path: &Path, helpers: &mut Helpers) -> Result<Vec<String>, Message>
     {
         return Err(Message::new("translate.jump-first"));
     }
-    let mut writer = Writer { lines: Vec::new(), group: 0, driven: FxHashSet::default(), held: 0, helpers };
+    let mut writer = Writer {
+        lines: Vec::new(),
+        falls: 0,
+        group: 0,
+        driven: FxHashSet::default(),
+        changed: Vec::new(),
+        has_run: false,
+        last: 0,
+        held: 0,
+        helpers,
+    };
     writer.path(path, true)?;
-    Ok(writer.lines)
+    match writer.goes_back() {
+        true => Err(Message::new("translate.fall-beside")),
+        false => Ok(writer.lines),
+    }
 }
 
 struct Writer<'h> {
     lines: Vec<String>,
+    /// The line behind those that find falling edges, which stand first.
+    falls: usize,
     /// The line of the last load outside of parentheses, before which detectors are called.
     group: usize,
     /// The keys of what was driven behind that line.
     driven: FxHashSet<SmolStr>,
+    /// What may have been changed by the lines so far.
+    changed: Vec<Term>,
+    /// Whether they ran a unit of the program, which may change whatever others know.
+    has_run: bool,
+    /// The line behind the last coil of a falling edge.
+    last: usize,
     /// How many powers are kept in helpers.
     held: usize,
     helpers: &'h mut Helpers,
@@ -148,6 +172,10 @@ impl Writer<'_> {
                 }
                 is_lost = true;
             }
+            // Power that was kept before a coil of a falling edge is kept anew behind it.
+            if is_fall(drive) {
+                self.held -= usize::from(held.take().is_some());
+            }
             match drive {
                 _ if !computed.is_empty() => self.computations(&computed)?,
                 Drive::Action(action) => self.action(action, inverse)?,
@@ -176,6 +204,18 @@ impl Writer<'_> {
             self.lines.push("NOT".into());
         }
         Ok(())
+    }
+
+    /// Whether power is wanted behind a coil of a falling edge that a helper kept before it: a list goes on from the
+    /// coil alone.
+    fn goes_back(&self) -> bool {
+        let behind = self.lines.iter().enumerate().skip(self.last);
+        let mut loads = behind.filter_map(|(at, line)| Some((at, line.strip_prefix("LD ")?)));
+        loads.any(|(at, name)| {
+            let stores = |line: &String| line.strip_prefix("ST ") == Some(name);
+            is_helper_name(name)
+                && self.lines[..at].iter().rposition(stores).is_some_and(|store| store < self.last)
+        })
     }
 
     /// A load outside of parentheses follows.
@@ -256,22 +296,49 @@ impl Writer<'_> {
     /// The operand of a contact of one bit; an edge is detected by a block that is called before the load.
     fn operand(&mut self, contact: &Contact) -> Result<String, Message> {
         let [term] = &contact.terms[..] else { return Err(Message::new("translate.no-instruction")) };
-        let (stem, type_name) = match contact.test {
-            Test::Bit(ContactKind::Rising) => ("Rise", "R_TRIG"),
-            Test::Bit(ContactKind::Falling) => ("Fall", "F_TRIG"),
+        let late = || Message::new("translate.edge-of-driven").with("operand", &term.text);
+        match contact.test {
+            Test::Bit(ContactKind::Rising) if self.driven.contains(&term.key()) => return Err(late()),
+            Test::Bit(ContactKind::Rising) => {}
+            Test::Bit(ContactKind::Falling) => {
+                let may_be_other = self.changed.iter().any(|changed| changed.may_cover(term))
+                    || self.has_run && term.storage != Storage::Local;
+                return if may_be_other { Err(late()) } else { Ok(self.fall(term)) };
+            }
             _ => return Ok(term.text.to_string()),
-        };
-        if self.driven.contains(&term.key()) {
-            return Err(Message::new("translate.edge-of-driven").with("operand", &term.text));
         }
-        let name = self.helpers.detector(stem, type_name);
+        let name = self.helpers.detector("Rise", "R_TRIG");
         let call = format!("CAL {name}(\nCLK := {}\n)", term.text);
         self.lines.insert(self.group, call);
         self.group += 1;
         Ok(format!("{name}.Q"))
     }
 
+    /// The variable that is on at the falling edge of a bit.
+    fn fall(&mut self, term: &Term) -> String {
+        let [was, fall] = self.helpers.fall(true);
+        let lines = [
+            format!("LD {was}"),
+            format!("ANDN {term}"),
+            format!("ST {fall}"),
+            format!("LD {term}"),
+            format!("ST {was}"),
+        ];
+        let count = lines.len();
+        self.lines.splice(self.falls..self.falls, lines);
+        self.falls += count;
+        self.group += count;
+        fall.to_string()
+    }
+
+    /// Notes what an action may change.
+    fn note(&mut self, action: &Action) {
+        self.changed.extend(action.changes().into_iter().map(Cow::into_owned));
+        self.has_run |= action.runs_unit();
+    }
+
     fn action(&mut self, action: &Action, inverse: bool) -> Result<(), Message> {
+        self.note(action);
         let word = match (&action.deed, inverse) {
             (Deed::Call(call), _) if call.is_enabled() && !call.tells_enable() => {
                 return self.conditional_call(action, if inverse { "CALCN" } else { "CALC" });
@@ -293,11 +360,18 @@ impl Writer<'_> {
         Ok(())
     }
 
-    /// A coil of an edge: the output of a detector, stored.
+    /// A coil of an edge: the output of a detector, stored; or what was found of the power.
     fn pulse(&mut self, action: &Action, coil: CoilKind) -> Result<(), Message> {
         let [term] = &action.terms[..] else { return Err(Message::new("translate.no-instruction")) };
-        let type_name = if coil == CoilKind::Rising { "R_TRIG" } else { "F_TRIG" };
-        let name = self.helpers.pulse(coil, type_name, &term.text);
+        if coil == CoilKind::Falling {
+            let power = self.helpers.pulse(coil, "BOOL", &term.text);
+            let [was, _] = self.helpers.fall(false);
+            self.lines.extend([format!("ST {power}"), format!("LD {was}"), format!("ANDN {power}")]);
+            self.lines.extend([format!("ST {term}"), format!("LD {power}"), format!("ST {was}")]);
+            self.last = self.lines.len();
+            return Ok(());
+        }
+        let name = self.helpers.pulse(coil, "R_TRIG", &term.text);
         self.lines.extend([format!("ST {name}.CLK"), format!("CAL {name}")]);
         self.start();
         self.lines.extend([format!("LD {name}.Q"), format!("ST {term}")]);
@@ -316,6 +390,7 @@ impl Writer<'_> {
 
     /// `LD a`, `ADD b`, `ST c`; `LD a`, `INT_TO_WORD`, `AND( b`, `INT_TO_WORD`, `)`, `WORD_TO_INT`, `ST c`
     fn computation(&mut self, action: &Action) -> Result<(), Message> {
+        self.note(action);
         let operands = match &action.deed {
             Deed::Compute(computation) => {
                 computation.operands(&action.terms).map(|found| (computation, found))
@@ -368,6 +443,7 @@ impl Writer<'_> {
 
     /// A call with this operand at its first input, or with the current result.
     fn call(&mut self, action: &Action, power: Option<String>) -> Result<(), Message> {
+        self.note(action);
         let (Deed::Call(call), Some(instance)) = (&action.deed, action.terms.first()) else {
             return Err(Message::new("translate.no-instruction"));
         };
@@ -390,6 +466,7 @@ impl Writer<'_> {
 
     /// A call that the current result enables, or that is always done, as `word` says.
     fn conditional_call(&mut self, action: &Action, word: &str) -> Result<(), Message> {
+        self.note(action);
         let Deed::Call(call) = &action.deed else { return Err(Message::new("translate.no-instruction")) };
         self.lines.push(call_text(word, call, None, &action.terms));
         self.driven.extend(call.changes(&action.terms).iter().map(Term::key));
@@ -463,11 +540,15 @@ fn is_invertible(drive: &Drive) -> bool {
     }
 }
 
+/// Whether it is a coil of a falling edge.
+fn is_fall(drive: &Drive) -> bool {
+    matches!(drive, Drive::Action(Action { deed: Deed::Coil(CoilKind::Falling), .. }))
+}
+
 /// Whether the current result is no longer the power behind this.
 fn loses(drive: &Drive) -> bool {
-    use CoilKind::{Falling, Rising};
     let calls = |action: &Action| {
-        matches!(action.deed, Deed::Call(_) | Deed::Compute(_) | Deed::Coil(Rising | Falling))
+        matches!(action.deed, Deed::Call(_) | Deed::Compute(_) | Deed::Coil(CoilKind::Rising))
     };
     match drive {
         Drive::Action(action) => calls(action),

@@ -1,7 +1,7 @@
 //! Runs a rung of instruction list with conditions in place of the current result.
 
 mod call;
-pub(in crate::logic) use call::edge_kind;
+pub(in crate::logic) use call::detects_rise;
 mod held;
 
 use super::{Source, ValueKind};
@@ -38,7 +38,6 @@ struct Frame {
 #[derive(Clone, Copy)]
 struct Edge {
     operand: OperandId,
-    kind: ContactKind,
     /// The call.
     called_at: usize,
 }
@@ -408,7 +407,11 @@ impl<'s, 'a> Reader<'s, 'a> {
             let driven = self.driven.get(&term.key()).copied();
             let is_late = driven.max(ran).is_some_and(|driven| driven > edge.called_at);
             return match !is_late {
-                true => Ok(Contact { test: Test::Bit(edge.kind), terms: vec![term], span: operand.span }),
+                true => Ok(Contact {
+                    test: Test::Bit(ContactKind::Rising),
+                    terms: vec![term],
+                    span: operand.span,
+                }),
                 false => Err(Refusal::NotBoolean),
             };
         }

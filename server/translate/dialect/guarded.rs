@@ -1,6 +1,7 @@
 //! What a jump leaves out, a master control gates or a loop repeats. Where that is kept as a comment, so is what
 //! depends on it: done in each scan, it would be something else.
 
+use super::END_POINTER;
 use crate::logic::{Action, Deed, Path};
 use crate::target::Flow;
 use crate::text::folded;
@@ -40,6 +41,23 @@ pub(super) fn all(sources: &[Source]) -> Vec<Vec<Guard>> {
     sources.iter().enumerate().map(guards).collect()
 }
 
+/// Whether each rung may be left out, as a guard before it says.
+pub(super) fn are(sources: &[Source]) -> Vec<bool> {
+    let mut open: Vec<Guard> = Vec::new();
+    let mut unit = None;
+    let guarded = sources.iter().zip(all(sources)).map(|(source, own)| {
+        if unit.replace(source.pou) != Some(source.pou) {
+            open.clear();
+        }
+        close_before(&mut open, source);
+        let is_guarded = !open.is_empty();
+        close_with(&mut open, source);
+        open.extend(own);
+        is_guarded
+    });
+    guarded.collect()
+}
+
 fn of(source: &Source) -> Vec<Guard> {
     match &source.rung.path {
         Ok(path) => path.iter().flat_map(Path::actions).filter_map(guard).collect(),
@@ -73,6 +91,8 @@ fn guard(action: &Action) -> Option<Guard> {
         Deed::Jump => return Some(jump("JMP", label)),
         Deed::Return => Until::End,
         Deed::Instruction(form) => match form.instruction.flow() {
+            // P63 stands for END.
+            Flow::Jump if label.eq_ignore_ascii_case(END_POINTER) => Until::End,
             Flow::Jump => return Some(jump("CJ", label)),
             Flow::SectionBegin => Until::Behind(Flow::SectionEnd),
             Flow::LoopBegin => Until::Behind(Flow::LoopEnd),

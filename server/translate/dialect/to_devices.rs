@@ -3,6 +3,7 @@
 use super::super::source::Program;
 mod calculation;
 
+use super::counted::{Instances, constant, is_alike, turned};
 use super::{Lack, PULSE, Registers, device_at, devices_at, pair_at, single_edge, without};
 use crate::document::{DeclaredType, Scopes};
 use crate::il::iec::SectionKind;
@@ -10,7 +11,7 @@ use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::logic::{Action, Call, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test};
 use crate::target::iec::{ElementaryType, LiteralValue};
 use crate::target::{Device, DeviceKind, DirectAddress, Form, Operand, Target, Width};
-use crate::text::{Span, folded};
+use crate::text::{Message, Span, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
 
@@ -103,20 +104,68 @@ fn pointer(name: &str) -> Option<u32> {
 pub(super) fn path(
     path: &Path,
     target: &Target,
-    (names, registers): (&Names, &Registers),
+    (names, registers, instances): (&Names, &Registers, &Instances),
     (scopes, pou): (&Scopes, Option<usize>),
 ) -> Result<Path, Lack> {
-    Converter { target, names, registers, types: Types { scopes, pou } }.whole(path)
+    let converter = Converter { target, names, registers, instances, types: Types { scopes, pou } };
+    converter.whole(&with_first_scan(path, instances))
+}
+
+/// `path` with contacts for an F_TRIG that is called in each scan with the bit that was loaded before it: the falling
+/// edge of that bit, or the first scan if the bit is off in it.
+pub(super) fn with_first_scan(path: &Path, instances: &Instances) -> Path {
+    let [Gate::Pass(Expression::Contact(clock)), Gate::Through(detector), rest @ ..] = &path.gates[..] else {
+        return path.clone();
+    };
+    let is_falling = match (&detector.deed, detector.terms.first()) {
+        (Deed::Call(call), Some(instance)) => {
+            let is_plain = call.block.is_standard("F_TRIG") && call.power_in() == "CLK";
+            is_plain && detector.terms.len() == 1 && instances.is_called_once(&instance.text, true)
+        }
+        _ => false,
+    };
+    let ([term], Test::Bit(ContactKind::NormallyOpen), true) = (&clock.terms[..], clock.test, is_falling)
+    else {
+        return path.clone();
+    };
+    if matches!(term.operand, Operand::Literal(_)) {
+        return path.clone();
+    }
+    let contact = |kind, term: &Term| {
+        Expression::Contact(Contact { test: Test::Bit(kind), terms: vec![term.clone()], span: clock.span })
+    };
+    let first = Term::of_device(Device::FIRST_SCAN, clock.span);
+    let at_first = Expression::and([
+        contact(ContactKind::NormallyOpen, &first),
+        contact(ContactKind::NormallyClosed, term),
+    ]);
+    let edge = Expression::or([contact(ContactKind::Falling, term), at_first]);
+    let gates = std::iter::once(Gate::Pass(edge)).chain(rest.iter().cloned()).collect();
+    Path { gates, drives: path.drives.clone() }
+}
+
+/// Why a timer or a counter that a path calls does not do what one of the FX family does.
+pub(super) fn counted(path: &Path, instances: &Instances) -> Option<Message> {
+    let calls = path.actions().into_iter().filter_map(|action| match &action.deed {
+        Deed::Call(call) => Some((call, action.terms.first()?)),
+        _ => None,
+    });
+    let mut lacks = calls.filter_map(|(call, instance)| match () {
+        () if call.block.is_standard("CTU") => instances.preset(&instance.text).err(),
+        () if call.block.is_standard("TON") => instances.one(&instance.text).err(),
+        () => None,
+    });
+    lacks.next().map(|lack| lack.message())
 }
 
 /// Whether two actions without a condition, one directly behind the other, are one DIV.
 pub(super) fn is_division(
     [first, next]: [&Drive; 2],
     target: &Target,
-    (names, registers): (&Names, &Registers),
+    (names, registers, instances): (&Names, &Registers, &Instances),
     (scopes, pou): (&Scopes, Option<usize>),
 ) -> bool {
-    let converter = Converter { target, names, registers, types: Types { scopes, pou } };
+    let converter = Converter { target, names, registers, instances, types: Types { scopes, pou } };
     converter.division(first, std::slice::from_ref(next)).is_some()
 }
 
@@ -141,6 +190,7 @@ struct Converter<'a> {
     target: &'a Target,
     names: &'a Names,
     registers: &'a Registers,
+    instances: &'a Instances,
     types: Types<'a>,
 }
 
@@ -221,7 +271,8 @@ impl Converter<'_> {
         let Deed::Call(call) = &detector.deed else { return None };
         let instance = detector.terms.first()?;
         let is_last = matches!(path.gates.last(), Some(Gate::Through(last)) if last == detector);
-        if !call.block.is_standard("R_TRIG") || !is_last || !is_pulse(&instance.text) {
+        let is_once = self.instances.is_called_once(&instance.text, false);
+        if !call.block.is_standard("R_TRIG") || !is_last || !is_pulse(&instance.text) || !is_once {
             return None;
         }
         let mut pulsed = Vec::new();
@@ -263,6 +314,7 @@ impl Converter<'_> {
                 (contact.test, vec![term])
             }
             (Test::Compare(operator), [left, right]) => {
+                self.counts(operator, [left, right])?;
                 let width = self.types.width(&contact.terms);
                 let numbers = vec![self.number(left, width)?, self.number(right, width)?];
                 self.types.compared(operator, [left, right])?;
@@ -279,8 +331,17 @@ impl Converter<'_> {
 
     fn own_bit(&self, term: &Term) -> Result<Term, Lack> {
         use DeviceKind::{C, M, S, T, X, Y};
+        if term.operand == Operand::Device(Device::FIRST_SCAN) {
+            return Ok(term.clone());
+        }
         if let Some((instance, member)) = member(term) {
-            let device = without(self.named(instance).filter(|device| matches!(device.kind, T | C)))?;
+            let device = without(self.counting(instance).filter(|device| matches!(device.kind, T | C)))?;
+            if self.instances.is_called(instance) {
+                match device.kind {
+                    C => _ = self.instances.preset(instance)?,
+                    _ => self.instances.one(instance)?,
+                }
+            }
             return without(member.eq_ignore_ascii_case("Q").then(|| self.term(device, term.span)));
         }
         let device = without(self.device(term))?;
@@ -316,7 +377,7 @@ impl Converter<'_> {
             };
         }
         if let Some((instance, member)) = member(term) {
-            let device = without(self.named(instance).filter(|device| device.kind == DeviceKind::C))?;
+            let device = without(self.counting(instance).filter(|device| device.kind == DeviceKind::C))?;
             return without(member.eq_ignore_ascii_case("CV").then(|| self.term(device, term.span)));
         }
         let device = without(self.device(term))?;
@@ -348,6 +409,26 @@ impl Converter<'_> {
             Operand::Device(device) => is_known(device).then_some(device),
             _ => None,
         }
+    }
+
+    /// The timer or counter that an instance of this name is, if no other has the name.
+    fn counting(&self, instance: &str) -> Option<Device> {
+        self.named(instance).filter(|device| self.names.is_free(*device))
+    }
+
+    /// Whether a comparison is the same of a count that stops at its preset, if one of these is a count.
+    fn counts(&self, operator: CompareOperator, sides: [&Term; 2]) -> Result<(), Lack> {
+        for (operator, count, other) in
+            [(operator, sides[0], sides[1]), (turned(operator), sides[1], sides[0])]
+        {
+            let Some((instance, "cv" | "CV" | "Cv" | "cV")) = member(count) else { continue };
+            let preset = self.instances.preset(instance)?;
+            match constant(other).filter(|number| is_alike(operator, *number, preset)) {
+                Some(_) => {}
+                None => return Err(Lack::Reason("translate.beyond-preset", count.text.clone())),
+            }
+        }
+        Ok(())
     }
 
     /// The device that a variable stands for: by its address, or if it has none by its name.
@@ -389,27 +470,32 @@ impl Converter<'_> {
 
     /// The output that the call of a timer or counter is.
     fn called(&self, call: &Call, instance: &Term, terms: &[Term]) -> Result<(Deed, Vec<Term>), Lack> {
-        let device = without(self.named(&instance.text))?;
+        let device = without(self.counting(&instance.text))?;
         let own = self.term(device, instance.span);
         let arguments = call.arguments(terms);
         let block = without((!call.block.is_declared()).then(|| call.block.name()))?;
         match (block, device.kind, call.power_in(), &arguments[..]) {
             ("CTU", DeviceKind::C, "R", []) if device.number < 200 => {
+                self.instances.preset(&instance.text)?;
                 Ok((Deed::Coil(CoilKind::Reset), vec![own]))
             }
             ("CTU", DeviceKind::C, "CU", [preset]) if preset.name == "PV" && device.number < 200 => {
-                let preset = self.number(&preset.term, Width::Word)?;
-                Ok((Deed::Coil(CoilKind::Plain), vec![own, preset]))
+                let number = self.instances.preset(&instance.text)?;
+                Ok((Deed::Coil(CoilKind::Plain), vec![own, self.constant(number, preset.term.span)?]))
             }
             ("TON", DeviceKind::T, "IN", [preset]) if preset.name == "PT" => {
+                self.instances.one(&instance.text)?;
                 let range = without(device.range_on(self.target).filter(|range| !range.latched))?;
                 let Operand::Literal(literal) = preset.term.operand else {
                     return Err(Lack::Unnamed);
                 };
                 let LiteralValue::Time(time) = literal.value else { return Err(Lack::Unnamed) };
+                if time == 0 {
+                    return Err(Lack::Reason("translate.zero-time", instance.text.clone()));
+                }
                 let unit = i64::from(range.timer_unit_ms) * 1_000_000;
                 let steps = without((unit > 0 && time % unit == 0).then(|| time / unit))?;
-                let steps = without((0..=i64::from(i16::MAX)).contains(&steps).then_some(steps))?;
+                let steps = without((1..=i64::from(i16::MAX)).contains(&steps).then_some(steps))?;
                 Ok((Deed::Coil(CoilKind::Plain), vec![own, self.constant(steps, preset.term.span)?]))
             }
             _ => Err(Lack::Unnamed),

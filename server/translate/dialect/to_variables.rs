@@ -2,9 +2,10 @@
 
 mod applied;
 
+use super::counted::{Coils, Reached, stopping, turned};
 use super::registers::is_wide_counter;
-use super::{Lack, PULSE, Registers, address, pair_address, single_edge, without};
-use crate::ladder::{CoilKind, ContactKind};
+use super::{END_POINTER, Lack, PULSE, Purpose, Registers, address, pair_address, single_edge, without};
+use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::logic::{
     Action, Call, Callee, Computation, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test,
 };
@@ -21,15 +22,15 @@ pub(super) fn is_end(path: &Path) -> bool {
     path.gates.is_empty() && action.deed.ends_program()
 }
 
-/// `path`, written for `target`, with variables for devices. `registers` are those of the program, and `pulses` counts
-/// the detectors of pulse forms.
+/// `path`, written for `target`, with variables for devices. `registers` and `coils` are those of the program, and
+/// `pulses` counts the detectors of pulse forms.
 pub(super) fn path(
     path: &Path,
-    target: &Target,
-    registers: &Registers,
+    (target, purpose): (&Target, Purpose),
+    (registers, coils): (&Registers, &Coils),
     pulses: &Cell<u32>,
 ) -> Result<Path, Lack> {
-    let mut path = Converter { target, registers, pulses }.path(path)?;
+    let mut path = Converter { target, purpose, registers, coils, pulses }.path(path)?;
     // Calculations and paths with conditions of their own need no load that is always on.
     let loads = |drive: &Drive| match drive {
         Drive::Action(action) => matches!(action.deed, Deed::Compute(_)),
@@ -43,7 +44,9 @@ pub(super) fn path(
 
 struct Converter<'t> {
     target: &'t Target,
+    purpose: Purpose,
     registers: &'t Registers,
+    coils: &'t Coils,
     pulses: &'t Cell<u32>,
 }
 
@@ -78,11 +81,23 @@ impl Converter<'_> {
             (Test::Bit(kind), [term]) => match (term.always(), kind) {
                 (Some(value), ContactKind::NormallyOpen) => return Ok(Expression::Constant(value)),
                 (Some(value), ContactKind::NormallyClosed) => return Ok(Expression::Constant(!value)),
+                // What the first scan is, IEC 61131-3 does not say.
+                (_, ContactKind::NormallyOpen | ContactKind::NormallyClosed)
+                    if self.purpose == Purpose::Proof && is_first_scan(term) =>
+                {
+                    (contact.test, vec![term.clone()])
+                }
                 _ => {
                     single_edge(kind, term)?;
                     (contact.test, vec![self.bit(term)?])
                 }
             },
+            (Test::Compare(operator), [left, right]) if let Some(device) = counter_of(left) => {
+                return self.counted(operator, (device, left), right, contact.span);
+            }
+            (Test::Compare(operator), [left, right]) if let Some(device) = counter_of(right) => {
+                return self.counted(turned(operator), (device, right), left, contact.span);
+            }
             // What is compared tells how wide it is.
             (Test::Compare(operator), [left, right]) => {
                 let width = if operator.is_wide() { Width::Double } else { Width::Word };
@@ -104,6 +119,7 @@ impl Converter<'_> {
             DeviceKind::X | DeviceKind::Y | DeviceKind::M | DeviceKind::S => self.located(device, term.span),
             DeviceKind::T => {
                 self.timer_unit(device)?;
+                self.coils.one(device)?;
                 Ok(variable(&format_smolstr!("{device}.Q"), term.span))
             }
             DeviceKind::C => {
@@ -127,9 +143,8 @@ impl Converter<'_> {
             }
             (Operand::Device(device), _) if device.kind == DeviceKind::D => self.located(device, term.span),
             (Operand::Device(device), _) if is_wide_counter(device) => Err(reason("translate.wide-counter")),
-            (Operand::Device(device), Width::Word) if device.kind == DeviceKind::C => {
-                self.counter(device)?;
-                Ok(variable(&format_smolstr!("{device}.CV"), term.span))
+            (Operand::Device(device), _) if device.kind == DeviceKind::C => {
+                Err(reason("translate.counter-number"))
             }
             (Operand::Device(device), _) if device.kind == DeviceKind::T => {
                 Err(reason("translate.timer-value"))
@@ -164,8 +179,32 @@ impl Converter<'_> {
     fn counter(&self, device: Device) -> Result<(), Lack> {
         match is_wide_counter(device) {
             true => Err(Lack::Reason("translate.wide-counter", device.to_smolstr())),
-            false => Ok(()),
+            false => self.coils.one(device),
         }
+    }
+
+    /// A comparison of the count of a counter, which stops at its preset, with a constant.
+    fn counted(
+        &self,
+        operator: CompareOperator,
+        (device, counter): (Device, &Term),
+        other: &Term,
+        span: Span,
+    ) -> Result<Expression, Lack> {
+        let named = |lack: Lack| lack.named(&counter.text);
+        self.counter(device).map_err(named)?;
+        let (Operand::Constant { value, index: None }, false) = (other.operand, operator.is_wide()) else {
+            return Err(Lack::Reason("translate.counter-number", counter.text.clone()));
+        };
+        let number = constant(value, Width::Word)?;
+        Ok(match stopping(operator, number, self.coils.preset(device).map_err(named)?) {
+            Reached::Constant(value) => Expression::Constant(value),
+            Reached::Count(operator, number) => {
+                let count = variable(&format_smolstr!("{device}.CV"), counter.span);
+                let terms = vec![count, literal(&number.to_smolstr(), other.span)];
+                Expression::Contact(Contact { test: Test::Compare(operator), terms, span })
+            }
+        })
     }
 
     fn drives(&self, action: &Action) -> Result<Vec<Drive>, Lack> {
@@ -173,6 +212,10 @@ impl Converter<'_> {
             return self.action(action).map(|action| vec![Drive::Action(action)]);
         };
         if let (Some(true), [label]) = (Form::named("CJ").map(|jump| jump == form), &action.terms[..]) {
+            if label.text.eq_ignore_ascii_case(END_POINTER) {
+                let leave = Action { deed: Deed::Return, terms: Vec::new(), span: action.span };
+                return Ok(vec![Drive::Action(leave)]);
+            }
             let label = variable(&label.key(), label.span);
             let jump = Action { deed: Deed::Jump, terms: vec![label], span: action.span };
             return Ok(vec![Drive::Action(jump)]);
@@ -190,6 +233,7 @@ impl Converter<'_> {
                 match (kind, device.kind) {
                     (CoilKind::Reset, DeviceKind::C) => {
                         self.counter(device)?;
+                        self.coils.preset(device)?;
                         call("CTU", "R", &device.to_smolstr(), None, span)
                     }
                     (CoilKind::Reset, DeviceKind::D) => {
@@ -203,6 +247,7 @@ impl Converter<'_> {
                     _ => Ok(Action { terms: vec![self.bit(term)?], ..action.clone() }),
                 }
             }
+            (Deed::Return, _) => Ok(action.clone()),
             _ => Err(Lack::Unnamed),
         }
     }
@@ -237,18 +282,34 @@ impl Converter<'_> {
             (DeviceKind::T, Operand::Constant { value: Constant::Decimal(steps), index: None })
                 if steps >= 0 =>
             {
-                let time = duration(without(steps.checked_mul(self.timer_unit(device)?))?);
+                self.coils.one(device)?;
+                // K0 works as K1 does (FX programming manuals, on timers).
+                let time = duration(without(steps.max(1).checked_mul(self.timer_unit(device)?))?);
                 let preset = Term::new(Operand::read(&time, Model::Iec), &time, preset.span);
                 call("TON", "IN", &device.to_smolstr(), Some(("PT", preset)), span)
             }
             (DeviceKind::C, _) => {
                 self.counter(device)?;
-                let preset = self.number(preset, Width::Word)?;
+                let number = self.coils.preset(device)?;
+                let preset = literal(&number.to_smolstr(), preset.span);
                 call("CTU", "CU", &device.to_smolstr(), Some(("PV", preset)), span)
             }
             _ => Err(Lack::Unnamed),
         }
     }
+}
+
+/// The counter that a term is.
+fn counter_of(term: &Term) -> Option<Device> {
+    match term.operand {
+        Operand::Device(device) if device.kind == DeviceKind::C => Some(device),
+        _ => None,
+    }
+}
+
+/// Whether it is a relay that tells the first scan from others.
+fn is_first_scan(term: &Term) -> bool {
+    matches!(term.operand, Operand::Device(Device::FIRST_SCAN | Device::OFF_AT_FIRST))
 }
 
 fn call(

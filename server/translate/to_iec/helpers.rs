@@ -3,7 +3,7 @@
 use crate::document::{DeclaredType, Variable};
 use crate::il::iec::SectionKind;
 use crate::ladder::CoilKind;
-use crate::logic::{HELPER, pulse_name};
+use crate::logic::{FALLS, HELPER, is_fall_name, is_helper_name, pulse_name};
 use crate::target::iec::ElementaryType;
 use crate::text::folded;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -18,7 +18,7 @@ pub struct Helpers {
     pub declared: Vec<Helper>,
     /// The program unit for which helpers are made.
     pub pou: Option<usize>,
-    /// The last number of each type of helper.
+    /// The last number of the helpers whose names begin so.
     numbers: FxHashMap<&'static str, usize>,
     /// The helpers that keep power in each program unit, by depth.
     held: FxHashMap<Option<usize>, Vec<SmolStr>>,
@@ -32,7 +32,7 @@ pub struct Helpers {
 pub struct Helper {
     /// Its name.
     pub name: SmolStr,
-    /// `BOOL`, `R_TRIG`, `F_TRIG`.
+    /// `BOOL`, `R_TRIG`.
     pub type_name: &'static str,
     /// The program unit that declares it.
     pub pou: Option<usize>,
@@ -70,7 +70,7 @@ impl Helpers {
     }
 
     /// The detector of an edge contact. Those that are named after coils are left to these.
-    pub(super) fn detector(&mut self, stem: &str, type_name: &'static str) -> SmolStr {
+    pub(super) fn detector(&mut self, stem: &'static str, type_name: &'static str) -> SmolStr {
         let is_of_coil = |name: &str| {
             let prefix = name.get(..4);
             prefix.is_some_and(|own| ["PLS_", "PLF_"].iter().any(|prefix| own.eq_ignore_ascii_case(prefix)))
@@ -96,6 +96,41 @@ impl Helpers {
         }
     }
 
+    /// The variables that find a falling edge, of one number: the one that keeps what a bit was, and the one that is on
+    /// where it fell, which is declared only if that `is_asked`.
+    pub(super) fn fall(&mut self, is_asked: bool) -> [SmolStr; 2] {
+        if let Some(spare) = self.spare_fall(is_asked) {
+            return spare;
+        }
+        loop {
+            let number = self.numbers.entry(FALLS[0]).or_default();
+            *number += 1;
+            let names = FALLS.map(|stem| format_smolstr!("{stem}{number}"));
+            if names.iter().any(|name| self.taken.contains(&folded(name))) {
+                continue;
+            }
+            self.taken.extend(names.iter().map(|name| folded(name)));
+            let declared = names.iter().take(1 + usize::from(is_asked)).cloned();
+            let pou = self.pou;
+            self.declared.extend(declared.map(|name| Helper { name, type_name: "BOOL", pou }));
+            return names;
+        }
+    }
+
+    /// The same of spare variables.
+    fn spare_fall(&mut self, is_asked: bool) -> Option<[SmolStr; 2]> {
+        let spare = self.spare.get_mut(&(self.pou, "BOOL"))?;
+        let names = spare.iter().find_map(|was| {
+            let number = was.get(FALLS[0].len()..).filter(|_| is_fall_name(was))?;
+            let fall = format_smolstr!("{}{number}", FALLS[1]);
+            let is_it = was.get(..FALLS[0].len())?.eq_ignore_ascii_case(FALLS[0]);
+            let has_fall = spare.iter().any(|name| name.eq_ignore_ascii_case(&fall));
+            (is_it && has_fall == is_asked).then(|| [was.clone(), fall])
+        })?;
+        spare.retain(|name| !names.iter().any(|own| own.eq_ignore_ascii_case(name)));
+        Some(names)
+    }
+
     /// A new label.
     pub(super) fn label(&mut self) -> SmolStr {
         let number = self.numbers.entry("").or_default();
@@ -114,8 +149,8 @@ impl Helpers {
     }
 
     /// A new variable.
-    fn declare(&mut self, stem: &str, type_name: &'static str) -> SmolStr {
-        let number = self.numbers.entry(type_name).or_default();
+    fn declare(&mut self, stem: &'static str, type_name: &'static str) -> SmolStr {
+        let number = self.numbers.entry(stem).or_default();
         loop {
             *number += 1;
             let name = format_smolstr!("{stem}{number}");
@@ -131,7 +166,7 @@ impl Helpers {
         if let Some(known) = self.held.get(&self.pou).and_then(|held| held.get(depth)) {
             return known.clone();
         }
-        let name = self.take("BOOL", |_| true).unwrap_or_else(|| self.declare(HELPER, "BOOL"));
+        let name = self.take("BOOL", is_helper_name).unwrap_or_else(|| self.declare(HELPER, "BOOL"));
         self.held.entry(self.pou).or_default().push(name.clone());
         name
     }

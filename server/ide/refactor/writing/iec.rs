@@ -8,7 +8,7 @@ use super::super::silent;
 use super::{Change, Declaration, Neighbourhood, is_margin, margin_of, with_blank_lines, without_gap};
 use crate::document::{DeclaredType, Symbol};
 use crate::il::iec::{Item, ItemKind, SectionKind};
-use crate::logic::{Path, is_helper_name};
+use crate::logic::{Path, is_fall_name, is_helper_name};
 use crate::target::iec::ElementaryType;
 use crate::text::{Span, folded};
 use crate::translate::Source;
@@ -118,9 +118,10 @@ fn spare(around: &Neighbourhood<'_>, name: &str, helpers: &mut Helpers) {
     let unit = around.unit.number;
     let Some(variable) = around.document.scopes().variable(unit, name) else { return };
     let type_name = match &variable.declared {
-        DeclaredType::Elementary(ElementaryType::Bool) if is_helper_name(name) => "BOOL",
+        DeclaredType::Elementary(ElementaryType::Bool) if is_helper_name(name) || is_fall_name(name) => {
+            "BOOL"
+        }
         DeclaredType::Named(block) if block == "r_trig" => "R_TRIG",
-        DeclaredType::Named(block) if block == "f_trig" => "F_TRIG",
         _ => return,
     };
     if variable.section == SectionKind::Local && variable.address.is_none() {

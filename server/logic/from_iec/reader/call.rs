@@ -191,11 +191,10 @@ impl<'a> Reader<'_, 'a> {
     /// Drives the coil of an edge that the call of a detector is whose output is stored and nothing else; tells
     /// whether it is that.
     fn pulse(&mut self, instance: &str, block: &Callee, item: &Item) -> Result<bool, Refusal> {
-        let coil = match edge_kind(block) {
-            Some(ContactKind::Rising) => CoilKind::Rising,
-            Some(ContactKind::Falling) => CoilKind::Falling,
-            _ => return Ok(false),
-        };
+        if !detects_rise(block) {
+            return Ok(false);
+        }
+        let coil = CoilKind::Rising;
         let is_loaded = self.next(1).and_then(|next| self.loads(next, &output_of(block, instance)));
         let Some(store) = self.next(2) else { return Ok(false) };
         let ItemKind::Operation { operation, operand: Some(id) } = store.kind else { return Ok(false) };
@@ -235,7 +234,7 @@ impl<'a> Reader<'_, 'a> {
     /// Whether a call is that of a detector which is an edge contact here.
     fn is_edge(&mut self, instance: &str, parameters: &[Parameter]) -> Result<bool, Refusal> {
         let block = self.source.block(self.pou, instance).ok_or(Refusal::Element)?;
-        let ([parameter], Some(kind)) = (parameters, edge_kind(&block)) else { return Ok(false) };
+        let ([parameter], true) = (parameters, detects_rise(&block)) else { return Ok(false) };
         if !self.frames.is_empty() || !self.source.is_edge(self.pou, instance, self.span) {
             return Ok(false);
         }
@@ -244,7 +243,7 @@ impl<'a> Reader<'_, 'a> {
             return Ok(false);
         }
         self.bit(operand)?;
-        self.edges.insert(folded(instance), Edge { operand, kind, called_at: self.at });
+        self.edges.insert(folded(instance), Edge { operand, called_at: self.at });
         Ok(true)
     }
 }
@@ -275,11 +274,8 @@ fn argument<'t>(
     Ok((formal.ok_or(Refusal::Element)?.name, is_output, id))
 }
 
-/// The contact for which the call of a detector stands.
-pub(in crate::logic) fn edge_kind(block: &Callee) -> Option<ContactKind> {
-    match block {
-        Callee::Block(block) if block.name == "R_TRIG" => Some(ContactKind::Rising),
-        Callee::Block(block) if block.name == "F_TRIG" => Some(ContactKind::Falling),
-        _ => None,
-    }
+/// Whether a block is the one whose call stands for the contact of a rising edge. `F_TRIG` is none: its memory begins as
+/// if its input had been on, so that in its first call it is on without an edge (IEC 61131-3, table of edge detection).
+pub(in crate::logic) fn detects_rise(block: &Callee) -> bool {
+    block.is_standard("R_TRIG")
 }

@@ -1,6 +1,7 @@
 //! Applied instructions in the words of IEC 61131-3.
 
 use super::super::Work;
+use super::super::registers::is_wide_counter;
 use super::{Converter, Lack, constant, literal, without};
 use crate::ladder::{CoilKind, CompareOperator};
 use crate::logic::{
@@ -198,6 +199,11 @@ impl Converter<'_> {
         let (Operand::Device(first), Operand::Device(last)) = (first.operand, last.operand) else {
             return Err(Lack::Unnamed);
         };
+        // RST holds a counter back for as long as it has power, ZRST does not.
+        if first.kind == DeviceKind::C {
+            let wide = || Lack::Reason("translate.wide-counter", last.to_smolstr());
+            return Err(if is_wide_counter(last) { wide() } else { Lack::Unnamed });
+        }
         let count = last.number.checked_sub(first.number).map(|more| more + 1);
         let count = without(count.filter(|_| first.kind == last.kind))?;
         few(count)?;

@@ -1,0 +1,136 @@
+//! What a rung names that is not the same in the other language though its words are: a variable that is on at first,
+//! one that is kept while the PLC is off where the device is not, a timer that a jump may leave out.
+
+use super::counted::{Instances, declares_preset};
+use super::{device_at, guarded, pair_at};
+use crate::document::{Document, Scopes, Variable};
+use crate::il::iec::SectionKind;
+use crate::logic::{Action, Deed, Path, Term};
+use crate::target::{Device, DeviceKind, Operand, Target};
+use crate::text::{Message, folded};
+use crate::translate::Source;
+use smol_str::SmolStr;
+
+/// For each rung why it is doubtful whether it does the same in the other language; nothing where it is not. The
+/// devices are those of `family`, and `instances` those of a program of IEC 61131-3.
+pub(super) fn all(
+    document: &Document,
+    sources: &[Source],
+    family: &Target,
+    instances: &Instances,
+) -> Vec<Option<Message>> {
+    let doubts = sources.iter().zip(guarded::are(sources)).map(|(source, is_guarded)| {
+        let path = source.path()?;
+        match document.target().is_fx() {
+            true => of_devices(path, family, is_guarded),
+            false => of_variables(path, (document.scopes(), source.pou), family, instances),
+        }
+    });
+    doubts.collect()
+}
+
+fn doubt(key: &'static str, word: impl AsRef<str>) -> Message {
+    Message::new(key).with("word", word.as_ref())
+}
+
+/// What the devices of a rung make doubtful.
+fn of_devices(path: &Path, family: &Target, is_guarded: bool) -> Option<Message> {
+    let timed = |action: &&Action| matches!((&action.deed, &action.terms[..]), (Deed::Coil(_), [_, _]));
+    let timers =
+        path.actions().into_iter().filter(timed).filter_map(|action| action.terms[0].operand.device());
+    let mut left_out = timers.filter(|device| is_guarded && device.kind == DeviceKind::T);
+    let jumped = left_out.next().map(|timer| doubt("translate.jumped-timer", timer.to_string()));
+    let devices = || path.terms().into_iter().filter_map(|term| term.operand.device());
+    jumped.or_else(|| devices().find_map(|device| latched_counter(device, family)))
+}
+
+/// What a latched counter remembers of its input while the PLC is off, nobody says alike.
+fn latched_counter(device: Device, family: &Target) -> Option<Message> {
+    let is_latched = device.kind == DeviceKind::C && is_latched(device, family);
+    is_latched.then(|| doubt("translate.latched-counter", device.to_string()))
+}
+
+/// Whether a model keeps a device while it is off.
+pub(super) fn is_latched(device: Device, family: &Target) -> bool {
+    device.range_on(family).is_some_and(|range| range.latched)
+}
+
+/// What the declarations of the variables of a rung make doubtful.
+fn of_variables(
+    path: &Path,
+    (scopes, unit): (&Scopes, Option<usize>),
+    family: &Target,
+    instances: &Instances,
+) -> Option<Message> {
+    let called = path.actions().into_iter().find_map(|action| match (&action.deed, action.terms.first()) {
+        (Deed::Call(call), Some(instance)) => {
+            let is_left_out = call.block.is_standard("TON") && instances.may_be_left_out(&instance.text);
+            is_left_out.then(|| doubt("translate.jumped-timer", &instance.text))
+        }
+        _ => None,
+    });
+    called.or_else(|| path.terms().into_iter().find_map(|term| of_variable(term, scopes, unit, family)))
+}
+
+fn of_variable(term: &Term, scopes: &Scopes, unit: Option<usize>, family: &Target) -> Option<Message> {
+    if term.operand != Operand::Variable {
+        return None;
+    }
+    let name = &term.text[..term.text.find(['.', '[', '^']).unwrap_or(term.text.len())];
+    let mut variable = scopes.variable(unit, name)?;
+    if variable.section == SectionKind::External {
+        variable = scopes.variable(None, name).unwrap_or(variable);
+    }
+    if variable.section == SectionKind::Temporary {
+        return Some(doubt("translate.temporary", name));
+    }
+    if has_value(variable, scopes) && !declares_preset(variable) {
+        return Some(doubt("translate.initial", name));
+    }
+    let devices: Vec<Device> = match variable.address {
+        Some(address) => {
+            let pair = pair_at(address).map(|first| [first, Device::new(first.kind, first.number + 1)]);
+            device_at(address).into_iter().chain(pair.into_iter().flatten()).collect()
+        }
+        None => match Operand::read(name, family.model) {
+            Operand::Device(device) => vec![device],
+            _ => Vec::new(),
+        },
+    };
+    // Inputs are read anew in each scan.
+    let mut kept = devices.iter().filter(|device| device.kind != DeviceKind::X);
+    let is_kept = variable.is_retained();
+    if let Some(device) = kept.find(|device| is_latched(**device, family) != is_kept) {
+        let key = if is_kept { "translate.retained" } else { "translate.not-retained" };
+        return Some(doubt(key, name).with("device", device.to_string()));
+    }
+    if is_kept && devices.is_empty() {
+        return Some(doubt("translate.retained-alone", name));
+    }
+    devices.into_iter().find_map(|device| latched_counter(device, family))
+}
+
+/// Whether a variable is something else than off or 0 at first, by its declaration, its type or VAR_CONFIG.
+fn has_value(variable: &Variable, scopes: &Scopes) -> bool {
+    let says =
+        |words: &str| words.split_once(":=").is_some_and(|(_, value)| !matches!(value.trim(), "false" | "0"));
+    let name = folded(&variable.name);
+    let is_it = |path: &str| path.rsplit(' ').next() == Some(&name);
+    if says(&variable.words) || scopes.configured.iter().any(|(path, words)| is_it(path) && says(words)) {
+        return true;
+    }
+    let mut waiting: Vec<SmolStr> = vec![variable.words.clone()];
+    let mut seen: Vec<SmolStr> = Vec::new();
+    while let Some(words) = waiting.pop() {
+        for word in words.split(' ').filter_map(|word| scopes.type_words.get(word)) {
+            if says(word) {
+                return true;
+            }
+            if !seen.contains(word) {
+                seen.push(word.clone());
+                waiting.push(word.clone());
+            }
+        }
+    }
+    false
+}
