@@ -79,6 +79,7 @@ mod markdown;
 mod mistakes;
 mod plain_instructions;
 mod proof_declarations;
+mod proof_families;
 mod proof_memory;
 mod proof_numbers;
 mod proof_shown;

@@ -2,9 +2,9 @@
 //! one that is kept while the PLC is off where the device is not, a timer that a jump may leave out.
 
 use super::counted::{Instances, declares_preset};
-use super::{device_at, guarded, pair_at};
+use super::{devices_at, guarded};
 use crate::document::{Document, Scopes, Variable};
-use crate::il::iec::SectionKind;
+use crate::il::iec::{PouKind, SectionKind};
 use crate::logic::{Action, Deed, Path, Term};
 use crate::target::{Device, DeviceKind, Operand, Target};
 use crate::text::{Message, folded};
@@ -26,7 +26,24 @@ pub(super) fn all(
             false => of_variables(path, (document.scopes(), source.pou), family, instances),
         }
     });
-    doubts.collect()
+    let mut doubts: Vec<Option<Message>> = doubts.collect();
+    // What no rung names may be seen from outside.
+    if let Some(first) = sources.iter().position(|source| source.path().is_some())
+        && doubts[first].is_none()
+    {
+        doubts[first] = first_value(document.scopes(), family);
+    }
+    doubts
+}
+
+/// The first variable of a program, or known to all, that is a device and has a value at first.
+fn first_value(scopes: &Scopes, family: &Target) -> Option<Message> {
+    let programs = scopes.own_pous().iter().filter(|pou| pou.kind == PouKind::Program);
+    let mut variables = programs.flat_map(|pou| &pou.variables).chain(scopes.globals.values());
+    let has_value = |variable: &&Variable| {
+        has_value(variable, scopes) && !declares_preset(variable) && !devices(variable, family).is_empty()
+    };
+    variables.find(has_value).map(|variable| doubt("translate.initial", &variable.name))
 }
 
 fn doubt(key: &'static str, word: impl AsRef<str>) -> Message {
@@ -87,16 +104,7 @@ fn of_variable(term: &Term, scopes: &Scopes, unit: Option<usize>, family: &Targe
     if has_value(variable, scopes) && !declares_preset(variable) {
         return Some(doubt("translate.initial", name));
     }
-    let devices: Vec<Device> = match variable.address {
-        Some(address) => {
-            let pair = pair_at(address).map(|first| [first, Device::new(first.kind, first.number + 1)]);
-            device_at(address).into_iter().chain(pair.into_iter().flatten()).collect()
-        }
-        None => match Operand::read(name, family.model) {
-            Operand::Device(device) => vec![device],
-            _ => Vec::new(),
-        },
-    };
+    let devices = devices(variable, family);
     // Inputs are read anew in each scan.
     let mut kept = devices.iter().filter(|device| device.kind != DeviceKind::X);
     let is_kept = variable.is_retained();
@@ -108,6 +116,17 @@ fn of_variable(term: &Term, scopes: &Scopes, unit: Option<usize>, family: &Targe
         return Some(doubt("translate.retained-alone", name));
     }
     devices.into_iter().find_map(|device| latched_counter(device, family))
+}
+
+/// The devices that a variable stands for.
+fn devices(variable: &Variable, family: &Target) -> Vec<Device> {
+    match variable.address {
+        Some(address) => devices_at(address).collect(),
+        None => match Operand::read(&variable.name, family.model) {
+            Operand::Device(device) => vec![device],
+            _ => Vec::new(),
+        },
+    }
 }
 
 /// Whether a variable is something else than off or 0 at first, by its declaration, its type or VAR_CONFIG.
