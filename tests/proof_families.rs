@@ -35,7 +35,7 @@ fn fx_contact(dice: &mut Dice, word: &str) -> String {
     let bit = dice.one(&["X0", "X1", "X2", "M0", "M1", "Y0", "T0", "C0", "M500", "M8000", "S0"]);
     let kind = match (word, dice.roll(9)) {
         ("LD", 0..3) | (_, 0..4) => word,
-        (_, 4 | 3) => return format!("{}I {bit}\n", if word == "LD" { "LD" } else { &word[..2] }),
+        (_, 4) => return format!("{}I {bit}\n", if word == "LD" { "LD" } else { &word[..2] }),
         (_, 5) => return format!("{word}P {bit}\n"),
         (_, 6) => return format!("{word}F {bit}\n"),
         (_, 7) => {

@@ -53,12 +53,10 @@ use super::To;
 use super::source::{self, Program, Source};
 use crate::document::Document;
 use crate::il::iec::PouKind;
-use crate::ladder::ContactKind;
-use crate::logic::{Action, Contact, Deed, Drive, Path, Refusal, Term, Test};
+use crate::logic::{Action, Deed, Drive, Path, Refusal, Term};
 use crate::target::{Device, DeviceKind, DirectAddress, Form, Location, Model, Operand, Target, Width};
 use crate::text::{Message, Span};
 use rustc_hash::FxHashMap;
-use smol_str::ToSmolStr;
 use std::cell::Cell;
 use std::sync::Arc;
 
@@ -325,8 +323,8 @@ pub(super) fn part_calculations(program: &mut Program) {
 }
 
 /// Takes out of a program of IEC 61131-3 the rungs that mean another thing than the same words would on a model of the
-/// FX `family`: types decide how numbers compare and divide, declarations what there is at first. An F_TRIG becomes what
-/// it is there.
+/// FX `family`: types decide how numbers compare and divide, declarations what there is at first. An F_TRIG becomes
+/// what it is there.
 pub(super) fn refuse_others(document: &Document, family: &Target, sources: &mut [Source]) {
     if document.target().is_fx() {
         return;
@@ -347,37 +345,6 @@ pub(super) fn refuse_others(document: &Document, family: &Target, sources: &mut 
             None => Ok(Some(to_devices::with_first_scan(path, &instances))),
         };
     }
-}
-
-/// Takes out the rungs that ask more than once for the edge of a relay whose edge only one contact sees: how many
-/// contacts there are, and in which order, is not what is compared.
-pub(super) fn refuse_shared_edges(document: &Document, sources: &mut [Source]) {
-    let family = document.target();
-    let edges = |source: &Source| {
-        let mut found: Vec<Device> = Vec::new();
-        let Some(path) = source.path() else { return found };
-        path.visit(&mut |_| {}, &mut |condition| {
-            let edges = condition.contacts().into_iter().filter(|contact| is_edge(contact));
-            let devices = edges.filter_map(|contact| contact.terms.first()?.operand.device());
-            found.extend(devices.filter(|device| device.shares_edges(family)));
-        });
-        found
-    };
-    let mut count: FxHashMap<Device, usize> = FxHashMap::default();
-    for device in sources.iter().flat_map(edges) {
-        *count.entry(device).or_default() += 1;
-    }
-    for source in sources {
-        if let Some(shared) = edges(source).into_iter().find(|device| count.get(device) > Some(&1)) {
-            source.note = Some(Lack::Reason("translate.single-edge", shared.to_smolstr()).message());
-            source.rung.path = Err(Refusal::NoCounterpart);
-        }
-    }
-}
-
-/// Whether a contact asks for an edge.
-fn is_edge(contact: &Contact) -> bool {
-    matches!(contact.test, Test::Bit(ContactKind::Rising | ContactKind::Falling))
 }
 
 /// Whether a rung belongs to a program, not to a function or a block.

@@ -63,13 +63,9 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
     let is_mixed = left.target().is_fx() != right.target().is_fx();
     let mut sources = [left, right].map(|document| {
         let mut program = source::program(document, None);
-        match document.target().is_fx() {
-            true if !is_mixed => dialect::refuse_shared_edges(document, &mut program.rungs),
-            true => {
-                dialect::convert(document, (To::Iec, Target::of(Model::Iec)), &mut program, Purpose::Proof);
-                dialect::part_calculations(&mut program);
-            }
-            false => {}
+        if is_mixed && document.target().is_fx() {
+            dialect::convert(document, (To::Iec, Target::of(Model::Iec)), &mut program, Purpose::Proof);
+            dialect::part_calculations(&mut program);
         }
         program.rungs
     });
