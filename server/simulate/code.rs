@@ -23,6 +23,8 @@ pub struct Code {
     pub(super) ops: Vec<Op>,
     /// The instruction that each op belongs to, a place among `places`.
     pub(super) op_places: Vec<u32>,
+    /// The same of each row; only code that says what it sees knows it.
+    pub(super) row_places: Vec<u32>,
     pub(super) calls: Vec<Call>,
     /// Words of memory in all, behind those of devices what instructions note.
     pub(super) slots: usize,

@@ -59,6 +59,8 @@ mod instruct;
 
 mod run;
 
+mod writes;
+
 mod machine;
 pub use machine::{Error, ErrorKind, Machine, Outcome, Sight};
 

@@ -4,6 +4,7 @@ use super::code::{Code, Op};
 use super::interrupts::{self, Interrupts};
 use super::machine::{Error, Outcome};
 use super::row::{self, Row};
+use super::writes::Watch;
 use super::{ErrorKind, Glimpse, Lanes, Machine, Sight, iec, timing};
 use crate::target::Fault;
 
@@ -76,15 +77,12 @@ impl Run {
 }
 
 impl<L: Lanes> Machine<L> {
-    pub(super) fn run(
-        &mut self,
-        code: &Code,
-        rows: &[Row],
-        run: &mut Run,
-        watch: &mut impl FnMut(Glimpse<'_, L>) -> bool,
-    ) {
+    pub(super) fn run<W: Watch<L>>(&mut self, code: &Code, rows: &[Row], run: &mut Run, watch: &mut W) {
         let (mut at, most_ops) = (0, self.most_ops());
         while let Some(op) = code.ops.get(at) {
+            if W::EACH_OP {
+                watch.comes(self, at);
+            }
             run.ops += 1;
             if run.ops > most_ops && !run.renew(&mut self.interrupts) {
                 return run.error(code, at, ErrorKind::Watchdog, 0);
@@ -98,7 +96,7 @@ impl<L: Lanes> Machine<L> {
                     continue;
                 }
                 Op::Seen { .. } | Op::SeenContact { .. } | Op::Reached { .. } | Op::Shown { .. } => {
-                    if !run.glimpse(self, *op).is_none_or(&mut *watch) {
+                    if !run.glimpse(self, *op).is_none_or(|glimpse| watch.sees(glimpse)) {
                         run.outcome.is_broken_off = true;
                         return;
                     }

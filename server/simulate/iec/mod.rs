@@ -25,6 +25,8 @@ mod scopes;
 mod run;
 pub(super) use run::{call_block, compute, copy, initialise, of_pattern, put, read, result_before, schedule};
 
+mod written;
+
 mod declarations;
 
 mod kinds;
