@@ -511,6 +511,13 @@ impl Builder {
         }
     }
 
+    /// The same with a condition that holds as a relay says.
+    pub(super) fn shown_condition(&mut self, place: u32, (src, invert): (Cell, bool), power: Cell) {
+        if self.is_watched {
+            self.op(Op::ShownCondition { place, src, invert, power });
+        }
+    }
+
     /// Says what is in a cell at the present instruction.
     pub(super) fn saw(&mut self, power: Cell) {
         let place = self.instruction();

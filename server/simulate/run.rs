@@ -47,6 +47,9 @@ impl Run {
                 (place, true, Some((Some(cell(src) ^ L::all(invert)), cell(power))))
             }
             Op::Shown { place, power } => (place, false, Some((None, cell(power)))),
+            Op::ShownCondition { place, src, invert, power } => {
+                (place, false, Some((Some(cell(src) ^ L::all(invert)), cell(power))))
+            }
             Op::Reached { place } => (place, true, None),
             _ => return None,
         };
@@ -95,7 +98,11 @@ impl<L: Lanes> Machine<L> {
                     at += 1;
                     continue;
                 }
-                Op::Seen { .. } | Op::SeenContact { .. } | Op::Reached { .. } | Op::Shown { .. } => {
+                Op::Seen { .. }
+                | Op::SeenContact { .. }
+                | Op::Reached { .. }
+                | Op::Shown { .. }
+                | Op::ShownCondition { .. } => {
                     if !run.glimpse(self, *op).is_none_or(|glimpse| watch.sees(glimpse)) {
                         run.outcome.is_broken_off = true;
                         return;

@@ -4,9 +4,9 @@
 //! { files: [{ path, program: path[], problems: { path, range, message }[],
 //!     scenarios: [{ name, range, passed, scans, picture?,
 //!       failures: { message, range, scan, time_ms, name?, expected?, actual?, program?: { path, range } }[] }] }],
-//!   coverage?: { summary: { rungs, evaluated, contacts, covered, decided },
+//!   coverage?: { summary: { rungs, evaluated, contacts, covered, decided, decidable },
 //!     files: [{ path, rungs: { range, evaluated,
-//!       contacts: { name, range, on, off, decided_on, decided_off }[] }[] }] },
+//!       contacts: { name, range, on, off, decided_on, decided_off, decidable }[] }[] }] },
 //!   mutants?: { total, tried, killed, equivalent, invalid, survived: { path, range, change }[] },
 //!   written: path[],
 //!   summary: { passed, failed, unreadable } }
@@ -45,6 +45,7 @@ pub(super) fn of(session: &Session, language: Language) -> Value {
                 "contacts": counts.contacts,
                 "covered": counts.covered,
                 "decided": counts.decided,
+                "decidable": counts.decidable,
             },
             "files": files.flatten().collect::<Vec<_>>(),
         });
@@ -138,6 +139,7 @@ fn covered(subject: &Subject, coverage: &Coverage) -> Vec<Value> {
                     "off": contact.off,
                     "decided_on": contact.decided_on,
                     "decided_off": contact.decided_off,
+                    "decidable": contact.is_decidable,
                 })
             });
             json!({

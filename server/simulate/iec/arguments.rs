@@ -10,7 +10,7 @@ use super::place::Place as Variable;
 use crate::il::iec::{Condition, Direction, ListForm, ParameterValue, PouKind, Run, SectionKind};
 use crate::simulate::code::Op;
 use crate::simulate::{Cell, Obstacle};
-use crate::target::iec::{EN, ENO, Function, Parameter};
+use crate::target::iec::{EN, ENO, Function, Operator, OperatorRole, Parameter};
 use crate::text::folded;
 use smol_str::SmolStr;
 
@@ -279,6 +279,10 @@ impl List<'_, '_> {
             arguments.enabled,
         )?;
         self.current = self.compiler.current_at(result);
+        let operator = Operator::named(function.name).map(|operator| operator.role);
+        if let Some(OperatorRole::Combine { comparison: true }) = operator {
+            self.holds_now(false);
+        }
         Ok(next)
     }
 }

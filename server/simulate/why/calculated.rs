@@ -65,6 +65,11 @@ impl Inquiry<'_> {
         self.reading(place).is_none_or(|reading| reading.item(place).is_some())
     }
 
+    /// Whether something stands in an instruction list of IEC 61131-3.
+    pub(super) fn is_in_list(&self, place: Place) -> bool {
+        self.reading(place).is_some()
+    }
+
     fn how(&self, instruction: u32, at: Moment) -> &'static str {
         let place = self.place_of(instruction);
         let item = self.reading(place).and_then(|reading| Some(reading.tree.items[reading.item(place)?]));
