@@ -571,3 +571,35 @@ fn conditions_of_lists_of_iec_are_covered_and_contacts_are_called_what_they_are(
         "{out}"
     );
 }
+
+#[test]
+fn faults_behind_detectors_of_edges_are_tried() {
+    let program = "PROGRAM Main\nVAR\ngo, halt, Motor : BOOL; e : R_TRIG;\nEND_VAR\n\
+        CAL e(CLK := go)\nLD e.Q\nOR Motor\nANDN halt\nST Motor\nEND_PROGRAM\n";
+    let scenarios = "[[scenario]]\nname = \"a\"\nsteps = [ { expect = { Motor = 0 } }, { at = 20, set = { go = 1 }, \
+        expect = { Motor = 1 } }, { at = 40, set = { go = 0 }, expect = { Motor = 1 } }, { at = 60, set = { halt = 1 }, \
+        expect = { Motor = 0 } }, { at = 80, set = { halt = 0 }, expect = { Motor = 0 } } ]\n";
+    let folder = folder(&[("main.il", program), ("main.test.toml", scenarios)]);
+    let (code, out, _) = run(&folder, &["test", "--mutate"]);
+    let line =
+        "6 of 6 faults tried: 6 found, 0 not found, 0 proved to change nothing, 0 that cannot be run\n";
+    assert!(code == 0 && out.contains(line), "{out}");
+}
+
+#[test]
+fn faults_with_which_nothing_runs_are_named() {
+    let program =
+        "PROGRAM Main\nVAR\nn : INT; a : SINT;\nEND_VAR\nLD SINT#127\nST a\nLD n\nADD 1\nST n\nEND_PROGRAM\n";
+    let scenarios = "[[scenario]]\nname = \"a\"\nsteps = [ { at = 20, expect = { n = 3 } } ]\n";
+    let folder = folder(&[("main.il", program), ("main.test.toml", scenarios)]);
+    let (code, out, _) = run(&folder, &["test", "--mutate"]);
+    let told = "2 of 2 faults tried: 1 found, 0 not found, 0 proved to change nothing, 1 that cannot be run\n\
+        1 of them make programs that do not run:\n  main.il:5:1: a: the constant SINT#128 in place of SINT#127\n";
+    assert!(code == 0 && out.contains(told), "{out}");
+    let (_, json, _) = run(&folder, &["test", "--mutate", "--format", "json"]);
+    let json: Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(
+        (&json["mutants"]["invalid"], json["mutants"]["not_running"][0]["path"].as_str()),
+        (&json!(1), Some("main.il"))
+    );
+}

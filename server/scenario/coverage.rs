@@ -5,7 +5,7 @@
 //! of its own, also where two of them read the same device. A contact that decided while it was on and while it was off
 //! has the pair of scans that MC/DC wants, for such a rung's power rises and falls with each of its contacts.
 //!
-//! A list of IEC 61131-3 has conditions besides: BOOL operands, comparisons, and what a jump, a call or a return goes by.
+//! A list of IEC 61131-3 has conditions besides: BOOL operands, comparisons, and what jumps, calls and returns go by.
 //! Where what they do with each other is calculated, and no rung that is read as logic, it is told of them whether they
 //! held and did not, and not whether they decided.
 

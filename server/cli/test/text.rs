@@ -1,7 +1,7 @@
 //! Test results for people.
 
 use super::subject::Subject;
-use super::{Ran, Session, SuiteFile, Verdict};
+use super::{Fault, Ran, Session, SuiteFile, Verdict};
 use crate::scenario::{ConditionKind, ContactCoverage, Failure, around, driver, picture};
 use crate::simulate::Place;
 use crate::text::{Encoding, Language, Message, Span};
@@ -40,14 +40,25 @@ pub(super) fn told(session: &Session, language: Language) -> String {
             .with("killed", survivors.killed)
             .with("survived", survivors.survived.len())
             .with("equivalent", survivors.equivalent)
-            .with("invalid", survivors.invalid);
+            .with("invalid", survivors.invalid.len() + survivors.unwritten.len());
         let _ = writeln!(text, "\n{}", message.render(language));
-        for (subject, document, span, change) in &survivors.survived {
-            let place = session.subjects.get(*subject).and_then(|subject| place(subject, *document, *span));
-            let _ = writeln!(text, "  {}: {}", place.unwrap_or_default(), change.render(language));
+        faults(&mut text, session, &survivors.survived, language);
+        for (key, all) in [("test.invalid", &survivors.invalid), ("test.unwritten", &survivors.unwritten)] {
+            if !all.is_empty() {
+                let message = Message::new(key).with("count", all.len());
+                let _ = writeln!(text, "{}", message.render(language));
+                faults(&mut text, session, all, language);
+            }
         }
     }
     text
+}
+
+fn faults(text: &mut String, session: &Session, all: &[Fault], language: Language) {
+    for Fault { subject, document, span, change } in all {
+        let place = session.subjects.get(*subject).and_then(|subject| place(subject, *document, *span));
+        let _ = writeln!(text, "  {}: {}", place.unwrap_or_default(), change.render(language));
+    }
 }
 
 fn scenario(text: &mut String, suite: &SuiteFile, subject: Option<&Subject>, ran: &Ran, language: Language) {
