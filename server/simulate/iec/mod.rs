@@ -18,7 +18,7 @@ mod names;
 pub(super) use names::Leaf;
 
 mod members;
-pub use members::{Member, UnitVariables, joined};
+pub use members::{HandedOver, Member, UnitVariables, joined};
 
 mod scopes;
 
