@@ -262,7 +262,7 @@ fn coverage_tells_states_and_who_decided() {
     let answer: Value = serde_json::from_str(&out).unwrap();
     assert_eq!(
         answer["coverage"]["summary"],
-        json!({"rungs": 2, "evaluated": 2, "contacts": 4, "covered": 1, "decided": 1})
+        json!({"rungs": 2, "evaluated": 2, "contacts": 4, "covered": 1, "decided": 1, "decidable": 4})
     );
     let contacts = answer["coverage"]["files"][0]["rungs"][0]["contacts"].as_array().unwrap();
     let told: Vec<String> = contacts
@@ -288,11 +288,12 @@ fn coverage_tells_states_and_who_decided() {
     );
     let (_, out, _) = run(&files, &["test", "--coverage"]);
     assert!(
-        out.contains("1 of 4 contacts seen on and off (25 %), 1 deciding both ways (25 %), 2 of 2 rungs"),
+        out.contains("1 of 4 contacts and conditions seen on and off (25 %), 1 of 4 deciding both ways (25 %), 2 of 2 rungs"),
         "{out}"
     );
     assert!(
-        out.contains("motor.il:2:1: Y0 was never on\n") && out.contains("motor.il:3:1: X1 was never off\n"),
+        out.contains("motor.il:2:1: the normally open contact of Y0 never conducted: Y0 was off whenever it was evaluated\n")
+            && out.contains("motor.il:3:1: the normally closed contact of X1 never blocked: X1 was off whenever it was evaluated\n"),
         "{out}"
     );
 }
@@ -307,12 +308,15 @@ fn a_contact_that_is_on_and_off_need_not_decide() {
         run(&files, &["test", "--coverage"]).1
     };
     let out = told("");
-    assert!(out.contains("1 of 3 contacts") && out.contains("0 deciding both ways"), "{out}");
-    assert!(out.contains("motor.il:1:1: X1 was on and off, and decided nothing\n"), "{out}");
+    assert!(out.contains("1 of 3 contacts") && out.contains("0 of 3 deciding both ways"), "{out}");
+    assert!(
+        out.contains("motor.il:1:1: the contact of X1 conducted and blocked, and decided nothing\n"),
+        "{out}"
+    );
     // With X0 on it decides while it is off, not while it is on, for X2 is on then.
     let more = ", { at = 80, set = { X0 = 1 } }, { at = 100, set = { X1 = 1, X2 = 1 }, expect = { Y0 = 1 } }";
     let out = told(more);
-    assert!(out.contains("motor.il:1:1: X1 decided nothing while it was on\n"), "{out}");
+    assert!(out.contains("motor.il:1:1: the contact of X1 decided nothing while it conducted\n"), "{out}");
 }
 
 #[test]
@@ -323,7 +327,7 @@ fn code_that_no_scan_comes_to_is_not_covered() {
         "[[scenario]]\nname = \"a\"\nsteps = [{ at = 50, set = { X1 = 1 }, expect = { Y1 = 1 } }]\n",
     );
     let (code, out, _) = run(&files, &["test", "--coverage"]);
-    assert!(code == 0 && out.contains("motor.il:3:1: X0 was never evaluated\n"), "{out}");
+    assert!(code == 0 && out.contains("motor.il:3:1: the contact of X0 was never evaluated\n"), "{out}");
     assert!(out.contains("1 of 2 contacts") && out.contains("2 of 3 rungs"), "{out}");
 }
 
@@ -530,4 +534,72 @@ fn a_counterexample_is_a_scenario_test() {
     assert_eq!(run(&files, &["test"]).0, 0, "{text}");
     std::fs::write(files.path().join("left.test.toml"), text.replace("left.il\"", "right.il\"")).unwrap();
     assert_eq!(run(&files, &["test"]).0, 1, "{text}");
+}
+
+#[test]
+fn conditions_of_lists_of_iec_are_covered_and_contacts_are_called_what_they_are() {
+    let program = "FUNCTION_BLOCK Gate\nVAR_INPUT\nx : BOOL;\nEND_VAR\nVAR_OUTPUT\ny : BOOL;\nEND_VAR\nLDN x\nST y\n\
+        END_FUNCTION_BLOCK\nPROGRAM Main\nVAR\na, b, Motor : BOOL; n : INT; w : WORD; one, two : Gate;\nEND_VAR\n\
+        CAL one(x := a)\nCAL two(x := b)\nLD n\nADD 1\nST n\nLD a\nANDN b\nST Motor\nLD n\nGT 3\nR Motor\n\
+        LD w\nAND 16#1\nWORD_TO_BOOL\nJMPC off\nGT(n, 1)\nRETC\noff:\nEND_PROGRAM\n";
+    let scenarios = "[[scenario]]\nname = \"a\"\ntime = \"100ms\"\nsteps = [ { at = \"20ms\", set = { a = 1 } }, \
+        { at = \"100ms\", expect = { Motor = 0 } } ]\n";
+    let folder = folder(&[("main.il", program), ("main.test.toml", scenarios)]);
+    let (code, out, _) = run(&folder, &["test", "--coverage"]);
+    assert_eq!(code, 0, "{out}");
+    let told: Vec<&str> = out.lines().skip_while(|line| !line.starts_with("main.il:")).collect();
+    let expected = [
+        "main.il: 5 of 7 contacts and conditions seen on and off (71 %), 3 of 4 deciding both ways (75 %), 8 of 8 rungs evaluated",
+        "  main.il:21:6: the normally closed contact of b never blocked: b was off whenever it was evaluated",
+        "  main.il:29:1: `JMPC off` never held when it was evaluated",
+    ];
+    assert_eq!(told, expected);
+    let (_, json, _) = run(&folder, &["test", "--coverage", "--format", "json"]);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let summary = &json["coverage"]["summary"];
+    assert_eq!((&summary["contacts"], &summary["decidable"]), (&json!(7), &json!(4)));
+    // Nothing to count is not all of it.
+    let folder = self::folder(&[
+        ("main.il", "PROGRAM Main\nVAR\nn : INT;\nEND_VAR\nLD n\nADD 1\nST n\nEND_PROGRAM\n"),
+        ("main.test.toml", "[[scenario]]\nname = \"a\"\nsteps = [ { expect = { n = 1 } } ]\n"),
+    ]);
+    let (_, out, _) = run(&folder, &["test", "--coverage"]);
+    assert!(
+        out.contains(
+            "main.il: it has no contact and no condition that could be covered; 1 of 1 rungs evaluated\n"
+        ) && !out.contains("100 %"),
+        "{out}"
+    );
+}
+
+#[test]
+fn faults_behind_detectors_of_edges_are_tried() {
+    let program = "PROGRAM Main\nVAR\ngo, halt, Motor : BOOL; e : R_TRIG;\nEND_VAR\n\
+        CAL e(CLK := go)\nLD e.Q\nOR Motor\nANDN halt\nST Motor\nEND_PROGRAM\n";
+    let scenarios = "[[scenario]]\nname = \"a\"\nsteps = [ { expect = { Motor = 0 } }, { at = 20, set = { go = 1 }, \
+        expect = { Motor = 1 } }, { at = 40, set = { go = 0 }, expect = { Motor = 1 } }, { at = 60, set = { halt = 1 }, \
+        expect = { Motor = 0 } }, { at = 80, set = { halt = 0 }, expect = { Motor = 0 } } ]\n";
+    let folder = folder(&[("main.il", program), ("main.test.toml", scenarios)]);
+    let (code, out, _) = run(&folder, &["test", "--mutate"]);
+    let line =
+        "6 of 6 faults tried: 6 found, 0 not found, 0 proved to change nothing, 0 that cannot be run\n";
+    assert!(code == 0 && out.contains(line), "{out}");
+}
+
+#[test]
+fn faults_with_which_nothing_runs_are_named() {
+    let program =
+        "PROGRAM Main\nVAR\nn : INT; a : SINT;\nEND_VAR\nLD SINT#127\nST a\nLD n\nADD 1\nST n\nEND_PROGRAM\n";
+    let scenarios = "[[scenario]]\nname = \"a\"\nsteps = [ { at = 20, expect = { n = 3 } } ]\n";
+    let folder = folder(&[("main.il", program), ("main.test.toml", scenarios)]);
+    let (code, out, _) = run(&folder, &["test", "--mutate"]);
+    let told = "2 of 2 faults tried: 1 found, 0 not found, 0 proved to change nothing, 1 that cannot be run\n\
+        1 of them make programs that do not run:\n  main.il:5:1: a: the constant SINT#128 in place of SINT#127\n";
+    assert!(code == 0 && out.contains(told), "{out}");
+    let (_, json, _) = run(&folder, &["test", "--mutate", "--format", "json"]);
+    let json: Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(
+        (&json["mutants"]["invalid"], json["mutants"]["not_running"][0]["path"].as_str()),
+        (&json!(1), Some("main.il"))
+    );
 }

@@ -246,3 +246,139 @@ fn counts_hold_on_the_way_back_and_a_long_way_back_is_broken_off() {
     assert_eq!(plc.here(), here);
     assert_eq!(plc.go("reverseContinue")["reason"], "entry");
 }
+
+const HANDED: &str = "\
+FUNCTION_BLOCK Bump
+VAR_IN_OUT x : INT; END_VAR
+VAR_INPUT by : INT; END_VAR
+LD x
+ADD by
+ST x
+END_FUNCTION_BLOCK
+
+PROGRAM Main
+VAR total, other : INT; a : Bump; END_VAR
+CAL a(x := total, by := 3)
+CAL a(x := other, by := 2)
+END_PROGRAM
+";
+
+#[test]
+fn names_of_what_is_handed_over_mean_what_was_handed_over() {
+    let folder = folder(&[("bump.il", HANDED)]);
+    let path = folder.path().canonicalize().unwrap().join("bump.il");
+    let mut plc = entered(&path);
+    plc.breakpoints(&path, json!([{ "line": 6 }]));
+    plc.go("continue");
+    assert_eq!(plc.stack()[..2], ["Main.a · ST x @6:1", "Main · CAL a(x := total, by := 3) @11:1"]);
+    plc.go("continue");
+    assert_eq!(plc.stack()[..2], ["Main.a · ST x @6:1", "Main · CAL a(x := other, by := 2) @12:1"]);
+    assert_eq!(
+        (plc.value("x"), plc.value("x + 1"), plc.value("other")),
+        ("0".into(), "1".into(), "0".into())
+    );
+    // In the next scan they have what was written to them.
+    plc.go("continue");
+    assert_eq!((plc.value("x"), plc.value("total"), plc.value("by")), ("3".into(), "3".into(), "3".into()));
+    let all = scopes(&mut plc, 1);
+    let names: Vec<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["Instruction", "Variables of Main.a", "Handed over to Main.a", "Variables of Main"]);
+    assert_eq!(variables(&mut plc, &all[1].1).0, ["by = 3"]);
+    assert_eq!(variables(&mut plc, &all[2].1).0, ["x = 3"]);
+    // The caller has nothing of it.
+    let names: Vec<String> = scopes(&mut plc, 2).into_iter().map(|(name, _)| name).collect();
+    assert_eq!(names, ["Variables of Main"]);
+    let info = plc.ask("dataBreakpointInfo", json!({ "name": "x", "variablesReference": all[2].1 }));
+    assert_eq!(info["dataId"], "Main.total", "{info}");
+    let set = json!({ "variablesReference": all[2].1, "name": "x", "value": "40" });
+    assert_eq!(plc.ask("setVariable", set)["value"], "3 (40 from the next scan on)");
+    plc.breakpoints(&path, json!([{ "line": 5, "condition": "x = 40" }]));
+    plc.go("continue");
+    assert_eq!(plc.stack()[1..], ["Main · CAL a(x := total, by := 3) @11:1", "scan 2, 20 ms"]);
+    plc.breakpoints(&path, json!([{ "line": 5, "condition": "x = 4" }]));
+    plc.go("continue");
+    assert_eq!(plc.stack()[1..], ["Main · CAL a(x := other, by := 2) @12:1", "scan 2, 20 ms"]);
+    // Who changes it is told where it is changed, under the name of who has it.
+    plc.breakpoints(&path, json!([]));
+    plc.ask(
+        "setDataBreakpoints",
+        json!({ "breakpoints": [{ "dataId": "Main.other", "accessType": "write" }] }),
+    );
+    assert_eq!(plc.go("continue")["text"], "Main.other: 4 → 6");
+    assert_eq!(plc.said().last().unwrap(), "Main.other: 4 → 6, by ST x (bump.il:6)");
+}
+
+const DRAWN: &str = "\
+FUNCTION_BLOCK Pump
+VAR_INPUT Run : BOOL; END_VAR
+VAR_OUTPUT Alarm : BOOL; END_VAR
+
+|  Run                  Alarm |
++---| |------------------( )--+
+
+END_FUNCTION_BLOCK
+
+PROGRAM Main
+VAR a, late, y : BOOL; t : TON; p : Pump; n : INT; END_VAR
+
+|                 t                     |
+|            +---------+                |
+|    a       |   TON   |         late   |
++---| |------|IN      Q|----------( )---+
+|   T#20ms---|PT       |                |
+|            +---------+                |
+
+|                 p                     |
+|            +----------+               |
+|  late      |   Pump   |          y    |
++---| |------|Run  Alarm|---------( )---+
+|            +----------+               |
+
+END_PROGRAM
+";
+
+#[test]
+fn drawn_blocks_are_stopped_at_and_entered() {
+    let folder = folder(&[("plant.lad", DRAWN)]);
+    let path = folder.path().canonicalize().unwrap().join("plant.lad");
+    let mut plc = entered(&path);
+    // In the order of power: a timer has no instructions to step into, a declared block has.
+    let mut passed = vec![plc.stack()[0].clone()];
+    for _ in 0..10 {
+        plc.go("stepIn");
+        passed.push(plc.stack()[0].clone());
+    }
+    let expected = [
+        "Main · rung 5 @13:1",
+        "Main · | | a @16:5",
+        "Main · TON t @14:14",
+        "Main · ( ) late @16:35",
+        "Main · rung 6 @20:1",
+        "Main · | | late @23:5",
+        "Main · Pump p @21:14",
+        "Main.p · rung 2 @5:1",
+        "Main.p · | | Run @6:5",
+        "Main.p · ( ) Alarm @6:26",
+        "Main · ( ) y @23:35",
+    ];
+    assert_eq!(passed, expected);
+    // Over it, out of it, and back.
+    let placed = plc.breakpoints(&path, json!([{ "line": 21 }, { "line": 6 }]));
+    assert_eq!((&placed[0]["line"], &placed[1]["line"]), (&json!(21), &json!(6)), "{placed:?}");
+    plc.go("continue");
+    assert_eq!(plc.stack()[0], "Main · Pump p @21:14");
+    plc.go("stepBack");
+    assert_eq!(plc.stack()[0], "Main · | | late @23:5");
+    plc.go("continue");
+    assert_eq!(plc.stack()[0], "Main · Pump p @21:14");
+    plc.go("continue");
+    assert_eq!(plc.stack()[..2], ["Main.p · | | Run @6:5", "Main · Pump p @21:14"]);
+    assert_eq!((plc.value("Run"), plc.value("Alarm")), ("0".into(), "0".into()));
+    plc.go("stepOut");
+    assert_eq!(plc.stack()[0], "Main · ( ) y @23:35");
+    plc.breakpoints(&path, json!([{ "line": 21 }]));
+    plc.go("continue");
+    // The next rung is that of the next scan; the body between has a breakpoint no longer.
+    plc.go("next");
+    assert_eq!(plc.stack()[0], "Main · rung 5 @13:1");
+}

@@ -285,7 +285,7 @@ fn why_is_answered_for_names_and_places_and_scans_and_in_the_hover() {
     let before = plc.tell("why", json!({ "name": "y0", "scan": 0 }));
     assert!(reasons(&before).starts_with("Y0 is off: ( ) Y0 has no power"), "{before}");
     let timer = plc.tell("why", json!({ "name": "T0" }));
-    assert!(reasons(&timer).starts_with("T0 is off: 0 s of 10 s have passed"), "{timer}");
+    assert!(reasons(&timer).starts_with("the contact of T0 is off: 0 s of 10 s have passed"), "{timer}");
     let shown = hover(&mut plc);
     assert!(shown.starts_with("\"Y0 is on: ( ) Y0 has power\\n- X0 is on"), "{shown}");
     for wrong in [

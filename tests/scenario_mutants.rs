@@ -109,3 +109,22 @@ fn presets_and_constants_are_others() {
     ];
     assert_eq!(told, expected);
 }
+
+#[test]
+fn faults_behind_detectors_of_edges_declare_what_they_need_and_run() {
+    for (head, end) in [("PROGRAM a\nVAR", "END_VAR"), ("PROGRAM a VAR", "END_VAR (* all *)")] {
+        let text = format!(
+            "{head} go, halt, Motor : BOOL; e : R_TRIG; f : F_TRIG; {end}\n\
+            CAL e(CLK := go)\nLD e.Q\nOR Motor\nANDN halt\nST Motor\nCAL f(CLK := go)\nLD f.Q\nR Motor\nEND_PROGRAM\n"
+        );
+        let document = open_document("a.il", &text, &Manifest::default(), None, None);
+        let documents: [&Document; 1] = [&document];
+        let mutants = Mutants::of(&documents);
+        assert_eq!(mutants.len(), 9);
+        for mutant in mutants.sample(usize::MAX, 0) {
+            let made = &mutants.documents(mutant).unwrap_or_else(|| panic!("{mutant:?}"))[0];
+            let all: [&Document; 1] = [made];
+            assert!(rungwise::simulate::compile(&all, false).is_ok(), "{mutant:?}\n{}", made.text());
+        }
+    }
+}

@@ -182,7 +182,7 @@ fn timers_and_counters_say_how_far_they_are() {
         "Y0",
         "\
 Y0 is off: OUT Y0 has no power  [4]
-  T0 is off: 0.5 s of 1 s have passed  [3]
+  the contact of T0 is off: 0.5 s of 1 s have passed  [3]
     OUT T0 K10 has power  [2]
       X0 is on: an input, since scan 0 (0 ms)  [1]",
     );
@@ -190,7 +190,7 @@ Y0 is off: OUT Y0 has no power  [4]
         "Y0",
         "\
 Y0 is on: OUT Y0 has power  [4]
-  T0 is on: its 1 s have passed  [3]
+  the contact of T0 is on: its 1 s have passed  [3]
     OUT T0 K10 has power  [2]
       X0 is on: an input, since scan 0 (0 ms)  [1]",
     );
@@ -198,14 +198,14 @@ Y0 is on: OUT Y0 has power  [4]
         "Y1",
         "\
 Y1 is off: OUT Y1 has no power  [8]
-  C0 is off: 2 of 3 are counted  [7]
+  the contact of C0 is off: 2 of 3 are counted  [7]
     OUT C0 K3 has no power  [6]
       X1 is off: an input, since scan 104 (1040 ms)  [5]",
     );
     plc.run("X1", 1).check(
         "TS0",
         "\
-T0 is on: its 1 s have passed  [2]
+the contact of T0 is on: its 1 s have passed  [2]
   OUT T0 K10 has power  [2]
     X0 is on: an input, since scan 0 (0 ms)  [1]",
     );

@@ -60,8 +60,10 @@ impl<W: Write> Adapter<W> {
     pub(super) fn scopes(&mut self, frame: i64) -> Answer {
         let language = self.language;
         let debugged = self.debugged()?;
-        let owner = debugged.instruction(frame).and_then(|own| debugged.debuggee.code().owner(own));
-        let mut scopes = debugged.variables.scopes(owner.as_deref(), language);
+        let (code, instruction) = (debugged.debuggee.code(), debugged.instruction(frame));
+        let owner = instruction.and_then(|own| code.owner(own));
+        let body = instruction.and_then(|own| code.scope_at(own));
+        let mut scopes = debugged.variables.scopes(owner.as_deref(), body, language);
         if frame == 1 && debugged.debuggee.here().is_some() {
             let own = json!({
                 "name": Message::new("debug.instruction").render(language),

@@ -3,7 +3,7 @@
 use super::debuggee::Debuggee;
 use super::program::{File, Program};
 use crate::document::Symbol;
-use crate::simulate::{Code, Member, Touch, UnitVariables, Variable, joined};
+use crate::simulate::{Code, HandedOver, Member, Touch, UnitVariables, Variable, joined};
 use crate::target::{Device, DeviceKind, Operand};
 use crate::text::{Language, Message};
 use serde_json::{Value as Json, json};
@@ -22,6 +22,8 @@ struct Group {
     /// What names begin with that are in it; empty for devices and global variables.
     owner: String,
     names: Vec<String>,
+    /// Of what is handed over to the body of a unit which body that is, and what the names are called there.
+    handed: Option<(usize, Vec<String>)>,
 }
 
 /// A variable with parts, by whole names.
@@ -53,15 +55,23 @@ impl Variables {
     pub(super) fn of(program: &Program) -> Variables {
         match program.code.target.is_fx() {
             true => Variables::of_devices(program),
-            false => Variables::of_units(program.code.variables_by_unit()),
+            false => {
+                let mut variables = Variables::of_units(program.code.variables_by_unit());
+                variables.groups.extend(program.code.handed_over().into_iter().map(Group::handed_over));
+                variables
+            }
         }
     }
 
     fn of_devices(program: &Program) -> Variables {
         let code = &program.code;
         let named: Vec<Device> = code.named().iter().filter_map(|name| device_of(name, code)).collect();
-        let group =
-            |title, names: Vec<String>| Group { title: Message::new(title), owner: String::new(), names };
+        let group = |title, names: Vec<String>| Group {
+            title: Message::new(title),
+            owner: String::new(),
+            names,
+            handed: None,
+        };
         let mut groups = Vec::new();
         for (kinds, title) in KINDS {
             let own = named.iter().filter(|device| kinds.contains(&device.kind));
@@ -83,7 +93,7 @@ impl Variables {
                 false => Message::new("debug.variables-of").with("unit", &owner),
             };
             let names = variables.add(&owner, &members);
-            variables.groups.push(Group { title, owner, names });
+            variables.groups.push(Group { title, owner, names, handed: None });
         }
         variables
     }
@@ -102,8 +112,9 @@ impl Variables {
         names
     }
 
-    /// The groups, as the protocol wants them; those of the unit `owner` come first.
-    pub(super) fn scopes(&self, owner: Option<&str>, language: Language) -> Vec<Json> {
+    /// The groups, as the protocol wants them; those of the unit `owner` come first, with what is handed over to its
+    /// body number `body`.
+    pub(super) fn scopes(&self, owner: Option<&str>, body: Option<usize>, language: Language) -> Vec<Json> {
         let scope = |number: i64, title: String, count: usize| {
             json!({
                 "name": title, "variablesReference": number, "namedVariables": count, "expensive": false,
@@ -118,10 +129,27 @@ impl Variables {
         }
         for (number, group) in (FIRST_GROUP..).zip(&self.groups) {
             let shown = scope(number, group.title.render(language), group.names.len());
-            let is_own = owner == Some(group.owner.as_str());
+            let is_own = match &group.handed {
+                Some((of, _)) if Some(*of) == body => true,
+                Some(_) => continue,
+                None => owner == Some(group.owner.as_str()),
+            };
             scopes.insert(if is_own { own } else { scopes.len() }, shown);
         }
         scopes
+    }
+
+    /// What a name is called in a group or in a variable with parts.
+    fn called<'n>(&'n self, reference: i64, name: &'n str) -> &'n str {
+        let group = reference
+            .checked_sub(FIRST_GROUP)
+            .and_then(|number| self.groups.get(usize::try_from(number).ok()?));
+        if let Some(Group { names, handed: Some((_, called)), .. }) = group
+            && let Some(at) = names.iter().position(|own| own == name)
+        {
+            return &called[at];
+        }
+        label(name, self.inside(reference).map_or("", |(around, _)| around))
     }
 
     fn node(&self, name: &str) -> Option<(i64, &Node)> {
@@ -146,8 +174,7 @@ impl Variables {
 
     /// The whole name of what a group or variable shows as `name`.
     pub(super) fn whole(&self, reference: i64, name: &str) -> String {
-        let Some((around, names)) = self.inside(reference) else { return name.to_string() };
-        let own = names.iter().find(|own| label(own, around) == name);
+        let own = self.names(reference).iter().find(|own| self.called(reference, own) == name);
         own.map_or(name, |own| own).to_string()
     }
 
@@ -173,9 +200,8 @@ impl Variables {
             (None, Some((_, node))) => self.told(node, debuggee, language),
             (None, None) => return None,
         };
-        let around = reference.and_then(|reference| self.inside(reference)).map_or("", |(around, _)| around);
         Some(json!({
-            "name": label(name, around),
+            "name": reference.map_or(name, |reference| self.called(reference, name)),
             "evaluateName": name,
             "value": value,
             "type": variable.map(|variable| meaning(name, variable, program, language)),
@@ -192,6 +218,14 @@ impl Variables {
         let first: Vec<String> = node.parts.iter().filter_map(told).take(TOLD_PARTS).collect();
         let rest = if node.parts.len() > first.len() { ", …" } else { "" };
         if first.is_empty() { "…".to_string() } else { first.join(", ") + rest }
+    }
+}
+
+impl Group {
+    fn handed_over(HandedOver { scope, owner, names }: HandedOver) -> Group {
+        let title = Message::new("debug.handed-over").with("unit", owner);
+        let (called, names) = names.into_iter().map(|(called, name)| (called.to_string(), name)).unzip();
+        Group { title, owner: String::new(), names, handed: Some((scope, called)) }
     }
 }
 

@@ -12,7 +12,7 @@
 //!       scenarios: { name, range, passed, scans, picture?,
 //!         failures: { message, range, scan, time_ms, name?, expected?, actual?, program?: { uri, range } }[] }[],
 //!       coverage?: { uri, rungs: { range, evaluated,
-//!         contacts: { name, range, on, off, decided_on, decided_off }[] }[] }[] }[],
+//!         contacts: { name, range, on, off, decided_on, decided_off, decidable }[] }[] }[] }[],
 //!     passed, failed }
 //!
 //! Problem: { uri, range, message }   // a mistake in the file, or what keeps the program from running

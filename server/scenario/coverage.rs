@@ -4,14 +4,20 @@
 //! output of its rung would be otherwise had it alone been otherwise: masking MC/DC, with each contact as a condition
 //! of its own, also where two of them read the same device. A contact that decided while it was on and while it was off
 //! has the pair of scans that MC/DC wants, for such a rung's power rises and falls with each of its contacts.
+//!
+//! A list of IEC 61131-3 has conditions besides: BOOL operands, comparisons, and what jumps, calls and returns go by.
+//! Where what they do with each other is calculated, and no rung that is read as logic, it is told of them whether they
+//! held and did not, and not whether they decided.
 
-use crate::document::Document;
-use crate::logic::{Contact, Drive, Expression, Gate, Path};
-use crate::simulate::{Code, Machine, Place, Problem, Sight, compile};
+use crate::document::{Document, Notation};
+use crate::ladder::ContactKind;
+use crate::logic::{Contact, Deed, Drive, Expression, Gate, Path, Test};
+use crate::simulate::{Code, Place, Problem, Sight, compile, instruction_words};
 use crate::target::{Device, DeviceKind, Operand};
 use crate::text::Span;
 use crate::translate::Source;
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::collections::BTreeMap;
 use std::ops::AddAssign;
 use std::sync::Arc;
 
@@ -46,8 +52,10 @@ pub struct RungCoverage {
 pub struct ContactCoverage {
     /// Where it stands.
     pub span: Span,
-    /// What it reads, as written.
+    /// What it reads, as written; of a condition that no contact is what stands there.
     pub name: String,
+    /// What it asks of what it reads.
+    pub kind: ConditionKind,
     /// How often it was evaluated while it conducted.
     pub on: u64,
     /// How often it was evaluated while it did not.
@@ -56,6 +64,19 @@ pub struct ContactCoverage {
     pub decided_on: bool,
     /// Whether it decided while it did not.
     pub decided_off: bool,
+    /// Whether its rung is read as logic, so that it is known whether it decides.
+    pub is_decidable: bool,
+}
+
+/// What a contact asks of what it reads.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum ConditionKind {
+    /// That it is on.
+    On,
+    /// That it is off.
+    Off,
+    /// More: an edge, a comparison, what has been calculated.
+    Other,
 }
 
 /// Numbers of contacts.
@@ -71,6 +92,8 @@ pub struct Counts {
     pub covered: usize,
     /// Contacts that decided while they were on and while they were off.
     pub decided: usize,
+    /// Contacts of which that can be known.
+    pub decidable: usize,
 }
 
 impl AddAssign for Counts {
@@ -80,6 +103,7 @@ impl AddAssign for Counts {
         self.contacts += more.contacts;
         self.covered += more.covered;
         self.decided += more.decided;
+        self.decidable += more.decidable;
     }
 }
 
@@ -90,6 +114,8 @@ enum Seat {
     Nothing,
     /// This contact of this rung.
     Contact(usize, usize),
+    /// This condition of this rung, which is not read as logic.
+    Condition(usize, usize),
     /// Something else in this rung.
     Other(usize),
 }
@@ -111,6 +137,12 @@ struct Decision {
 const MOST_KNOWN: usize = 4096;
 
 impl ContactCoverage {
+    /// Nothing seen yet.
+    fn new(span: Span, name: String, kind: ConditionKind, is_decidable: bool) -> ContactCoverage {
+        let (on, off, decided_on, decided_off) = (0, 0, false, false);
+        ContactCoverage { span, name, kind, on, off, decided_on, decided_off, is_decidable }
+    }
+
     /// Whether it was on and off.
     pub fn is_covered(&self) -> bool {
         self.on > 0 && self.off > 0
@@ -130,76 +162,76 @@ impl Coverage {
     pub fn new(documents: &[&Document]) -> Result<Coverage, Vec<Problem>> {
         let watched = Arc::new(compile(documents, true)?);
         let mut coverage = Coverage {
+            seats: vec![Seat::Nothing; watched.places().len()],
             watched,
             rungs: Vec::new(),
             decisions: Vec::new(),
-            seats: Vec::new(),
             touched: Vec::new(),
         };
-        let places = coverage.places(documents.len());
-        let mut seats: FxHashMap<Place, Seat> = FxHashMap::default();
+        let places = Places::of(&coverage.watched, documents);
         for (number, document) in (0..).zip(documents) {
             for source in Source::within(document, Span::new(0, document.len())) {
-                // END and its kin are no rungs that anything could be seen of.
-                let is_rung = |path: &&Path| !path.actions().iter().all(|action| action.deed.stands_alone());
-                if let Some(path) = source.path().filter(is_rung) {
-                    coverage.rung(number, &source, path, &places, &mut seats);
-                }
+                coverage.rung(&places, number, document, &source);
             }
         }
-        let mut all = vec![Seat::Nothing; places.values().copied().max().map_or(0, |last| last + 1)];
-        for (place, instruction) in &places {
-            all[*instruction] = seats.get(place).copied().unwrap_or(Seat::Nothing);
-        }
-        coverage.seats = all;
         Ok(coverage)
     }
 
-    /// Where the instructions of the code stand, with their numbers.
-    fn places(&self, documents: usize) -> FxHashMap<Place, usize> {
-        let machine = Machine::<u8>::new(Arc::clone(&self.watched));
-        let ranges = (0..documents as u32).map(|number| self.watched.instructions_in(number, 0..usize::MAX));
-        let instructions = ranges.flatten();
-        instructions.filter_map(|number| Some((machine.place(number)?, number as usize))).collect()
-    }
-
-    fn rung(
-        &mut self,
-        document: u32,
-        source: &Source,
-        path: &Path,
-        places: &FxHashMap<Place, usize>,
-        seats: &mut FxHashMap<Place, Seat>,
-    ) {
+    fn rung(&mut self, places: &Places, document: u32, text: &Document, source: &Source) {
         let number = self.rungs.len();
-        let mut contacts = Vec::new();
-        let mut decision = Decision { path: path.clone(), ..Decision::default() };
         let place = |span: Span| Place { document, span: span.shifted(source.start) };
+        // END and its kin are no rungs that anything could be seen of.
+        let is_rung = |path: &&Path| !path.actions().iter().all(|action| action.deed.stands_alone());
+        let path = source.path().filter(is_rung);
+        let mut decision = Decision { path: path.cloned().unwrap_or_default(), ..Decision::default() };
+        let mut contacts = Vec::new();
         let mut found = Vec::new();
-        path.visit(&mut |_| {}, &mut |condition| found.extend(condition.contacts()));
+        decision
+            .path
+            .visit(&mut |_| {}, &mut |condition| found.extend(condition.contacts().into_iter().cloned()));
         for contact in found {
             let at = place(contact.span);
-            if !places.contains_key(&at) || decision.numbers.contains_key(&contact.span) {
+            let own = places.conditions_at(at);
+            if own.is_empty() || decision.numbers.contains_key(&contact.span) {
                 continue;
             }
             decision.numbers.insert(contact.span, contacts.len());
-            seats.insert(at, Seat::Contact(number, contacts.len()));
-            contacts.push(ContactCoverage {
-                span: at.span,
-                name: name_of(contact),
-                on: 0,
-                off: 0,
-                decided_on: false,
-                decided_off: false,
-            });
+            self.sit(&own, Seat::Contact(number, contacts.len()));
+            let name = name_of(&contact, text.notation());
+            contacts.push(ContactCoverage::new(at.span, name, kind_of(&contact), true));
         }
-        for action in path.actions() {
-            seats.entry(place(action.span)).or_insert(Seat::Other(number));
-        }
-        seats.entry(place(source.rung.span)).or_insert(Seat::Other(number));
         decision.values = vec![None; contacts.len()];
+        // What is calculated line by line.
+        for (span, own) in places.within(document, source.span()) {
+            let is_free = |instruction: &u32| matches!(self.seats[*instruction as usize], Seat::Nothing);
+            if !own.iter().all(is_free) || path.is_some_and(|path| !calculates(path, span, source.start)) {
+                continue;
+            }
+            self.sit(own, Seat::Condition(number, contacts.len()));
+            let words = instruction_words(text, span);
+            contacts.push(ContactCoverage::new(span, words, ConditionKind::Other, false));
+        }
+        if path.is_none() && contacts.is_empty() {
+            return;
+        }
+        for action in decision.path.actions() {
+            self.sit_free(&places.at(place(action.span)), Seat::Other(number));
+        }
+        self.sit_free(&places.at(place(source.rung.span)), Seat::Other(number));
         self.decisions.push(decision);
         self.rungs.push(RungCoverage { document, span: source.span(), evaluated: 0, contacts });
+    }
+
+    fn sit(&mut self, instructions: &[u32], seat: Seat) {
+        for instruction in instructions {
+            self.seats[*instruction as usize] = seat;
+        }
+    }
+
+    fn sit_free(&mut self, instructions: &[u32], seat: Seat) {
+        let is_free = |instruction: &&u32| matches!(self.seats[**instruction as usize], Seat::Nothing);
+        let free: Vec<u32> = instructions.iter().filter(is_free).copied().collect();
+        self.sit(&free, seat);
     }
 
     /// Code that says what it sees.
@@ -224,6 +256,7 @@ impl Coverage {
             counts.evaluated += usize::from(rung.evaluated > 0);
             counts.contacts += rung.contacts.len();
             counts.covered += rung.contacts.iter().filter(|contact| contact.is_covered()).count();
+            counts.decidable += rung.contacts.iter().filter(|contact| contact.is_decidable).count();
             counts.decided += rung.contacts.iter().filter(|contact| contact.has_decided()).count();
         }
         counts
@@ -243,6 +276,13 @@ impl Coverage {
                 let seen = &mut self.rungs[rung].contacts[contact];
                 seen.on += u64::from(conducts);
                 seen.off += u64::from(!conducts);
+            }
+            Some(Seat::Condition(rung, condition)) => {
+                let Some(holds) = sight.conducts.map(|conducts| conducts != 0) else { return };
+                self.open(rung);
+                let seen = &mut self.rungs[rung].contacts[condition];
+                seen.on += u64::from(holds);
+                seen.off += u64::from(!holds);
             }
             Some(Seat::Other(rung)) => self.open(rung),
             Some(Seat::Nothing) | None => {}
@@ -269,6 +309,8 @@ impl Coverage {
         if !std::mem::take(&mut decision.is_open) {
             return;
         }
+        // Behind the contacts stand conditions that are not read as logic.
+        let seen = &mut seen[..decision.values.len()];
         let values: Box<[Option<bool>]> = decision.values.as_slice().into();
         decision.values.fill(None);
         let is_known = seen.iter().all(ContactCoverage::has_decided) || decision.known.contains(&values);
@@ -333,7 +375,76 @@ impl Decision {
     }
 }
 
-fn name_of(contact: &Contact) -> String {
+/// Where conditions stand, with the instructions that are compiled of them: one for each instance of a unit.
+struct Places {
+    /// By document and start.
+    conditions: BTreeMap<(u32, u32), (Span, Vec<u32>)>,
+    all: FxHashMap<Place, Vec<u32>>,
+    /// The same of lists of IEC 61131-3 by the ends, for contacts there are operands.
+    ends: FxHashMap<(u32, u32), Vec<u32>>,
+    are_conditions: FxHashSet<u32>,
+}
+
+impl Places {
+    fn of(code: &Code, documents: &[&Document]) -> Places {
+        let are_conditions: FxHashSet<u32> = code.conditions().collect();
+        let (mut conditions, mut all, mut ends) =
+            (BTreeMap::new(), FxHashMap::<_, Vec<u32>>::default(), FxHashMap::<_, Vec<u32>>::default());
+        for (number, place) in (0..).zip(code.places()) {
+            all.entry(*place).or_default().push(number);
+            let notation = documents.get(place.document as usize).map(|document| document.notation());
+            if notation == Some(Notation::IecIl) {
+                ends.entry((place.document, place.span.end)).or_default().push(number);
+            }
+            if are_conditions.contains(&number) {
+                let at = (place.document, place.span.start);
+                conditions.entry(at).or_insert_with(|| (place.span, Vec::new())).1.push(number);
+            }
+        }
+        Places { conditions, all, ends, are_conditions }
+    }
+
+    /// The instructions of what stands at a place.
+    fn at(&self, place: Place) -> Vec<u32> {
+        let exactly = self.all.get(&place);
+        exactly.or_else(|| self.ends.get(&(place.document, place.span.end))).cloned().unwrap_or_default()
+    }
+
+    /// The same as far as they tell whether a condition holds.
+    fn conditions_at(&self, place: Place) -> Vec<u32> {
+        let mut own = self.at(place);
+        own.retain(|instruction| self.are_conditions.contains(instruction));
+        own
+    }
+
+    /// The conditions within a rung.
+    fn within(&self, document: u32, rung: Span) -> impl Iterator<Item = (Span, &[u32])> {
+        let own = self.conditions.range((document, rung.start)..(document, rung.end));
+        own.map(|(_, (span, instructions))| (*span, instructions.as_slice()))
+    }
+}
+
+/// Whether an action of a rung is a calculation in which something stands.
+fn calculates(path: &Path, span: Span, start: usize) -> bool {
+    path.actions().iter().any(|action| {
+        let own = action.span.shifted(start);
+        matches!(action.deed, Deed::Compute(_)) && own.start <= span.start && span.end <= own.end
+    })
+}
+
+fn kind_of(contact: &Contact) -> ConditionKind {
+    match contact.test {
+        Test::Bit(ContactKind::NormallyOpen) => ConditionKind::On,
+        Test::Bit(ContactKind::NormallyClosed) => ConditionKind::Off,
+        _ => ConditionKind::Other,
+    }
+}
+
+fn name_of(contact: &Contact, notation: Notation) -> String {
+    if let (Test::Compare(how), [left, right], Notation::IecIl) = (contact.test, &contact.terms[..], notation)
+    {
+        return format!("{} {} {}", left.text, how.iec_name(), right.text);
+    }
     contact.terms.iter().map(|term| term.text.as_str()).collect::<Vec<_>>().join(" ")
 }
 

@@ -27,7 +27,7 @@ mod driver;
 pub use driver::driver;
 
 mod coverage;
-pub use coverage::{ContactCoverage, Counts, Coverage, RungCoverage};
+pub use coverage::{ConditionKind, ContactCoverage, Counts, Coverage, RungCoverage};
 
 mod lcov;
 pub use lcov::lcov;

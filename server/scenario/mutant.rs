@@ -3,12 +3,13 @@
 
 use super::{Bench, Golden, Scenario};
 use crate::document::{Document, Edit, Notation};
+use crate::il::iec::ItemKind;
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Term, Test};
 use crate::target::iec::{Datum, ElementaryType, LiteralValue, spelled};
 use crate::target::{Constant, Device, DeviceKind, Model, Operand};
 use crate::text::{Message, Span};
-use crate::translate::{Proof, Source, prove, rewritten};
+use crate::translate::{Proof, Rewritten, Source, prove, rewritten};
 
 /// A program with one fault.
 #[derive(Clone, PartialEq, Debug)]
@@ -50,8 +51,10 @@ pub enum Fate {
     Survived,
     /// It is proved to do the same as the program, so no scenario can tell.
     Equivalent,
-    /// It cannot be written, or does not run.
+    /// The program with the fault is none that runs.
     Invalid,
+    /// It cannot be written, so nothing is known of it.
+    Unwritten,
 }
 
 impl Change {
@@ -133,7 +136,7 @@ impl<'d> Mutants<'d> {
         let source = self.sources.get(mutant.document)?.get(mutant.rung)?;
         let mut faults = Faults { wanted: Some(mutant.number), found: Vec::new() };
         let path = faults.path(source.path()?);
-        let mut text = rewritten(document, source, path).ok()?;
+        let Rewritten { mut text, declarations } = rewritten(document, source, path).ok()?;
         let span = match document.notation() {
             Notation::Ladder => lines(document, source.span()),
             _ => source.span(),
@@ -143,6 +146,11 @@ impl<'d> Mutants<'d> {
         }
         let mut changed = (*document).clone();
         changed.apply(&[Edit { range: Some(span.start as usize..span.end as usize), text }]);
+        if !declarations.is_empty() {
+            // The head of the unit stands before the rung, so it is where it was.
+            let at = behind_head(document, source)?;
+            changed.apply(&[Edit { range: Some(at..at), text: format!("\n{declarations}") }]);
+        }
         let own = |(number, document): (usize, &&Document)| match number == mutant.document {
             true => changed.clone(),
             false => (*document).clone(),
@@ -152,7 +160,7 @@ impl<'d> Mutants<'d> {
 
     /// What becomes of a mutant that runs these scenarios, which pass without the fault.
     pub fn fate(&self, mutant: &Mutant, scenarios: &[(&Scenario, Option<&Golden>)]) -> Fate {
-        let Some(documents) = self.documents(mutant) else { return Fate::Invalid };
+        let Some(documents) = self.documents(mutant) else { return Fate::Unwritten };
         let seen: Vec<&Document> = documents.iter().collect();
         let Ok(bench) = Bench::new(&seen) else { return Fate::Invalid };
         let is_killed = scenarios.iter().any(|(scenario, golden)| {
@@ -168,6 +176,23 @@ impl<'d> Mutants<'d> {
             _ => Fate::Survived,
         }
     }
+}
+
+/// Where the head of the program unit ends in which a rung stands, as `PROGRAM Main`.
+fn behind_head(document: &Document, source: &Source) -> Option<usize> {
+    let unit = document.unit_at(source.span().start as usize);
+    unit.number?;
+    let mut start = unit.span.start as usize;
+    while start < unit.span.end as usize
+        && let Some(at) = document.chunk_at(start).filter(|at| at.start == start)
+    {
+        let mut items = at.chunk.iec().into_iter().flat_map(|tree| &tree.items);
+        if let Some(head) = items.find(|item| matches!(item.kind, ItemKind::Pou { .. })) {
+            return Some(start + head.span.end as usize);
+        }
+        start += at.chunk.len();
+    }
+    None
 }
 
 /// The lines in which a drawing stands.

@@ -50,6 +50,10 @@ pub(super) struct Builder {
     op_places: Vec<u32>,
     calls: Vec<Call>,
     places: Vec<Place>,
+    /// The present instruction, a place among `places`.
+    now: u32,
+    /// Which instruction each row belongs to, where that is watched.
+    row_places: Vec<u32>,
     instructions: usize,
     devices: BTreeSet<Device>,
     slots: usize,
@@ -84,6 +88,8 @@ impl Builder {
             op_places: Vec::new(),
             calls: Vec::new(),
             places: Vec::new(),
+            now: 0,
+            row_places: Vec::new(),
             instructions: 0,
             devices: BTreeSet::new(),
             slots,
@@ -102,9 +108,15 @@ impl Builder {
 
     /// Says where in the text the next instruction stands, and how many of them it counts for.
     pub(super) fn at(&mut self, place: Place, instructions: usize) {
+        self.now = self.places.len() as u32;
         self.places.push(place);
         self.keepers.begin(self.kept, self.slots);
         self.instructions += instructions;
+    }
+
+    /// Goes on with an instruction that others stand within, as in the parameters of a call.
+    pub(super) fn again_at(&mut self, instruction: u32) {
+        self.now = instruction;
     }
 
     /// Notes that the program names what stands in an operand.
@@ -168,6 +180,7 @@ impl Builder {
             rows: self.rows,
             ops: self.ops,
             op_places: self.op_places,
+            row_places: self.row_places,
             calls: self.calls,
             slots: self.slots,
             places: self.places,
@@ -187,7 +200,7 @@ impl Builder {
     /// Puts an op behind all rows so far; the current result is in a cell behind it. Gives its number.
     pub(super) fn op(&mut self, op: Op) -> u32 {
         self.flush();
-        self.op_places.push(self.places.len().saturating_sub(1) as u32);
+        self.op_places.push(self.now);
         self.ops.push(op);
         self.is_straight &= !op.leads_elsewhere();
         self.ops.len() as u32 - 1
@@ -200,13 +213,16 @@ impl Builder {
         let (from, to) = (self.segment, self.rows.len());
         if from < to {
             self.segment = to;
-            self.op_places.push(self.places.len().saturating_sub(1) as u32);
+            self.op_places.push(self.now);
             self.ops.push(Op::Rows(from as u32, to as u32));
         }
     }
 
     fn row(&mut self, row: Row) {
         self.rows.push(row);
+        if self.is_watched {
+            self.row_places.push(self.now);
+        }
         self.power = Power::Register;
     }
 
@@ -240,7 +256,7 @@ impl Builder {
 
     /// Where the present instruction stands.
     pub(super) fn here_place(&self) -> Place {
-        self.places.last().copied().unwrap_or(Place::START)
+        self.places.get(self.now as usize).copied().unwrap_or(Place::START)
     }
 
     /// Lets the calculation that was put last be done with power from a cell only.
@@ -351,7 +367,7 @@ impl Builder {
     pub(super) fn saw_contact(&mut self, src: Cell, invert: bool) {
         if self.is_watched {
             let power = self.power();
-            let place = self.places.len() as u32 - 1;
+            let place = self.now;
             self.op(Op::SeenContact { place, src, invert, power });
         }
     }
@@ -465,7 +481,12 @@ impl Builder {
 
     /// The number of the present instruction among the places of the code.
     pub(super) fn instruction(&self) -> u32 {
-        self.places.len() as u32 - 1
+        self.now
+    }
+
+    /// The number of the one that stands last.
+    pub(super) fn last_instruction(&self) -> u32 {
+        self.places.len().saturating_sub(1) as u32
     }
 
     /// Says that the CPU comes to the present instruction.
@@ -480,6 +501,13 @@ impl Builder {
     pub(super) fn shown(&mut self, place: u32, power: Cell) {
         if self.is_watched {
             self.op(Op::Shown { place, power });
+        }
+    }
+
+    /// The same with a condition that holds as a relay says.
+    pub(super) fn shown_condition(&mut self, place: u32, (src, invert): (Cell, bool), power: Cell) {
+        if self.is_watched {
+            self.op(Op::ShownCondition { place, src, invert, power });
         }
     }
 

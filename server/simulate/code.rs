@@ -23,6 +23,8 @@ pub struct Code {
     pub(super) ops: Vec<Op>,
     /// The instruction that each op belongs to, a place among `places`.
     pub(super) op_places: Vec<u32>,
+    /// The same of each row; only code that says what it sees knows it.
+    pub(super) row_places: Vec<u32>,
     pub(super) calls: Vec<Call>,
     /// Words of memory in all, behind those of devices what instructions note.
     pub(super) slots: usize,
@@ -105,6 +107,8 @@ pub(super) enum Op {
     Reached { place: u32 },
     /// Power in a cell is to be seen at an instruction at which nothing stops: it has come here, or left it.
     Shown { place: u32, power: Cell },
+    /// The same, and an operand or the current result is a condition that holds as a relay says.
+    ShownCondition { place: u32, src: Cell, invert: bool, power: Cell },
     /// Makes a calculation of an IEC 61131-3 program.
     Compute { power: Cell, number: u32 },
     /// Copies a value with parts.
@@ -265,6 +269,19 @@ impl Code {
             _ => None,
         });
         numbers.filter_map(|number| Some((number, *self.places.get(number as usize)?)))
+    }
+
+    /// Where the instructions stand that code which says what it sees tells of, by their numbers.
+    pub fn places(&self) -> &[Place] {
+        &self.places
+    }
+
+    /// The instructions that tell whether a condition holds, by their numbers, in the order of the code.
+    pub fn conditions(&self) -> impl Iterator<Item = u32> {
+        self.ops.iter().filter_map(|op| match op {
+            Op::SeenContact { place, .. } | Op::ShownCondition { place, .. } => Some(*place),
+            _ => None,
+        })
     }
 
     /// The first instructions of a routine, by its label, or of the bodies of a program unit of IEC 61131-3, by their

@@ -6,6 +6,7 @@ use super::interrupts::Interrupts;
 use super::row::{Cell, Row};
 use super::run::Run;
 use super::terminals::Terminals;
+use super::writes::Watch;
 use super::{Glimpse, Lanes, Memory, iec, timing};
 use crate::target::{Device, DeviceKind, Fault, Outside};
 use crate::text::Message;
@@ -240,6 +241,11 @@ impl<L: Lanes> Machine<L> {
 
     /// The same, and `watch` may look at the PLC as it is there.
     pub fn scan_inside(&mut self, now_ns: i64, watch: &mut impl FnMut(Glimpse<'_, L>) -> bool) -> Outcome {
+        self.scan_with(now_ns, watch)
+    }
+
+    /// The same with somebody who may look at each op.
+    pub(super) fn scan_with(&mut self, now_ns: i64, watch: &mut impl Watch<L>) -> Outcome {
         self.scan_ns = if self.scans == 0 { 0 } else { now_ns - self.now_ns };
         self.now_ns = now_ns;
         self.scans += 1;

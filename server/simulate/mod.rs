@@ -59,10 +59,12 @@ mod instruct;
 
 mod run;
 
+mod writes;
+
 mod machine;
 pub use machine::{Error, ErrorKind, Machine, Outcome, Sight};
 
-pub use iec::{Member, UnitVariables, joined};
+pub use iec::{HandedOver, Member, UnitVariables, joined};
 
 mod glimpse;
 pub use glimpse::{Caller, Glimpse};

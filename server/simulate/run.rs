@@ -4,6 +4,7 @@ use super::code::{Code, Op};
 use super::interrupts::{self, Interrupts};
 use super::machine::{Error, Outcome};
 use super::row::{self, Row};
+use super::writes::Watch;
 use super::{ErrorKind, Glimpse, Lanes, Machine, Sight, iec, timing};
 use crate::target::Fault;
 
@@ -46,6 +47,9 @@ impl Run {
                 (place, true, Some((Some(cell(src) ^ L::all(invert)), cell(power))))
             }
             Op::Shown { place, power } => (place, false, Some((None, cell(power)))),
+            Op::ShownCondition { place, src, invert, power } => {
+                (place, false, Some((Some(cell(src) ^ L::all(invert)), cell(power))))
+            }
             Op::Reached { place } => (place, true, None),
             _ => return None,
         };
@@ -76,15 +80,12 @@ impl Run {
 }
 
 impl<L: Lanes> Machine<L> {
-    pub(super) fn run(
-        &mut self,
-        code: &Code,
-        rows: &[Row],
-        run: &mut Run,
-        watch: &mut impl FnMut(Glimpse<'_, L>) -> bool,
-    ) {
+    pub(super) fn run<W: Watch<L>>(&mut self, code: &Code, rows: &[Row], run: &mut Run, watch: &mut W) {
         let (mut at, most_ops) = (0, self.most_ops());
         while let Some(op) = code.ops.get(at) {
+            if W::EACH_OP {
+                watch.comes(self, at);
+            }
             run.ops += 1;
             if run.ops > most_ops && !run.renew(&mut self.interrupts) {
                 return run.error(code, at, ErrorKind::Watchdog, 0);
@@ -97,8 +98,12 @@ impl<L: Lanes> Machine<L> {
                     at += 1;
                     continue;
                 }
-                Op::Seen { .. } | Op::SeenContact { .. } | Op::Reached { .. } | Op::Shown { .. } => {
-                    if !run.glimpse(self, *op).is_none_or(&mut *watch) {
+                Op::Seen { .. }
+                | Op::SeenContact { .. }
+                | Op::Reached { .. }
+                | Op::Shown { .. }
+                | Op::ShownCondition { .. } => {
+                    if !run.glimpse(self, *op).is_none_or(|glimpse| watch.sees(glimpse)) {
                         run.outcome.is_broken_off = true;
                         return;
                     }

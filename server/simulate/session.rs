@@ -6,7 +6,8 @@
 
 use super::code::Code;
 use super::machine::{Machine, Outcome, Sight};
-use super::{Value, Variable};
+use super::writes::{Tracer, Write};
+use super::{Spot, Value, Variable};
 use crate::target::Device;
 use crate::target::outside::Event;
 use std::sync::Arc;
@@ -224,6 +225,17 @@ impl Session {
             !is_there
         });
         seen
+    }
+
+    /// Who wrote what lies at a place in a scan that begins at `now_ns`, in the order of execution. Nothing if the scan
+    /// is not known.
+    pub(super) fn writes(&self, scan: u64, now_ns: i64, watched: &Arc<Code>, to: Spot) -> Option<Vec<Write>> {
+        let mut machine = self.at(scan.checked_sub(1)?)?;
+        machine.set_code(Arc::clone(watched));
+        self.touches_before(scan).for_each(|touch| touch.apply(&mut machine));
+        let mut tracer = Tracer::of(to);
+        machine.scan_with(now_ns, &mut tracer);
+        Some(tracer.found)
     }
 
     /// Goes on with an edited program. One that does the same keeps its history; for any other [`Machine::adopt`] says

@@ -1,7 +1,7 @@
 //! Names of what can be watched and set, and their values.
 
 use super::code::Code;
-use super::iec::{self, Leaf, UnitVariables, joined};
+use super::iec::{self, HandedOver, Leaf, UnitVariables, joined};
 use super::machine::Machine;
 use super::row::Cell;
 use super::session::Touch;
@@ -91,6 +91,16 @@ impl Code {
         let own = joined(&names.owner_of(scope)?, name.trim());
         // What is handed over as VAR_IN_OUT has the name that it has elsewhere.
         if names.find(&own) == Some(leaf) { Some(own) } else { names.name_at(leaf.spot) }
+    }
+
+    /// The body of a unit of IEC 61131-3 to which an instruction belongs, by its number.
+    pub fn scope_at(&self, instruction: u32) -> Option<usize> {
+        self.iec.names().scope_at(instruction)
+    }
+
+    /// What is handed over to the bodies of an IEC 61131-3 program as VAR_IN_OUT.
+    pub fn handed_over(&self) -> Vec<HandedOver> {
+        self.iec.names().handed_over()
     }
 
     /// The program, the instance of a function block or the function of IEC 61131-3 to which an instruction belongs, as

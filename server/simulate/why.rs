@@ -19,6 +19,11 @@ use subject::Subject;
 
 mod calls;
 
+mod writers;
+use writers::Writer;
+
+mod calculated;
+
 use super::{Code, Machine, Place, Session, Sight, Value, Variable, instruction_words};
 use crate::document::Document;
 use crate::ladder::CoilKind;
@@ -177,10 +182,15 @@ impl<'a> Inquiry<'a> {
         if at.before >= self.seen(at.scan)?.len() {
             return Some(self.machine(at.scan)?.value_inside(variable, 0));
         }
+        self.session.inside(at.scan, self.time_of(at.scan)?, self.watched, at.before, |machine| {
+            machine.value_inside(variable, 0)
+        })
+    }
+
+    /// When a scan began, also one that is going on.
+    fn time_of(&self, scan: u64) -> Option<i64> {
         let open = self.open.as_ref().map(|(machine, _)| machine.now_ns());
-        let now_ns = self.session.time_of(at.scan).or(open)?;
-        self.session
-            .inside(at.scan, now_ns, self.watched, at.before, |machine| machine.value_inside(variable, 0))
+        self.session.time_of(scan).or(open)
     }
 
     /// Why words are what they are, as far as that is not being told already.
@@ -229,7 +239,10 @@ impl<'a> Inquiry<'a> {
     /// What a subject is: `Y0 is on`.
     fn state(&self, subject: &Subject, value: &Value) -> Message {
         let name = self.shown(subject);
+        let is_counted = subject.device.is_some_and(|device| device.kind.has_preset());
         match value {
+            Value::Bit(true) if is_counted => Message::new("why.contact-on").with("name", name),
+            Value::Bit(false) if is_counted => Message::new("why.contact-off").with("name", name),
             Value::Bit(true) => Message::new("why.on").with("name", name),
             Value::Bit(false) => Message::new("why.off").with("name", name),
             value => Message::new("why.is").with("name", name).with("value", value),
@@ -273,9 +286,9 @@ impl<'a> Inquiry<'a> {
         {
             return self.outside(subject, device, moment, since, &told);
         }
-        if !is_asked && let Some((driver, at)) = self.writer(subject, value, moment) {
+        if !is_asked && let Some((writer, at)) = self.writer(subject, value, moment) {
             asked.push(subject.clone());
-            let reason = self.driven(subject, value, &driver, Moment { before: at, ..moment }, &told, asked);
+            let reason = self.given(subject, value, &writer, Moment { before: at, ..moment }, &told, asked);
             asked.pop();
             return reason;
         }
@@ -328,12 +341,12 @@ impl<'a> Inquiry<'a> {
         if is_new {
             return self.reason(told(self.hand(subject, moment.scan)), None, moment.scan, Vec::new());
         }
-        let idle = self.drivers_of(subject);
+        let idle = self.writers_of(subject);
         match self.session.last_change(last, of) {
             Some(scan) if scan < moment.scan => {
                 let at = self.seen(scan).map(|seen| Moment { scan, before: seen.len() });
                 let before = at.and_then(|at| Some((self.writer(subject, value, at)?, at)));
-                let Some(((driver, number), at)) = before else {
+                let Some(((writer, number), at)) = before else {
                     let state = self.state(subject, value);
                     let since = self.since(state, scan);
                     let how = self.hand(subject, scan);
@@ -350,7 +363,7 @@ impl<'a> Inquiry<'a> {
                 };
                 asked.push(subject.clone());
                 let at = Moment { before: number, ..at };
-                let reason = self.driven(subject, value, &driver, at, &told, asked);
+                let reason = self.given(subject, value, &writer, at, &told, asked);
                 asked.pop();
                 reason
             }
@@ -362,8 +375,8 @@ impl<'a> Inquiry<'a> {
             }
             _ => {
                 asked.push(subject.clone());
-                let because =
-                    idle.iter().take(MOST_IDLE).map(|driver| self.idle(driver, moment, asked)).collect();
+                let idle = idle.iter().take(MOST_IDLE);
+                let because = idle.map(|writer| self.idle(subject, writer, moment, asked)).collect();
                 asked.pop();
                 self.reason(told(Message::new("why.never")), None, moment.scan, because)
             }
@@ -378,23 +391,17 @@ impl<'a> Inquiry<'a> {
             .with("time", time)
     }
 
-    /// The instruction that wrote a value last before a moment of a scan, and the number of its sight.
-    fn writer(&self, subject: &Subject, value: &Value, moment: Moment) -> Option<(Driver, usize)> {
-        let seen = self.seen(moment.scan)?;
-        let written = self.drivers_of(subject).into_iter().filter_map(|driver| {
-            let (at, sight) = self.saw(&seen, &driver, moment.before)?;
-            writes(&driver, sight.power != 0, value).then_some((driver, at))
-        });
-        written.max_by_key(|(_, at)| *at)
-    }
-
     /// What an instruction saw last before the sight with this number, and the number of that.
     fn saw(&self, seen: &Seen, driver: &Driver, before: usize) -> Option<(usize, Sight<u8>)> {
         seen.last(self.watched, driver.place, self.frame(driver), before)
     }
 
     /// An instruction that might have driven something and did not.
-    fn idle(&self, driver: &Driver, moment: Moment, asked: &mut Vec<Subject>) -> Reason {
+    fn idle(&self, subject: &Subject, writer: &Writer, moment: Moment, asked: &mut Vec<Subject>) -> Reason {
+        let driver = match writer {
+            Writer::Read(driver) => driver,
+            Writer::Other(own) => return self.idly_calculated(subject, *own, moment, asked),
+        };
         let instruction = self.words(driver.place);
         let seen = self.seen(moment.scan);
         match seen.and_then(|seen| self.saw(&seen, driver, moment.before)) {
@@ -409,6 +416,22 @@ impl<'a> Inquiry<'a> {
                 let message = Message::new("why.not-executed").with("instruction", instruction);
                 self.reason(message, Some(driver.place), moment.scan, because.into_iter().collect())
             }
+        }
+    }
+
+    /// Why what wrote a value last gave it.
+    fn given(
+        &self,
+        subject: &Subject,
+        value: &Value,
+        writer: &Writer,
+        at: Moment,
+        told: &dyn Fn(Message) -> Message,
+        asked: &mut Vec<Subject>,
+    ) -> Reason {
+        match writer {
+            Writer::Read(driver) => self.driven(subject, value, driver, at, told, asked),
+            Writer::Other(own) => self.calculated(subject, *own, at, told, asked),
         }
     }
 

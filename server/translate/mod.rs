@@ -197,11 +197,20 @@ impl<'d> Original<'d> {
     }
 }
 
+/// A rung in the form of its document.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Rewritten {
+    /// The rung.
+    pub text: String,
+    /// A section with the variables that it needs beyond those that are declared; empty if it needs none.
+    pub declarations: String,
+}
+
 /// A rung of a document as it is written there if it does what `path` says; its comments and labels are left out.
 ///
 /// # Errors
 /// With the reason why the form of the document has no words for it.
-pub fn rewritten(document: &Document, source: &Source, path: Path) -> Result<String, Message> {
+pub fn rewritten(document: &Document, source: &Source, path: Path) -> Result<Rewritten, Message> {
     let to = match document.notation() {
         Notation::Ladder => To::Ladder,
         Notation::FxIl => To::Fx,
@@ -223,8 +232,10 @@ pub fn rewritten(document: &Document, source: &Source, path: Path) -> Result<Str
     let rung = translation.rungs.into_iter().next().ok_or_else(no_words)?;
     match rung.note {
         Some(reason) => Err(reason),
-        None if !helpers.is_empty() => Err(no_words()),
-        None => Ok(translation.text.get(rung.result).unwrap_or_default().to_string()),
+        None => Ok(Rewritten {
+            text: translation.text.get(rung.result).unwrap_or_default().to_string(),
+            declarations: header::helpers_of(&helpers, source.pou),
+        }),
     }
 }
 

@@ -4,16 +4,17 @@
 //! { files: [{ path, program: path[], problems: { path, range, message }[],
 //!     scenarios: [{ name, range, passed, scans, picture?,
 //!       failures: { message, range, scan, time_ms, name?, expected?, actual?, program?: { path, range } }[] }] }],
-//!   coverage?: { summary: { rungs, evaluated, contacts, covered, decided },
+//!   coverage?: { summary: { rungs, evaluated, contacts, covered, decided, decidable },
 //!     files: [{ path, rungs: { range, evaluated,
-//!       contacts: { name, range, on, off, decided_on, decided_off }[] }[] }] },
-//!   mutants?: { total, tried, killed, equivalent, invalid, survived: { path, range, change }[] },
+//!       contacts: { name, range, on, off, decided_on, decided_off, decidable }[] }[] }] },
+//!   mutants?: { total, tried, killed, equivalent, invalid, survived: fault[],
+//!     not_running: fault[], not_written: fault[] }, where fault: { path, range, change },
 //!   written: path[],
 //!   summary: { passed, failed, unreadable } }
 //! ```
 
 use super::subject::Subject;
-use super::{Ran, Session, SuiteFile, Verdict, text};
+use super::{Fault, Ran, Session, SuiteFile, Verdict, text};
 use crate::document::Document;
 use crate::scenario::{Coverage, around, picture};
 use crate::text::{Encoding, Language, Span};
@@ -45,26 +46,30 @@ pub(super) fn of(session: &Session, language: Language) -> Value {
                 "contacts": counts.contacts,
                 "covered": counts.covered,
                 "decided": counts.decided,
+                "decidable": counts.decidable,
             },
             "files": files.flatten().collect::<Vec<_>>(),
         });
     }
     if let Some(survivors) = &session.survivors {
-        let survived = survivors.survived.iter().filter_map(|(subject, document, span, change)| {
-            let program = session.subjects.get(*subject)?.programs.get(*document)?;
+        let fault = |fault: &Fault| {
+            let program = session.subjects.get(fault.subject)?.programs.get(fault.document)?;
             Some(json!({
                 "path": super::subject::shown(&program.path),
-                "range": range(&program.document, *span),
-                "change": change.render(language),
+                "range": range(&program.document, fault.span),
+                "change": fault.change.render(language),
             }))
-        });
+        };
+        let faults = |all: &[Fault]| all.iter().filter_map(fault).collect::<Vec<_>>();
         all["mutants"] = json!({
             "total": survivors.total,
             "tried": survivors.tried,
             "killed": survivors.killed,
             "equivalent": survivors.equivalent,
-            "invalid": survivors.invalid,
-            "survived": survived.collect::<Vec<_>>(),
+            "invalid": survivors.invalid.len() + survivors.unwritten.len(),
+            "survived": faults(&survivors.survived),
+            "not_running": faults(&survivors.invalid),
+            "not_written": faults(&survivors.unwritten),
         });
     }
     all
@@ -138,6 +143,7 @@ fn covered(subject: &Subject, coverage: &Coverage) -> Vec<Value> {
                     "off": contact.off,
                     "decided_on": contact.decided_on,
                     "decided_off": contact.decided_off,
+                    "decidable": contact.is_decidable,
                 })
             });
             json!({

@@ -87,9 +87,18 @@ struct Survivors {
     tried: usize,
     killed: usize,
     equivalent: usize,
-    invalid: usize,
-    /// Those that no scenario found: the number of the subject and of the document, the place, what it is.
-    survived: Vec<(usize, usize, Span, Message)>,
+    invalid: Vec<Fault>,
+    unwritten: Vec<Fault>,
+    /// Those that no scenario found.
+    survived: Vec<Fault>,
+}
+
+/// A mutant: the number of the subject and of the document, the place, what it is.
+struct Fault {
+    subject: usize,
+    document: usize,
+    span: Span,
+    change: Message,
 }
 
 impl SuiteFile {
@@ -177,7 +186,10 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
             return Outcome::Unusable;
         }
     }
-    let has_survivors = session.survivors.as_ref().is_some_and(|survivors| !survivors.survived.is_empty());
+    let has_survivors = session
+        .survivors
+        .as_ref()
+        .is_some_and(|survivors| !survivors.survived.is_empty() || !survivors.unwritten.is_empty());
     if session.has_flaws() {
         Outcome::Unusable
     } else if session.count(|ran| !ran.is_passed()) > 0 || has_survivors {
@@ -258,14 +270,18 @@ impl Session {
             survivors.total += mutants.len();
             for mutant in mutants.sample(arguments.mutants, arguments.seed) {
                 survivors.tried += 1;
+                let fault = || Fault {
+                    subject: number,
+                    document: mutant.document,
+                    span: mutant.span,
+                    change: mutant.change.message(),
+                };
                 match mutants.fate(mutant, &scenarios) {
                     Fate::Killed => survivors.killed += 1,
                     Fate::Equivalent => survivors.equivalent += 1,
-                    Fate::Invalid => survivors.invalid += 1,
-                    Fate::Survived => {
-                        let message = mutant.change.message();
-                        survivors.survived.push((number, mutant.document, mutant.span, message));
-                    }
+                    Fate::Invalid => survivors.invalid.push(fault()),
+                    Fate::Unwritten => survivors.unwritten.push(fault()),
+                    Fate::Survived => survivors.survived.push(fault()),
                 }
             }
         }

@@ -1,8 +1,8 @@
 //! Test results for people.
 
 use super::subject::Subject;
-use super::{Ran, Session, SuiteFile, Verdict};
-use crate::scenario::{Failure, around, driver, picture};
+use super::{Fault, Ran, Session, SuiteFile, Verdict};
+use crate::scenario::{ConditionKind, ContactCoverage, Failure, around, driver, picture};
 use crate::simulate::Place;
 use crate::text::{Encoding, Language, Message, Span};
 use std::fmt::Write;
@@ -40,14 +40,25 @@ pub(super) fn told(session: &Session, language: Language) -> String {
             .with("killed", survivors.killed)
             .with("survived", survivors.survived.len())
             .with("equivalent", survivors.equivalent)
-            .with("invalid", survivors.invalid);
+            .with("invalid", survivors.invalid.len() + survivors.unwritten.len());
         let _ = writeln!(text, "\n{}", message.render(language));
-        for (subject, document, span, change) in &survivors.survived {
-            let place = session.subjects.get(*subject).and_then(|subject| place(subject, *document, *span));
-            let _ = writeln!(text, "  {}: {}", place.unwrap_or_default(), change.render(language));
+        faults(&mut text, session, &survivors.survived, language);
+        for (key, all) in [("test.invalid", &survivors.invalid), ("test.unwritten", &survivors.unwritten)] {
+            if !all.is_empty() {
+                let message = Message::new(key).with("count", all.len());
+                let _ = writeln!(text, "{}", message.render(language));
+                faults(&mut text, session, all, language);
+            }
         }
     }
     text
+}
+
+fn faults(text: &mut String, session: &Session, all: &[Fault], language: Language) {
+    for Fault { subject, document, span, change } in all {
+        let place = session.subjects.get(*subject).and_then(|subject| place(subject, *document, *span));
+        let _ = writeln!(text, "  {}: {}", place.unwrap_or_default(), change.render(language));
+    }
 }
 
 fn scenario(text: &mut String, suite: &SuiteFile, subject: Option<&Subject>, ran: &Ran, language: Language) {
@@ -118,6 +129,25 @@ fn place(subject: &Subject, document: usize, span: Span) -> Option<String> {
     Some(format!("{}:{}:{}", super::subject::shown(&program.path), at.line + 1, at.column + 1))
 }
 
+/// What has not been seen of a contact.
+fn lacking(contact: &ContactCoverage) -> Option<&'static str> {
+    use ConditionKind::{Off, On, Other};
+    Some(match (contact.on > 0, contact.off > 0, contact.kind) {
+        (false, false, Other) => "test.never-evaluated",
+        (false, false, On | Off) => "test.never-evaluated-contact",
+        (true, false, On) => "test.open-conducted",
+        (false, true, On) => "test.open-blocked",
+        (true, false, Off) => "test.closed-conducted",
+        (false, true, Off) => "test.closed-blocked",
+        (true, false, Other) => "test.condition-held",
+        (false, true, Other) => "test.condition-failed",
+        (true, true, _) if !contact.is_decidable || contact.has_decided() => return None,
+        (true, true, _) if contact.decided_on => "test.undecided-off",
+        (true, true, _) if contact.decided_off => "test.undecided-on",
+        (true, true, _) => "test.undecided",
+    })
+}
+
 fn coverage(text: &mut String, session: &Session, language: Language) {
     let percent = |part: usize, whole: usize| (part * 100).checked_div(whole).unwrap_or(100);
     let _ = writeln!(text);
@@ -125,26 +155,25 @@ fn coverage(text: &mut String, session: &Session, language: Language) {
         let Some(coverage) = &subject.coverage else { continue };
         for (number, path) in (0..).zip(subject.paths()) {
             let counts = coverage.counts(Some(number));
-            let message = Message::new("test.coverage")
+            let key = match (counts.contacts, counts.decidable) {
+                (0, _) => "test.coverage-none",
+                (_, 0) => "test.coverage-states",
+                _ => "test.coverage",
+            };
+            let message = Message::new(key)
                 .with("path", &path)
                 .with("covered", counts.covered)
                 .with("contacts", counts.contacts)
                 .with("percent", percent(counts.covered, counts.contacts))
                 .with("decided", counts.decided)
-                .with("decided-percent", percent(counts.decided, counts.contacts))
+                .with("decidable", counts.decidable)
+                .with("decided-percent", percent(counts.decided, counts.decidable))
                 .with("evaluated", counts.evaluated)
                 .with("rungs", counts.rungs);
             let _ = writeln!(text, "{}", message.render(language));
             for rung in coverage.rungs().filter(|rung| rung.document == number) {
-                for contact in rung.contacts.iter().filter(|contact| !contact.has_decided()) {
-                    let key = match (contact.on > 0, contact.off > 0) {
-                        (false, false) => "test.never-evaluated",
-                        (true, false) => "test.never-off",
-                        (false, true) => "test.never-on",
-                        (true, true) if contact.decided_on => "test.undecided-off",
-                        (true, true) if contact.decided_off => "test.undecided-on",
-                        (true, true) => "test.undecided",
-                    };
+                for contact in &rung.contacts {
+                    let Some(key) = lacking(contact) else { continue };
                     let at = place(subject, number as usize, contact.span).unwrap_or_default();
                     let message = Message::new(key).with("name", &contact.name).render(language);
                     let _ = writeln!(text, "  {at}: {message}");

@@ -227,6 +227,7 @@ fn covered(coverage: &Coverage, files: &Files, manner: Manner) -> Value {
                     "off": contact.off,
                     "decided_on": contact.decided_on,
                     "decided_off": contact.decided_off,
+                    "decidable": contact.is_decidable,
                 })
             });
             json!({

@@ -10,7 +10,7 @@ use super::place::Place as Variable;
 use crate::il::iec::{Condition, Direction, ListForm, ParameterValue, PouKind, Run, SectionKind};
 use crate::simulate::code::Op;
 use crate::simulate::{Cell, Obstacle};
-use crate::target::iec::{EN, ENO, Function, Parameter};
+use crate::target::iec::{EN, ENO, Function, Operator, OperatorRole, Parameter};
 use crate::text::folded;
 use smol_str::SmolStr;
 
@@ -83,6 +83,7 @@ impl List<'_, '_> {
     ) -> Result<(Arguments, usize), Obstacle> {
         let mut arguments = Arguments::default();
         let mut lists = at + 1;
+        let instruction = self.compiler.builder.instruction();
         for (position, parameter) in parameters.of(self.parameters).iter().enumerate() {
             let name: SmolStr = match (parameter.name, form) {
                 (Some(name), _) => name.of(self.text).into(),
@@ -130,6 +131,7 @@ impl List<'_, '_> {
                     self.compiler.builder.forget_power();
                     self.depth += 1;
                     self.run(inside);
+                    self.compiler.builder.again_at(instruction);
                     self.depth -= 1;
                     let value = std::mem::replace(&mut self.current, saved);
                     let given = self.compiler.given_of(&value).ok_or(Obstacle::NoCurrentResult)?;
@@ -277,6 +279,10 @@ impl List<'_, '_> {
             arguments.enabled,
         )?;
         self.current = self.compiler.current_at(result);
+        let operator = Operator::named(function.name).map(|operator| operator.role);
+        if let Some(OperatorRole::Combine { comparison: true }) = operator {
+            self.holds_now(false);
+        }
         Ok(next)
     }
 }

@@ -53,7 +53,7 @@ impl Compiler<'_> {
         self.builder.forget_power();
         self.land();
         self.builder.op(Op::Return);
-        self.instructions.push(first..self.builder.instruction() + 1);
+        self.instructions.push(first..self.builder.last_instruction() + 1);
     }
 
     /// Variables that begin anew at each call: VAR_TEMP. Those of functions begin where they are called.

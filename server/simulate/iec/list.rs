@@ -12,6 +12,7 @@ use crate::simulate::code::Op;
 use crate::simulate::row::Row;
 use crate::simulate::{Cell, Obstacle};
 use crate::target::iec::{ElementaryType, Function, GenericType, OperatorRole};
+use crate::target::{Model, Operand as TargetOperand};
 use crate::text::{Message, Span, folded};
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
@@ -41,6 +42,8 @@ pub(super) struct List<'c, 'a> {
     /// What waits for closing parentheses.
     pub(super) open: Vec<Open>,
     pub(super) depth: usize,
+    /// The relay that tells whether the condition holds that the present instruction is, and whether that inverts it.
+    condition: Option<(Cell, bool)>,
 }
 
 /// An operator whose operand is in parentheses.
@@ -64,6 +67,7 @@ impl<'a> Compiler<'a> {
             current,
             open: Vec::new(),
             depth: 0,
+            condition: None,
         };
         list.run(items);
         list.current
@@ -180,7 +184,9 @@ impl<'a> List<'_, 'a> {
             let instruction = self.compiler.builder.instruction();
             self.reached(item, instruction);
             let sees = sees(&item.kind);
+            self.condition = None;
             if sees == Sees::First {
+                self.goes_on(item.kind);
                 self.saw(instruction);
             }
             let next = self.item(at, item);
@@ -223,7 +229,30 @@ impl<'a> List<'_, 'a> {
                 Current::Bit => self.compiler.builder.settle(),
                 _ => Row::RAIL,
             };
-            self.compiler.builder.shown(instruction, power);
+            match self.condition.take() {
+                Some(condition) => self.compiler.builder.shown_condition(instruction, condition, power),
+                None => self.compiler.builder.shown(instruction, power),
+            }
+        }
+    }
+
+    /// What an instruction that is done under a condition has for one.
+    fn goes_on(&mut self, kind: ItemKind) {
+        let condition = match kind {
+            ItemKind::Jump { condition, .. }
+            | ItemKind::Call { condition, .. }
+            | ItemKind::Return { condition, .. } => condition,
+            _ => return,
+        };
+        if condition != Condition::Always && matches!(self.current, Current::Bit) {
+            self.holds_now(condition == Condition::IfFalse);
+        }
+    }
+
+    /// The current result is the condition that the present instruction is, or the opposite of it.
+    pub(super) fn holds_now(&mut self, is_inverse: bool) {
+        if self.compiler.builder.is_watched() && matches!(self.current, Current::Bit) {
+            self.condition = Some((self.compiler.builder.settle(), is_inverse));
         }
     }
 
@@ -359,7 +388,9 @@ impl<'a> List<'_, 'a> {
                 if self.open.is_empty() && self.depth == 0 {
                     self.compiler.builder.rung();
                 }
-                self.current = self.compiler.load(word.ok_or(Obstacle::Unreadable)?, operation.negated)?;
+                let word = word.ok_or(Obstacle::Unreadable)?;
+                self.current = self.compiler.load(word, operation.negated)?;
+                self.loaded(word);
                 Ok(())
             }
             OperatorRole::Store => self.store(word.ok_or(Obstacle::Unreadable)?, operation.negated),
@@ -393,14 +424,17 @@ impl<'a> List<'_, 'a> {
 
     fn combine(&mut self, at: usize, operation: Operation, word: &str) -> Outcome {
         let is_logic = matches!(operation.operator.operand, Some(GenericType::AnyBit));
-        let is_bit = match self.compiler.value(word)? {
-            Value::Variable(variable) => variable.kind.elementary() == Some(ElementaryType::Bool),
+        let (is_bit, is_literal) = match self.compiler.value(word)? {
+            Value::Variable(variable) => (variable.kind.elementary() == Some(ElementaryType::Bool), false),
             // A literal is what the current result is.
-            _ => true,
+            _ => (true, true),
         };
         if let (Current::Bit, true) = (&self.current, is_logic && is_bit) {
             let cell = self.compiler.relay(word)?;
             self.logic(operation, cell);
+            if !is_literal {
+                self.condition = Some((cell, operation.negated));
+            }
             return Ok(());
         }
         let mut right = self.compiler.given(word)?;
@@ -430,7 +464,17 @@ impl<'a> List<'_, 'a> {
             .compiler
             .applied(function, vec![left, right], expected, |own, kind| own.temporary(kind, depth))?;
         self.current = self.compiler.current_at(result);
+        if let OperatorRole::Combine { comparison: true } = operation.operator.role {
+            self.holds_now(false);
+        }
         Ok(())
+    }
+
+    /// A BOOL variable that is loaded is a condition.
+    fn loaded(&mut self, word: &str) {
+        if !matches!(TargetOperand::read(word, Model::Iec), TargetOperand::Literal(_)) {
+            self.holds_now(false);
+        }
     }
 
     pub(super) fn no_value(&self) -> Obstacle {
@@ -476,7 +520,9 @@ impl<'a> List<'_, 'a> {
         self.open.push(Open { operation, before });
         self.compiler.builder.forget_power();
         if let Some(id) = operand {
-            self.current = self.compiler.load(self.word(id), false)?;
+            let word = self.word(id);
+            self.current = self.compiler.load(word, false)?;
+            self.loaded(word);
         }
         Ok(())
     }

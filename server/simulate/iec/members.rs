@@ -3,6 +3,7 @@
 use super::kind::{Field, Kind, count};
 use super::names::{Names, subscripts};
 use super::place::Place as Variable;
+use super::scopes::Scope;
 use smol_str::SmolStr;
 
 /// The variables of a program or of a function, or those that are global.
@@ -12,6 +13,17 @@ pub struct UnitVariables {
     pub name: String,
     /// Its variables.
     pub members: Vec<Member>,
+}
+
+/// What is handed over to the body of a unit as VAR_IN_OUT.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct HandedOver {
+    /// The body, by its number.
+    pub scope: usize,
+    /// The program, the instance or the function that it is of.
+    pub owner: String,
+    /// What it is called there, with the name that it has elsewhere.
+    pub names: Vec<(SmolStr, String)>,
 }
 
 /// A variable, or a part of one.
@@ -50,6 +62,37 @@ impl Names {
         units[0].members.extend(direct);
         units.retain(|unit| !unit.members.is_empty());
         units
+    }
+}
+
+impl Names {
+    /// What is handed over to bodies, as far as it has a name of its own: elements whose subscripts are known at run
+    /// time only have none.
+    pub(in crate::simulate) fn handed_over(&self) -> Vec<HandedOver> {
+        let of = |(scope, body): (usize, &Scope)| {
+            let named = |(name, variable): &(SmolStr, Variable)| {
+                let field = body.record.field(name).map_or(name, |field| &field.name);
+                Some((field.clone(), self.path_to(variable)?))
+            };
+            let names: Vec<_> = body.aliases.iter().filter_map(named).collect();
+            let owner = self.owner_of(scope)?;
+            (!names.is_empty()).then_some(HandedOver { scope, owner, names })
+        };
+        self.scopes.iter().enumerate().filter_map(of).collect()
+    }
+
+    fn path_to(&self, wanted: &Variable) -> Option<String> {
+        fn within(here: &Variable, wanted: &Variable, path: String) -> Option<String> {
+            if here.at == wanted.at && here.kind.is_same(&wanted.kind) {
+                return Some(path);
+            }
+            parts(here).into_iter().find_map(|(name, part)| within(&part, wanted, joined(&path, &name)))
+        }
+        if wanted.index != 0 {
+            return None;
+        }
+        let roots = self.roots.iter().chain(&self.functions);
+        roots.into_iter().find_map(|root| within(&root.variable, wanted, root.path.join(".")))
     }
 }
 

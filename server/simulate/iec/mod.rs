@@ -18,12 +18,14 @@ mod names;
 pub(super) use names::Leaf;
 
 mod members;
-pub use members::{Member, UnitVariables, joined};
+pub use members::{HandedOver, Member, UnitVariables, joined};
 
 mod scopes;
 
 mod run;
 pub(super) use run::{call_block, compute, copy, initialise, of_pattern, put, read, result_before, schedule};
+
+mod written;
 
 mod declarations;
 

@@ -40,7 +40,7 @@ struct Store<'m, L> {
 }
 
 /// How far subscripts lead on; nothing if one is out of its bounds.
-fn offset<L: Lanes>(memory: &Memory<L>, parts: &Parts, index: u32, lane: usize) -> Option<Extent> {
+pub(super) fn offset<L: Lanes>(memory: &Memory<L>, parts: &Parts, index: u32, lane: usize) -> Option<Extent> {
     let Some(number) = index.checked_sub(1) else { return Some(Extent::default()) };
     let subscripts = parts.indices.get(number as usize)?;
     subscripts.iter().try_fold(Extent::default(), |offset, subscript: &Index| {

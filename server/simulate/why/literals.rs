@@ -69,7 +69,6 @@ impl<'i, 'a> Literals<'i, 'a> {
         let is_inverse = contact.test == Test::Bit(ContactKind::NormallyClosed);
         let is_plain = is_inverse || contact.test == Test::Bit(ContactKind::NormallyOpen);
         let sight = self.last(place);
-        let conducts_itself = sight.is_some_and(|(_, sight)| sight.conducts.is_some());
         let (at, conducts) = match (sight, &subject) {
             (Some((at, Sight { conducts: Some(conducts), .. })), _) => (at, conducts != 0),
             // A list tells of the current result, and nothing of what is handed over in a call.
@@ -94,8 +93,7 @@ impl<'i, 'a> Literals<'i, 'a> {
                 let (words, compared) = match (contact.test, &contact.terms[..]) {
                     (Test::Compare(how), [left, right]) => {
                         let words = format!("{} {} {}", left.text, how.iec_name(), right.text);
-                        let is_drawn = self.driver.frame.is_none() || conducts_itself;
-                        let words = (!is_drawn).then_some(words);
+                        let words = self.inquiry.is_in_list(place).then_some(words);
                         (words, self.inquiry.subjects(&contact.terms, self.driver))
                     }
                     _ => (None, Vec::new()),

@@ -51,7 +51,7 @@ impl Inquiry<'_> {
         Some(Subject { name: device.to_smolstr(), device: Some(device), variable })
     }
 
-    fn variable_subject(&self, variable: Variable, name: &str) -> Subject {
+    pub(super) fn variable_subject(&self, variable: Variable, name: &str) -> Subject {
         let spot = match variable {
             Variable::Relay(cell) => Some(Spot::of_cell(cell)),
             Variable::Typed(spot) | Variable::Enumerated(spot, _) => Some(spot),
