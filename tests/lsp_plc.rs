@@ -7,33 +7,41 @@ use serde_json::{Value, json};
 const LIST: &str = "LD X0\nOR Y0\nANI X1\nOUT Y0\nLD Y0\nOUT T0 K100\nMOV D0 D1\nEND\n";
 
 /// An editor that is connected to a virtual PLC.
-struct Connected {
-    client: Client,
-    uri: String,
-    plc: Option<VirtualPlc>,
+pub struct Connected {
+    pub client: Client,
+    pub uri: String,
+    pub plc: Option<VirtualPlc>,
     port: String,
-    _folder: tempfile::TempDir,
+    pub folder: tempfile::TempDir,
 }
 
 impl Connected {
-    fn open(list: &str) -> Connected {
+    pub fn open(list: &str) -> Connected {
+        Connected::open_with(list, "", |plc| plc.port.clone())
+    }
+
+    /// In a project with a manifest, at the port that `port` says.
+    pub fn open_with(list: &str, manifest: &str, port: impl FnOnce(&VirtualPlc) -> String) -> Connected {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("motor.il");
         std::fs::write(&path, list).unwrap();
+        if !manifest.is_empty() {
+            std::fs::write(folder.path().join("rungwise.toml"), manifest).unwrap();
+        }
         let uri = format!("file://{}", path.canonicalize().unwrap().display());
         let plc = VirtualPlc::start(folder.path(), &[]);
-        let port = plc.port.clone();
+        let port = port(&plc);
         let mut client = Client::start();
         client.open(&uri, "plc-il", list);
         client.diagnostics(&uri, 1);
-        let mut connected = Connected { client, uri, plc: Some(plc), port, _folder: folder };
+        let mut connected = Connected { client, uri, plc: Some(plc), port, folder };
         let port = connected.port.clone();
         let state = connected.tell("connect", json!({ "port": port }));
         assert_eq!((&state["connected"], &state["model"]), (&json!(true), &json!("fx2n")), "{state}");
         connected
     }
 
-    fn answer(&mut self, verb: &str, more: Value) -> Value {
+    pub fn answer(&mut self, verb: &str, more: Value) -> Value {
         let mut argument = json!({ "uri": self.uri });
         argument.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
         let params = json!({ "command": format!("rungwise.plc.{verb}"), "arguments": [argument] });
@@ -41,14 +49,14 @@ impl Connected {
     }
 
     #[track_caller]
-    fn tell(&mut self, verb: &str, more: Value) -> Value {
+    pub fn tell(&mut self, verb: &str, more: Value) -> Value {
         let answer = self.answer(verb, more);
         assert!(answer["error"].is_null(), "{answer}");
         answer["result"].clone()
     }
 
     /// The next picture that is wanted.
-    fn picture(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
+    pub fn picture(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
         let is_one = |message: &Value| message["method"] == "rungwise/monitor" && wanted(&message["params"]);
         self.client.wait_for("a picture", is_one)["params"].clone()
     }

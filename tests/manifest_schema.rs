@@ -45,11 +45,17 @@ fn every_table_has_the_keys_that_are_read() {
     }
     let task = &schema["properties"]["task"]["items"];
     assert_eq!(keys(task), keys_read("[[task]]\nname = ''\nprograms = []\nzzz = 1"));
+    let alarm = &schema["properties"]["alarm"]["items"];
+    assert_eq!(keys(alarm), keys_read("[[alarm]]\nwhen = 'X0'\nmessage = ''\nzzz = 1"));
+    for required in words(&alarm["required"]) {
+        let rest = if required == "when" { "message = ''" } else { "when = 'X0'" };
+        assert!(refusal(&format!("[[alarm]]\n{rest}")).contains(required));
+    }
     for required in words(&task["required"]) {
         let rest = if required == "name" { "programs = []" } else { "name = ''" };
         assert!(refusal(&format!("[[task]]\n{rest}")).contains(required));
     }
-    for table in [&schema, &schema["properties"]["format"], &schema["properties"]["rules"], task] {
+    for table in [&schema, &schema["properties"]["format"], &schema["properties"]["rules"], task, alarm] {
         assert_eq!(table["additionalProperties"], Value::Bool(false));
     }
 }
@@ -94,6 +100,10 @@ fn every_word_of_the_schema_is_read_and_others_are_not() {
         ("/properties/dialect", "dialect = \"WORD\""),
         ("/properties/format/properties/style", "[format]\nstyle = \"WORD\""),
         ("/definitions/severity", "[rules]\nopen-circuit = \"WORD\""),
+        (
+            "/properties/alarm/items/properties/severity",
+            "[[alarm]]\nwhen = \"X0\"\nmessage = \"\"\nseverity = \"WORD\"",
+        ),
     ] {
         for word in words(&schema.pointer(key).unwrap()["enum"]) {
             assert!(Manifest::read(&manifest.replace("WORD", word)).is_ok(), "{key}: {word}");

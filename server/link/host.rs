@@ -4,7 +4,7 @@ mod identity;
 pub use identity::Identity;
 
 mod point;
-pub use point::Point;
+pub use point::{NamesOfPlc, Point};
 
 mod devices;
 

@@ -26,7 +26,8 @@ pub use mode::{Mode, Switch};
 
 mod host;
 pub use host::{
-    DownloadFailure, Fate, Host, Identity, Plan, Point, Progress, Report, Stage, Status, StatusError, Watch,
+    DownloadFailure, Fate, Host, Identity, NamesOfPlc, Plan, Point, Progress, Report, Stage, Status,
+    StatusError, Watch,
 };
 
 pub mod plc;

@@ -4,10 +4,10 @@ use super::Connection;
 use super::connection::failed;
 use super::status::StatusFormat;
 use crate::cli::Outcome;
-use crate::cli::input::{complain, put, say};
+use crate::cli::input::{complain, put, say, usable_manifest};
 use crate::cli::run::duration;
-use crate::link::{Point, Watch};
-use crate::simulate::{Trace, TraceRow, Value, milliseconds};
+use crate::link::{NamesOfPlc, Point, Watch};
+use crate::simulate::{AlarmChange, Alarms, Trace, TraceRow, Value, milliseconds};
 use crate::text::{Language, Message};
 use serde_json::{Map, Value as Json, json};
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use std::time::Duration;
 #[derive(clap::Args)]
 pub(in crate::cli) struct Arguments {
     /// What is watched: X0, D10, D0:32, T0 (current value), TS0 (contact), TC0 (coil).
-    #[arg(required = true, value_name = "DEVICE")]
+    #[arg(value_name = "DEVICE")]
     devices: Vec<String>,
     #[command(flatten)]
     connection: Connection,
@@ -39,6 +39,17 @@ pub(in crate::cli) fn run(arguments: &Arguments, language: Language) -> Outcome 
 }
 
 fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outcome> {
+    let wanted = usable_manifest(Path::new("."), language).ok_or(Outcome::Unusable)?.alarms();
+    if arguments.devices.is_empty() && wanted.is_empty() {
+        let reason = Message::new("link.nothing-to-watch").render(language);
+        complain(
+            "nothing-to-watch",
+            &reason,
+            &Message::new("link.help-no-device").render(language),
+            language,
+        );
+        return Err(Outcome::Unusable);
+    }
     let mut host = arguments.connection.open(Path::new("."), language)?;
     let target = host.identity().target;
     let point = |name: &String| {
@@ -48,7 +59,18 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
             Outcome::Unusable
         })
     };
-    let points = arguments.devices.iter().map(point).collect::<Result<Vec<_>, _>>()?;
+    let named = arguments.devices.iter().map(point).collect::<Result<Vec<_>, _>>()?;
+    let (mut alarms, refused) = Alarms::new(&wanted, &NamesOfPlc(target));
+    if let Some((alarm, reason)) = refused.into_iter().next() {
+        let reason = Message::new("simulate.alarm-refused")
+            .with("when", alarm.when)
+            .with_messages("reason", vec![reason]);
+        let help = Message::new("cli.mend-manifest").render(language);
+        complain("manifest", &reason.render(language), &help, language);
+        return Err(Outcome::Unusable);
+    }
+    // All in one list, so that alarms are about the values that are shown.
+    let points: Vec<Point> = named.iter().copied().chain(alarms.variables()).collect();
     let mut watch = Watch::new(points.clone());
     let mut trace = Trace::of_names(arguments.devices.clone());
     let start = host.line().now();
@@ -58,17 +80,19 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
             Ok(values) => values,
             Err(error) => break Err(error),
         };
-        let typed = |(point, value): (&Point, i64)| match point.is_bit() {
-            true => Value::Bit(value != 0),
-            false => Value::Number(value),
-        };
-        let values = points.iter().zip(values).map(typed).collect();
+        let values: Vec<Value> = points.iter().zip(values).map(|(point, value)| point.value(value)).collect();
         let time_ns = host.line().now().saturating_sub(start).as_nanos() as i64;
+        let of = |wanted: Point| {
+            let at = points.iter().position(|point| *point == wanted);
+            at.map_or(wanted.value(0), |at| values[at].clone())
+        };
+        let changes = alarms.look(time_ns, &of);
         let rows = trace.rows.len();
-        trace.push(TraceRow { scan: look, time_ns, values });
-        if trace.rows.len() > rows {
+        trace.push(TraceRow { scan: look, time_ns, values: values[..named.len()].to_vec() });
+        if trace.rows.len() > rows && !named.is_empty() {
             tell(&trace, arguments.format);
         }
+        changes.iter().for_each(|change| tell_alarm(change, arguments.format, language));
         look += 1;
         if arguments.count.is_some_and(|count| look >= count) {
             break Ok(());
@@ -91,6 +115,17 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
         Ok(()) | Err(crate::link::LinkError::Cancelled) => Ok(Outcome::Clean),
         Err(error) => Err(failed(&error, language)),
     }
+}
+
+/// A line about an alarm that is raised or gone.
+fn tell_alarm(change: &AlarmChange, format: StatusFormat, language: Language) {
+    let text = match format {
+        StatusFormat::Json => {
+            json!({ "time_ms": change.time_ns / 1_000_000, "alarm": change.json() }).to_string()
+        }
+        StatusFormat::Text => change.told().render(language),
+    };
+    say(&format!("{text}\n"));
 }
 
 /// A line with the values of the last look.

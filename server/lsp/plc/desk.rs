@@ -224,10 +224,13 @@ impl Thread {
         let Some(workspace) = self.workspace.upgrade() else { return Ok(()) };
         let Some(plc) = &mut self.plc else { return Ok(()) };
         if let Some(watching) = &mut plc.watching
-            && let Some(picture) = watching.picture(&mut plc.host, &workspace, &plc.status)?
+            && watching.look(&mut plc.host, &workspace, &plc.status)?
         {
-            let client = workspace.client.clone();
-            self.tokio.spawn(async move { client.send_notification::<MonitorMethod>(picture).await });
+            watching.tell_alarms(&self.tokio, &workspace);
+            if let Some(picture) = watching.picture(&workspace, &plc.status) {
+                let client = workspace.client.clone();
+                self.tokio.spawn(async move { client.send_notification::<MonitorMethod>(picture).await });
+            }
         }
         if asked.elapsed() >= STATUS {
             *asked = Instant::now();
@@ -248,8 +251,17 @@ impl Thread {
         Ok(())
     }
 
+    /// Shows no more of the program that is watched, if any.
+    fn unwatch(&mut self) {
+        let watching = self.plc.as_mut().and_then(|plc| plc.watching.take());
+        if let (Some(mut watching), Some(workspace)) = (watching, self.workspace.upgrade()) {
+            watching.end(&self.tokio, &workspace);
+        }
+    }
+
     /// The line is gone: says so.
     fn lose(&mut self, error: &LinkError) {
+        self.unwatch();
         self.plc = None;
         let Some(workspace) = self.workspace.upgrade() else { return };
         let reason = error.message().render(workspace.snapshot().manner.language);
@@ -311,6 +323,7 @@ impl Thread {
             return Ok(self.state(None));
         }
         if matches!(order, Order::Disconnect) {
+            self.unwatch();
             self.plc = None;
             self.send(json!({ "connected": false }));
             return Ok(json!({ "connected": false }));
@@ -339,31 +352,48 @@ impl Thread {
             }
             Order::Stop => plc.host.stop().map_err(|error| told(&error))?,
             Order::Monitor { uri, ranges, names } => {
-                let target = plc.host.identity().target;
-                let before = plc.watching.take();
-                let mut watching = match before {
-                    Some(watching) if *watching.uri() == uri => watching,
-                    _ => Watching::new(uri),
-                };
-                watching.watch(ranges, names);
-                if let Err(reason) = watching.follow(&workspace, target, &plc.status) {
+                if let Err(reason) = self.monitor(&workspace, uri, ranges, names) {
                     self.tell(None);
                     return Err(reason);
                 }
-                plc.watching = Some(watching);
             }
-            Order::Unmonitor => plc.watching = None,
+            Order::Unmonitor => self.unwatch(),
             Order::Write { name, value, is_force } => plc.write(&name, &value, is_force)?,
         }
         // What was done is done; a line that has failed meanwhile is found out soon.
-        if let Ok(status) = plc.host.status() {
+        if let Some(plc) = &mut self.plc
+            && let Ok(status) = plc.host.status()
+        {
             plc.status = status;
         }
         self.tell(about.as_ref());
         Ok(answer.unwrap_or_else(|| self.state(None)))
     }
 
+    /// Watches a program, in the place of another one.
+    fn monitor(
+        &mut self,
+        workspace: &Workspace,
+        uri: Uri,
+        ranges: Option<Vec<Range>>,
+        names: Option<Vec<String>>,
+    ) -> Result<(), Message> {
+        if self.plc.as_ref().and_then(|plc| plc.watching.as_ref()).is_some_and(|known| *known.uri() != uri) {
+            self.unwatch();
+        }
+        let Some(plc) = &mut self.plc else { return Ok(()) };
+        let target = plc.host.identity().target;
+        let watching = plc.watching.get_or_insert_with(|| Watching::new(uri));
+        watching.watch(ranges, names);
+        let followed = watching.follow(workspace, target, &plc.status);
+        if followed.is_err() {
+            self.unwatch();
+        }
+        followed
+    }
+
     fn connect(&mut self, port: &str, patience: Duration) -> Result<(), LinkError> {
+        self.unwatch();
         self.plc = None;
         let patience = Patience { answer: patience, ..Patience::default() };
         let line = Line::new(transport::open(port)?, patience, Arc::clone(&self.cancel));
