@@ -9,6 +9,10 @@ local PREFIX = 'rungwise.plc.'
 --- What the server told of the PLC last.
 M.state = { connected = false }
 
+--- The alarms of PLC and simulator, the newest last: what `rungwise/alarm` tells, and `gone_ms` once they are.
+M.alarms = {}
+local MOST_ALARMS = 50
+
 --- Has something done about the program of a buffer; `done` gets the answer.
 local function tell(buffer, verb, more, done)
   local server = client.expect(buffer)
@@ -59,6 +63,38 @@ function M.on_state(_, state)
   vim.cmd.redrawstatus()
 end
 
+--- The notification `rungwise/alarm`. The server tells the person by itself when an alarm is raised; here it is kept for
+--- the list, and that it is gone is told.
+function M.on_alarm(_, told)
+  if type(told) ~= 'table' then
+    return
+  end
+  local known = vim.iter(M.alarms):rfind(function(alarm)
+    return alarm.uri == told.uri and alarm.source == told.source and alarm.when == told.when and not alarm.gone_ms
+  end)
+  if told.raised then
+    table.insert(M.alarms, told)
+    if #M.alarms > MOST_ALARMS then
+      table.remove(M.alarms, 1)
+    end
+  elseif known then
+    known.gone_ms = told.at_ms
+    client.notify(t('alarm gone: %s', told.message))
+  end
+  vim.cmd.redrawstatus()
+end
+
+--- An alarm in a line, with the times when it was raised and gone.
+local function line_of_alarm(alarm)
+  local function clock(ms)
+    return os.date('%H:%M:%S', math.floor(ms / 1000))
+  end
+  local span = alarm.gone_ms and clock(alarm.at_ms) .. ' – ' .. clock(alarm.gone_ms)
+    or t('since %s', clock(alarm.at_ms))
+  local where = alarm.source == 'simulator' and ' · ' .. t('simulation') or ''
+  return ('%s  %s%s  (%s)'):format(span, alarm.message, where, alarm.when)
+end
+
 --- Shows what is in the PLC beside what shall be there, in a tab of their own.
 local function show_difference(plan)
   vim.cmd.tabnew()
@@ -98,6 +134,11 @@ M.verbs = {
       end, found.ports)
       client.notify(#lines > 0 and table.concat(lines, '\n') or t('this computer has no serial port'))
     end)
+  end,
+  --- The alarms, the newest first.
+  alarms = function()
+    local lines = vim.iter(M.alarms):rev():map(line_of_alarm):totable()
+    client.notify(#lines > 0 and table.concat(lines, '\n') or t('there was no alarm'))
   end,
   status = function(buffer)
     tell(buffer, 'state', {}, function(state)
