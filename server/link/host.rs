@@ -11,6 +11,9 @@ mod devices;
 mod watch;
 pub use watch::Watch;
 
+mod holds;
+pub use holds::Holds;
+
 mod control;
 
 mod status;

@@ -7,7 +7,7 @@ use crate::target::Target;
 use crate::text::{Message, Severity, Span};
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 use toml::Spanned;
 use toml::de::DeTable;
 
@@ -38,9 +38,19 @@ pub struct Manifest {
     pub tasks: Vec<TaskSettings>,
     /// The serial port of the PLC.
     pub port: Option<String>,
+    /// What is kept while a program is watched in a PLC.
+    pub monitor: MonitorSettings,
     /// What people are told of while the program is watched in a PLC, or runs in the simulator.
     #[serde(rename = "alarm")]
     pub alarms: Vec<AlarmSettings>,
+}
+
+/// What is kept while a program is watched in a PLC.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MonitorSettings {
+    /// So many changes of values, the latest.
+    pub record: Option<usize>,
 }
 
 /// An alarm.
@@ -107,6 +117,9 @@ pub struct TranslateSettings {
 
 /// Nobody reads wider ladder; a width beyond it is a slip of the finger that would fill the memory.
 pub const MOST_WIDTH: u32 = 1000;
+
+/// Changes of values that a recording may keep; each takes some forty bytes of memory.
+pub const RECORD: RangeInclusive<usize> = 100..=10_000_000;
 
 /// What the formatter writes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize)]
@@ -246,6 +259,9 @@ impl Manifest {
         if self.format.width > MOST_WIDTH {
             let width = self.format.width.to_string();
             return fail("manifest.width", &width, Part::Value, &["format", "width"]);
+        }
+        if let Some(record) = self.monitor.record.filter(|record| !RECORD.contains(record)) {
+            return fail("manifest.record", &record.to_string(), Part::Value, &["monitor", "record"]);
         }
         if let Some(word) = self.dialect.as_deref().filter(|word| dialect_named(word).is_none()) {
             return fail("manifest.dialect", word, Part::Value, &["dialect"]);

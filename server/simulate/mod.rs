@@ -95,7 +95,7 @@ mod alarm;
 pub use alarm::{Alarm, AlarmChange, Alarms};
 
 mod recorder;
-pub use recorder::{Change, Recorder, Signal, is_affordable};
+pub use recorder::{Change, Recorder, Signal, is_affordable, thinned};
 
 mod presets;
 pub use presets::{Counted, CountedPreset};

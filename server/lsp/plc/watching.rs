@@ -1,18 +1,19 @@
 //! What of a program in a PLC is on the screen: the devices there are watched, and power is computed from their values.
 
 use super::super::alarms::Watchman;
-use super::super::simulation::{Monitor, Picture, compiled, files_around};
+use super::super::simulation::{Monitor, Picture, compiled, files_around, panel_rows};
 use super::super::to_proto::Place;
 use super::super::workspace::Workspace;
 use super::drift::encoded;
+use super::recording::SharedRecording;
 use crate::document::Document;
-use crate::link::{Host, LinkError, Mode, NamesOfPlc, Part, Point, Status, Transport, Watch};
+use crate::link::{Holds, Host, LinkError, Mode, NamesOfPlc, Part, Point, Status, Transport, Watch};
 use crate::machine_code::Image;
 use crate::simulate::{Code, Machine, Names, Value, Variable};
 use crate::target::{Device, Flow, Operand, Target};
 use crate::text::{Message, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
-use serde_json::json;
+use serde_json::{Value as Json, json};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use tower_lsp::ls_types::{Range, Uri};
@@ -27,6 +28,11 @@ pub(super) struct Watching {
     /// What of the names can be read.
     known: Vec<(String, Point)>,
     alarms: Watchman<Point>,
+    /// What is held at which values.
+    pub(super) holds: Holds,
+    recording: SharedRecording,
+    /// What the recording wanted last.
+    recorded: Vec<String>,
     watch: Watch,
     /// Which variable of the code each point is.
     variables: Vec<Option<Variable>>,
@@ -50,7 +56,7 @@ const MOST_POINTS: usize = 400;
 
 impl Watching {
     /// Nothing of this program yet.
-    pub(super) fn new(uri: Uri) -> Watching {
+    pub(super) fn new(uri: Uri, recording: SharedRecording) -> Watching {
         Watching {
             uri,
             files: Vec::new(),
@@ -59,6 +65,9 @@ impl Watching {
             names: Vec::new(),
             known: Vec::new(),
             alarms: Watchman::new("plc"),
+            holds: Holds::default(),
+            recording,
+            recorded: Vec::new(),
             watch: Watch::default(),
             variables: Vec::new(),
             values: FxHashMap::default(),
@@ -114,8 +123,11 @@ impl Watching {
         let named = self.names.iter().filter_map(|name| Some((name.clone(), names.variable(name)?)));
         self.known = named.collect();
         self.alarms.follow(workspace, &self.uri, &names);
-        let mut points: Vec<Point> = self.known.iter().map(|(_, point)| *point).collect();
+        self.recorded = self.recording.wanted();
+        let mut points: Vec<Point> = self.holds.held().iter().map(|(point, _)| *point).collect();
+        points.extend(self.known.iter().map(|(_, point)| *point));
         points.extend(self.alarms.variables());
+        points.extend(self.recorded.iter().filter_map(|name| names.variable(name)));
         // What was asked for by name is read in any case.
         let most = MOST_POINTS.max(points.len());
         points.extend(self.shown().filter(|point| point.is_reached(target)));
@@ -171,7 +183,27 @@ impl Watching {
         self.files.iter().position(|(file, ..)| *file == self.uri)
     }
 
-    /// Reads what is watched, if somebody has a use for it; whether that was so.
+    /// Whether the editor still has the document.
+    pub(super) fn is_open(&self, workspace: &Workspace) -> bool {
+        workspace.snapshot().open(&self.uri).is_some_and(|open| open.is_open)
+    }
+
+    /// Whether what is read is what is to be read.
+    fn is_up_to_date(&self, workspace: &Workspace) -> bool {
+        let is_same = |(uri, version, document): &(Uri, i32, Document)| {
+            let snapshot = workspace.snapshot();
+            snapshot
+                .open(uri)
+                .is_none_or(|open| open.version == *version && open.document.is_instance(document))
+        };
+        let is_read = |(point, _): &(Point, i64)| self.watch.points().contains(point);
+        self.files.iter().all(is_same)
+            && !self.alarms.is_outdated(workspace, &self.uri)
+            && self.recorded == self.recording.wanted()
+            && self.holds.held().iter().all(is_read)
+    }
+
+    /// Reads what is watched, if somebody has a use for it, and writes again what is held; whether that was so.
     ///
     /// # Errors
     /// If the line fails.
@@ -181,30 +213,28 @@ impl Watching {
         workspace: &Workspace,
         status: &Status,
     ) -> Result<bool, LinkError> {
-        if workspace.snapshot().open(&self.uri).is_none_or(|open| !open.is_open) {
+        let target = host.identity().target;
+        if !self.is_up_to_date(workspace) && self.follow(workspace, target, status).is_err() {
             return Ok(false);
         }
-        let is_same = |(uri, version, document): &(Uri, i32, Document)| {
-            let snapshot = workspace.snapshot();
-            snapshot
-                .open(uri)
-                .is_none_or(|open| open.version == *version && open.document.is_instance(document))
-        };
-        let is_same = self.files.iter().all(is_same) && !self.alarms.is_outdated(workspace, &self.uri);
-        if !is_same && self.follow(workspace, host.identity().target, status).is_err() {
+        let is_unwatched = self.monitor.is_empty() && self.alarms.is_empty();
+        if is_unwatched && self.recorded.is_empty() && self.holds.held().is_empty() {
             return Ok(false);
         }
-        if self.monitor.is_empty() && self.alarms.is_empty() {
-            return Ok(false);
-        }
-        let values = host.poll(&mut self.watch)?;
+        let numbers = host.poll(&mut self.watch)?;
         self.now_ns = host.line().now().as_nanos() as i64;
-        self.started_ns.get_or_insert(self.now_ns);
+        if self.started_ns.is_none() {
+            self.started_ns = Some(self.now_ns);
+            let most = workspace.snapshot().open(&self.uri).and_then(|open| open.manifest.monitor.record);
+            self.recording.begin(target, most);
+        }
         self.looks += 1;
         let points = self.watch.points().iter();
-        self.values = points.zip(values).map(|(point, value)| (*point, point.value(value))).collect();
+        self.values = points.zip(numbers).map(|(point, number)| (*point, point.value(number))).collect();
         let read = &self.values;
+        self.recording.note(self.time_ns(), read.iter().map(|(point, value)| (*point, value)));
         self.alarms.look(self.time_ns(), &|point| read.get(&point).cloned().unwrap_or(point.value(0)));
+        self.holds.rewrite(host, &|point| point.number(read.get(&point)?))?;
         Ok(true)
     }
 
@@ -218,10 +248,32 @@ impl Watching {
         self.alarms.tell(tokio, workspace, &self.uri);
     }
 
-    /// Nobody watches any more: its alarms are told as gone.
-    pub(super) fn end(&mut self, tokio: &tokio::runtime::Handle, workspace: &Workspace) {
+    /// Nobody watches any more: its alarms are told as gone, and what was held is given.
+    pub(super) fn end(&mut self, tokio: &tokio::runtime::Handle, workspace: &Workspace) -> Vec<(Point, i64)> {
         self.alarms.end(self.time_ns());
         self.tell_alarms(tokio, workspace);
+        self.holds.release_all()
+    }
+
+    /// What belongs on a panel of the program, and of what is named besides, as far as the port reaches it; see
+    /// `rungwise.simulate.panel` for the JSON.
+    ///
+    /// # Errors
+    /// If the text cannot be run.
+    pub(super) fn panel(
+        &self,
+        workspace: &Workspace,
+        target: &'static Target,
+        more: &[String],
+    ) -> Result<Json, Message> {
+        let gone = || Message::new("request.no-document").with("command", super::PREFIX);
+        let (code, _) = compiled(&self.files)?;
+        let snapshot = workspace.snapshot();
+        let around = snapshot.around(snapshot.open(&self.uri).ok_or_else(gone)?);
+        let names = NamesOfPlc(target);
+        let mut rows = panel_rows(&around.view(), &Machine::new(code), more);
+        rows.retain(|row| row["name"].as_str().is_some_and(|name| names.variable(name).is_some()));
+        Ok(json!({ "rows": rows }))
     }
 
     /// What the client is to show of the last look.
@@ -249,6 +301,14 @@ impl Watching {
                 });
             }
             elements = self.monitor.elements(place, code, &sights, machine);
+            if !self.holds.held().is_empty() {
+                let held = |variable| {
+                    let at = self.variables.iter().position(|own| *own == Some(variable))?;
+                    let point = *self.watch.points().get(at)?;
+                    self.holds.of(point).map(|number| point.value(number))
+                };
+                elements.extend(self.monitor.forced(place, code, &held));
+            }
             let unknown: Vec<Range> = self
                 .unknown
                 .iter()
@@ -257,12 +317,13 @@ impl Watching {
             elements.retain(|element| {
                 let line = element["range"]["start"]["line"].as_u64().unwrap_or(0) as u32;
                 element["kind"] == "value"
+                    || element["kind"] == "forced"
                     || !unknown.iter().any(|range| range.start.line <= line && line < range.end.line.max(1))
             });
         }
         let values = self.known.iter().filter_map(|(name, point)| {
             let value = self.values.get(point)?.json();
-            Some(json!({ "device": name, "value": value, "forced": false }))
+            Some(json!({ "device": name, "value": value, "forced": self.holds.of(*point).is_some() }))
         });
         Some(Picture {
             uri: self.uri.clone(),
@@ -272,7 +333,7 @@ impl Watching {
             scan: self.looks - 1,
             time_ms: self.time_ns() as f64 / 1e6,
             edition: self.edition,
-            branch: 0,
+            branch: self.recording.branch(),
             elements,
             values: values.collect(),
             errors: Vec::new(),

@@ -51,7 +51,7 @@ pub(super) enum Deed {
 pub(super) enum Question {
     Watch { ranges: Option<Vec<Range>>, names: Option<Vec<String>> },
     State { names: Option<Vec<String>> },
-    Panel,
+    Panel { more: Vec<String> },
     Trace { wanted: Wanted },
     Export { wanted: Wanted, format: String },
     Record { names: Option<Vec<String>> },
