@@ -1,5 +1,5 @@
-//! Tells what is raised and what is gone of the alarms of a project (`[[alarm]]` in `rungwise.toml`), while its program is
-//! watched in a PLC or runs in the simulator: a message to the person, and the notification `rungwise/alarm`:
+//! Tells what is raised and what is gone of the alarms of a project (`[[alarm]]` in `rungwise.toml`), while its program
+//! is watched in a PLC or runs in the simulator: a message to the person, and the notification `rungwise/alarm`:
 //!
 //! ```text
 //! { uri, source: "plc" | "simulator", when, message, severity: "error" | "warning" | "hint", raised: boolean,

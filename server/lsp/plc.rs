@@ -38,14 +38,15 @@
 //!   held?: { device, value }[], reason? }                 // why the line is gone
 //! ```
 //!
-//! The protocol has no hold: what is held is written again with each look that finds something else, and the program may
-//! write in between. All is let go, and the person told, when nothing is monitored any more, when the PLC is stopped, and
-//! when the line is gone; the PLC keeps the values that were written last. `held` of the state says what is held.
+//! The protocol has no hold: what is held is written again with each look that finds something else, and the program
+//! may write in between. All is let go, and the person told, when nothing is monitored any more, before a download, when
+//! the PLC is stopped, and when the line is gone; the PLC keeps the values that were written last. `held` of the state
+//! says what is held.
 //!
 //! `panel`, `trace` and `export` are as those of `rungwise.simulate.…`, with milliseconds from the first look on in the
-//! place of scans. What was looked at is recorded, as many changes as `record` under `[monitor]` in `rungwise.toml` says,
-//! until something is monitored again, also if the line is gone; what is asked for by `trace` is read from then on.
-//! `branch` is another number when a recording began anew.
+//! place of scans. What was looked at is recorded, as many changes as `record` under `[monitor]` in `rungwise.toml`
+//! says, until something is monitored again, also if the line is gone; what is asked for by `trace` is read from then
+//! on. `branch` is another number when a recording began anew.
 //!
 //! `drift` are the instructions of `uri` that are not so in the PLC, as far as that is known: from the last upload,
 //! download or comparison. While a program is monitored, `rungwise/monitor` comes as in a simulation, with

@@ -67,6 +67,7 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
       register('rungwise.controller.stop', () => this.tell('stop')),
       register('rungwise.controller.monitor', () => this.monitor()),
       register('rungwise.controller.write', () => this.write()),
+      register('rungwise.controller.devices', () => this.showDevices()),
       vscode.commands.registerCommand('rungwise.controller.clearAlarms', () => this.showAlarms(raised(this.alarms))),
       server.onNotification(PLC_STATE, (params) => this.take(params)),
       server.onNotification(ALARM, (params) => this.showAlarms(noteAlarm(this.alarms, params))),
@@ -209,6 +210,15 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
     } else {
       await this.simulation.followPlc(program);
     }
+  }
+
+  /** The table of the program's devices with what they are in the PLC, which is monitored for it. */
+  private async showDevices(): Promise<void> {
+    const program = this.program();
+    if (this.state.monitoring !== this.server.protocolUri(program)) {
+      await this.simulation.followPlc(program);
+    }
+    await vscode.commands.executeCommand('rungwise.simulation.panel', program);
   }
 
   private async write(): Promise<void> {

@@ -30,6 +30,8 @@ local function tell(buffer, verb, more, done)
     end, buffer)
 end
 
+M.tell = tell
+
 --- What the PLC is and does, in a line.
 local function line_of(state)
   if not state.connected then
@@ -206,6 +208,33 @@ M.verbs = {
   end,
   force = function(buffer, words)
     tell(buffer, 'force', { name = words[1], value = words[2] })
+  end,
+  hold = function(buffer, words)
+    tell(buffer, 'hold', { name = words[1], value = words[2] })
+  end,
+  --- Lets one go, or all.
+  release = function(buffer, words)
+    tell(buffer, 'release', { name = words[1] })
+  end,
+  --- The table of the program's devices with what they are in the PLC, which is monitored for it.
+  table = function(buffer)
+    if M.state.monitoring ~= vim.uri_from_bufnr(buffer) then
+      M.verbs.monitor(buffer)
+    end
+    require('rungwise.panel').open(buffer)
+  end,
+  --- What was seen while a program was monitored, in a file that ends in .csv or .vcd.
+  record = function(buffer, words)
+    local path = words[1] and vim.fs.normalize(words[1])
+    local format = path and path:match('%.(%a+)$')
+    if format ~= 'csv' and format ~= 'vcd' then
+      client.notify(t('name a file that ends in .csv or .vcd'), vim.log.levels.ERROR)
+      return
+    end
+    tell(buffer, 'export', { format = format, names = vim.list_slice(words, 2) }, function(found)
+      vim.fn.writefile(vim.split(found.text, '\n'), path)
+      client.notify(path)
+    end)
   end,
 }
 

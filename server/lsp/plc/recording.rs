@@ -1,5 +1,5 @@
-//! What was seen of a PLC while a program was monitored: for the chart of a panel, and for files. It is kept when the line
-//! is gone, until something is monitored again.
+//! What was seen of a PLC while a program was monitored: for the chart of a panel, and for files. It is kept when the
+//! line is gone, until something is monitored again.
 
 use super::Asked;
 use crate::link::{Logbook, Point, USUAL_CHANGES};

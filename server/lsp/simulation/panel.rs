@@ -13,8 +13,8 @@ const MOST_OF_A_RUN: u16 = 64;
 /// More rows nobody operates.
 const MOST_ROWS: usize = 5_000;
 
-/// The rows of what the program uses and of `more` devices or variables, group by group in reading order; see the head of
-/// [`simulation`](super) for their JSON.
+/// The rows of what the program uses and of `more` devices or variables, group by group in reading order; see the head
+/// of [`simulation`](super) for their JSON.
 pub(in crate::lsp) fn rows(view: &ProjectView<'_>, machine: &Machine<u8>, more: &[String]) -> Vec<Json> {
     let usage = ide::usage_of(view, &UsageWish { places: false, of: UsageOf::All });
     let code = machine.code();
