@@ -567,7 +567,7 @@ check('a program goes into a PLC after a look at what changes, and its power is 
   local shown_panel = vim.api.nvim_get_current_buf()
   local function line_of(name)
     for number, line in ipairs(vim.api.nvim_buf_get_lines(shown_panel, 0, -1, false)) do
-      if line:find('^%s*[●○]?%s*' .. name .. '%s') then
+      if line:find(' ' .. name .. ' ', 1, true) then
         return line, number
       end
     end
@@ -610,6 +610,8 @@ check('a program goes into a PLC after a look at what changes, and its power is 
   end)
   vim.fn.confirm = confirm
   vim.ui.input = input
+  vim.cmd.close()
+  vim.api.nvim_set_current_buf(program)
   local recorded = vim.fn.tempname() .. '.csv'
   vim.cmd('Rungwise plc record ' .. recorded .. ' D100')
   until_true('a file of what was seen', function()
@@ -619,8 +621,6 @@ check('a program goes into a PLC after a look at what changes, and its power is 
   assert(rows[1] == 'scan,time_ms,D100' and vim.iter(rows):any(function(row)
     return row:find(',-2$') ~= nil
   end), vim.inspect(rows))
-  vim.cmd.close()
-  vim.api.nvim_set_current_buf(program)
   vim.cmd('Rungwise plc stop')
   until_true('the PLC in STOP', function()
     return state().mode == 'STOP' and not has_coil()
