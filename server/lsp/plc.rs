@@ -39,9 +39,9 @@
 //! ```
 //!
 //! The protocol has no hold: what is held is written again with each look that finds something else, and the program
-//! may write in between. All is let go, and the person told, when nothing is monitored any more, before a download, when
-//! the PLC is stopped, and when the line is gone; the PLC keeps the values that were written last. `held` of the state
-//! says what is held.
+//! may write in between. All is let go, and the person told, when nothing is monitored any more, before a download,
+//! when the PLC is stopped, and when the line is gone; the PLC keeps the values that were written last. `held` of the
+//! state says what is held.
 //!
 //! `panel`, `trace` and `export` are as those of `rungwise.simulate.…`, with milliseconds from the first look on in the
 //! place of scans. What was looked at is recorded, as many changes as `record` under `[monitor]` in `rungwise.toml`

@@ -56,8 +56,8 @@ impl Trace {
         self.push(Row { scan: machine.scans().saturating_sub(1), time_ns: machine.now_ns(), values });
     }
 
-    /// Notes values that come from elsewhere, in the order of the names.
-    pub fn push(&mut self, row: Row) {
+    /// Notes values that come from elsewhere, in the order of the names; whether they are others than before.
+    pub fn push(&mut self, row: Row) -> bool {
         let is_news = self.rows.last().is_none_or(|before| before.values != row.values);
         match is_news {
             true => {
@@ -70,6 +70,7 @@ impl Trace {
         if let Some(most) = self.most.filter(|most| self.rows.len() > most + most / 4) {
             self.rows.drain(..self.rows.len() - most);
         }
+        is_news
     }
 
     /// Notes values of which some are not known yet; once one is, it stays so.

@@ -2,11 +2,12 @@
 
 use super::Connection;
 use super::connection::failed;
+use super::devices::settings_of;
 use super::status::StatusFormat;
 use crate::cli::Outcome;
-use crate::cli::input::{complain, put, say, usable_manifest};
+use crate::cli::input::{complain, put, remark, say, usable_manifest};
 use crate::cli::run::duration;
-use crate::link::{NamesOfPlc, Point, Watch};
+use crate::link::{Holds, NamesOfPlc, Point, Watch};
 use crate::simulate::{AlarmChange, Alarms, Trace, TraceRow, Value, milliseconds};
 use crate::text::{Language, Message};
 use serde_json::{Map, Value as Json, json};
@@ -26,9 +27,18 @@ pub(in crate::cli) struct Arguments {
     /// So many looks; until Ctrl-C if left out.
     #[arg(long, value_name = "N")]
     count: Option<u64>,
+    /// So long; until Ctrl-C if left out.
+    #[arg(long = "for", value_name = "TIME", value_parser = duration)]
+    time: Option<i64>,
     /// Writes the values over time to a file, as a value change dump (.vcd) or a table (.csv).
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
+    /// Looks with a change that are kept for the file at most, the latest.
+    #[arg(long, value_name = "N", default_value = "100000", value_parser = clap::value_parser!(u32).range(1..))]
+    keep: u32,
+    /// Writes a value again with each look that finds another one: Y0=on, D0=5.
+    #[arg(long = "hold", value_name = "DEVICE=VALUE")]
+    holds: Vec<String>,
     /// The shape of the result: a line for each look in which something changed.
     #[arg(long, value_enum, default_value = "text")]
     format: StatusFormat,
@@ -59,6 +69,7 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
             Outcome::Unusable
         })
     };
+    let settings = settings_of(&arguments.holds, false, target, language)?;
     let named = arguments.devices.iter().map(point).collect::<Result<Vec<_>, _>>()?;
     let (mut alarms, refused) = Alarms::new(&wanted, &NamesOfPlc(target));
     if let Some((alarm, reason)) = refused.into_iter().next() {
@@ -70,9 +81,14 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
         return Err(Outcome::Unusable);
     }
     // All in one list, so that alarms are about the values that are shown.
-    let points: Vec<Point> = named.iter().copied().chain(alarms.variables()).collect();
+    let mut points: Vec<Point> = named.iter().copied().chain(alarms.variables()).collect();
+    let mut holds = Holds::default();
+    for (point, number) in settings {
+        holds.hold(&mut host, point, number).map_err(|error| failed(&error, language))?;
+        points.push(point);
+    }
     let mut watch = Watch::new(points.clone());
-    let mut trace = Trace::of_names(arguments.devices.clone());
+    let mut trace = Trace::bounded(arguments.devices.clone(), arguments.keep as usize);
     let start = host.line().now();
     let mut look = 0;
     let end = loop {
@@ -87,18 +103,28 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
             at.map_or(wanted.value(0), |at| values[at].clone())
         };
         let changes = alarms.look(time_ns, &of);
-        let rows = trace.rows.len();
-        trace.push(TraceRow { scan: look, time_ns, values: values[..named.len()].to_vec() });
-        if trace.rows.len() > rows && !named.is_empty() {
+        let is_news = trace.push(TraceRow { scan: look, time_ns, values: values[..named.len()].to_vec() });
+        if is_news && !named.is_empty() {
             tell(&trace, arguments.format);
+        }
+        if let Err(error) = holds.rewrite(&mut host, &|point| point.number(&of(point))) {
+            break Err(error);
         }
         changes.iter().for_each(|change| tell_alarm(change, arguments.format, language));
         look += 1;
-        if arguments.count.is_some_and(|count| look >= count) {
+        let is_over = arguments.time.is_some_and(|time| time_ns >= time);
+        if is_over || arguments.count.is_some_and(|count| look >= count) {
             break Ok(());
         }
         std::thread::sleep(Duration::from_nanos(arguments.interval.max(0) as u64));
     };
+    let held = holds.release_all();
+    if !held.is_empty() {
+        let names: Vec<String> = held.iter().map(|(point, number)| format!("{point}={number}")).collect();
+        let released = Message::new("link.released");
+        let released = released.with_words("devices", names.iter().map(String::as_str), ", ");
+        remark(&released.render(language));
+    }
     trace.end();
     if let Some(path) = &arguments.trace {
         let is_dump = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vcd"));
