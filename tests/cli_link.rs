@@ -444,3 +444,41 @@ fn the_verbs_speak_chinese() {
     let err = String::from_utf8(refused.stderr).unwrap();
     assert!(err.contains("flood=1") && err.chars().any(|c| c > '\u{4E00}'), "{err}");
 }
+
+#[test]
+fn monitor_holds_what_the_program_writes_and_keeps_the_latest_looks() {
+    let list = "LD M8000\nINCP D0\nMOV K3 D1\nINC D2\nEND\n";
+    let folder = folder(&[("count.il", list)]);
+    let plc = VirtualPlc::start(folder.path(), &["--program", "count.il", "--stepped"]);
+    let port = plc.port.clone();
+    let arguments = ["monitor", "D1", "--hold", "D1=9", "--count", "6", "--port", &port];
+    let (out, err) = check(&folder, &arguments, 0);
+    // The program writes 3 in the next scan, and the host 9 behind it.
+    assert!(out.contains("D1=3"), "{out}");
+    assert!(err.contains("no longer held") && err.contains("D1=9"), "{err}");
+    let requests = |hold: &[&str]| {
+        let before: i64 = read(&folder, &port, "D2");
+        check(&folder, &[&["monitor", "D1", "--count", "6", "--port", &port], hold].concat(), 0);
+        read(&folder, &port, "D2") - before
+    };
+    // One exchange more for each look, and for the first value.
+    let held = requests(&["--hold", "D1=9"]);
+    assert_eq!(held - requests(&[]), 7, "{held}");
+    let arguments = ["monitor", "D2", "--count", "40", "--keep", "4", "--trace", "kept.csv", "--port", &port];
+    check(&folder, &arguments, 0);
+    let kept = std::fs::read_to_string(folder.path().join("kept.csv")).unwrap();
+    assert!((5..=6).contains(&kept.lines().count()), "{kept}");
+    assert!(kept.lines().last().unwrap().starts_with("39,"), "{kept}");
+    check(&folder, &["monitor", "D2", "--for", "1ms", "--port", &port], 0);
+    for hold in ["D1=70000", "Q1=1", "D1", "M8037=1"] {
+        let (code, _, err) =
+            run(&folder, &["monitor", "D1", "--hold", hold, "--count", "1", "--port", &port]);
+        assert!(code != 0 && err.contains("error["), "{hold}: {err}");
+    }
+}
+
+/// What a register is, by a look at it.
+fn read(folder: &TempDir, port: &str, device: &str) -> i64 {
+    let (out, _) = check(folder, &["monitor", device, "--count", "1", "--port", port], 0);
+    out.trim().rsplit('=').next().unwrap().parse().unwrap()
+}

@@ -1,12 +1,14 @@
 //! The programming port: frames as they were recorded, both maps, and what a host does with a virtual PLC.
 
 use crate::loopback::{Loopback, words};
+use rungwise::link::Logbook;
 use rungwise::link::frame::{ACK, ENQ, NAK, framed};
 use rungwise::link::plc::Plc;
 use rungwise::link::{
     Address, BitAddress, Command, Extended, LinkError, Lying, Map, Mode, Part, Plain, Point, Program, Watch,
 };
 use rungwise::machine_code::{Image, ParameterBlock};
+use rungwise::simulate::Value;
 use rungwise::target::{Device, DeviceKind, Model, Target};
 
 const MODELS: [Model; 4] = [Model::Fx1s, Model::Fx1n, Model::Fx2n, Model::Fx3u];
@@ -317,4 +319,37 @@ fn a_plc_keeps_its_program_and_latched_devices_without_power() {
     again.power_on(rungwise::link::Switch::Run, 0);
     assert_eq!(again.mode(), Mode::Run);
     assert_eq!(again.machine().word(device(DeviceKind::D, 300), 0), 7);
+}
+
+#[test]
+fn a_logbook_keeps_the_latest_changes_and_the_last_value_of_each_point() {
+    let [fast, slow, late] =
+        ["D0", "Y0", "D5"].map(|name| Point::named(name, Target::of(Model::Fx2n)).unwrap());
+    let mut book = Logbook::default();
+    book.begin(10);
+    for look in 0..100u64 {
+        let (number, bit) = (Value::Number(look as i64), Value::Bit(false));
+        let late_value = Value::Number(7);
+        let mut read = vec![(fast, &number), (slow, &bit)];
+        if look >= 97 {
+            read.push((late, &late_value));
+        }
+        book.note(look * 1_000_000, read.into_iter());
+    }
+    let changes = book.changes(fast, 0, u64::MAX, 1000);
+    assert_eq!(changes.len(), 8);
+    assert_eq!(changes[0], (92_000_000, Value::Number(92)));
+    assert_eq!(book.known_from_ns(slow), Some(0));
+    // What was not read yet is empty in a table, and has no value in a dump.
+    let trace = book.trace(&[late, slow, fast]);
+    let csv = trace.csv();
+    let lines: Vec<&str> = csv.lines().collect();
+    assert_eq!(lines[..4], ["scan,time_ms,D5,Y0,D0", "0,0,,0,", "1,92,,0,92", "2,93,,0,93"], "{csv}");
+    assert_eq!(lines[lines.len() - 3..], ["6,97,7,0,97", "7,98,7,0,98", "8,99,7,0,99"], "{csv}");
+    let dump = String::from_utf8(trace.vcd().unwrap()).unwrap();
+    let at = |time: &str| dump.find(&format!("#{time}\n")).unwrap();
+    assert!(!dump[at("0")..at("97000000")].contains(" !"), "{dump}");
+    assert!(dump[at("97000000")..at("98000000")].contains("b0000000000000111 !"), "{dump}");
+    book.begin(10);
+    assert!(book.points().is_empty() && book.beginnings() == 2);
 }

@@ -3,37 +3,51 @@
 use super::lsp_client::Client;
 use crate::virtual_plc::VirtualPlc;
 use serde_json::{Value, json};
+use std::sync::LazyLock;
+
+/// All lines of the list.
+static WHOLE: LazyLock<Value> = LazyLock::new(
+    || json!([{ "start": { "line": 0, "character": 0 }, "end": { "line": 9, "character": 0 } }]),
+);
 
 const LIST: &str = "LD X0\nOR Y0\nANI X1\nOUT Y0\nLD Y0\nOUT T0 K100\nMOV D0 D1\nEND\n";
 
 /// An editor that is connected to a virtual PLC.
-struct Connected {
-    client: Client,
-    uri: String,
-    plc: Option<VirtualPlc>,
+pub struct Connected {
+    pub client: Client,
+    pub uri: String,
+    pub plc: Option<VirtualPlc>,
     port: String,
-    _folder: tempfile::TempDir,
+    pub folder: tempfile::TempDir,
 }
 
 impl Connected {
-    fn open(list: &str) -> Connected {
+    pub fn open(list: &str) -> Connected {
+        Connected::open_with(list, "", |plc| plc.port.clone())
+    }
+
+    /// In a project with a manifest, at the port that `port` says.
+    pub fn open_with(list: &str, manifest: &str, port: impl FnOnce(&VirtualPlc) -> String) -> Connected {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("motor.il");
         std::fs::write(&path, list).unwrap();
+        if !manifest.is_empty() {
+            std::fs::write(folder.path().join("rungwise.toml"), manifest).unwrap();
+        }
         let uri = format!("file://{}", path.canonicalize().unwrap().display());
         let plc = VirtualPlc::start(folder.path(), &[]);
-        let port = plc.port.clone();
+        let port = port(&plc);
         let mut client = Client::start();
         client.open(&uri, "plc-il", list);
         client.diagnostics(&uri, 1);
-        let mut connected = Connected { client, uri, plc: Some(plc), port, _folder: folder };
+        let mut connected = Connected { client, uri, plc: Some(plc), port, folder };
         let port = connected.port.clone();
         let state = connected.tell("connect", json!({ "port": port }));
         assert_eq!((&state["connected"], &state["model"]), (&json!(true), &json!("fx2n")), "{state}");
         connected
     }
 
-    fn answer(&mut self, verb: &str, more: Value) -> Value {
+    pub fn answer(&mut self, verb: &str, more: Value) -> Value {
         let mut argument = json!({ "uri": self.uri });
         argument.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
         let params = json!({ "command": format!("rungwise.plc.{verb}"), "arguments": [argument] });
@@ -41,14 +55,14 @@ impl Connected {
     }
 
     #[track_caller]
-    fn tell(&mut self, verb: &str, more: Value) -> Value {
+    pub fn tell(&mut self, verb: &str, more: Value) -> Value {
         let answer = self.answer(verb, more);
         assert!(answer["error"].is_null(), "{answer}");
         answer["result"].clone()
     }
 
     /// The next picture that is wanted.
-    fn picture(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
+    pub fn picture(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
         let is_one = |message: &Value| message["method"] == "rungwise/monitor" && wanted(&message["params"]);
         self.client.wait_for("a picture", is_one)["params"].clone()
     }
@@ -147,6 +161,9 @@ fn what_is_wrong_is_said_and_the_server_goes_on() {
         ("force", json!({ "name": "D0", "value": 1 }), "D0 is no relay"),
         ("write", json!({ "name": "Q7", "value": 1 }), "does not reach Q7"),
         ("write", json!({ "name": "D0" }), "value"),
+        ("hold", json!({ "name": "D0", "value": 1 }), "monitor a program first"),
+        ("panel", json!({}), "monitor a program first"),
+        ("export", json!({ "format": "csv" }), "nothing was recorded"),
         ("connect", json!({ "port": "tcp://127.0.0.1:1" }), "cannot be opened"),
     ] {
         let answer = editor.answer(verb, more.clone());
@@ -162,4 +179,112 @@ fn what_is_wrong_is_said_and_the_server_goes_on() {
     assert!(lost["params"]["reason"].as_str().unwrap().contains("the line is gone"), "{lost}");
     assert_eq!(editor.tell("state", json!({})), json!({ "connected": false }));
     assert!(editor.tell("ports", json!({}))["ports"].is_array());
+}
+
+#[test]
+fn what_is_held_is_written_again_until_it_is_released() {
+    let mut editor = Connected::open(LIST);
+    editor.tell("download", json!({ "start": true, "confirmed": true }));
+    editor.tell("monitor", json!({ "names": ["D0"], "ranges": WHOLE.clone() }));
+    let state = editor.tell("hold", json!({ "name": "D0", "value": 7 }));
+    assert_eq!(state["held"], json!([{ "device": "D0", "value": 7 }]));
+    let is = |value: i64, forced: bool| {
+        move |picture: &Value| {
+            picture["values"][0] == json!({ "device": "D0", "value": value, "forced": forced })
+        }
+    };
+    let held = editor.picture(is(7, true));
+    // Where the text names it, it is marked as something that is forced in a simulation.
+    let is_mark = |element: &&Value| element["kind"] == "forced";
+    let marks: Vec<&Value> = held["elements"].as_array().unwrap().iter().filter(is_mark).collect();
+    assert_eq!(marks.len(), 1, "{held}");
+    assert_eq!((&marks[0]["value"], &marks[0]["range"]["start"]["line"]), (&json!(7), &json!(6)));
+    // Somebody else writes it: that is seen, and mended.
+    editor.tell("write", json!({ "name": "D0", "value": 3 }));
+    editor.picture(is(3, true));
+    editor.picture(is(7, true));
+    assert_eq!(editor.tell("release", json!({ "name": "D0" }))["held"], json!([]));
+    editor.tell("write", json!({ "name": "D0", "value": 3 }));
+    let first = editor.picture(is(3, false))["scan"].as_u64().unwrap();
+    let later = editor.picture(|picture| picture["scan"].as_u64().unwrap() > first + 3);
+    assert_eq!(later["values"][0]["value"], 3);
+    // Orders to the CPU are not held; what is held is let go with the program that stops, and that is told.
+    let refused = editor.answer("hold", json!({ "name": "M8037", "value": 1 }));
+    assert!(refused["error"]["message"].as_str().unwrap().contains("M8037"), "{refused}");
+    for (verb, device) in [("stop", "M5"), ("unmonitor", "D5"), ("disconnect", "T0")] {
+        editor.tell("monitor", json!({ "names": ["D0"] }));
+        editor.tell("hold", json!({ "name": device, "value": 1 }));
+        editor.tell(verb, json!({}));
+        let told = editor.client.wait_for("what is no longer held", |message| {
+            message["method"] == "window/showMessage"
+                && message["params"]["message"].as_str().unwrap().contains("no longer held")
+        });
+        assert!(told["params"]["message"].as_str().unwrap().contains(&format!("{device}=1")), "{told}");
+    }
+}
+
+#[test]
+fn what_is_held_is_let_go_when_the_line_is_gone_or_the_document_closed() {
+    let mut editor = Connected::open(LIST);
+    let told = |editor: &mut Connected| {
+        editor.client.wait_for("what is no longer held", |message| {
+            message["method"] == "window/showMessage"
+                && message["params"]["message"].as_str().unwrap().contains("D0=1")
+        });
+    };
+    editor.tell("monitor", json!({ "names": ["D0"] }));
+    editor.tell("hold", json!({ "name": "D0", "value": 1 }));
+    let uri = editor.uri.clone();
+    editor.client.notify("textDocument/didClose", json!({ "textDocument": { "uri": uri } }));
+    told(&mut editor);
+    editor.client.open(&uri, "plc-il", LIST);
+    editor.tell("monitor", json!({ "names": ["D0"] }));
+    editor.tell("hold", json!({ "name": "D0", "value": 1 }));
+    drop(editor.plc.take());
+    told(&mut editor);
+}
+
+#[test]
+fn what_was_seen_is_a_chart_and_a_file_also_when_the_line_is_gone() {
+    let mut editor = Connected::open(LIST);
+    editor.tell("download", json!({ "start": true, "confirmed": true }));
+    editor.tell("monitor", json!({ "names": ["X0"] }));
+    editor.picture(|_| true);
+    // What a chart asks for is read from then on, although no list of names has it.
+    editor.tell("trace", json!({ "names": ["D1", "Y0"] }));
+    editor.tell("force", json!({ "name": "X0", "value": true }));
+    editor.tell("write", json!({ "name": "D0", "value": 5 }));
+    let has = |signal: &Value, wanted: Value| {
+        signal["points"].as_array().is_some_and(|points| points.iter().any(|point| point[1] == wanted))
+    };
+    let mut last = Value::Null;
+    for _ in 0..1_000 {
+        last = editor.tell("trace", json!({ "names": ["D1", "Y0"] }));
+        if has(&last["signals"][0], json!(5)) && has(&last["signals"][1], json!(true)) {
+            break;
+        }
+        editor.picture(|_| true);
+    }
+    let points = last["signals"][0]["points"].as_array().unwrap();
+    let values: Vec<&Value> = points.iter().map(|point| &point[1]).collect();
+    assert_eq!(values.last(), Some(&&json!(5)), "{last}");
+    let times: Vec<u64> = points.iter().map(|point| point[0].as_u64().unwrap()).collect();
+    assert!(times.is_sorted() && *times.last().unwrap() <= last["to"].as_u64().unwrap(), "{last}");
+    // The panel has what the program uses, and what is named besides, as far as the port reaches it.
+    let panel = editor.tell("panel", json!({ "names": ["D77", "T300"] }));
+    let rows: Vec<&str> =
+        panel["rows"].as_array().unwrap().iter().map(|row| row["name"].as_str().unwrap()).collect();
+    assert_eq!(rows, ["X0", "X1", "Y0", "T0", "D0", "D1", "D77"]);
+    drop(editor.plc.take());
+    editor.client.wait_for("the loss of the line", |message| {
+        message["method"] == "rungwise/plc" && message["params"]["reason"].is_string()
+    });
+    let csv = editor.tell("export", json!({ "format": "csv", "names": ["X0", "D1"] }));
+    let lines: Vec<&str> = csv["text"].as_str().unwrap().lines().collect();
+    assert_eq!(lines[0], "scan,time_ms,X0,D1");
+    assert!(lines[1].starts_with("0,0,0,"), "{csv}");
+    assert!(lines.last().unwrap().ends_with(",1,5"), "{csv}");
+    let vcd = editor.tell("export", json!({ "format": "vcd" }));
+    let text = vcd["text"].as_str().unwrap();
+    assert!(text.contains("$var wire 1") && text.contains(" D1 $end"), "{text}");
 }

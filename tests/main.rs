@@ -8,6 +8,7 @@
     reason = "a test that fails says so by a panic"
 )]
 
+mod alarms;
 mod binary;
 mod box_pins;
 mod chinese;

@@ -39,17 +39,23 @@ fn every_table_has_the_keys_that_are_read() {
     let schema = schema();
     assert_eq!(keys(&schema), keys_read("zzz = 1"));
     assert_eq!(keys(&schema["properties"]["format"]), keys_read("[format]\nzzz = 1"));
-    for table in ["check", "translate"] {
+    for table in ["check", "monitor", "translate"] {
         assert_eq!(keys(&schema["properties"][table]), keys_read(&format!("[{table}]\nzzz = 1")));
         assert_eq!(schema["properties"][table]["additionalProperties"], Value::Bool(false));
     }
     let task = &schema["properties"]["task"]["items"];
     assert_eq!(keys(task), keys_read("[[task]]\nname = ''\nprograms = []\nzzz = 1"));
+    let alarm = &schema["properties"]["alarm"]["items"];
+    assert_eq!(keys(alarm), keys_read("[[alarm]]\nwhen = 'X0'\nmessage = ''\nzzz = 1"));
+    for required in words(&alarm["required"]) {
+        let rest = if required == "when" { "message = ''" } else { "when = 'X0'" };
+        assert!(refusal(&format!("[[alarm]]\n{rest}")).contains(required));
+    }
     for required in words(&task["required"]) {
         let rest = if required == "name" { "programs = []" } else { "name = ''" };
         assert!(refusal(&format!("[[task]]\n{rest}")).contains(required));
     }
-    for table in [&schema, &schema["properties"]["format"], &schema["properties"]["rules"], task] {
+    for table in [&schema, &schema["properties"]["format"], &schema["properties"]["rules"], task, alarm] {
         assert_eq!(table["additionalProperties"], Value::Bool(false));
     }
 }
@@ -94,6 +100,10 @@ fn every_word_of_the_schema_is_read_and_others_are_not() {
         ("/properties/dialect", "dialect = \"WORD\""),
         ("/properties/format/properties/style", "[format]\nstyle = \"WORD\""),
         ("/definitions/severity", "[rules]\nopen-circuit = \"WORD\""),
+        (
+            "/properties/alarm/items/properties/severity",
+            "[[alarm]]\nwhen = \"X0\"\nmessage = \"\"\nseverity = \"WORD\"",
+        ),
     ] {
         for word in words(&schema.pointer(key).unwrap()["enum"]) {
             assert!(Manifest::read(&manifest.replace("WORD", word)).is_ok(), "{key}: {word}");
@@ -113,6 +123,10 @@ fn every_word_of_the_schema_is_read_and_others_are_not() {
     let most = schema["properties"]["format"]["properties"]["width"]["maximum"].as_u64().unwrap();
     assert_eq!(most, u64::from(MOST_WIDTH));
     assert!(width(most) && !width(most + 1));
+    let record = |changes: u64| Manifest::read(&format!("[monitor]\nrecord = {changes}")).is_ok();
+    let kept = &schema["properties"]["monitor"]["properties"]["record"];
+    let [least, most] = ["minimum", "maximum"].map(|end| kept[end].as_u64().unwrap());
+    assert!(record(least) && record(most) && !record(least - 1) && !record(most + 1));
 }
 
 /// With the environment variable `UPDATE_EXPECT` set, the rules of the schema are written anew.

@@ -215,6 +215,11 @@ pub(super) fn folder_of(path: &Path) -> Option<PathBuf> {
     Project::folder_of(&path.canonicalize().ok()?)
 }
 
+/// The manifest of the project to which a file or a folder belongs; nothing after a complaint about its mistake.
+pub(super) fn usable_manifest(path: &Path, language: Language) -> Option<Arc<Manifest>> {
+    manifest_for(path, language).inspect_err(|unusable| unusable.complain(language)).ok()
+}
+
 fn manifest_for(path: &Path, language: Language) -> Result<Arc<Manifest>, Unusable> {
     match Project::of(&path.canonicalize().unwrap_or_else(|_| path.to_path_buf())) {
         Some(project) => usable(&project, language),

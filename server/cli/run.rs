@@ -8,7 +8,8 @@ use super::why;
 use crate::document::Document;
 use crate::scenario::picture;
 use crate::simulate::{
-    self, Code, Place, Reason, Session, Setting, Touch, Trace, TraceRow, Variable, compile,
+    self, AlarmChange, Alarms, Code, NamesOfCode, Place, Reason, Session, Setting, Touch, Trace, TraceRow,
+    Variable, compile,
 };
 use crate::text::{Diagnostic, Encoding, Language, Message, Severity, Span};
 use clap::ValueEnum;
@@ -109,7 +110,14 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     };
     let Some((touches, watched)) = named(arguments, &code, language) else { return Outcome::Unusable };
     let programs = cautioned(programs, language);
-    let mut simulation = Simulation { session: Session::new(code), trace: Trace::new(watched), touches };
+    let Some(alarms) = alarms_of(&programs, &code, language) else { return Outcome::Unusable };
+    let mut simulation = Simulation {
+        session: Session::new(code),
+        trace: Trace::new(watched),
+        touches,
+        alarms,
+        told: Vec::new(),
+    };
     let is_clean = simulation.run(arguments, &programs, language);
     let session = &simulation.session;
     let step = arguments.scan_time.max(1);
@@ -188,10 +196,25 @@ fn named(
     is_known.then_some((touches, watched))
 }
 
+/// The alarms of the project; nothing after a complaint about one that names what there is not.
+fn alarms_of(programs: &[Program], code: &Code, language: Language) -> Option<Alarms> {
+    let wanted = programs.first().map(|program| program.manifest.alarms()).unwrap_or_default();
+    let (alarms, refused) = Alarms::new(&wanted, &NamesOfCode { code, instruction: None });
+    let Some((alarm, reason)) = refused.into_iter().next() else { return Some(alarms) };
+    let reason =
+        Message::new("simulate.alarm-refused").with("when", alarm.when).with_messages("reason", vec![reason]);
+    let help = Message::new("cli.mend-manifest").render(language);
+    complain("manifest", &reason.render(language), &help, language);
+    None
+}
+
 struct Simulation {
     session: Session,
     trace: Trace,
     touches: Vec<(i64, Touch)>,
+    alarms: Alarms,
+    /// What was raised and what was gone, in its order.
+    told: Vec<AlarmChange>,
 }
 
 impl Simulation {
@@ -228,7 +251,9 @@ impl Simulation {
                     told.push((error.place, message));
                 }
             }
-            self.trace.note(self.session.machine());
+            let machine = self.session.machine();
+            self.trace.note(machine);
+            self.told.extend(self.alarms.look(now_ns, &|variable| machine.value(variable, 0)));
             // The program may ask for a scan that is longer.
             let least = self.session.machine().least_scan_ns();
             now_ns = now_ns.saturating_add(arguments.scan_time.max(least));
@@ -260,6 +285,14 @@ impl Simulation {
         match arguments.format {
             RunFormat::Json => {
                 let mut told = json_of(&self.trace, arguments.scan_time);
+                if !self.alarms.is_empty() {
+                    let alarms = self.told.iter().map(|change| {
+                        let mut json = change.json();
+                        json["time_ms"] = as_ms(change.time_ns);
+                        json
+                    });
+                    told["alarms"] = alarms.collect();
+                }
                 if !reasons.is_empty() {
                     let reasons = reasons.iter().map(|reason| why::json(reason, programs, language));
                     told["why"] = reasons.collect();
@@ -268,6 +301,7 @@ impl Simulation {
             }
             RunFormat::Text => {
                 say(&picture(&self.trace, &[], language));
+                self.told.iter().for_each(|change| say(&format!("{}\n", change.told().render(language))));
                 say(&why::text(reasons, programs, language));
             }
         }

@@ -1,8 +1,7 @@
 //! Where and when a program is to stop: breakpoints of lines, data breakpoints, their conditions and counts.
 
-use super::expression::{Expression, holds};
 use super::program::{Program, Stop};
-use crate::simulate::{Code, Glimpse, Machine, Place, Value, Variable};
+use crate::simulate::{Code, Expression, Glimpse, Machine, NamesOfCode, Place, Value, Variable};
 use crate::text::Message;
 use rustc_hash::FxHashMap;
 use serde::Deserialize;
@@ -316,17 +315,16 @@ impl Watchpoint {
 
 impl Terms {
     fn of(wanted: &Wanted, code: &Code, instruction: Option<u32>) -> Result<Terms, Message> {
+        let names = NamesOfCode { code, instruction };
         let given = |text: &Option<String>| text.clone().filter(|text| !text.trim().is_empty());
-        let condition =
-            given(&wanted.condition).map(|text| Expression::read(&text, code, instruction)).transpose()?;
+        let condition = given(&wanted.condition).map(|text| Expression::read(&text, &names)).transpose()?;
         let count = given(&wanted.hit_condition).map(|text| Count::read(&text)).transpose()?;
         let log = given(&wanted.log_message).map(|text| pieces(&text, code, instruction)).transpose()?;
         Ok(Terms { condition, count, log })
     }
 
     fn holds(&self, of: &impl Fn(Variable) -> Value) -> bool {
-        let holds = |condition: &Expression| condition.value(of).is_ok_and(|value| holds(&value));
-        self.condition.as_ref().is_none_or(holds)
+        self.condition.as_ref().is_none_or(|condition| condition.holds(of))
     }
 
     /// Whether it stops here but for its count.
@@ -391,7 +389,7 @@ fn pieces(text: &str, code: &Code, instruction: Option<u32>) -> Result<Vec<Piece
         pieces.push(Piece::Text(before.to_string()));
         let (inside, after) =
             behind.split_once('}').ok_or_else(|| Message::new("debug.expression").with("text", text))?;
-        pieces.push(Piece::Value(Expression::read(inside, code, instruction)?));
+        pieces.push(Piece::Value(Expression::read(inside, &NamesOfCode { code, instruction })?));
         rest = after;
     }
     pieces.push(Piece::Text(rest.to_string()));

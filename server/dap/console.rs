@@ -5,12 +5,11 @@
 //! ```
 
 use super::adapter::{Adapter, Answer, THREAD};
-use super::expression::Expression;
 use super::going::Going;
 use super::launch::Debugged;
 use super::variables::value_of;
 use crate::document::Document;
-use crate::simulate::{Drivers, Inquiry, Touch, Value, duration};
+use crate::simulate::{Drivers, Expression, Inquiry, NamesOfCode, Touch, Value, duration};
 use crate::text::Message;
 use serde_json::{Value as Json, json};
 use std::io::Write;
@@ -168,7 +167,8 @@ fn later(scan: u64, count: i64) -> u64 {
 impl Debugged {
     /// The value of an expression here.
     fn value_of(&self, text: &str, frame: i64) -> Result<Value, Message> {
-        let expression = Expression::read(text, self.debuggee.code(), self.instruction(frame))?;
+        let names = NamesOfCode { code: self.debuggee.code(), instruction: self.instruction(frame) };
+        let expression = Expression::read(text, &names)?;
         let machine = self.debuggee.machine();
         expression.value(&|variable| match self.debuggee.here() {
             Some(_) => machine.value_inside(variable, 0),

@@ -22,8 +22,6 @@ mod console;
 
 mod debuggee;
 
-mod expression;
-
 mod going;
 
 mod launch;

@@ -4,12 +4,15 @@ mod identity;
 pub use identity::Identity;
 
 mod point;
-pub use point::Point;
+pub use point::{NamesOfPlc, Point};
 
 mod devices;
 
 mod watch;
 pub use watch::Watch;
+
+mod holds;
+pub use holds::Holds;
 
 mod control;
 

@@ -26,7 +26,11 @@ pub use mode::{Mode, Switch};
 
 mod host;
 pub use host::{
-    DownloadFailure, Fate, Host, Identity, Plan, Point, Progress, Report, Stage, Status, StatusError, Watch,
+    DownloadFailure, Fate, Holds, Host, Identity, NamesOfPlc, Plan, Point, Progress, Report, Stage, Status,
+    StatusError, Watch,
 };
+
+mod logbook;
+pub use logbook::{Logbook, USUAL_CHANGES};
 
 pub mod plc;

@@ -48,6 +48,11 @@ pub(super) const COMMANDS: &[&str] = &[
     "rungwise.plc.unmonitor",
     "rungwise.plc.write",
     "rungwise.plc.force",
+    "rungwise.plc.hold",
+    "rungwise.plc.release",
+    "rungwise.plc.panel",
+    "rungwise.plc.trace",
+    "rungwise.plc.export",
 ];
 
 /// Applies the `WorkspaceEdit` that is its argument: what a code action does where clients know commands alone.

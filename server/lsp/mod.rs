@@ -6,6 +6,7 @@
 
 mod abilities;
 mod across;
+mod alarms;
 mod answering;
 mod backend;
 mod capabilities;

@@ -19,6 +19,12 @@
 //! rungwise.plc.unmonitor    { }
 //! rungwise.plc.write        { name, value }              // "D0", 5; "T0", 0; "M5", true
 //! rungwise.plc.force        { name, value }              // of a relay alone
+//! rungwise.plc.hold         { name, value }              // while a program is monitored
+//! rungwise.plc.release      { name? }                    // one, or all
+//! rungwise.plc.panel        { names?: string[] }         → { rows, … }   // of the program that is monitored
+//! rungwise.plc.trace        { names, from?: ms, to?: ms, most?: points = 2000 }
+//!                                                        → { from, to, branch, signals }
+//! rungwise.plc.export       { format: "vcd" | "csv", names?: string[] }  → { from, to, text }
 //! ```
 //!
 //! `before` and `after` are the instruction lists of what is in the PLC and of what shall be. Whoever does not send
@@ -29,8 +35,18 @@
 //! ```text
 //! { connected: boolean, port?, model?, version?, mode?: "RUN" | "STOP", capacity?, sum?, scan_time_ms?,
 //!   errors?: { register, code }[], monitoring?: uri, match?: "same" | "different" | "unknown", drift?: Range[],
-//!   reason? }                 // why the line is gone
+//!   held?: { device, value }[], reason? }                 // why the line is gone
 //! ```
+//!
+//! The protocol has no hold: what is held is written again with each look that finds something else, and the program
+//! may write in between. All is let go, and the person told, when nothing is monitored any more, before a download,
+//! when the PLC is stopped, and when the line is gone; the PLC keeps the values that were written last. `held` of the
+//! state says what is held.
+//!
+//! `panel`, `trace` and `export` are as those of `rungwise.simulate.…`, with milliseconds from the first look on in the
+//! place of scans. What was looked at is recorded, as many changes as `record` under `[monitor]` in `rungwise.toml`
+//! says, until something is monitored again, also if the line is gone; what is asked for by `trace` is read from then
+//! on. `branch` is another number when a recording began anew.
 //!
 //! `drift` are the instructions of `uri` that are not so in the PLC, as far as that is known: from the last upload,
 //! download or comparison. While a program is monitored, `rungwise/monitor` comes as in a simulation, with
@@ -40,13 +56,16 @@ mod desk;
 
 mod drift;
 
+mod recording;
+
 mod watching;
 
 use super::answering::{refused, snapshot, wrong_argument};
 use super::workspace::Workspace;
 use crate::link::transport::ports;
 use crate::text::Message;
-use desk::{Desk, Order};
+use desk::{Desk, Order, Way};
+use recording::SharedRecording;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -71,6 +90,10 @@ struct Asked {
     value: Option<Value>,
     ranges: Option<Vec<Range>>,
     names: Option<Vec<String>>,
+    from: Option<u64>,
+    to: Option<u64>,
+    most: Option<usize>,
+    format: Option<String>,
 }
 
 /// How long an answer may take to begin if nobody says otherwise.
@@ -78,7 +101,10 @@ const PATIENCE_MS: u64 = 1_000;
 
 /// The PLC that is connected, if any.
 #[derive(Default)]
-pub(super) struct Plcs(Mutex<Option<Desk>>);
+pub(super) struct Plcs {
+    desk: Mutex<Option<Desk>>,
+    recording: SharedRecording,
+}
 
 impl Plcs {
     /// Answers a command; `token` is where the client shows how far it is.
@@ -100,6 +126,12 @@ impl Plcs {
                 ports.iter().map(|port| json!({ "name": port.name, "description": port.description }));
             return Ok(Some(json!({ "ports": ports.collect::<Vec<_>>() })));
         }
+        // The thread that has the line is not asked for what it has seen.
+        match verb {
+            "trace" => return Ok(Some(self.recording.trace(&asked))),
+            "export" => return self.recording.export(&asked).map(Some).map_err(refused),
+            _ => {}
+        }
         let desk = self.desk(verb, workspace);
         let Some(desk) = desk else {
             return match verb {
@@ -115,17 +147,17 @@ impl Plcs {
         }
         let answer = desk.ask(order, token).await;
         if verb == "disconnect" || !desk.is_alive() {
-            self.0.lock().unwrap_or_else(PoisonError::into_inner).take_if(|own| !own.is_alive());
+            self.desk.lock().unwrap_or_else(PoisonError::into_inner).take_if(|own| !own.is_alive());
         }
         answer.map(Some).map_err(refused)
     }
 
     /// The desk that orders go to; a new one for who connects.
     fn desk(&self, verb: &str, workspace: &Arc<Workspace>) -> Option<Desk> {
-        let mut desk = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut desk = self.desk.lock().unwrap_or_else(PoisonError::into_inner);
         desk.take_if(|own| !own.is_alive());
         if verb == "connect" && desk.is_none() {
-            *desk = Some(Desk::new(workspace));
+            *desk = Some(Desk::new(workspace, &self.recording));
         }
         desk.clone()
     }
@@ -134,10 +166,10 @@ impl Plcs {
 fn order(command: &str, verb: &str, asked: &Asked) -> std::result::Result<Order, Message> {
     let missing = |member: &str| wrong_argument(command, member);
     let uri = || asked.uri.clone().ok_or_else(|| missing("uri"));
-    let set = |is_force| {
+    let set = |way| {
         let name = asked.name.clone().ok_or_else(|| missing("name"))?;
         let value = asked.value.clone().ok_or_else(|| missing("value"))?;
-        Ok(Order::Write { name, value, is_force })
+        Ok(Order::Write { name, value, way })
     };
     Ok(match verb {
         "connect" => {
@@ -153,8 +185,11 @@ fn order(command: &str, verb: &str, asked: &Asked) -> std::result::Result<Order,
         "stop" => Order::Stop,
         "monitor" => Order::Monitor { uri: uri()?, ranges: asked.ranges.clone(), names: asked.names.clone() },
         "unmonitor" => Order::Unmonitor,
-        "write" => set(false)?,
-        "force" => set(true)?,
+        "write" => set(Way::Write)?,
+        "force" => set(Way::Force)?,
+        "hold" => set(Way::Hold)?,
+        "release" => Order::Release { name: asked.name.clone() },
+        "panel" => Order::Panel { more: asked.names.clone().unwrap_or_default() },
         _ => Order::State { uri: asked.uri.clone() },
     })
 }

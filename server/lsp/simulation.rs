@@ -17,7 +17,7 @@
 //! rungwise.simulate.release   { name? }                           // one, or all
 //! rungwise.simulate.watch     { ranges?: Range[], names?: string[] }   // what the client shows
 //! rungwise.simulate.state     { names?: string[] }
-//! rungwise.simulate.panel     { }
+//! rungwise.simulate.panel     { names?: string[] }                // more than the program uses
 //! rungwise.simulate.trace     { names: string[], from?: scan, to?: scan, most?: points = 2000 }
 //! rungwise.simulate.export    { format: "vcd" | "csv", names?: string[], from?: scan, to?: scan }
 //! rungwise.simulate.record    { names?: string[] }                // what was done so far as a scenario test
@@ -107,6 +107,7 @@ use super::workspace::Workspace;
 use crate::text::Message;
 use chart::Wanted;
 pub(super) use monitor::{Monitor, MonitorMethod, Picture};
+pub(super) use panel::rows as panel_rows;
 use runner::{About, Deed, Order, Question, Runner};
 pub(super) use runner::{compiled, files_around};
 use rustc_hash::FxHashMap;
@@ -230,7 +231,7 @@ fn order(command: &str, asked: Asked) -> std::result::Result<Order, Message> {
             })
         }
         "watch" => Order::Ask(Question::Watch { ranges: asked.ranges, names: asked.names }),
-        "panel" => Order::Ask(Question::Panel),
+        "panel" => Order::Ask(Question::Panel { more: asked.names.unwrap_or_default() }),
         "trace" => Order::Ask(Question::Trace { wanted }),
         "export" => {
             Order::Ask(Question::Export { wanted, format: asked.format.ok_or_else(|| missing("format"))? })

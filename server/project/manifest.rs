@@ -2,11 +2,13 @@
 
 use crate::check::Severities;
 use crate::document::{Notation, exclusive_names};
+use crate::simulate::{Alarm, duration};
 use crate::target::Target;
 use crate::text::{Message, Severity, Span};
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
+use toml::Spanned;
 use toml::de::DeTable;
 
 /// A project's settings. Every one has a default, so an empty manifest is one.
@@ -36,6 +38,64 @@ pub struct Manifest {
     pub tasks: Vec<TaskSettings>,
     /// The serial port of the PLC.
     pub port: Option<String>,
+    /// What is kept while a program is watched in a PLC.
+    pub monitor: MonitorSettings,
+    /// What people are told of while the program is watched in a PLC, or runs in the simulator.
+    #[serde(rename = "alarm")]
+    pub alarms: Vec<AlarmSettings>,
+}
+
+/// What is kept while a program is watched in a PLC.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MonitorSettings {
+    /// So many changes of values, the latest.
+    pub record: Option<usize>,
+}
+
+/// An alarm.
+#[derive(Clone, PartialEq, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AlarmSettings {
+    /// The condition, as `D10 > 100 and not X3`.
+    pub when: Spanned<String>,
+    /// What people are told.
+    pub message: String,
+    /// How long the condition must have held: `2s`.
+    #[serde(rename = "for")]
+    pub hold: Option<Spanned<String>>,
+    /// How bad that is.
+    #[serde(default)]
+    pub severity: AlarmSeverity,
+}
+
+/// How bad it is that an alarm is raised.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum AlarmSeverity {
+    /// Somebody must do something.
+    Error,
+    /// Somebody should look.
+    #[default]
+    Warning,
+    /// Somebody may want to know.
+    Hint,
+}
+
+impl AlarmSettings {
+    /// The alarm; one whose time cannot be read counts at once.
+    fn alarm(&self) -> Alarm {
+        Alarm {
+            when: self.when.get_ref().clone(),
+            message: self.message.clone(),
+            hold_ns: self.hold.as_ref().and_then(|time| duration(time.get_ref())).unwrap_or(0),
+            severity: match self.severity {
+                AlarmSeverity::Error => Severity::Error,
+                AlarmSeverity::Warning => Severity::Warning,
+                AlarmSeverity::Hint => Severity::Hint,
+            },
+        }
+    }
 }
 
 /// What the checker is to prove of the programs.
@@ -57,6 +117,9 @@ pub struct TranslateSettings {
 
 /// Nobody reads wider ladder; a width beyond it is a slip of the finger that would fill the memory.
 pub const MOST_WIDTH: u32 = 1000;
+
+/// Changes of values that a recording may keep; each takes some forty bytes of memory.
+pub const RECORD: RangeInclusive<usize> = 100..=10_000_000;
 
 /// What the formatter writes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Deserialize)]
@@ -166,6 +229,11 @@ impl Manifest {
         self.dialect.as_deref().and_then(dialect_named)
     }
 
+    /// The alarms.
+    pub fn alarms(&self) -> Vec<Alarm> {
+        self.alarms.iter().map(AlarmSettings::alarm).collect()
+    }
+
     /// The rules' severities.
     pub fn severities(&self) -> Severities {
         let pairs = self.rules.iter().filter_map(|(code, word)| Some((code.clone(), severity_named(word)?)));
@@ -192,6 +260,9 @@ impl Manifest {
             let width = self.format.width.to_string();
             return fail("manifest.width", &width, Part::Value, &["format", "width"]);
         }
+        if let Some(record) = self.monitor.record.filter(|record| !RECORD.contains(record)) {
+            return fail("manifest.record", &record.to_string(), Part::Value, &["monitor", "record"]);
+        }
         if let Some(word) = self.dialect.as_deref().filter(|word| dialect_named(word).is_none()) {
             return fail("manifest.dialect", word, Part::Value, &["dialect"]);
         }
@@ -199,6 +270,15 @@ impl Manifest {
             if let Err((message, within)) = exclusion(line) {
                 let start = item(text, &["check", "never"], number).start as usize;
                 return Err(ManifestError { message, span: within.shifted(start) });
+            }
+        }
+        for alarm in &self.alarms {
+            let fail = |message, span| Err(ManifestError { message, span: within_quotes(text, span) });
+            if let Some(time) = alarm.hold.as_ref().filter(|time| duration(time.get_ref()).is_none()) {
+                return fail(Message::new("debug.time").with("text", time.get_ref()), time.span());
+            }
+            if let Err(reason) = alarm.alarm().check(self.target()) {
+                return fail(reason, alarm.when.span());
             }
         }
         for (code, word) in &self.rules {

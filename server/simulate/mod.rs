@@ -90,8 +90,14 @@ pub use trace::{Row as TraceRow, Trace, milliseconds};
 mod duration;
 pub use duration::duration;
 
+mod expression;
+pub use expression::{Expression, Names, NamesOfCode};
+
+mod alarm;
+pub use alarm::{Alarm, AlarmChange, Alarms};
+
 mod recorder;
-pub use recorder::{Change, Recorder, Signal, is_affordable};
+pub use recorder::{Change, Recorder, Signal, is_affordable, thinned};
 
 mod presets;
 pub use presets::{Counted, CountedPreset};

@@ -210,27 +210,33 @@ impl Signal {
         self.changes.extend(late);
     }
 
-    /// The value at `first`, or the earliest one if that is later, and the changes up to `last`, `most` or a few more
-    /// of them: of more changes the first, the least, the greatest and the last in each of equal spans of time.
+    /// The value at `first`, or the earliest one if that is later, and the changes up to `last`, see [`thinned`].
     pub fn changes(&self, first: u64, last: u64, most: usize) -> Vec<Change> {
-        let behind = self.changes.partition_point(|(scan, _)| *scan <= first);
-        let end = self.changes.partition_point(|(scan, _)| *scan <= last);
-        let begin = behind.saturating_sub(1);
-        let Some(shown) = self.changes.get(begin..end).filter(|shown| !shown.is_empty()) else {
-            return Vec::new();
-        };
-        let mut kept: Vec<Change> = if shown.len() <= most {
-            shown.to_vec()
-        } else {
-            let span = (last - first) / (most as u64 / 4).max(1) + 1;
-            let same = |one: &Change, other: &Change| {
-                one.0.saturating_sub(first) / span == other.0.saturating_sub(first) / span
-            };
-            shown.chunk_by(same).flat_map(extremes).collect()
-        };
-        kept[0].0 = kept[0].0.max(first);
-        kept
+        thinned(&self.changes, first, last, most)
     }
+}
+
+/// Of changes in the order of their times the value at `first`, or the earliest one if that is later, and what comes up
+/// to `last`, `most` or a few more of them: of more changes the first, the least, the greatest and the last in each of
+/// equal spans of time.
+pub fn thinned(changes: &[Change], first: u64, last: u64, most: usize) -> Vec<Change> {
+    let behind = changes.partition_point(|(scan, _)| *scan <= first);
+    let end = changes.partition_point(|(scan, _)| *scan <= last);
+    let begin = behind.saturating_sub(1);
+    let Some(shown) = changes.get(begin..end).filter(|shown| !shown.is_empty()) else {
+        return Vec::new();
+    };
+    let mut kept: Vec<Change> = if shown.len() <= most {
+        shown.to_vec()
+    } else {
+        let span = (last - first) / (most as u64 / 4).max(1) + 1;
+        let same = |one: &Change, other: &Change| {
+            one.0.saturating_sub(first) / span == other.0.saturating_sub(first) / span
+        };
+        shown.chunk_by(same).flat_map(extremes).collect()
+    };
+    kept[0].0 = kept[0].0.max(first);
+    kept
 }
 
 /// The first, the least, the greatest and the last of some changes, in their order.

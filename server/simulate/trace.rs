@@ -16,6 +16,10 @@ pub struct Trace {
     variables: Vec<Variable>,
     /// The row of the last scan, if nothing changed in it.
     last: Option<Row>,
+    /// The first row in which each name has a value; all have one from the first row on where this is empty.
+    known_from: Vec<usize>,
+    /// No more rows than about these are kept, the latest, if there is a limit.
+    most: Option<usize>,
 }
 
 /// The values after a scan.
@@ -41,14 +45,19 @@ impl Trace {
         Trace { names, ..Trace::default() }
     }
 
+    /// The same with no more than about `most` rows, the latest.
+    pub fn bounded(names: Vec<String>, most: usize) -> Trace {
+        Trace { names, most: Some(most.max(1)), ..Trace::default() }
+    }
+
     /// Notes what the variables are after a scan.
     pub fn note(&mut self, machine: &Machine<u8>) {
         let values = self.variables.iter().map(|variable| machine.value(*variable, 0)).collect();
         self.push(Row { scan: machine.scans().saturating_sub(1), time_ns: machine.now_ns(), values });
     }
 
-    /// Notes values that come from elsewhere, in the order of the names.
-    pub fn push(&mut self, row: Row) {
+    /// Notes values that come from elsewhere, in the order of the names; whether they are others than before.
+    pub fn push(&mut self, row: Row) -> bool {
         let is_news = self.rows.last().is_none_or(|before| before.values != row.values);
         match is_news {
             true => {
@@ -57,6 +66,33 @@ impl Trace {
             }
             false => self.last = Some(row),
         }
+        // Many go at once, so that each costs little.
+        if let Some(most) = self.most.filter(|most| self.rows.len() > most + most / 4) {
+            self.rows.drain(..self.rows.len() - most);
+        }
+        is_news
+    }
+
+    /// Notes values of which some are not known yet; once one is, it stays so.
+    pub fn push_known(&mut self, scan: u64, time_ns: i64, values: Vec<Option<Value>>) {
+        let row = self.rows.len();
+        self.known_from.resize(self.names.len(), row + 1);
+        for (known_from, value) in self.known_from.iter_mut().zip(&values) {
+            // What was not known before this row may be from the next one on.
+            *known_from = match value {
+                Some(_) => (*known_from).min(row),
+                None => row + 1,
+            };
+        }
+        // Like no value, so that the first one is news.
+        let unknown = || Value::Name("?".into());
+        let values = values.into_iter().map(|value| value.unwrap_or_else(unknown)).collect();
+        self.push(Row { scan, time_ns, values });
+    }
+
+    /// Whether a name has a value in a row.
+    fn is_known(&self, name: usize, row: usize) -> bool {
+        self.known_from.get(name).is_none_or(|known_from| *known_from <= row)
     }
 
     /// Ends it: the last scan has a row.
@@ -68,9 +104,13 @@ impl Trace {
     pub fn csv(&self) -> String {
         let heads = ["scan", "time_ms"].map(String::from).into_iter();
         let mut text = csv_line(heads.chain(self.names.iter().cloned()));
-        for row in &self.rows {
+        for (at, row) in self.rows.iter().enumerate() {
             let head = [row.scan.to_string(), milliseconds(row.time_ns)];
-            text += &csv_line(head.into_iter().chain(row.values.iter().map(Value::to_string)));
+            let value = |(name, value): (usize, &Value)| match self.is_known(name, at) {
+                true => value.to_string(),
+                false => String::new(),
+            };
+            text += &csv_line(head.into_iter().chain(row.values.iter().enumerate().map(value)));
         }
         text
     }
@@ -83,8 +123,10 @@ impl Trace {
         writer.add_module("plc")?;
         let mut codes = Vec::new();
         for (number, name) in self.names.iter().enumerate() {
-            let bits = self.rows.iter().map(|row| width(&row.values[number])).max().unwrap_or(1);
-            let first = self.rows.first().map(|row| &row.values[number]);
+            let known_from = self.known_from.get(number).copied().unwrap_or(0);
+            let known = self.rows.get(known_from..).unwrap_or_default();
+            let bits = known.iter().map(|row| width(&row.values[number])).max().unwrap_or(1);
+            let first = known.first().map(|row| &row.values[number]);
             let kind = match first {
                 Some(Value::Bit(_)) | None => VarType::Wire,
                 Some(Value::Number(_) | Value::Unsigned(_)) => VarType::Integer,
@@ -99,11 +141,14 @@ impl Trace {
         writer.upscope()?;
         writer.enddefinitions()?;
         let mut before: Option<&Row> = None;
-        for row in &self.rows {
+        for (at, row) in self.rows.iter().enumerate() {
             writer.timestamp(row.time_ns.unsigned_abs())?;
             for (number, (code, bits)) in codes.iter().enumerate() {
                 let value = &row.values[number];
-                if before.is_some_and(|before| before.values[number] == *value) {
+                let is_first = at > 0 && !self.is_known(number, at - 1);
+                let is_same = before.is_some_and(|before| before.values[number] == *value) && !is_first;
+                // A viewer shows nothing, or that it is not known, before the first value.
+                if is_same || !self.is_known(number, at) {
                     continue;
                 }
                 let vector = |value: u64| {

@@ -161,6 +161,15 @@ impl Value {
         }
     }
 
+    /// What it means beside a device of the FX family; nothing for a name, for they have no values with names.
+    pub fn of_device(&self) -> Option<Value> {
+        match self {
+            Value::Word(_, meant) => Some((**meant).clone()),
+            Value::Name(_) => None,
+            value => Some(value.clone()),
+        }
+    }
+
     /// As programs that read results want it. JSON has no number for what is infinite or no number at all: that is a
     /// text, `"Infinity"`, `"-Infinity"` or `"NaN"`.
     pub fn json(&self) -> Json {

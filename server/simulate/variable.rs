@@ -5,9 +5,9 @@ use super::iec::{self, HandedOver, Leaf, UnitVariables, joined};
 use super::machine::Machine;
 use super::row::Cell;
 use super::session::Touch;
-use super::{Lanes, Lies, Slot, Spot, Value};
+use super::{Lanes, Layout, Lies, Slot, Spot, Value};
 use crate::target::iec::{Datum, ElementaryType};
-use crate::target::{Device, DeviceKind, Operand};
+use crate::target::{Device, DeviceKind, Operand, Target};
 use crate::text::Message;
 use std::ops::RangeInclusive;
 
@@ -39,27 +39,7 @@ impl Code {
         if !self.target.is_fx() {
             return self.iec.find(name).map(Variable::of_leaf);
         }
-        if let Some(register) = name.strip_suffix(":32") {
-            let device = self.device(register).filter(|device| has_pairs(device.kind))?;
-            let behind = Device::new(device.kind, device.number + 1);
-            let is_pair = device.is_special() == behind.is_special();
-            let pair = Variable::Pair(self.layout.slot(device)?, self.layout.slot(behind)?);
-            return is_pair.then_some(pair);
-        }
-        if let Some(device) = self.device(name) {
-            let word = self.layout.slot(device).map(Variable::Word);
-            return word.or_else(|| self.layout.cell(device).map(Variable::Relay));
-        }
-        let mut letters = name.chars();
-        let kind = DeviceKind::of_letter(letters.next()?).filter(|kind| kind.has_preset())?;
-        let part = letters.next()?.to_ascii_uppercase();
-        let device = self.device(&format!("{}{}", kind.letter(), letters.as_str()))?;
-        match part {
-            'S' => self.layout.cell(device).map(Variable::Relay),
-            'C' => self.layout.coil(device).map(Variable::Relay),
-            'N' => self.layout.slot(device).map(Variable::Word),
-            _ => None,
-        }
+        self.layout.variable(name, self.target)
     }
 
     /// The variable that a name means inside of an IEC 61131-3 program unit, which has no name for what stands outside
@@ -132,10 +112,35 @@ impl Code {
     pub fn variables_by_unit(&self) -> Vec<UnitVariables> {
         self.iec.names().by_unit()
     }
+}
 
-    fn device(&self, name: &str) -> Option<Device> {
-        match Operand::read(name, self.target.model) {
-            Operand::Device(device) if self.layout.has(device) => Some(device),
+impl Layout {
+    /// What is called `name` in a PLC of the FX family, as [`Code::variable`] says.
+    pub fn variable(&self, name: &str, target: &Target) -> Option<Variable> {
+        let name = name.trim();
+        let device = |name: &str| match Operand::read(name, target.model) {
+            Operand::Device(device) if self.has(device) => Some(device),
+            _ => None,
+        };
+        if let Some(register) = name.strip_suffix(":32") {
+            let device = device(register).filter(|device| has_pairs(device.kind))?;
+            let behind = Device::new(device.kind, device.number + 1);
+            let is_pair = device.is_special() == behind.is_special();
+            let pair = Variable::Pair(self.slot(device)?, self.slot(behind)?);
+            return is_pair.then_some(pair);
+        }
+        if let Some(device) = device(name) {
+            let word = self.slot(device).map(Variable::Word);
+            return word.or_else(|| self.cell(device).map(Variable::Relay));
+        }
+        let mut letters = name.chars();
+        let kind = DeviceKind::of_letter(letters.next()?).filter(|kind| kind.has_preset())?;
+        let part = letters.next()?.to_ascii_uppercase();
+        let device = device(&format!("{}{}", kind.letter(), letters.as_str()))?;
+        match part {
+            'S' => self.cell(device).map(Variable::Relay),
+            'C' => self.coil(device).map(Variable::Relay),
+            'N' => self.slot(device).map(Variable::Word),
             _ => None,
         }
     }

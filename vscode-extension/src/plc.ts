@@ -39,12 +39,64 @@ export function parseState(params: unknown): PlcState {
   return { ...given, connected: true, errors, drift, ...(given.scan_time_ms === undefined ? {} : { scanTimeMs: given.scan_time_ms }) };
 }
 
+/** The notification of the server about an alarm. */
+export const ALARM = 'rungwise/alarm';
+
+/** An alarm that was raised, as the server tells of it. */
+export interface Alarm {
+  readonly uri: string;
+  readonly source: 'plc' | 'simulator';
+  readonly when: string;
+  readonly message: string;
+  readonly severity: 'error' | 'warning' | 'hint';
+  /** When it was raised, and when it was gone: milliseconds since 1970. */
+  readonly raisedAt: number;
+  readonly goneAt?: number;
+}
+
+/** So many alarms are kept, the newest first. */
+const MOST_ALARMS = 50;
+
+/** The alarms with what the server tells of one; what is no such notification changes nothing. */
+export function noteAlarm(alarms: readonly Alarm[], params: unknown): readonly Alarm[] {
+  const given = (params ?? {}) as Partial<Alarm> & { readonly raised?: boolean; readonly at_ms?: number };
+  const { uri, source, when, message, severity, raised, at_ms: at } = given;
+  const isAlarm = typeof uri === 'string' && typeof when === 'string' && typeof message === 'string' && typeof at === 'number';
+  if (!isAlarm || (source !== 'plc' && source !== 'simulator') || severity === undefined) {
+    return alarms;
+  }
+  const isSame = (alarm: Alarm) => alarm.uri === uri && alarm.source === source && alarm.when === when && alarm.goneAt === undefined;
+  if (raised === true) {
+    const others = alarms.filter((alarm) => !isSame(alarm));
+    return [{ uri, source, when, message, severity, raisedAt: at }, ...others].slice(0, MOST_ALARMS);
+  }
+  return alarms.map((alarm) => (isSame(alarm) ? { ...alarm, goneAt: at } : alarm));
+}
+
+/** Those that are raised now. */
+export function raised(alarms: readonly Alarm[]): readonly Alarm[] {
+  return alarms.filter(({ goneAt }) => goneAt === undefined);
+}
+
+const BELLS = { error: 'error', warning: 'warning', hint: 'info' } as const;
+
+/** The rows of the view about alarms; `clock` says a time as people read it. */
+export function alarmRows(alarms: readonly Alarm[], clock: (at: number) => string): PlcRow[] {
+  return alarms.map(({ source, when, message, severity, raisedAt, goneAt }) => {
+    const span = goneAt === undefined ? t('since {0}', clock(raisedAt)) : `${clock(raisedAt)} – ${clock(goneAt)}`;
+    const description = source === 'plc' ? span : `${span} · ${t('simulation')}`;
+    const icon = goneAt === undefined ? BELLS[severity] : 'pass';
+    return { id: `alarm ${source} ${when} ${raisedAt}`, label: message, description, icon, tooltip: when };
+  });
+}
+
 /** A row of the view. */
 export interface PlcRow {
   readonly id: string;
   readonly label: string;
   readonly description: string;
   readonly icon: string;
+  readonly tooltip?: string;
 }
 
 /** What the view shows of a PLC; nothing while none is connected. */

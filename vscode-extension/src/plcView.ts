@@ -1,7 +1,7 @@
 /** The view "PLC", and the commands for a PLC on a line. Nothing is said to a PLC but what a command asks for. */
 
 import * as vscode from 'vscode';
-import { NO_PLC, parseState, plc, PLC_STATE, rowsOf, statusText, type PlcRow, type PlcState } from './plc';
+import { ALARM, alarmRows, NO_PLC, noteAlarm, parseState, plc, PLC_STATE, raised, rowsOf, statusText, type Alarm, type PlcRow, type PlcState } from './plc';
 import type { ServerController } from './server';
 import type { SimulationView } from './simulationView';
 import type { PlainRange } from './structuralEdits';
@@ -37,7 +37,9 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
     overviewRulerColor: new vscode.ThemeColor('editorOverviewRuler.modifiedForeground'),
   });
   private readonly subscriptions: vscode.Disposable[];
+  private readonly view = vscode.window.createTreeView(VIEW, { treeDataProvider: this });
   private state: PlcState = NO_PLC;
+  private alarms: readonly Alarm[] = [];
   private lists = { before: '', after: '' };
   private timer: ReturnType<typeof setTimeout> | undefined;
 
@@ -54,7 +56,7 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
       this.documents,
       this.status,
       this.drifted,
-      vscode.window.createTreeView(VIEW, { treeDataProvider: this }),
+      this.view,
       vscode.workspace.registerTextDocumentContentProvider(SCHEME, this),
       register('rungwise.controller.connect', () => this.connect()),
       register('rungwise.controller.disconnect', () => this.tell('disconnect')),
@@ -65,8 +67,11 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
       register('rungwise.controller.stop', () => this.tell('stop')),
       register('rungwise.controller.monitor', () => this.monitor()),
       register('rungwise.controller.write', () => this.write()),
+      register('rungwise.controller.devices', () => this.showDevices()),
+      vscode.commands.registerCommand('rungwise.controller.clearAlarms', () => this.showAlarms(raised(this.alarms))),
       server.onNotification(PLC_STATE, (params) => this.take(params)),
-      server.onDidStart(() => this.take(undefined)),
+      server.onNotification(ALARM, (params) => this.showAlarms(noteAlarm(this.alarms, params))),
+      server.onDidStart(() => this.forget()),
       vscode.workspace.onDidChangeTextDocument(({ document }) => LANGUAGES.includes(document.languageId) && this.compareSoon()),
       vscode.window.onDidChangeActiveTextEditor(() => this.compareSoon()),
     ];
@@ -78,13 +83,14 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
     vscode.Disposable.from(...this.subscriptions).dispose();
   }
 
-  getTreeItem({ id, label, description, icon }: PlcRow): vscode.TreeItem {
+  getTreeItem({ id, label, description, icon, tooltip }: PlcRow): vscode.TreeItem {
     const item = new vscode.TreeItem(label);
-    return Object.assign(item, { id, description, iconPath: new vscode.ThemeIcon(icon), contextValue: id });
+    return Object.assign(item, { id, description, iconPath: new vscode.ThemeIcon(icon), contextValue: id, ...(tooltip !== undefined && { tooltip }) });
   }
 
   getChildren(row?: PlcRow): PlcRow[] {
-    return row === undefined ? rowsOf(this.state) : [];
+    const clock = (at: number) => new Date(at).toLocaleTimeString(vscode.env.language);
+    return row === undefined ? [...rowsOf(this.state), ...alarmRows(this.alarms, clock)] : [];
   }
 
   provideTextDocumentContent(uri: vscode.Uri): string {
@@ -206,6 +212,15 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
     }
   }
 
+  /** The table of the program's devices with what they are in the PLC, which is monitored for it. */
+  private async showDevices(): Promise<void> {
+    const program = this.program();
+    if (this.state.monitoring !== this.server.protocolUri(program)) {
+      await this.simulation.followPlc(program);
+    }
+    await vscode.commands.executeCommand('rungwise.simulation.panel', program);
+  }
+
   private async write(): Promise<void> {
     const value = t('DEVICE=VALUE: X0=1, D0=25, D2:32=100000');
     const setting = await vscode.window.showInputBox({ title: t('Write into the PLC'), prompt: value });
@@ -213,6 +228,20 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
     if (name !== undefined && word !== undefined) {
       await this.tell('write', { name: name.trim(), value: word.trim() });
     }
+  }
+
+  /** A server that was started anew knows no PLC and no alarm. */
+  private forget(): void {
+    this.take(undefined);
+    this.showAlarms([]);
+  }
+
+  private showAlarms(alarms: readonly Alarm[]): void {
+    this.alarms = alarms;
+    const count = raised(alarms).length;
+    this.view.badge = count === 0 ? undefined : { value: count, tooltip: t('{0} alarms', count) };
+    void vscode.commands.executeCommand('setContext', 'rungwise.plc.alarms', alarms.length > 0);
+    this.changes.fire();
   }
 
   private take(params: unknown): void {

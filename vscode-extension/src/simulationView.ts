@@ -123,7 +123,12 @@ export class SimulationView implements vscode.Disposable {
   }
 
   isRunning(document: vscode.Uri): boolean {
-    return this.running.get(this.server.protocolUri(document))?.source === 'simulator';
+    return this.source(document) === 'simulator';
+  }
+
+  /** What shows the program: its simulation, a PLC that is monitored, or nothing. */
+  source(document: vscode.Uri): Source | undefined {
+    return this.running.get(this.server.protocolUri(document))?.source;
   }
 
   async start(document: vscode.Uri): Promise<void> {
@@ -141,6 +146,7 @@ export class SimulationView implements vscode.Disposable {
     this.unfollowAll();
     this.running.set(this.server.protocolUri(document), { uri: document, mode: 'running', source: 'plc' });
     await this.watch();
+    this.changes.fire(document);
   }
 
   /** Shows no more of what it does there. */
@@ -156,7 +162,9 @@ export class SimulationView implements vscode.Disposable {
 
   /** Lets pictures tell the values of these names. */
   async watchNames(document: vscode.Uri, names: readonly string[]): Promise<void> {
-    if (this.isRunning(document)) {
+    if (this.source(document) === 'plc') {
+      await this.tellPlc(document, 'monitor', { names });
+    } else if (this.isRunning(document)) {
       await this.tell(document, 'watch', { names });
     }
   }
@@ -230,6 +238,11 @@ export class SimulationView implements vscode.Disposable {
     return this.server.executeCommand(simulate(verb), [{ ...more, uri: this.server.protocolUri(document) }]);
   }
 
+  /** The same for the PLC in which the program is monitored. */
+  async tellPlc(document: vscode.Uri, verb: string, more: object = {}): Promise<unknown> {
+    return this.server.executeCommand(plc(verb), [{ ...more, uri: this.server.protocolUri(document) }]);
+  }
+
   /** Tells the server what is on the screen, once it stands still. */
   private scroll(): void {
     clearTimeout(this.scrolled);
@@ -242,8 +255,7 @@ export class SimulationView implements vscode.Disposable {
     const watched = [...this.running.values()].map(({ uri, source }) => {
       const editors = editorsOf(uri);
       const ranges = editors.flatMap(({ visibleRanges }) => visibleRanges.map(({ start, end }) => ({ start, end })));
-      const monitor = () => this.server.executeCommand(plc('monitor'), [{ uri: this.server.protocolUri(uri), ranges }]);
-      return source === 'plc' ? monitor() : this.tell(uri, 'watch', { ranges });
+      return source === 'plc' ? this.tellPlc(uri, 'monitor', { ranges }) : this.tell(uri, 'watch', { ranges });
     });
     await Promise.all(watched);
   }

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { pageDocument } from '../src/panel/document';
 import {
-  firstSignals, grouped, isSwitch, namesOf, parseMoment, parseRows, progress, reading, sliderEnds, typedNumber, type Row,
+  basesOf, firstSignals, grouped, isSwitch, namesOf, parseMoment, parseRows, progress, readAs, reading, sliderEnds, typedIn, typedNumber, written, type Row,
 } from '../src/panel/rows';
 import { LABEL_WIDTH, rowAt, scanAt, scene, sceneHeight, type Shape } from '../src/panel/scene';
 import { svg } from '../src/panel/svg';
@@ -48,7 +48,7 @@ test('numbers are read and written as people do', () => {
 });
 
 test('a state of the server is a moment, and anything else is none', () => {
-  const moment = parseMoment({ mode: 'paused', scan: 3, time_ms: 30, first_scan: 1, scan_ms: 10, edition: 2, branch: 1, values: [] });
+  const moment = parseMoment({ source: 'simulator', mode: 'paused', scan: 3, time_ms: 30, first_scan: 1, scan_ms: 10, edition: 2, branch: 1, values: [] });
   assert.deepEqual(moment, { mode: 'paused', scan: 3, timeMs: 30, firstScan: 1, scanMs: 10, edition: 2, branch: 1, values: [] });
   assert.equal(parseMoment({ uri: 'file:///a.lad' }), undefined);
   assert.equal(parseMoment(null), undefined);
@@ -185,4 +185,44 @@ test('nothing but its own script runs in the page of a panel', () => {
   assert.ok(page.includes(`content="default-src 'none'; style-src https://own; script-src 'nonce-abc'"`));
   assert.ok(page.includes('<title>a&lt;b</title>'));
   assert.ok(!/unsafe|\son\w+=/.test(page));
+});
+
+test('the number of a register is written and typed in any base', () => {
+  const word = { least: -32768, greatest: 32767 };
+  const wide = { least: -0x80000000, greatest: 0x7fffffff };
+  assert.equal(written(-2, 'hexadecimal'), 'HFFFE');
+  assert.equal(written(100000, 'hexadecimal'), 'H000186A0');
+  assert.equal(written(5, 'binary'), '0000 0000 0000 0101');
+  assert.equal(written(0x3f800000, 'float'), '1');
+  assert.equal(written(0x3dcccccd, 'float'), '0.1');
+  assert.equal(written(true, 'binary'), 'true');
+  for (const base of ['decimal', 'hexadecimal', 'binary'] as const) {
+    for (const value of [0, 1, -1, 32767, -32768]) {
+      assert.equal(typedIn(written(value, base), base, word), value, `${base} ${value}`);
+    }
+  }
+  for (const value of [70000, -70000, -0x80000000]) {
+    assert.equal(typedIn(written(value, 'hexadecimal'), 'hexadecimal', wide), value);
+    assert.equal(typedIn(written(value, 'double'), 'double', word), value);
+  }
+  assert.equal(typedIn('1.5', 'float', word), 0x3fc00000);
+  assert.equal(typedIn('FFFE', 'hexadecimal', word), -2);
+  for (const [text, base] of [['12345', 'binary'], ['HFFFFF', 'hexadecimal'], ['1e99', 'float'], ['', 'float'], ['x', 'double']] as const) {
+    assert.equal(typedIn(text, base, word), undefined, text);
+  }
+});
+
+test('two registers are read for 32 bits, and only registers have these bases', () => {
+  const row = { name: 'D0', label: 'D0', group: 'registers', type: 'word', symbol: '', comment: '' } as const;
+  assert.deepEqual(namesOf(row, 'float'), ['D0', 'D0:32']);
+  assert.deepEqual(namesOf(row), ['D0']);
+  assert.equal(readAs('D0', 'binary'), 'D0');
+  assert.equal(basesOf(row).length, 5);
+  assert.equal(basesOf({ ...row, name: 'C200' }).length, 3);
+  assert.equal(basesOf({ ...row, unitMs: 100 }).length, 1);
+});
+
+test('the moments of a PLC are milliseconds, and its panel stays open while it stands still', () => {
+  const moment = parseMoment({ source: 'plc', mode: 'stopped', scan: 7, time_ms: 1234.5, values: [] });
+  assert.deepEqual([moment?.source, moment?.mode, moment?.scan, moment?.scanMs], ['plc', 'running', 1234, 1]);
 });

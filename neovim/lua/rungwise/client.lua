@@ -95,6 +95,9 @@ function M.config()
       ['rungwise/plc'] = function(...)
         require('rungwise.plc').on_state(...)
       end,
+      ['rungwise/alarm'] = function(...)
+        require('rungwise.plc').on_alarm(...)
+      end,
     },
   }
 end

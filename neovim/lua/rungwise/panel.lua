@@ -1,4 +1,5 @@
---- The I/O panel of a program that is simulated: a buffer with lamps, switches by keys and a timing chart.
+--- The I/O panel of a program that is simulated, or monitored in a PLC: a buffer with lamps, switches by keys and a timing chart.
+local bases = require('rungwise.bases')
 local chart = require('rungwise.chart')
 local client = require('rungwise.client')
 local t = require('rungwise.words').t
@@ -10,6 +11,8 @@ local CHART_MS, SCROLL_MS = 100, 50
 --- More signals are charted only if they are chosen.
 local FIRST_SIGNALS = 8
 local LABEL = 12
+--- Milliseconds in a column of the chart of a PLC, to begin with.
+local PLC_SCANS = 100
 
 --- The panels, by the buffer of the panel.
 local panels = {}
@@ -62,7 +65,10 @@ local function row_line(panel, row)
     end
   elseif own then
     local preset = row.preset or row.preset_of and (panel.values[row.preset_of] or {}).value
-    text = text .. reading(row, own.value) .. (preset and ' / ' .. reading(row, preset) or '')
+    local base = panel.bases[row.name] or 'decimal'
+    local read = panel.values[bases.read_as(row.name, base)]
+    local number = base == 'decimal' and reading(row, own.value) or bases.written(read and read.value, base)
+    text = text .. number .. (preset and ' / ' .. reading(row, preset) or '')
   end
   if own and own.forced or contact and contact.forced then
     local first = #text + 1
@@ -81,8 +87,10 @@ end
 local function head_line(panel)
   local modes = { running = t('running'), paused = t('paused'), stopped = t('stopped') }
   local signs = { running = '▶', paused = '⏸', stopped = '■' }
-  local words = { signs[panel.mode] .. ' ' .. modes[panel.mode] }
-  if panel.mode ~= 'stopped' then
+  local words = { signs[panel.mode] .. ' ' .. (panel.is_plc and t('PLC') or modes[panel.mode]) }
+  if panel.is_plc then
+    table.insert(words, ('%.2f s'):format(panel.time_ms / 1000))
+  elseif panel.mode ~= 'stopped' then
     table.insert(words, t('scan %d', panel.scan))
     table.insert(words, ('%.2f s'):format(panel.time_ms / 1000))
   end
@@ -171,8 +179,31 @@ local function draw(panel)
   panel.lines = lines
 end
 
+--- What a panel may tell a PLC, and how its server calls that; of these, what writes.
+local PLC_VERBS = {
+  set = 'write', force = 'hold', release = 'release', watch = 'monitor', panel = 'panel', trace = 'trace',
+}
+local WRITES = { set = true, force = true }
+
+--- Tells who shows the program something: its simulation, or the PLC in which it is monitored.
 local function tell(panel, verb, more, done)
-  require('rungwise.simulation').tell(panel.program, verb, more, done)
+  if not panel.is_plc then
+    return require('rungwise.simulation').tell(panel.program, verb, more, done)
+  end
+  if not PLC_VERBS[verb] then
+    return client.notify(t('a PLC cannot do this'), vim.log.levels.WARN)
+  end
+  if WRITES[verb] and not panel.is_unlocked then
+    local question = t('Let this panel write into the PLC? The machine may move.')
+    panel.is_unlocked = vim.fn.confirm(question, t('&Yes') .. '\n' .. t('&No'), 2) == 1
+    if not panel.is_unlocked then
+      return
+    end
+  end
+  require('rungwise.plc').tell(panel.program, PLC_VERBS[verb], more or {}, done and function(answer)
+    -- Where a PLC is, only pictures tell.
+    done(vim.tbl_extend('keep', { scan = panel.scan, mode = panel.mode, time_ms = panel.time_ms }, answer or {}))
+  end)
 end
 
 --- Asks for what the chart shows, unless an answer is still awaited.
@@ -201,6 +232,11 @@ end
 
 --- What a moment of the simulation changes.
 local function take(panel, moment)
+  if moment.source == 'plc' then
+    -- Its scans are milliseconds here, for nothing is known of them; a PLC that stands still is looked at all the same.
+    local scan = math.floor(moment.time_ms)
+    moment = vim.tbl_extend('force', moment, { mode = 'running', scan = scan, scan_ms = 1 })
+  end
   panel.mode, panel.scan, panel.time_ms = moment.mode, moment.scan or 0, moment.time_ms or 0
   panel.scan_ms = moment.scan_ms or panel.scan_ms
   for _, value in ipairs(moment.values or {}) do
@@ -221,7 +257,8 @@ local function watch(panel)
   for _, window in ipairs(vim.fn.win_findbuf(panel.buffer)) do
     for line = vim.fn.line('w0', window), vim.fn.line('w$', window) do
       local row = panel.rows_at and panel.rows_at[line]
-      for _, name in ipairs(row and { row.name, row.contact or vim.NIL, row.preset_of or vim.NIL } or {}) do
+      local read = row and bases.read_as(row.name, panel.bases[row.name])
+      for _, name in ipairs(row and { row.name, read, row.contact or vim.NIL, row.preset_of or vim.NIL } or {}) do
         if name ~= vim.NIL then
           table.insert(names, name)
         end
@@ -245,8 +282,13 @@ end
 
 --- Reads what belongs on the panel.
 local function read(panel)
-  tell(panel, 'panel', {}, function(answer)
-    panel.rows, panel.by_name, panel.edition = answer.rows or {}, {}, answer.edition
+  panel.is_plc = require('rungwise.simulation').is_plc(panel.program)
+  if panel.is_plc and panel.scans < PLC_SCANS then
+    panel.scans = PLC_SCANS
+  end
+  tell(panel, 'panel', { names = panel.chosen }, function(answer)
+    panel.rows, panel.by_name, panel.edition = answer.rows or {}, {}, answer.edition or panel.edition
+    panel.mode = panel.is_plc and 'running' or panel.mode
     for _, row in ipairs(panel.rows) do
       panel.by_name[row.name] = row
     end
@@ -274,6 +316,7 @@ function M.on_picture(program, picture)
   for _, panel in pairs(panels) do
     if panel.program == program then
       if not picture then
+        panel.is_unlocked = nil
         take(panel, { mode = 'stopped' })
       else
         take(panel, picture)
@@ -353,9 +396,26 @@ local ON_ROW = {
   value = function(panel, row)
     vim.ui.input({ prompt = t('Value of %s: ', row.label) }, function(word)
       if word and word ~= '' then
-        tell(panel, 'set', { name = row.name, value = word })
+        local base = panel.bases[row.name]
+        local value = bases.typed(word, base)
+        if value == nil then
+          return client.notify(t('"%s" is no number', word), vim.log.levels.WARN)
+        end
+        tell(panel, 'set', { name = bases.read_as(row.name, base), value = value })
       end
     end)
+  end,
+  --- The next way to write the number of a register.
+  base = function(panel, row)
+    local known = bases.of(row)
+    for at, base in ipairs(known) do
+      if base == (panel.bases[row.name] or 'decimal') then
+        panel.bases[row.name] = known[at % #known + 1]
+        break
+      end
+    end
+    watch(panel)
+    draw(panel)
   end,
   chart = function(panel, row)
     local others = vim.tbl_filter(function(name)
@@ -400,7 +460,19 @@ local ANYWHERE = {
     tell(panel, 'reset')
   end,
   start = function(panel)
+    if panel.is_plc then
+      return client.notify(t('a PLC cannot do this'), vim.log.levels.WARN)
+    end
     require('rungwise.simulation').verbs[panel.mode == 'stopped' and 'start' or 'stop'](panel.program)
+  end,
+  --- Devices that are shown although the program does not use them.
+  choose = function(panel)
+    vim.ui.input({ prompt = t('Devices: '), default = table.concat(panel.chosen, ' ') }, function(words)
+      if words then
+        panel.chosen = vim.split(words:upper(), '[%s,;]+', { trimempty = true })
+        read(panel)
+      end
+    end)
   end,
   release_all = function(panel)
     tell(panel, 'release')
@@ -437,7 +509,7 @@ local KEYS = {
   ['<CR>'] = 'toggle', ['<Space>'] = 'toggle', p = 'pulse', f = 'force', r = 'release', ['+'] = 'more', ['-'] = 'less',
   ['='] = 'value', c = 'chart', s = 'step', b = 'back', P = 'pause', R = 'reset', S = 'start', ['gr'] = 'release_all',
   ['<C-l>'] = 'reload', ['<'] = 'earlier', ['>'] = 'later', ze = 'newest', zi = 'closer', zo = 'farther', q = 'close',
-  ['g?'] = 'help',
+  ['g?'] = 'help', v = 'base', a = 'choose',
 }
 
 local function map_keys(panel)
@@ -476,7 +548,7 @@ function M.open(program)
   vim.bo[buffer].modifiable = false
   local panel = {
     buffer = buffer, program = program, mode = 'stopped', scan = 0, time_ms = 0, rows = {}, by_name = {}, rows_at = {},
-    values = {}, points = {}, later = {}, signals = {}, scans = 4,
+    values = {}, points = {}, later = {}, signals = {}, scans = 4, bases = {}, chosen = {},
   }
   panels[buffer] = panel
   map_keys(panel)

@@ -9,6 +9,10 @@ local PREFIX = 'rungwise.plc.'
 --- What the server told of the PLC last.
 M.state = { connected = false }
 
+--- The alarms of PLC and simulator, the newest last: what `rungwise/alarm` tells, and `gone_ms` once they are.
+M.alarms = {}
+local MOST_ALARMS = 50
+
 --- Has something done about the program of a buffer; `done` gets the answer.
 local function tell(buffer, verb, more, done)
   local server = client.expect(buffer)
@@ -25,6 +29,8 @@ local function tell(buffer, verb, more, done)
       end
     end, buffer)
 end
+
+M.tell = tell
 
 --- What the PLC is and does, in a line.
 local function line_of(state)
@@ -57,6 +63,38 @@ function M.on_state(_, state)
     simulation.unfollow_plc()
   end
   vim.cmd.redrawstatus()
+end
+
+--- The notification `rungwise/alarm`. The server tells the person by itself when an alarm is raised; here it is kept for
+--- the list, and that it is gone is told.
+function M.on_alarm(_, told)
+  if type(told) ~= 'table' then
+    return
+  end
+  local known = vim.iter(M.alarms):rfind(function(alarm)
+    return alarm.uri == told.uri and alarm.source == told.source and alarm.when == told.when and not alarm.gone_ms
+  end)
+  if told.raised then
+    table.insert(M.alarms, told)
+    if #M.alarms > MOST_ALARMS then
+      table.remove(M.alarms, 1)
+    end
+  elseif known then
+    known.gone_ms = told.at_ms
+    client.notify(t('alarm gone: %s', told.message))
+  end
+  vim.cmd.redrawstatus()
+end
+
+--- An alarm in a line, with the times when it was raised and gone.
+local function line_of_alarm(alarm)
+  local function clock(ms)
+    return os.date('%H:%M:%S', math.floor(ms / 1000))
+  end
+  local span = alarm.gone_ms and clock(alarm.at_ms) .. ' – ' .. clock(alarm.gone_ms)
+    or t('since %s', clock(alarm.at_ms))
+  local where = alarm.source == 'simulator' and ' · ' .. t('simulation') or ''
+  return ('%s  %s%s  (%s)'):format(span, alarm.message, where, alarm.when)
 end
 
 --- Shows what is in the PLC beside what shall be there, in a tab of their own.
@@ -98,6 +136,11 @@ M.verbs = {
       end, found.ports)
       client.notify(#lines > 0 and table.concat(lines, '\n') or t('this computer has no serial port'))
     end)
+  end,
+  --- The alarms, the newest first.
+  alarms = function()
+    local lines = vim.iter(M.alarms):rev():map(line_of_alarm):totable()
+    client.notify(#lines > 0 and table.concat(lines, '\n') or t('there was no alarm'))
   end,
   status = function(buffer)
     tell(buffer, 'state', {}, function(state)
@@ -165,6 +208,33 @@ M.verbs = {
   end,
   force = function(buffer, words)
     tell(buffer, 'force', { name = words[1], value = words[2] })
+  end,
+  hold = function(buffer, words)
+    tell(buffer, 'hold', { name = words[1], value = words[2] })
+  end,
+  --- Lets one go, or all.
+  release = function(buffer, words)
+    tell(buffer, 'release', { name = words[1] })
+  end,
+  --- The table of the program's devices with what they are in the PLC, which is monitored for it.
+  table = function(buffer)
+    if M.state.monitoring ~= vim.uri_from_bufnr(buffer) then
+      M.verbs.monitor(buffer)
+    end
+    require('rungwise.panel').open(buffer)
+  end,
+  --- What was seen while a program was monitored, in a file that ends in .csv or .vcd.
+  record = function(buffer, words)
+    local path = words[1] and vim.fs.normalize(words[1])
+    local format = path and path:match('%.(%a+)$')
+    if format ~= 'csv' and format ~= 'vcd' then
+      client.notify(t('name a file that ends in .csv or .vcd'), vim.log.levels.ERROR)
+      return
+    end
+    tell(buffer, 'export', { format = format, names = vim.list_slice(words, 2) }, function(found)
+      vim.fn.writefile(vim.split(found.text, '\n'), path)
+      client.notify(path)
+    end)
   end,
 }
 

@@ -184,6 +184,13 @@ function M.follow_plc(buffer, tell)
   M.running[vim.uri_from_bufnr(buffer)] = { buffer = buffer, mode = 'running', watch = tell }
   follow()
   watch(buffer)
+  panel.on_start(buffer)
+end
+
+--- Whether what the program of a buffer does in a PLC is shown.
+function M.is_plc(buffer)
+  local running = M.running[vim.uri_from_bufnr(buffer)]
+  return running ~= nil and running.watch ~= nil
 end
 
 --- Shows no more of any PLC.

@@ -30,31 +30,41 @@ pub(in crate::cli) fn force(arguments: &Arguments, language: Language) -> Outcom
 }
 
 fn carry_out(arguments: &Arguments, is_forced: bool, language: Language) -> Result<Outcome, Outcome> {
-    let refused = |reason: Message| {
-        complain(
-            "bad-value",
-            &reason.render(language),
-            &Message::new("link.help-values").render(language),
-            language,
-        );
-        Outcome::Unusable
-    };
-    let settings: Vec<Setting> = arguments
-        .settings
-        .iter()
-        .map(|word| Setting::read(word).map_err(refused))
-        .collect::<Result<_, _>>()?;
+    // What cannot be read is said before somebody is called.
+    read(&arguments.settings, language)?;
     let mut host = arguments.connection.open(Path::new("."), language)?;
     let target = host.identity().target;
     // All are looked at before one is written.
-    let points = settings
-        .iter()
-        .map(|setting| written(setting, is_forced, target).map_err(refused))
-        .collect::<Result<Vec<_>, _>>()?;
-    for (point, value) in points {
+    for (point, value) in settings_of(&arguments.settings, is_forced, target, language)? {
         host.write(point, value).map_err(|error| failed(&error, language))?;
     }
     Ok(Outcome::Clean)
+}
+
+fn refused(reason: &Message, language: Language) -> Outcome {
+    let help = Message::new("link.help-values").render(language);
+    complain("bad-value", &reason.render(language), &help, language);
+    Outcome::Unusable
+}
+
+fn read(words: &[String], language: Language) -> Result<Vec<Setting>, Outcome> {
+    let read = words.iter().map(|word| Setting::read(word));
+    read.collect::<Result<_, _>>().map_err(|reason| refused(&reason, language))
+}
+
+/// Which points get which numbers, of words such as `D0=5`.
+///
+/// # Errors
+/// With the outcome, after a complaint about the first that this PLC cannot have.
+pub(super) fn settings_of(
+    words: &[String],
+    is_forced: bool,
+    target: &Target,
+    language: Language,
+) -> Result<Vec<(Point, i64)>, Outcome> {
+    let settings = read(words, language)?;
+    let written = settings.iter().map(|setting| written(setting, is_forced, target));
+    written.collect::<Result<_, _>>().map_err(|reason| refused(&reason, language))
 }
 
 /// Which point gets which number.

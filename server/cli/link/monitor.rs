@@ -2,12 +2,13 @@
 
 use super::Connection;
 use super::connection::failed;
+use super::devices::settings_of;
 use super::status::StatusFormat;
 use crate::cli::Outcome;
-use crate::cli::input::{complain, put, say};
+use crate::cli::input::{complain, put, remark, say, usable_manifest};
 use crate::cli::run::duration;
-use crate::link::{Point, Watch};
-use crate::simulate::{Trace, TraceRow, Value, milliseconds};
+use crate::link::{Holds, NamesOfPlc, Point, Watch};
+use crate::simulate::{AlarmChange, Alarms, Trace, TraceRow, Value, milliseconds};
 use crate::text::{Language, Message};
 use serde_json::{Map, Value as Json, json};
 use std::path::{Path, PathBuf};
@@ -16,7 +17,7 @@ use std::time::Duration;
 #[derive(clap::Args)]
 pub(in crate::cli) struct Arguments {
     /// What is watched: X0, D10, D0:32, T0 (current value), TS0 (contact), TC0 (coil).
-    #[arg(required = true, value_name = "DEVICE")]
+    #[arg(value_name = "DEVICE")]
     devices: Vec<String>,
     #[command(flatten)]
     connection: Connection,
@@ -26,9 +27,18 @@ pub(in crate::cli) struct Arguments {
     /// So many looks; until Ctrl-C if left out.
     #[arg(long, value_name = "N")]
     count: Option<u64>,
+    /// So long; until Ctrl-C if left out.
+    #[arg(long = "for", value_name = "TIME", value_parser = duration)]
+    time: Option<i64>,
     /// Writes the values over time to a file, as a value change dump (.vcd) or a table (.csv).
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
+    /// Looks with a change that are kept for the file at most, the latest.
+    #[arg(long, value_name = "N", default_value = "100000", value_parser = clap::value_parser!(u32).range(1..))]
+    keep: u32,
+    /// Writes a value again with each look that finds another one: Y0=on, D0=5.
+    #[arg(long = "hold", value_name = "DEVICE=VALUE")]
+    holds: Vec<String>,
     /// The shape of the result: a line for each look in which something changed.
     #[arg(long, value_enum, default_value = "text")]
     format: StatusFormat,
@@ -39,6 +49,17 @@ pub(in crate::cli) fn run(arguments: &Arguments, language: Language) -> Outcome 
 }
 
 fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outcome> {
+    let wanted = usable_manifest(Path::new("."), language).ok_or(Outcome::Unusable)?.alarms();
+    if arguments.devices.is_empty() && wanted.is_empty() {
+        let reason = Message::new("link.nothing-to-watch").render(language);
+        complain(
+            "nothing-to-watch",
+            &reason,
+            &Message::new("link.help-no-device").render(language),
+            language,
+        );
+        return Err(Outcome::Unusable);
+    }
     let mut host = arguments.connection.open(Path::new("."), language)?;
     let target = host.identity().target;
     let point = |name: &String| {
@@ -48,9 +69,26 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
             Outcome::Unusable
         })
     };
-    let points = arguments.devices.iter().map(point).collect::<Result<Vec<_>, _>>()?;
+    let settings = settings_of(&arguments.holds, false, target, language)?;
+    let named = arguments.devices.iter().map(point).collect::<Result<Vec<_>, _>>()?;
+    let (mut alarms, refused) = Alarms::new(&wanted, &NamesOfPlc(target));
+    if let Some((alarm, reason)) = refused.into_iter().next() {
+        let reason = Message::new("simulate.alarm-refused")
+            .with("when", alarm.when)
+            .with_messages("reason", vec![reason]);
+        let help = Message::new("cli.mend-manifest").render(language);
+        complain("manifest", &reason.render(language), &help, language);
+        return Err(Outcome::Unusable);
+    }
+    // All in one list, so that alarms are about the values that are shown.
+    let mut points: Vec<Point> = named.iter().copied().chain(alarms.variables()).collect();
+    let mut holds = Holds::default();
+    for (point, number) in settings {
+        holds.hold(&mut host, point, number).map_err(|error| failed(&error, language))?;
+        points.push(point);
+    }
     let mut watch = Watch::new(points.clone());
-    let mut trace = Trace::of_names(arguments.devices.clone());
+    let mut trace = Trace::bounded(arguments.devices.clone(), arguments.keep as usize);
     let start = host.line().now();
     let mut look = 0;
     let end = loop {
@@ -58,23 +96,35 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
             Ok(values) => values,
             Err(error) => break Err(error),
         };
-        let typed = |(point, value): (&Point, i64)| match point.is_bit() {
-            true => Value::Bit(value != 0),
-            false => Value::Number(value),
-        };
-        let values = points.iter().zip(values).map(typed).collect();
+        let values: Vec<Value> = points.iter().zip(values).map(|(point, value)| point.value(value)).collect();
         let time_ns = host.line().now().saturating_sub(start).as_nanos() as i64;
-        let rows = trace.rows.len();
-        trace.push(TraceRow { scan: look, time_ns, values });
-        if trace.rows.len() > rows {
+        let of = |wanted: Point| {
+            let at = points.iter().position(|point| *point == wanted);
+            at.map_or(wanted.value(0), |at| values[at].clone())
+        };
+        let changes = alarms.look(time_ns, &of);
+        let is_news = trace.push(TraceRow { scan: look, time_ns, values: values[..named.len()].to_vec() });
+        if is_news && !named.is_empty() {
             tell(&trace, arguments.format);
         }
+        if let Err(error) = holds.rewrite(&mut host, &|point| point.number(&of(point))) {
+            break Err(error);
+        }
+        changes.iter().for_each(|change| tell_alarm(change, arguments.format, language));
         look += 1;
-        if arguments.count.is_some_and(|count| look >= count) {
+        let is_over = arguments.time.is_some_and(|time| time_ns >= time);
+        if is_over || arguments.count.is_some_and(|count| look >= count) {
             break Ok(());
         }
         std::thread::sleep(Duration::from_nanos(arguments.interval.max(0) as u64));
     };
+    let held = holds.release_all();
+    if !held.is_empty() {
+        let names: Vec<String> = held.iter().map(|(point, number)| format!("{point}={number}")).collect();
+        let released = Message::new("link.released");
+        let released = released.with_words("devices", names.iter().map(String::as_str), ", ");
+        remark(&released.render(language));
+    }
     trace.end();
     if let Some(path) = &arguments.trace {
         let is_dump = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("vcd"));
@@ -91,6 +141,17 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
         Ok(()) | Err(crate::link::LinkError::Cancelled) => Ok(Outcome::Clean),
         Err(error) => Err(failed(&error, language)),
     }
+}
+
+/// A line about an alarm that is raised or gone.
+fn tell_alarm(change: &AlarmChange, format: StatusFormat, language: Language) {
+    let text = match format {
+        StatusFormat::Json => {
+            json!({ "time_ms": change.time_ns / 1_000_000, "alarm": change.json() }).to_string()
+        }
+        StatusFormat::Text => change.told().render(language),
+    };
+    say(&format!("{text}\n"));
 }
 
 /// A line with the values of the last look.

@@ -3,7 +3,7 @@
 use super::Dialect;
 use super::devices::Place;
 use crate::link::address::{Extended, Part, Plain};
-use crate::simulate::Value;
+use crate::simulate::{Names, Value};
 use crate::target::{Device, DeviceKind, Operand, Target};
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -72,6 +72,11 @@ impl Point {
         }
     }
 
+    /// What a number that was read from it is.
+    pub fn value(self, number: i64) -> Value {
+        if self.is_bit() { Value::Bit(number != 0) } else { Value::Number(number) }
+    }
+
     /// Whether the port of this model reaches it.
     pub fn is_reached(self, target: &Target) -> bool {
         match Dialect::of(target) {
@@ -83,6 +88,22 @@ impl Point {
     /// Whether it is on or off.
     pub fn is_bit(self) -> bool {
         matches!(self, Point::Bit(..))
+    }
+}
+
+/// The names of what the port of a model reaches, for expressions.
+#[derive(Clone, Copy)]
+pub struct NamesOfPlc(pub &'static Target);
+
+impl Names for NamesOfPlc {
+    type Variable = Point;
+
+    fn variable(&self, name: &str) -> Option<Point> {
+        Point::named(name, self.0).filter(|point| point.is_reached(self.0))
+    }
+
+    fn meant(&self, _: Point, value: &Value) -> Option<Value> {
+        value.of_device()
     }
 }
 

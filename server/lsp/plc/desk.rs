@@ -6,6 +6,7 @@ use super::super::projects::file_path;
 use super::super::simulation::MonitorMethod;
 use super::super::workspace::Workspace;
 use super::drift::{Encoded, drift, encoded};
+use super::recording::SharedRecording;
 use super::watching::Watching;
 use crate::link::transport;
 use crate::link::{Host, Line, LinkError, Mode, Patience, Plan, Point, Progress, Stage, Status, Transport};
@@ -35,7 +36,20 @@ pub(super) enum Order {
     Stop,
     Monitor { uri: Uri, ranges: Option<Vec<Range>>, names: Option<Vec<String>> },
     Unmonitor,
-    Write { name: String, value: Json, is_force: bool },
+    Write { name: String, value: Json, way: Way },
+    Release { name: Option<String> },
+    Panel { more: Vec<String> },
+}
+
+/// How a value is written.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Way {
+    /// Once.
+    Write,
+    /// A relay, once.
+    Force,
+    /// Again with each look that finds something else.
+    Hold,
 }
 
 impl Order {
@@ -97,15 +111,16 @@ impl Drop for Mark {
 
 impl Desk {
     /// A desk without a line.
-    pub(super) fn new(workspace: &Arc<Workspace>) -> Desk {
+    pub(super) fn new(workspace: &Arc<Workspace>, recording: &SharedRecording) -> Desk {
         let (sender, receiver) = channel();
         let is_alive = Arc::new(AtomicBool::new(true));
         let desk = Desk { sender, is_alive: Arc::clone(&is_alive), workspace: Arc::downgrade(workspace) };
         let workspace = Arc::downgrade(workspace);
         let tokio = tokio::runtime::Handle::current();
+        let recording = recording.clone();
         std::thread::spawn(move || {
-            let _mark = Mark(is_alive);
-            Thread { workspace, tokio, cancel: Arc::default(), plc: None }.run(&receiver);
+            let mark = Mark(is_alive);
+            Thread { workspace, tokio, recording, cancel: Arc::default(), plc: None }.run(&receiver, mark);
         });
         desk
     }
@@ -152,6 +167,7 @@ struct Connected {
 struct Thread {
     workspace: Weak<Workspace>,
     tokio: tokio::runtime::Handle,
+    recording: SharedRecording,
     /// That of the job that is done.
     cancel: Arc<AtomicBool>,
     plc: Option<Connected>,
@@ -163,7 +179,7 @@ const PICTURE: Duration = Duration::from_millis(33);
 const STATUS: Duration = Duration::from_secs(2);
 
 impl Thread {
-    fn run(&mut self, receiver: &Receiver<Job>) {
+    fn run(&mut self, receiver: &Receiver<Job>, mark: Mark) {
         let mut asked = Instant::now();
         loop {
             let is_watching = self.plc.as_ref().is_some_and(|plc| plc.watching.is_some());
@@ -173,10 +189,14 @@ impl Thread {
                     if cancel.load(Ordering::Relaxed) || reply.is_closed() {
                         continue;
                     }
-                    let is_end = matches!(order, Order::Disconnect);
                     self.serve(cancel);
                     let answer = self.obey(order, &bar);
                     drop(bar);
+                    let is_end = self.plc.is_none();
+                    if is_end {
+                        // Whoever connects again, once this is answered, gets a thread of its own.
+                        mark.0.store(false, Ordering::Release);
+                    }
                     // Whoever has gone is still told what has become of the PLC.
                     if let Err(Err(reason)) = reply.send(answer) {
                         self.show(&reason);
@@ -194,6 +214,7 @@ impl Thread {
             }
             let looked = self.look(&mut asked);
             if let Err(error) = looked {
+                mark.0.store(false, Ordering::Release);
                 self.lose(&error);
                 return;
             }
@@ -211,23 +232,36 @@ impl Thread {
         }
     }
 
-    /// Says something to the person at the editor.
+    /// Says to the person at the editor what went wrong.
     fn show(&self, reason: &Message) {
+        self.show_as(MessageType::ERROR, reason);
+    }
+
+    fn show_as(&self, kind: MessageType, reason: &Message) {
         let Some(workspace) = self.workspace.upgrade() else { return };
         let text = reason.render(workspace.snapshot().manner.language);
         let client = workspace.client.clone();
-        self.tokio.spawn(async move { client.show_message(MessageType::ERROR, text).await });
+        self.tokio.spawn(async move { client.show_message(kind, text).await });
     }
 
     /// Looks at what is watched, and now and then at the PLC as a whole.
     fn look(&mut self, asked: &mut Instant) -> Result<(), LinkError> {
         let Some(workspace) = self.workspace.upgrade() else { return Ok(()) };
+        let is_closed = |watching: &Watching| !watching.is_open(&workspace);
+        if self.plc.as_ref().and_then(|plc| plc.watching.as_ref()).is_some_and(is_closed) {
+            // Nobody sees any more what a program does whose document is closed.
+            self.unwatch();
+            self.tell(None);
+        }
         let Some(plc) = &mut self.plc else { return Ok(()) };
         if let Some(watching) = &mut plc.watching
-            && let Some(picture) = watching.picture(&mut plc.host, &workspace, &plc.status)?
+            && watching.look(&mut plc.host, &workspace, &plc.status)?
         {
-            let client = workspace.client.clone();
-            self.tokio.spawn(async move { client.send_notification::<MonitorMethod>(picture).await });
+            watching.tell_alarms(&self.tokio, &workspace);
+            if let Some(picture) = watching.picture(&workspace, &plc.status) {
+                let client = workspace.client.clone();
+                self.tokio.spawn(async move { client.send_notification::<MonitorMethod>(picture).await });
+            }
         }
         if asked.elapsed() >= STATUS {
             *asked = Instant::now();
@@ -248,8 +282,35 @@ impl Thread {
         Ok(())
     }
 
+    /// Shows no more of the program that is watched, if any.
+    fn unwatch(&mut self) {
+        let watching = self.plc.as_mut().and_then(|plc| plc.watching.take());
+        if let (Some(mut watching), Some(workspace)) = (watching, self.workspace.upgrade()) {
+            let held = watching.end(&self.tokio, &workspace);
+            self.tell_released(&held);
+        }
+    }
+
+    /// Lets go what is held, and tells so.
+    fn release_all(&mut self) {
+        let watching = self.plc.as_mut().and_then(|plc| plc.watching.as_mut());
+        let held = watching.map(|watching| watching.holds.release_all()).unwrap_or_default();
+        self.tell_released(&held);
+    }
+
+    fn tell_released(&self, held: &[(Point, i64)]) {
+        if !held.is_empty() {
+            let names = held.iter().map(|(point, number)| format!("{point}={number}"));
+            let names: Vec<String> = names.collect();
+            let released = Message::new("link.released");
+            let names = names.iter().map(String::as_str);
+            self.show_as(MessageType::WARNING, &released.with_words("devices", names, ", "));
+        }
+    }
+
     /// The line is gone: says so.
     fn lose(&mut self, error: &LinkError) {
+        self.unwatch();
         self.plc = None;
         let Some(workspace) = self.workspace.upgrade() else { return };
         let reason = error.message().render(workspace.snapshot().manner.language);
@@ -283,6 +344,11 @@ impl Thread {
         });
         if let Some(watching) = &plc.watching {
             state["monitoring"] = json!(watching.uri());
+            let held = watching.holds.held().iter();
+            let held = held.map(|(point, number)| {
+                json!({ "device": point.to_string(), "value": point.value(*number).json() })
+            });
+            state["held"] = held.collect();
         }
         if plc.image.is_none() {
             state["match"] = "unknown".into();
@@ -311,6 +377,7 @@ impl Thread {
             return Ok(self.state(None));
         }
         if matches!(order, Order::Disconnect) {
+            self.unwatch();
             self.plc = None;
             self.send(json!({ "connected": false }));
             return Ok(json!({ "connected": false }));
@@ -328,6 +395,9 @@ impl Thread {
                 about = Some(uri);
             }
             Order::Download { uri, is_started } => {
+                // What was held was meant for the program that is replaced.
+                self.release_all();
+                let plc = self.plc.as_mut().ok_or_else(gone)?;
                 answer = Some(plc.download(&workspace, &uri, is_started, bar)?);
                 about = Some(uri);
             }
@@ -337,33 +407,65 @@ impl Thread {
                     return Err(Message::new("link.does-not-run"));
                 }
             }
-            Order::Stop => plc.host.stop().map_err(|error| told(&error))?,
+            Order::Stop => {
+                let stopped = plc.host.stop().map_err(|error| told(&error));
+                self.release_all();
+                stopped?;
+            }
             Order::Monitor { uri, ranges, names } => {
-                let target = plc.host.identity().target;
-                let before = plc.watching.take();
-                let mut watching = match before {
-                    Some(watching) if *watching.uri() == uri => watching,
-                    _ => Watching::new(uri),
-                };
-                watching.watch(ranges, names);
-                if let Err(reason) = watching.follow(&workspace, target, &plc.status) {
+                if let Err(reason) = self.monitor(&workspace, uri, ranges, names) {
                     self.tell(None);
                     return Err(reason);
                 }
-                plc.watching = Some(watching);
             }
-            Order::Unmonitor => plc.watching = None,
-            Order::Write { name, value, is_force } => plc.write(&name, &value, is_force)?,
+            Order::Unmonitor => self.unwatch(),
+            Order::Write { name, value, way } => plc.write(&name, &value, way)?,
+            Order::Release { name: Some(name) } => plc.release(&name)?,
+            Order::Release { name: None } => {
+                if let Some(watching) = &mut plc.watching {
+                    watching.holds.release_all();
+                }
+            }
+            Order::Panel { more } => {
+                let nothing = || Message::new("link.not-monitored");
+                let watching = plc.watching.as_ref().ok_or_else(nothing)?;
+                return watching.panel(&workspace, plc.host.identity().target, &more);
+            }
         }
         // What was done is done; a line that has failed meanwhile is found out soon.
-        if let Ok(status) = plc.host.status() {
+        if let Some(plc) = &mut self.plc
+            && let Ok(status) = plc.host.status()
+        {
             plc.status = status;
         }
         self.tell(about.as_ref());
         Ok(answer.unwrap_or_else(|| self.state(None)))
     }
 
+    /// Watches a program, in the place of another one.
+    fn monitor(
+        &mut self,
+        workspace: &Workspace,
+        uri: Uri,
+        ranges: Option<Vec<Range>>,
+        names: Option<Vec<String>>,
+    ) -> Result<(), Message> {
+        if self.plc.as_ref().and_then(|plc| plc.watching.as_ref()).is_some_and(|known| *known.uri() != uri) {
+            self.unwatch();
+        }
+        let Some(plc) = &mut self.plc else { return Ok(()) };
+        let target = plc.host.identity().target;
+        let watching = plc.watching.get_or_insert_with(|| Watching::new(uri, self.recording.clone()));
+        watching.watch(ranges, names);
+        let followed = watching.follow(workspace, target, &plc.status);
+        if followed.is_err() {
+            self.unwatch();
+        }
+        followed
+    }
+
     fn connect(&mut self, port: &str, patience: Duration) -> Result<(), LinkError> {
+        self.unwatch();
         self.plc = None;
         let patience = Patience { answer: patience, ..Patience::default() };
         let line = Line::new(transport::open(port)?, patience, Arc::clone(&self.cancel));
@@ -430,17 +532,33 @@ impl Connected {
         Ok(answer)
     }
 
-    fn write(&mut self, name: &str, value: &Json, is_force: bool) -> Result<(), Message> {
-        let target = self.host.identity().target;
-        let unknown = || Message::new("link.no-device").with("device", name);
-        let point = Point::named(name, target).ok_or_else(unknown)?;
-        if is_force && !point.is_bit() {
+    fn write(&mut self, name: &str, value: &Json, way: Way) -> Result<(), Message> {
+        let point = self.point(name)?;
+        if way == Way::Force && !point.is_bit() {
             return Err(Message::new("link.no-relay").with("device", name));
         }
         let wrong = || Message::new("link.no-value").with("device", name).with("value", value);
         let value = Value::of_json(value).ok_or_else(wrong)?;
         let number = point.number(&value).ok_or_else(wrong)?;
-        self.host.write(point, number).map_err(|error| told(&error))
+        let written = match (way, &mut self.watching) {
+            (Way::Hold, Some(watching)) => watching.holds.hold(&mut self.host, point, number),
+            (Way::Hold, None) => return Err(Message::new("link.not-monitored")),
+            _ => self.host.write(point, number),
+        };
+        written.map_err(|error| told(&error))
+    }
+
+    fn release(&mut self, name: &str) -> Result<(), Message> {
+        let point = self.point(name)?;
+        if let Some(watching) = &mut self.watching {
+            watching.holds.release(point);
+        }
+        Ok(())
+    }
+
+    fn point(&self, name: &str) -> Result<Point, Message> {
+        let unknown = || Message::new("link.no-device").with("device", name);
+        Point::named(name, self.host.identity().target).ok_or_else(unknown)
     }
 }
 

@@ -1,16 +1,19 @@
 //! What of a program in a PLC is on the screen: the devices there are watched, and power is computed from their values.
 
-use super::super::simulation::{Monitor, Picture, compiled, files_around};
+use super::super::alarms::Watchman;
+use super::super::simulation::{Monitor, Picture, compiled, files_around, panel_rows};
 use super::super::to_proto::Place;
 use super::super::workspace::Workspace;
 use super::drift::encoded;
+use super::recording::SharedRecording;
 use crate::document::Document;
-use crate::link::{Host, LinkError, Mode, Part, Point, Status, Transport, Watch};
+use crate::link::{Holds, Host, LinkError, Mode, NamesOfPlc, Part, Point, Status, Transport, Watch};
 use crate::machine_code::Image;
-use crate::simulate::{Code, Machine, Value, Variable};
+use crate::simulate::{Code, Machine, Names, Value, Variable};
 use crate::target::{Device, Flow, Operand, Target};
 use crate::text::{Message, Span};
-use serde_json::json;
+use rustc_hash::{FxHashMap, FxHashSet};
+use serde_json::{Value as Json, json};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use tower_lsp::ls_types::{Range, Uri};
@@ -22,11 +25,19 @@ pub(super) struct Watching {
     code: Option<Arc<Code>>,
     monitor: Monitor,
     names: Vec<String>,
+    /// What of the names can be read.
+    known: Vec<(String, Point)>,
+    alarms: Watchman<Point>,
+    /// What is held at which values.
+    pub(super) holds: Holds,
+    recording: SharedRecording,
+    /// What the recording wanted last.
+    recorded: Vec<String>,
     watch: Watch,
     /// Which variable of the code each point is.
     variables: Vec<Option<Variable>>,
-    /// The names of the first of the points.
-    known: Vec<String>,
+    /// What was read last.
+    values: FxHashMap<Point, Value>,
     /// The program in a PLC that has what was read, for what contacts of edges saw before.
     machine: Option<Machine<u8>>,
     looks: u64,
@@ -35,7 +46,9 @@ pub(super) struct Watching {
     /// Bytes of rungs that depend on something that is not read.
     unknown: Vec<std::ops::Range<usize>>,
     edition: u64,
+    /// When the first look was, and the last one.
     started_ns: Option<i64>,
+    now_ns: i64,
 }
 
 /// The longest list of devices; each 64 bytes of values are an exchange of their own.
@@ -43,22 +56,28 @@ const MOST_POINTS: usize = 400;
 
 impl Watching {
     /// Nothing of this program yet.
-    pub(super) fn new(uri: Uri) -> Watching {
+    pub(super) fn new(uri: Uri, recording: SharedRecording) -> Watching {
         Watching {
             uri,
             files: Vec::new(),
             code: None,
             monitor: Monitor::default(),
             names: Vec::new(),
+            known: Vec::new(),
+            alarms: Watchman::new("plc"),
+            holds: Holds::default(),
+            recording,
+            recorded: Vec::new(),
             watch: Watch::default(),
             variables: Vec::new(),
-            known: Vec::new(),
+            values: FxHashMap::default(),
             machine: None,
             looks: 0,
             sum: None,
             unknown: Vec::new(),
             edition: 0,
             started_ns: None,
+            now_ns: 0,
         }
     }
 
@@ -100,15 +119,39 @@ impl Watching {
         self.sum = image.map(|image| image.parameters().sum());
         self.code = compiled(&self.files).ok().map(|(_, watched)| watched);
         self.unknown.clear();
-        let named = self.names.iter().filter_map(|name| {
-            let point = Point::named(name, target).filter(|point| point.is_reached(target))?;
-            Some((name.clone(), point))
-        });
-        let (known, mut points): (Vec<String>, Vec<Point>) = named.unzip();
-        self.known = known;
+        let names = NamesOfPlc(target);
+        let named = self.names.iter().filter_map(|name| Some((name.clone(), names.variable(name)?)));
+        self.known = named.collect();
+        self.alarms.follow(workspace, &self.uri, &names);
+        self.recorded = self.recording.wanted();
+        let mut points: Vec<Point> = self.holds.held().iter().map(|(point, _)| *point).collect();
+        points.extend(self.known.iter().map(|(_, point)| *point));
+        points.extend(self.alarms.variables());
+        points.extend(self.recorded.iter().filter_map(|name| names.variable(name)));
+        // What was asked for by name is read in any case.
+        let most = MOST_POINTS.max(points.len());
+        points.extend(self.shown().filter(|point| point.is_reached(target)));
+        let mut seen = FxHashSet::default();
+        points.retain(|point| seen.insert(*point));
+        if points.len() > most {
+            points.truncate(most);
+            // More than is read: what is shown depends on something that is not.
+            self.unknown.push(0..usize::MAX);
+        }
+        let code = self.code.as_ref();
+        let variable = |point: &Point| code.and_then(|code| code.variable(&point.to_string()));
+        self.variables = points.iter().map(variable).collect();
+        self.watch = Watch::new(points);
+        self.machine = None;
+        Ok(())
+    }
+
+    /// What the text on the screen depends on; notes which rungs of it depend on something that is not read.
+    fn shown(&mut self) -> impl Iterator<Item = Point> + use<> {
+        let number = self.number();
         let mut shown = BTreeSet::new();
         for (file, (_, _, document)) in self.files.iter().enumerate() {
-            let is_own = file == number;
+            let is_own = Some(file) == number;
             for at in document.chunks() {
                 let span = at.start..at.start + at.chunk.len();
                 let is_shown = is_own && self.monitor.shows(&span);
@@ -133,70 +176,124 @@ impl Watching {
                 }
             }
         }
-        points.extend(shown.into_iter().flat_map(points_of).filter(|point| point.is_reached(target)));
-        let most = MOST_POINTS.max(self.known.len());
-        if points.len() > most {
-            points.truncate(most);
-            // More than is read: what is shown depends on something that is not.
-            self.unknown.push(0..usize::MAX);
-        }
-        let code = self.code.as_ref();
-        let variable = |point: &Point| code.and_then(|code| code.variable(&point.to_string()));
-        self.variables = points.iter().map(variable).collect();
-        self.watch = Watch::new(points);
-        self.machine = None;
-        Ok(())
+        shown.into_iter().flat_map(points_of)
     }
 
     fn number(&self) -> Option<usize> {
         self.files.iter().position(|(file, ..)| *file == self.uri)
     }
 
-    /// Reads what is watched; gives what the client is to show, if it shows anything.
-    pub(super) fn picture<T: Transport>(
-        &mut self,
-        host: &mut Host<T>,
-        workspace: &Workspace,
-        status: &Status,
-    ) -> Result<Option<Picture>, LinkError> {
-        let mode = status.mode;
-        if workspace.snapshot().open(&self.uri).is_none_or(|open| !open.is_open) {
-            return Ok(None);
-        }
+    /// Whether the editor still has the document.
+    pub(super) fn is_open(&self, workspace: &Workspace) -> bool {
+        workspace.snapshot().open(&self.uri).is_some_and(|open| open.is_open)
+    }
+
+    /// Whether what is read is what is to be read.
+    fn is_up_to_date(&self, workspace: &Workspace) -> bool {
         let is_same = |(uri, version, document): &(Uri, i32, Document)| {
             let snapshot = workspace.snapshot();
             snapshot
                 .open(uri)
                 .is_none_or(|open| open.version == *version && open.document.is_instance(document))
         };
-        if !self.files.iter().all(is_same) && self.follow(workspace, host.identity().target, status).is_err()
-        {
-            return Ok(None);
+        let is_read = |(point, _): &(Point, i64)| self.watch.points().contains(point);
+        self.files.iter().all(is_same)
+            && !self.alarms.is_outdated(workspace, &self.uri)
+            && self.recorded == self.recording.wanted()
+            && self.holds.held().iter().all(is_read)
+    }
+
+    /// Reads what is watched, if somebody has a use for it, and writes again what is held; whether that was so.
+    ///
+    /// # Errors
+    /// If the line fails.
+    pub(super) fn look<T: Transport>(
+        &mut self,
+        host: &mut Host<T>,
+        workspace: &Workspace,
+        status: &Status,
+    ) -> Result<bool, LinkError> {
+        let target = host.identity().target;
+        if !self.is_up_to_date(workspace) && self.follow(workspace, target, status).is_err() {
+            return Ok(false);
         }
-        if self.monitor.is_empty() {
-            return Ok(None);
+        let is_unwatched = self.monitor.is_empty() && self.alarms.is_empty();
+        if is_unwatched && self.recorded.is_empty() && self.holds.held().is_empty() {
+            return Ok(false);
         }
-        let values = host.poll(&mut self.watch)?;
-        let now_ns = host.line().now().as_nanos() as i64;
-        let start = *self.started_ns.get_or_insert(now_ns);
+        let numbers = host.poll(&mut self.watch)?;
+        self.now_ns = host.line().now().as_nanos() as i64;
+        if self.started_ns.is_none() {
+            self.started_ns = Some(self.now_ns);
+            let most = workspace.snapshot().open(&self.uri).and_then(|open| open.manifest.monitor.record);
+            self.recording.begin(target, most);
+        }
         self.looks += 1;
-        let Some(number) = self.number() else { return Ok(None) };
-        let (_, version, document) = &self.files[number];
+        let points = self.watch.points().iter();
+        self.values = points.zip(numbers).map(|(point, number)| (*point, point.value(number))).collect();
+        let read = &self.values;
+        self.recording.note(self.time_ns(), read.iter().map(|(point, value)| (*point, value)));
+        self.alarms.look(self.time_ns(), &|point| read.get(&point).cloned().unwrap_or(point.value(0)));
+        self.holds.rewrite(host, &|point| point.number(read.get(&point)?))?;
+        Ok(true)
+    }
+
+    /// The time since the first look, in nanoseconds.
+    fn time_ns(&self) -> i64 {
+        self.started_ns.map_or(0, |started| self.now_ns - started)
+    }
+
+    /// Tells which alarms are raised or gone.
+    pub(super) fn tell_alarms(&mut self, tokio: &tokio::runtime::Handle, workspace: &Workspace) {
+        self.alarms.tell(tokio, workspace, &self.uri);
+    }
+
+    /// Nobody watches any more: its alarms are told as gone, and what was held is given.
+    pub(super) fn end(&mut self, tokio: &tokio::runtime::Handle, workspace: &Workspace) -> Vec<(Point, i64)> {
+        self.alarms.end(self.time_ns());
+        self.tell_alarms(tokio, workspace);
+        self.holds.release_all()
+    }
+
+    /// What belongs on a panel of the program, and of what is named besides, as far as the port reaches it; see
+    /// `rungwise.simulate.panel` for the JSON.
+    ///
+    /// # Errors
+    /// If the text cannot be run.
+    pub(super) fn panel(
+        &self,
+        workspace: &Workspace,
+        target: &'static Target,
+        more: &[String],
+    ) -> Result<Json, Message> {
+        let gone = || Message::new("request.no-document").with("command", super::PREFIX);
+        let (code, _) = compiled(&self.files)?;
+        let snapshot = workspace.snapshot();
+        let around = snapshot.around(snapshot.open(&self.uri).ok_or_else(gone)?);
+        let names = NamesOfPlc(target);
+        let mut rows = panel_rows(&around.view(), &Machine::new(code), more);
+        rows.retain(|row| row["name"].as_str().is_some_and(|name| names.variable(name).is_some()));
+        Ok(json!({ "rows": rows }))
+    }
+
+    /// What the client is to show of the last look.
+    pub(super) fn picture(&mut self, workspace: &Workspace, status: &Status) -> Option<Picture> {
+        let mode = status.mode;
+        let (_, version, document) = &self.files[self.number()?];
         let place = Place::new(document, workspace.snapshot().manner);
         let mut elements = Vec::new();
         if let Some(code) = &self.code {
             let machine = self.machine.get_or_insert_with(|| Machine::new(Arc::clone(code)));
-            let held = self.variables.iter().zip(self.watch.points().iter().zip(&values));
-            let held = held.filter_map(|(variable, (point, value))| {
-                let value = if point.is_bit() { Value::Bit(*value != 0) } else { Value::Number(*value) };
-                Some(((*variable)?, value))
-            });
-            machine.hold_only(held);
+            let read = self.variables.iter().zip(self.watch.points());
+            let read =
+                read.filter_map(|(variable, point)| Some(((*variable)?, self.values.get(point)?.clone())));
+            machine.hold_only(read);
             let shown = self.monitor.instructions(code);
             let mut sights = Vec::new();
             // No power flows in a program that is not executed.
             if mode == Mode::Run && self.sum == Some(status.parameters.sum()) {
-                machine.scan_watched(now_ns - start, &mut |sight| {
+                let time_ns = self.started_ns.map_or(0, |started| self.now_ns - started);
+                machine.scan_watched(time_ns, &mut |sight| {
                     if shown.contains(&sight.instruction) {
                         sights.push(sight);
                     }
@@ -204,6 +301,14 @@ impl Watching {
                 });
             }
             elements = self.monitor.elements(place, code, &sights, machine);
+            if !self.holds.held().is_empty() {
+                let held = |variable| {
+                    let at = self.variables.iter().position(|own| *own == Some(variable))?;
+                    let point = *self.watch.points().get(at)?;
+                    self.holds.of(point).map(|number| point.value(number))
+                };
+                elements.extend(self.monitor.forced(place, code, &held));
+            }
             let unknown: Vec<Range> = self
                 .unknown
                 .iter()
@@ -212,27 +317,27 @@ impl Watching {
             elements.retain(|element| {
                 let line = element["range"]["start"]["line"].as_u64().unwrap_or(0) as u32;
                 element["kind"] == "value"
+                    || element["kind"] == "forced"
                     || !unknown.iter().any(|range| range.start.line <= line && line < range.end.line.max(1))
             });
         }
-        let named = self.known.iter().zip(self.watch.points().iter().zip(&values));
-        let values = named.map(|(name, (point, value))| {
-            let value = if point.is_bit() { json!(*value != 0) } else { json!(value) };
-            json!({ "device": name, "value": value, "forced": false })
+        let values = self.known.iter().filter_map(|(name, point)| {
+            let value = self.values.get(point)?.json();
+            Some(json!({ "device": name, "value": value, "forced": self.holds.of(*point).is_some() }))
         });
-        Ok(Some(Picture {
+        Some(Picture {
             uri: self.uri.clone(),
             version: *version,
             source: "plc",
             mode: if mode == Mode::Run { "running" } else { "stopped" },
             scan: self.looks - 1,
-            time_ms: (now_ns - start) as f64 / 1e6,
+            time_ms: self.time_ns() as f64 / 1e6,
             edition: self.edition,
-            branch: 0,
+            branch: self.recording.branch(),
             elements,
             values: values.collect(),
             errors: Vec::new(),
-        }))
+        })
     }
 }
 

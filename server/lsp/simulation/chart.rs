@@ -53,7 +53,7 @@ pub(super) fn file(
     format: &str,
 ) -> Result<Json, Message> {
     let names = match wanted.names.is_empty() {
-        true => panel::rows(view, session.machine()).iter().flat_map(names_of).collect(),
+        true => panel::rows(view, session.machine(), &[]).iter().flat_map(names_of).collect(),
         false => wanted.names.clone(),
     };
     let code = session.machine().code();

@@ -3,22 +3,19 @@
 use super::super::to_proto::Place;
 use super::monitor::unit_at;
 use crate::document::{Mention, Symbol, Use};
-use crate::simulate::{Code, Machine, Variable};
+use crate::simulate::{Code, Value, Variable};
 use crate::target::Device;
 use crate::text::Span;
 use serde_json::{Value as Json, json};
 use std::ops::Range as Bytes;
 
-/// The names in a window of what is forced, with the values that it is held at.
+/// The names in a window of what is forced, with the values that it is held at, as `held` says.
 pub(super) fn forced(
     place: Place<'_>,
     window: &Bytes<usize>,
     code: &Code,
-    machine: &Machine<u8>,
+    held: &impl Fn(Variable) -> Option<Value>,
 ) -> Vec<Json> {
-    if !machine.is_any_forced() {
-        return Vec::new();
-    }
     let mut elements = Vec::new();
     let shown = place.document.chunks().skip_while(|at| at.start < window.start);
     for at in shown.take_while(|at| at.start < window.end) {
@@ -26,10 +23,7 @@ pub(super) fn forced(
         for mention in at.chunk.mentions().iter().filter(|mention| mention.usage != Use::Declare) {
             let span = mention.span.shifted(at.start);
             let variables = variables(mention, &name_at(place, span), unit, code);
-            let Some(held) = variables.into_iter().find(|variable| machine.is_forced(*variable)) else {
-                continue;
-            };
-            let value = machine.value(held, 0);
+            let Some(value) = variables.into_iter().find_map(held) else { continue };
             elements.push(json!({
                 "range": place.range(span),
                 "kind": "forced",

@@ -122,8 +122,13 @@ impl Monitor {
     }
 
     /// The marks of what is forced, in what is shown.
-    pub(in crate::lsp) fn forced(&self, place: Place<'_>, code: &Code, machine: &Machine<u8>) -> Vec<Json> {
-        self.windows.iter().flat_map(|window| forced(place, window, code, machine)).collect()
+    pub(in crate::lsp) fn forced(
+        &self,
+        place: Place<'_>,
+        code: &Code,
+        held: &impl Fn(Variable) -> Option<Value>,
+    ) -> Vec<Json> {
+        self.windows.iter().flat_map(|window| forced(place, window, code, held)).collect()
     }
 
     /// The values of these names, or of those that are watched.

@@ -4,7 +4,7 @@ use crate::document::ProjectView;
 use crate::ide::{self, UsageKey, UsageOf, UsageRow, UsageWish};
 use crate::il::iec::SectionKind;
 use crate::simulate::{Code, CountedPreset, Machine, Value, Variable};
-use crate::target::{Device, DeviceKind, Location};
+use crate::target::{Device, DeviceKind, Location, Operand};
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde_json::{Value as Json, json};
 
@@ -13,8 +13,9 @@ const MOST_OF_A_RUN: u16 = 64;
 /// More rows nobody operates.
 const MOST_ROWS: usize = 5_000;
 
-/// The rows, group by group in reading order; see the head of [`simulation`](super) for their JSON.
-pub(super) fn rows(view: &ProjectView<'_>, machine: &Machine<u8>) -> Vec<Json> {
+/// The rows of what the program uses and of `more` devices or variables, group by group in reading order; see the head
+/// of [`simulation`](super) for their JSON.
+pub(in crate::lsp) fn rows(view: &ProjectView<'_>, machine: &Machine<u8>, more: &[String]) -> Vec<Json> {
     let usage = ide::usage_of(view, &UsageWish { places: false, of: UsageOf::All });
     let code = machine.code();
     let mut panel =
@@ -28,6 +29,9 @@ pub(super) fn rows(view: &ProjectView<'_>, machine: &Machine<u8>) -> Vec<Json> {
     // What the code has and nobody mentions by this name.
     for name in code.named() {
         panel.variable(&name, "variables", Said::default());
+    }
+    for name in more {
+        panel.chosen(name);
     }
     panel.rows.truncate(MOST_ROWS);
     panel.rows.sort_by_key(|(group, _)| GROUPS.iter().position(|known| known == group));
@@ -134,6 +138,20 @@ impl Panel<'_> {
             }
         }
         self.rows.push((group, row));
+    }
+
+    /// What somebody wants to see, whether the program uses it or not.
+    fn chosen(&mut self, name: &str) {
+        let code = self.machine.code();
+        match Operand::read(name.trim(), code.target.model) {
+            Operand::Device(device) if code.target.is_fx() => {
+                let own = self.view.here().comments().of_device(device);
+                let symbol = own.map_or("", |own| own.symbol.as_str());
+                let comment = own.map_or("", |own| own.comment.as_str());
+                self.device(device, Said { symbol, comment, reads: 0, writes: 0 });
+            }
+            _ => self.variable(name, "variables", Said::default()),
+        }
     }
 
     /// Where a variable lies, or what of a program it is.

@@ -4,13 +4,16 @@ mod program;
 
 mod telling;
 
+use super::super::alarms::Watchman;
 use super::super::to_proto::Place;
 use super::super::workspace::Workspace;
 use super::chart::Wanted;
 use super::monitor::{Monitor, MonitorMethod};
 use crate::document::Document;
 use crate::scenario::{InputKind, Recording};
-use crate::simulate::{ChangeSearch, Code, Drivers, Error, Recorder, Session, Sight, Touch, Value, Variable};
+use crate::simulate::{
+    ChangeSearch, Code, Drivers, Error, NamesOfCode, Recorder, Session, Sight, Touch, Value, Variable,
+};
 use crate::text::Message;
 use program::{around, files};
 pub(in crate::lsp) use program::{compiled, files_around};
@@ -48,7 +51,7 @@ pub(super) enum Deed {
 pub(super) enum Question {
     Watch { ranges: Option<Vec<Range>>, names: Option<Vec<String>> },
     State { names: Option<Vec<String>> },
-    Panel,
+    Panel { more: Vec<String> },
     Trace { wanted: Wanted },
     Export { wanted: Wanted, format: String },
     Record { names: Option<Vec<String>> },
@@ -150,6 +153,7 @@ struct Running {
     recording: Recording,
     monitor: Monitor,
     recorder: Recorder,
+    alarms: Watchman<Variable>,
     /// How often the program was made into code.
     edition: u64,
     /// How often scans were taken back.
@@ -216,6 +220,10 @@ impl Thread {
     /// Tells the client what it shows, if it is time for that.
     fn show(&mut self) {
         let (Some(running), Some(workspace)) = (&mut self.running, self.workspace.upgrade()) else { return };
+        if running.is_over {
+            running.alarms.end(running.session.machine().now_ns());
+        }
+        running.alarms.tell(&self.tokio, &workspace, &self.uri);
         let Some(picture) = running.picture(&workspace, &self.uri) else { return };
         let client = workspace.client.clone();
         let is_last = running.is_over;
@@ -271,9 +279,10 @@ impl Thread {
         running.is_paused = is_paused;
         if let Some(before) = self.running.take() {
             running.session.take_over(before.session.machine());
-            running.monitor = before.monitor;
+            (running.monitor, running.alarms) = (before.monitor, before.alarms);
             (running.edition, running.branch) = (before.edition + 1, before.branch + 1);
         }
+        running.watch_alarms(workspace, &self.uri);
         // The first scan is there as soon as it is asked for.
         running.scan();
         running.resume();
@@ -303,6 +312,7 @@ impl Running {
             recording: Recording::default(),
             monitor: Monitor::default(),
             recorder: Recorder::default(),
+            alarms: Watchman::new("simulator"),
             edition: 0,
             branch: 0,
             errors: Vec::new(),
@@ -424,7 +434,9 @@ impl Running {
             }
         };
         self.is_news = true;
-        self.recorder.note(self.session.machine());
+        let machine = self.session.machine();
+        self.recorder.note(machine);
+        self.alarms.look(machine.now_ns(), &|variable| machine.value(variable, 0));
         self.note(outcome.errors);
     }
 
@@ -538,6 +550,9 @@ impl Running {
             })
         };
         if self.files.iter().all(is_same) {
+            if self.alarms.is_outdated(workspace, uri) {
+                self.watch_alarms(workspace, uri);
+            }
             return;
         }
         let files = files(&around);
@@ -551,11 +566,18 @@ impl Running {
                 self.edition += 1;
                 (self.watched, self.is_outdated) = (watched, false);
                 self.sights.clear();
+                self.watch_alarms(workspace, uri);
             }
             Err(_) => self.is_outdated = true,
         }
         (self.files, self.drivers) = (files, None);
         self.locate(workspace, uri);
+    }
+
+    /// Watches the alarms of the project in the program as it is now.
+    fn watch_alarms(&mut self, workspace: &Workspace, uri: &Uri) {
+        let names = NamesOfCode { code: self.session.machine().code(), instruction: None };
+        self.alarms.follow(workspace, uri, &names);
     }
 
     /// Finds what the client shows in the text as it is now.

@@ -562,6 +562,65 @@ check('a program goes into a PLC after a look at what changes, and its power is 
   assert(not has_coil())
   vim.cmd('Rungwise plc force X0 1')
   until_true('the motor on in the PLC', has_coil)
+  -- The table of what the program uses and of a register that it does not, with what they are in the PLC.
+  vim.cmd('Rungwise plc table')
+  local shown_panel = vim.api.nvim_get_current_buf()
+  local function line_of(name)
+    for number, line in ipairs(vim.api.nvim_buf_get_lines(shown_panel, 0, -1, false)) do
+      if line:find(' ' .. name .. ' ', 1, true) then
+        return line, number
+      end
+    end
+  end
+  until_true('the motor on in the table', function()
+    return (line_of('Y0') or ''):find('●') ~= nil
+  end)
+  local input = vim.ui.input
+  local typed = 'd100'
+  vim.ui.input = function(_, done)
+    done(typed)
+  end
+  vim.api.nvim_feedkeys('a', 'xt', false)
+  until_true('a row for D100', function()
+    return line_of('D100') ~= nil
+  end)
+  vim.fn.confirm = function(question)
+    table.insert(questions, question)
+    return 1
+  end
+  local _, number = line_of('D100')
+  vim.api.nvim_win_set_cursor(0, { number, 0 })
+  typed = '-2'
+  vim.api.nvim_feedkeys('=', 'xt', false)
+  until_true('the number in the PLC', function()
+    return (line_of('D100') or ''):find(' -2', 1, true) ~= nil
+  end)
+  assert(#questions == 2 and questions[2]:find('may move', 1, true), vim.inspect(questions))
+  vim.api.nvim_feedkeys('v', 'xt', false)
+  until_true('the number in hexadecimal', function()
+    return (line_of('D100') or ''):find('HFFFE', 1, true) ~= nil
+  end)
+  vim.api.nvim_feedkeys('f', 'xt', false)
+  until_true('the mark of what is held', function()
+    return (line_of('D100') or ''):find('[forced]', 1, true) ~= nil and #(state().held or {}) == 1
+  end)
+  vim.api.nvim_feedkeys('r', 'xt', false)
+  until_true('nothing held', function()
+    return (line_of('D100') or ''):find('[forced]', 1, true) == nil and #state().held == 0
+  end)
+  vim.fn.confirm = confirm
+  vim.ui.input = input
+  vim.cmd.close()
+  vim.api.nvim_set_current_buf(program)
+  local recorded = vim.fn.tempname() .. '.csv'
+  vim.cmd('Rungwise plc record ' .. recorded .. ' D100')
+  until_true('a file of what was seen', function()
+    return vim.fn.filereadable(recorded) == 1
+  end)
+  local rows = vim.fn.readfile(recorded)
+  assert(rows[1] == 'scan,time_ms,D100' and vim.iter(rows):any(function(row)
+    return row:find(',-2$') ~= nil
+  end), vim.inspect(rows))
   vim.cmd('Rungwise plc stop')
   until_true('the PLC in STOP', function()
     return state().mode == 'STOP' and not has_coil()

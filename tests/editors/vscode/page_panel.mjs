@@ -14,7 +14,7 @@ export const PANEL_TESTS = {
 };
 
 /** The page of the panel. */
-async function panelPage(workbench) {
+export async function panelPage(workbench) {
   return workbench.until('the panel', async () => {
     for (const frame of workbench.page.frames().slice(1)) {
       if ((await frame.locator('.toolbar .mode').count().catch(() => 0)) > 0) {

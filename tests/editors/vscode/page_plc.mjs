@@ -2,20 +2,38 @@
 
 import { spawn } from 'node:child_process';
 import { createInterface } from 'node:readline';
+import { fileURLToPath } from 'node:url';
+import { panelPage } from './page_panel.mjs';
 
 /** The files of these checks, and the fixtures of which they are copies. */
-export const PLC_FILES = { 'downloaded.lad': 'motor.lad' };
+export const PLC_FILES = { 'downloaded.lad': 'motor.lad', 'plant/rungwise.toml': 'alarm.toml', 'plant/table.lad': 'motor.lad' };
 
 export const PLC_TESTS = {
   'a program is downloaded to a PLC after a look at what changes, and its power is shown in the text': download,
+  'a table of devices shows, writes and holds what is in a PLC, and an alarm is told': table,
 };
 
-/** A virtual PLC with an empty memory, and where it listens. */
-async function virtualPlc() {
-  const plc = spawn(process.env.RUNGWISE_SERVER, ['plc', '--listen', '127.0.0.1:0'], { stdio: ['pipe', 'pipe', 'inherit'] });
+/** A virtual PLC, with an empty memory if nothing else is said, and where it listens. */
+async function virtualPlc(...more) {
+  const plc = spawn(process.env.RUNGWISE_SERVER, ['plc', '--listen', '127.0.0.1:0', ...more], { stdio: ['pipe', 'pipe', 'inherit'] });
   const lines = createInterface({ input: plc.stdout });
-  const [line] = await new Promise((resolve) => lines.once('line', (...words) => resolve(words)));
-  return { plc, port: line.trim().split(' ').at(-1) };
+  const next = () => new Promise((resolve) => lines.once('line', resolve));
+  const port = (await next()).trim().split(' ').at(-1);
+  /** What somebody in front of it reads of a device. */
+  const shown = (device) => {
+    const answer = next();
+    plc.stdin.write(`${device}\n`);
+    return answer;
+  };
+  return { plc, port, shown };
+}
+
+async function connect(workbench, port) {
+  await ask(workbench, 'Rungwise: PLC: Connect', 'Port of the PLC');
+  const other = workbench.page.locator('.quick-input-list .monaco-list-row', { hasText: 'Another port' }).first();
+  await other.click();
+  await workbench.page.locator('.quick-input-widget input').first().waitFor({ timeout: 45_000 });
+  await answer(workbench, port);
 }
 
 /** Whether a coil of the text is painted as energised. */
@@ -50,11 +68,7 @@ async function download(workbench) {
   try {
     await workbench.clear();
     await workbench.openFile('downloaded.lad');
-    await ask(workbench, 'Rungwise: PLC: Connect', 'Port of the PLC');
-    const other = workbench.page.locator('.quick-input-list .monaco-list-row', { hasText: 'Another port' }).first();
-    await other.click();
-    await workbench.page.locator('.quick-input-widget input').first().waitFor({ timeout: 45_000 });
-    await answer(workbench, port);
+    await connect(workbench, port);
     await workbench.status('FX2N RUN');
     await workbench.command('Rungwise: PLC: Download');
     const start = workbench.page.locator('.monaco-dialog-box .monaco-button', { hasText: 'Download and Start' }).first();
@@ -80,6 +94,64 @@ async function download(workbench) {
     await workbench.until('the motor off', async () => !(await hasPower(workbench)));
     await workbench.command('Rungwise: PLC: Disconnect');
     await workbench.screenshot('52-plc-disconnected');
+    await workbench.clear();
+  } finally {
+    plc.kill();
+  }
+}
+
+async function table(workbench) {
+  const motor = fileURLToPath(new URL('../fixtures/motor.lad', import.meta.url));
+  const { plc, port, shown } = await virtualPlc('--program', motor);
+  try {
+    await workbench.clear();
+    await workbench.openFile('table.lad');
+    await connect(workbench, port);
+    await workbench.status('FX2N RUN');
+    await workbench.command('Rungwise: PLC: Device Table');
+    const panel = await panelPage(workbench);
+    const row = (name) => panel.locator(`[data-name="${name}"]`);
+    const isOn = async (name) => (await row(name).getAttribute('data-on')) === 'true';
+    await row('X0').waitFor();
+    // Who has not agreed that the panel may write is asked, once.
+    await row('X0').locator('.switch').click();
+    await workbench.page.locator('.monaco-dialog-box .monaco-button', { hasText: 'Operate' }).first().click();
+    await workbench.until('the motor', () => isOn('Y0'));
+    // A register that the program does not use, by keys: shown as a floating point number, written, held.
+    await panel.locator('[aria-label^="Add devices"]').fill('D100');
+    await panel.locator('[aria-label^="Add devices"]').press('Enter');
+    await row('D100').waitFor();
+    await row('D100').locator('.chart').focus();
+    for (let count = 0; count < 4; count += 1) {
+      await workbench.page.keyboard.press('v');
+    }
+    await row('D100').locator('.number').fill('1.5');
+    await row('D100').locator('.number').press('Enter');
+    await workbench.until('1.5 in the PLC', async () => (await shown('D101')) === 'D101 = 16320');
+    await row('D100').locator('.chart').focus();
+    await workbench.page.keyboard.press('v');
+    await row('D100').locator('.number').fill('120');
+    await row('D100').locator('.number').press('Enter');
+    await workbench.until('the number', async () => (await shown('D100')) === 'D100 = 120');
+    // The alarm of the project: a message, and a row with its time in the view.
+    await workbench.page.locator('.notifications-toasts', { hasText: 'The tank is too full' }).first().waitFor({ timeout: 45_000 });
+    await row('D100').locator('.chart').focus();
+    await workbench.page.keyboard.press('f');
+    await workbench.until('the mark of what is held', async () => (await row('D100').getAttribute('data-forced')) === 'true');
+    plc.stdin.write('D100=3\n');
+    await workbench.until('what is held, written again', async () => (await shown('D100')) === 'D100 = 120');
+    await workbench.page.locator('.statusbar-item', { hasText: 'FX2N RUN' }).first().click();
+    await workbench.page.locator('.pane-body .monaco-list-row', { hasText: 'since' }).first().waitFor({ timeout: 45_000 });
+    await workbench.screenshot('53-plc-table');
+    await row('D100').locator('.chart').focus();
+    await workbench.page.keyboard.press('r');
+    await workbench.until('no mark', async () => (await row('D100').getAttribute('data-forced')) === null);
+    await row('D100').locator('.number').fill('7');
+    await row('D100').locator('.number').press('Enter');
+    await workbench.until('the other number', async () => (await shown('D100')) === 'D100 = 7');
+    await workbench.page.locator('.pane-body .monaco-list-row', { hasText: ' – ' }).first().waitFor({ timeout: 45_000 });
+    await workbench.command('Rungwise: PLC: Disconnect');
+    await workbench.until('a panel that says so', async () => (await panel.locator('.mode').innerText()) === 'Stopped');
     await workbench.clear();
   } finally {
     plc.kill();

@@ -1,7 +1,7 @@
 // Uses VS Code as a person does: opens files, types, points with the mouse, and looks at the page.
 
-import { copyFileSync, readFileSync } from 'node:fs';
-import { join } from 'node:path';
+import { copyFileSync, mkdirSync, readFileSync } from 'node:fs';
+import { dirname, join } from 'node:path';
 import { openBrowser } from './browser.mjs';
 import { DEBUGGING_FILES, DEBUGGING_TESTS } from './page_debugging.mjs';
 import { DEVICE_FILES, DEVICE_TESTS } from './page_devices.mjs';
@@ -19,6 +19,7 @@ const REPAIR_LIMIT_MS = 20_000;
 
 export async function runPageTests(server, workspace, home, report, artefacts) {
   for (const [name, fixture] of Object.entries({ ...VIEW_FILES, ...DEVICE_FILES, ...TRANSLATION_FILES, ...SIMULATION_FILES, ...PLC_FILES, ...PANEL_FILES, ...TESTING_FILES, ...DEBUGGING_FILES })) {
+    mkdirSync(dirname(join(workspace, name)), { recursive: true });
     copyFileSync(join(workspace, fixture), join(workspace, name));
   }
   await server.start(workspace);

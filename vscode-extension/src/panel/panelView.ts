@@ -4,13 +4,15 @@ import * as vscode from 'vscode';
 import type { SimulationView } from '../simulationView';
 import { t } from '../words';
 import { newNonce, pageDocument } from './document';
-import { VERBS, type FromPage, type ToPage } from './messages';
+import { VERBS, type FromPage, type ToPage, type Verb } from './messages';
 import { parseMoment, parseRows, type Moment } from './rows';
 import type { TraceAnswer } from './traces';
 
 const TYPE = 'rungwise.panel';
 const LANGUAGES = ['ladder', 'plc-il'];
-const STOPPED: Moment = { mode: 'stopped', scan: 0, timeMs: 0, edition: 0, branch: 0, values: [] };
+/** What a panel may tell a PLC, and how its server calls that. */
+const PLC_VERBS: Readonly<Partial<Record<Verb, string>>> = { set: 'write', force: 'hold', release: 'release' };
+const STOPPED: Moment = { source: 'simulator', mode: 'stopped', scan: 0, timeMs: 0, edition: 0, branch: 0, values: [] };
 
 /** The panels of all programs. */
 export class PanelView implements vscode.WebviewPanelSerializer, vscode.Disposable {
@@ -75,7 +77,10 @@ export class PanelView implements vscode.WebviewPanelSerializer, vscode.Disposab
 /** The panel of a program. */
 class Panel {
   private names: readonly string[] = [];
+  private chosen: readonly string[] = [];
   private edition: number | undefined;
+  /** Whether somebody has said that this panel may write into the PLC. */
+  private isUnlocked = false;
 
   constructor(
     private readonly program: vscode.Uri,
@@ -118,11 +123,12 @@ class Panel {
 
   /** It was started, or stopped. */
   async simulationChanged(): Promise<void> {
-    if (this.simulation.isRunning(this.program)) {
+    if (this.simulation.source(this.program) !== undefined) {
       await this.readRows();
       await this.watch();
     } else {
       this.edition = undefined;
+      this.isUnlocked = false;
       this.tellPage({ type: 'moment', moment: STOPPED });
     }
   }
@@ -158,15 +164,18 @@ class Panel {
       case 'watch':
         this.names = message.names;
         return this.watch();
+      case 'choose':
+        this.chosen = message.names;
+        return this.readRows();
       case 'tell':
-        return this.order(message);
+        return this.isPlc ? this.orderPlc(message) : this.order(message);
       case 'trace': {
-        const answer = await this.simulation.tell(this.program, 'trace', message.question);
+        const answer = await this.ask('trace', message.question);
         return this.tellPage({ type: 'trace', id: message.id, answer: answer as TraceAnswer });
       }
       case 'export': {
         const { format, names } = message;
-        const answer = (await this.simulation.tell(this.program, 'export', { format, names })) as { text: string };
+        const answer = (await this.ask('export', { format, names })) as { text: string };
         return this.save(format, new TextEncoder().encode(answer.text));
       }
       case 'save':
@@ -188,14 +197,45 @@ class Panel {
     this.tellPage({ type: 'moment', moment: moment ?? STOPPED, id });
   }
 
+  private get isPlc(): boolean {
+    return this.simulation.source(this.program) === 'plc';
+  }
+
+  /** Asks who shows the program. */
+  private ask(verb: string, more: object): Promise<unknown> {
+    return this.isPlc ? this.simulation.tellPlc(this.program, verb, more) : this.simulation.tell(this.program, verb, more);
+  }
+
+  /** Writes into the PLC what the page wants, once a person has agreed that it may. */
+  private async orderPlc({ verb, more, id }: Extract<FromPage, { type: 'tell' }>): Promise<void> {
+    const own = PLC_VERBS[verb];
+    const isDone = own !== undefined && (own === 'release' || (await this.unlock()));
+    if (isDone) {
+      await this.simulation.tellPlc(this.program, own, more);
+    }
+    this.tellPage({ type: 'answered', id, isDone });
+  }
+
+  private async unlock(): Promise<boolean> {
+    if (!this.isUnlocked) {
+      const operate = t('Operate');
+      const detail = t('The machine may move. What is held is written again with each look; the program may write in between.');
+      this.isUnlocked = (await vscode.window.showWarningMessage(t('Let this panel write into the PLC?'), { modal: true, detail }, operate)) === operate;
+    }
+    return this.isUnlocked;
+  }
+
   private async state(): Promise<Moment | undefined> {
     return this.simulation.isRunning(this.program) ? parseMoment(await this.simulation.tell(this.program, 'state')) : STOPPED;
   }
 
   private async readRows(): Promise<void> {
-    const answer = await this.simulation.tell(this.program, 'panel');
+    if (this.simulation.source(this.program) === undefined) {
+      return;
+    }
+    const answer = await this.ask('panel', { names: this.chosen });
     const moment = parseMoment(answer);
-    this.edition = moment?.edition;
+    this.edition = moment?.edition ?? this.edition;
     this.tellPage({ type: 'rows', rows: parseRows(answer) });
     if (moment !== undefined) {
       this.tellPage({ type: 'moment', moment });

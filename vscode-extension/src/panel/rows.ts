@@ -1,5 +1,6 @@
 /** What is on the panel of a program: rows in groups, as the server's `rungwise.simulate.panel` tells them. Pure. */
 
+import type { Source } from '../simulation';
 import { t } from '../words';
 
 export type Group = 'inputs' | 'outputs' | 'timers' | 'counters' | 'states' | 'relays' | 'registers' | 'variables';
@@ -26,8 +27,9 @@ export interface Row {
   readonly unitMs?: number;
 }
 
-/** Where a simulation is. */
+/** Where a simulation is; of a PLC, scans are milliseconds from the first look on. */
 export interface Moment {
+  readonly source: Source;
   readonly mode: 'running' | 'paused' | 'stopped';
   readonly scan: number;
   readonly timeMs: number;
@@ -108,9 +110,12 @@ export function parseMoment(given: unknown): Moment | undefined {
   const optional = Object.entries({ firstScan: 'first_scan', scanMs: 'scan_ms', speed: 'speed' }).filter(
     ([, member]) => typeof state[member] === 'number',
   );
+  const source = state['source'] === 'plc' ? 'plc' : 'simulator';
   return {
-    mode,
-    scan: number('scan'),
+    source,
+    mode: source === 'plc' ? 'running' : mode,
+    scan: source === 'plc' ? Math.floor(number('time_ms')) : number('scan'),
+    ...(source === 'plc' && { scanMs: 1 }),
     timeMs: number('time_ms'),
     edition: number('edition'),
     branch: number('branch'),
@@ -132,9 +137,111 @@ export function grouped(rows: readonly Row[], filter: string): { readonly group:
   );
 }
 
+/** How the value of a register is written: the last two take the register behind it, too. */
+export const BASES = ['decimal', 'hexadecimal', 'binary', 'double', 'float'] as const;
+export type Base = (typeof BASES)[number];
+
+export function baseTitle(base: Base): string {
+  switch (base) {
+    case 'decimal':
+      return t('Decimal');
+    case 'hexadecimal':
+      return t('Hexadecimal');
+    case 'binary':
+      return t('Binary');
+    case 'double':
+      return t('32 bits');
+    case 'float':
+      return t('Floating point');
+  }
+}
+
+/** The bases in which a row can be shown. */
+export function basesOf({ name, type, unitMs }: Row): readonly Base[] {
+  if (type === 'bit' || unitMs !== undefined) {
+    return ['decimal'];
+  }
+  return /^D\d+$/.test(name) ? BASES : BASES.slice(0, 3);
+}
+
+/** What is read for a row in a base: of two registers the number of 32 bits. */
+export function readAs(name: string, base: Base): string {
+  return base === 'double' || base === 'float' ? `${name}:32` : name;
+}
+
+/** A number as it is written in a base. */
+export function written(value: Value, base: Base): string {
+  if (typeof value !== 'number' || !Number.isInteger(value)) {
+    return String(value);
+  }
+  const bits = value >= -0x8000 && value <= 0x7fff ? 16 : 32;
+  const pattern = bits === 16 ? value & 0xffff : value >>> 0;
+  switch (base) {
+    case 'hexadecimal':
+      return `H${pattern.toString(16).toUpperCase().padStart(bits / 4, '0')}`;
+    case 'binary':
+      return (pattern.toString(2).padStart(bits, '0').match(/.{4}/g) ?? []).join(' ');
+    case 'float':
+      return shortest(floatOf(value));
+    default:
+      return String(value);
+  }
+}
+
+/** The number that was typed in a base; `undefined` for what is none. */
+export function typedIn(text: string, base: Base, row: Pick<Row, 'least' | 'greatest'>): number | undefined {
+  const bare = text.replaceAll(/[\s_]/g, '');
+  switch (base) {
+    case 'hexadecimal':
+      return signed(/^(H|16#|0x)?[0-9a-f]+$/i.test(bare) ? Number.parseInt(bare.replace(/^(H|16#|0x)/i, ''), 16) : NaN, row);
+    case 'binary':
+      return signed(/^(2#|0b)?[01]+$/i.test(bare) ? Number.parseInt(bare.replace(/^(2#|0b)/i, ''), 2) : NaN, row);
+    case 'double':
+      return typedNumber(text, { least: -0x80000000, greatest: 0x7fffffff });
+    case 'float': {
+      const real = Number(bare);
+      return bare === '' || !Number.isFinite(Math.fround(real)) ? undefined : bitsOf(real);
+    }
+    default:
+      return typedNumber(text, row);
+  }
+}
+
+/** A pattern of bits as the signed number that it is in 16 or 32 bits. */
+function signed(pattern: number, { least = -0x8000 }: Pick<Row, 'least'>): number | undefined {
+  const bits = least < -0x8000 ? 32 : 16;
+  if (!(pattern < 2 ** bits)) {
+    return undefined;
+  }
+  return pattern >= 2 ** (bits - 1) ? pattern - 2 ** bits : pattern;
+}
+
+const CELL = new DataView(new ArrayBuffer(4));
+
+function floatOf(bits: number): number {
+  CELL.setInt32(0, bits);
+  return CELL.getFloat32(0);
+}
+
+function bitsOf(real: number): number {
+  CELL.setFloat32(0, real);
+  return CELL.getInt32(0);
+}
+
+/** The fewest digits that are this number of single precision. */
+function shortest(real: number): string {
+  for (let digits = 1; digits < 9; digits++) {
+    const text = real.toPrecision(digits);
+    if (Math.fround(Number(text)) === real) {
+      return String(Number(text));
+    }
+  }
+  return String(real);
+}
+
 /** All names whose values a row shows. */
-export function namesOf(row: Row): string[] {
-  return [row.name, row.contact, row.presetOf].filter((name) => name !== undefined);
+export function namesOf(row: Row, base: Base = 'decimal'): string[] {
+  return [row.name, readAs(row.name, base), row.contact, row.presetOf].filter((name, at, all) => name !== undefined && all.indexOf(name) === at) as string[];
 }
 
 /** What a chart shows when nobody has chosen: inputs, outputs, and timers. */

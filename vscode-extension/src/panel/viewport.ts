@@ -13,6 +13,8 @@ const LEAST_SPAN = 8;
 const MOST_SPAN = 50_000_000;
 
 export const FIRST_VIEW: Viewport = { from: 0, to: 300, follows: true };
+/** The same of a PLC, in milliseconds. */
+export const PLC_VIEW: Viewport = { from: 0, to: 10_000, follows: true };
 
 /** The same view when `last` is the newest scan. */
 export function follow(view: Viewport, last: number): Viewport {

@@ -30,8 +30,8 @@ impl Running {
                 self.locate(workspace, uri);
                 (None, None)
             }
-            Question::Panel => {
-                let rows = panel::rows(&around()?.view(), self.session.machine());
+            Question::Panel { more } => {
+                let rows = panel::rows(&around()?.view(), self.session.machine(), &more);
                 (None, Some(json!({ "rows": rows })))
             }
             Question::Trace { wanted } => {
@@ -100,7 +100,10 @@ impl Running {
             false => {
                 let machine = self.session.machine();
                 let mut elements = self.monitor.elements(place, &self.watched, &self.sights, machine);
-                elements.extend(self.monitor.forced(place, &self.watched, machine));
+                if machine.is_any_forced() {
+                    let held = |own| machine.is_forced(own).then(|| machine.value(own, 0));
+                    elements.extend(self.monitor.forced(place, &self.watched, &held));
+                }
                 elements
             }
         };

@@ -6,7 +6,7 @@ import { reading, type Row } from '../rows';
 import { plotWidth, rowAt, scanAt, scene, sceneHeight, type Scene } from '../scene';
 import { FONT_SIZE, styleOf, svg, type Palette } from '../svg';
 import { Traces, type TraceAnswer, type TraceQuestion } from '../traces';
-import { FIRST_VIEW, fit, follow, pan, zoom, type Viewport } from '../viewport';
+import { FIRST_VIEW, PLC_VIEW, fit, follow, pan, zoom, type Viewport } from '../viewport';
 import { element, iconButton, put, say } from './dom';
 import { showMenu } from './menu';
 import { host, type Plc } from './plc';
@@ -82,6 +82,10 @@ export class ChartView {
     this.traces.clear();
     this.asked = undefined;
     this.cursor = undefined;
+    // Of a PLC, what are scans elsewhere are milliseconds.
+    if (this.plc.isReal) {
+      this.view = PLC_VIEW;
+    }
     this.draw();
   }
 

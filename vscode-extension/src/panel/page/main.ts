@@ -2,7 +2,7 @@
 
 import { t, useTranslations } from '../../words';
 import type { ToPage } from '../messages';
-import { firstSignals, groupTitle, grouped, namesOf, type Moment, type Reading, type Row } from '../rows';
+import { firstSignals, groupTitle, grouped, namesOf, type Base, type Moment, type Reading, type Row } from '../rows';
 import type { Viewport } from '../viewport';
 import { ChartView } from './chartView';
 import { element, put, say } from './dom';
@@ -23,6 +23,10 @@ interface Kept {
   readonly view?: Viewport;
   readonly closed?: readonly string[];
   readonly chartHeight?: number;
+  /** How registers are written that are not decimal. */
+  readonly bases?: Readonly<Record<string, Base>>;
+  /** What is shown although the program does not use it. */
+  readonly chosen?: readonly string[];
 }
 
 class Page {
@@ -30,6 +34,7 @@ class Page {
   private readonly toolbar: Toolbar;
   private readonly chart: ChartView;
   private readonly search = element('input', { type: 'search', class: 'search', placeholder: t('Search name, symbol or comment') });
+  private readonly chosen = element('input', { type: 'text', class: 'search', spellcheck: false, placeholder: t('Add devices: D100 M5') });
   private readonly groups = element('main', { class: 'groups' });
   private readonly note = element('p', { class: 'note', role: 'status' });
   private readonly divider = element('div', { class: 'divider', role: 'separator', tabindex: 0, 'aria-orientation': 'horizontal', 'aria-label': t('Height of the chart') });
@@ -54,7 +59,13 @@ class Page {
       this.build();
     });
     this.watcher = new IntersectionObserver((entries) => this.look(entries), { root: this.groups, rootMargin: '100px' });
-    document.body.replaceChildren(this.toolbar.node, this.search, this.note, this.groups, this.divider, this.chart.node);
+    this.chosen.value = (this.kept.chosen ?? []).join(' ');
+    this.chosen.setAttribute('aria-label', t('Add devices: D100 M5'));
+    this.chosen.addEventListener('change', () => this.choose());
+    document.body.replaceChildren(this.toolbar.node, element('div', { class: 'fields' }, this.search, this.chosen), this.note, this.groups, this.divider, this.chart.node);
+    if (this.kept.chosen !== undefined) {
+      this.choose();
+    }
     this.makeDivider();
     addEventListener('keydown', (event) => this.keyDown(event));
     this.show();
@@ -83,6 +94,12 @@ class Page {
     });
   }
 
+  /** An order to a PLC was carried out, or not. */
+  answered(id: number, isDone: boolean): void {
+    this.plc.take(isDone ? this.plc.moment : undefined, id);
+    this.show();
+  }
+
   fail(message: string, id?: number): void {
     this.plc.take(undefined, id);
     say(this.note, message);
@@ -91,6 +108,12 @@ class Page {
 
   takeTrace(message: Extract<ToPage, { type: 'trace' }>): void {
     this.chart.take(message.id, message.answer);
+  }
+
+  private choose(): void {
+    const names = this.chosen.value.toUpperCase().split(/[\s,;]+/).filter(Boolean);
+    this.keep({ chosen: names });
+    host.postMessage({ type: 'choose', names });
   }
 
   private keep(more: Partial<Kept>): void {
@@ -108,6 +131,11 @@ class Page {
       plc: this.plc,
       isCharted: (name: string) => this.kept.signals?.includes(name) ?? false,
       chart: (name: string, on: boolean) => this.chartRow(name, on),
+      base: (name: string) => this.kept.bases?.[name] ?? 'decimal',
+      write: (name: string, base: Base) => {
+        this.keep({ bases: { ...this.kept.bases, [name]: base } });
+        this.watch();
+      },
     };
     const sections = grouped(this.rows, this.search.value).map(({ group, rows }) => {
       const nodes = rows.map((row) => {
@@ -156,9 +184,14 @@ class Page {
         this.seen.delete(view);
       }
     }
+    this.watch();
+  }
+
+  /** Tells what is seen, once it stands still. */
+  private watch(): void {
     clearTimeout(this.still);
     this.still = setTimeout(() => {
-      const names = [...this.seen].flatMap(({ row }) => namesOf(row));
+      const names = [...this.seen].flatMap(({ row }) => namesOf(row, this.kept.bases?.[row.name]));
       host.postMessage({ type: 'watch', names: [...new Set(names)] });
     }, STILL_MS);
   }
@@ -166,6 +199,7 @@ class Page {
   private show(): void {
     this.toolbar.update();
     const { isStopped } = this.plc;
+    document.body.classList.toggle('real', this.plc.isReal);
     if (isStopped !== this.wasStopped) {
       this.wasStopped = isStopped;
       document.body.classList.toggle('stopped', isStopped);
@@ -210,8 +244,8 @@ class Page {
     }
     const keys: Readonly<Record<string, () => void>> = {
       g: () => this.toolbar.startOrPause(),
-      s: () => void (this.plc.isStopped || this.plc.tell('step')),
-      b: () => void (this.plc.isStopped || this.plc.tell('stepBack')),
+      s: () => void (this.plc.isStopped || this.plc.isReal || this.plc.tell('step')),
+      b: () => void (this.plc.isStopped || this.plc.isReal || this.plc.tell('stepBack')),
       '/': () => this.search.focus(),
     };
     const run = keys[event.key];
@@ -239,6 +273,8 @@ addEventListener('message', ({ data }: MessageEvent<ToPage>) => {
       return page?.takeRows(data.rows);
     case 'moment':
       return page?.takeMoment(data.moment, data.id);
+    case 'answered':
+      return page?.answered(data.id, data.isDone);
     case 'trace':
       return page?.takeTrace(data);
     case 'failed':

@@ -24,6 +24,11 @@ export class Plc {
     return this.moment === undefined || this.moment.mode === 'stopped';
   }
 
+  /** Whether this is a real PLC, or one at the other end of a line at least. */
+  get isReal(): boolean {
+    return this.moment?.source === 'plc';
+  }
+
   /** Tells the simulation something; gives where it was then, or nothing if it was refused. */
   tell(verb: Verb, more: Readonly<Record<string, unknown>> = {}): Promise<Moment | undefined> {
     const id = ++this.orders;

@@ -1,6 +1,6 @@
 /** A row of the panel: its lamp, its words, and what it is operated with. Made once, then only changed. */
 
-import { isSwitch, progress, reading, sliderEnds, typedNumber, type Reading, type Row, type Value } from '../rows';
+import { baseTitle, basesOf, isSwitch, progress, readAs, reading, sliderEnds, typedIn, typedNumber, written, type Base, type Reading, type Row, type Value } from '../rows';
 import { t } from '../../words';
 import { element, icon, iconButton, put, say } from './dom';
 import { showMenu, type MenuItem } from './menu';
@@ -11,6 +11,9 @@ export interface Around {
   readonly plc: Plc;
   isCharted(name: string): boolean;
   chart(name: string, on: boolean): void;
+  /** How the value of a row is written. */
+  base(name: string): Base;
+  write(name: string, base: Base): void;
 }
 
 export class RowView {
@@ -24,6 +27,7 @@ export class RowView {
   private readonly slider: HTMLInputElement | undefined;
   private readonly bar: HTMLElement | undefined;
   private value: Value = false;
+  private inBase: Value = false;
   private isForced = false;
   private release: (() => void) | undefined;
 
@@ -99,7 +103,11 @@ export class RowView {
       put(this.bar, 'aria-valuetext', words.join(' / '));
       this.bar.style.setProperty('--share', String(share ?? 0));
     }
-    this.showNumber(own.value);
+    this.showNumber(readings.get(readAs(row.name, this.base))?.value ?? own.value, own.value);
+  }
+
+  private get base(): Base {
+    return this.around.base(this.row.name);
   }
 
   /** Whether it is among the signals of the chart. */
@@ -114,11 +122,14 @@ export class RowView {
     });
   }
 
-  private showNumber(value: Value): void {
+  /** Shows what is read in the base of the row, and on the slider the word by itself. */
+  private showNumber(inBase: Value, value: Value): void {
     const { field, slider, row } = this;
+    this.inBase = inBase;
+    const text = written(inBase, this.base);
     // What is being typed or dragged is not written over.
-    if (field !== undefined && document.activeElement !== field && field.value !== String(value)) {
-      field.value = String(value);
+    if (field !== undefined && document.activeElement !== field && field.value !== text) {
+      field.value = text;
     }
     if (slider !== undefined && typeof value === 'number' && !slider.matches(':active') && slider.value !== String(value)) {
       const [least, greatest] = sliderEnds(value, row);
@@ -190,10 +201,10 @@ export class RowView {
     const take = () => {
       // What a variable of IEC 61131-3 takes, the server knows: `T#2s`, a text, a name.
       const isFree = this.row.least === undefined && field.value.trim() !== '';
-      const value = typedNumber(field.value, this.row) ?? (isFree ? field.value.trim() : undefined);
+      const value = typedIn(field.value, this.base, this.row) ?? (isFree ? field.value.trim() : undefined);
       put(field, 'aria-invalid', value === undefined ? 'true' : undefined);
-      if (value !== undefined && value !== this.value) {
-        void this.around.plc.set(this.row.name, value);
+      if (value !== undefined && value !== this.inBase) {
+        void this.around.plc.set(readAs(this.row.name, this.base), value);
       }
     };
     field.addEventListener('change', take);
@@ -204,10 +215,10 @@ export class RowView {
         take();
         field.select();
       } else if (event.key === 'Escape') {
-        field.value = String(this.value);
+        field.value = written(this.inBase, this.base);
         put(field, 'aria-invalid', undefined);
         field.select();
-      } else if (step !== undefined && typedNumber(field.value, this.row) !== undefined) {
+      } else if (step !== undefined && this.base === 'decimal' && typedNumber(field.value, this.row) !== undefined) {
         field.value = String(Number(typedNumber(field.value, this.row)) + step);
         take();
       } else {
@@ -226,6 +237,7 @@ export class RowView {
     const keys: Readonly<Record<string, () => void>> = {
       f: () => this.force(),
       r: () => this.letGo(),
+      v: () => this.nextBase(),
       c: () => this.toggleChart(),
       ArrowDown: () => this.goTo(1),
       ArrowUp: () => this.goTo(-1),
@@ -266,6 +278,20 @@ export class RowView {
     }
   }
 
+  /** The key for what the menu offers. */
+  private nextBase(): void {
+    const bases = basesOf(this.row);
+    const next = bases[(bases.indexOf(this.base) + 1) % bases.length];
+    if (next !== undefined && bases.length > 1) {
+      this.write(next);
+    }
+  }
+
+  private write(base: Base): void {
+    this.around.write(this.row.name, base);
+    this.showNumber(this.inBase, this.value);
+  }
+
   private toggleChart(): void {
     this.around.chart(this.row.name, !this.around.isCharted(this.row.name));
   }
@@ -286,7 +312,12 @@ export class RowView {
         items.push({ label: t('Release {0}', row.label), key: 'R', run: () => this.letGo() });
       }
       const changeOf = bit ?? row.name;
-      items.push({ label: t('Back to before its last change'), run: () => void around.plc.tell('stepBack', { changeOf }) });
+      const isReal = around.plc.isReal;
+      items.push(...(isReal ? [] : [{ label: t('Back to before its last change'), run: () => void around.plc.tell('stepBack', { changeOf }) }]));
+    }
+    const bases = basesOf(row);
+    if (bases.length > 1) {
+      items.push(...bases.map((base) => ({ label: baseTitle(base), isChecked: base === this.base, run: () => this.write(base) })));
     }
     const isChecked = around.isCharted(row.name);
     items.push({ label: t('Show in the chart'), key: 'C', isChecked, run: () => this.toggleChart() });

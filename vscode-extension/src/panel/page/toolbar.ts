@@ -17,7 +17,9 @@ export class Toolbar {
   private readonly scanTime = element('output', { class: 'figure' });
   private readonly speed = element('select', { 'aria-label': t('Speed'), title: t('Speed') });
   private readonly others: HTMLButtonElement[];
+  private readonly figures: HTMLElement[];
   private shownMode = '';
+  private wasReal = false;
 
   constructor(private readonly plc: Plc) {
     this.run.addEventListener('click', () => this.startOrPause());
@@ -35,14 +37,22 @@ export class Toolbar {
     this.speed.addEventListener('change', () => void plc.tell('run', { speed: Number(this.speed.value) }));
     const figure = (name: string, output: HTMLElement) => element('label', { class: 'figures' }, element('span', {}, name), output);
     const figures = element('span', { class: 'all-figures' });
-    figures.append(figure(t('Scan'), this.scan), figure(t('Time'), this.time), figure(t('Scan time'), this.scanTime));
+    // Of a PLC nothing is known of its scans.
+    this.figures = [figure(t('Scan'), this.scan), figure(t('Scan time'), this.scanTime)];
+    figures.append(...this.figures.slice(0, 1), figure(t('Time'), this.time), ...this.figures.slice(1));
     this.node.append(element('span', { class: 'buttons' }, this.run, ...this.others), this.speed, this.mode, figures);
     this.update();
   }
 
   update(): void {
-    const { moment } = this.plc;
+    const { moment, isReal } = this.plc;
     const mode = moment?.mode ?? 'stopped';
+    if (isReal !== this.wasReal) {
+      this.wasReal = isReal;
+      this.shownMode = '';
+      [this.run, ...this.others, this.speed].forEach((control) => (control.hidden = isReal));
+      this.figures.forEach((figure) => (figure.hidden = isReal));
+    }
     if (mode !== this.shownMode) {
       this.shownMode = mode;
       const words = { running: t('Pause (G)'), paused: t('Run (G)'), stopped: t('Start Simulation') }[mode];
@@ -50,7 +60,7 @@ export class Toolbar {
       put(this.run, 'title', words);
       put(this.run, 'aria-label', words);
       put(this.run, 'class', mode === 'stopped' ? 'run primary' : 'run icon');
-      say(this.mode, { running: t('Running'), paused: t('Paused'), stopped: t('Stopped') }[mode]);
+      say(this.mode, isReal ? t('PLC') : { running: t('Running'), paused: t('Paused'), stopped: t('Stopped') }[mode]);
       put(this.mode, 'data-mode', mode);
       [...this.others, this.speed].forEach((control) => (control.disabled = mode === 'stopped'));
     }
@@ -64,6 +74,9 @@ export class Toolbar {
   }
 
   startOrPause(): void {
+    if (this.plc.isReal) {
+      return;
+    }
     const mode = this.plc.moment?.mode ?? 'stopped';
     void this.plc.tell(mode === 'running' ? 'pause' : mode === 'paused' ? 'run' : 'start');
   }

@@ -1,26 +1,66 @@
-//! Expressions that people ask the debugger for: `D0`, `X0 and not X1`, `T0 >= 5 or (C0 + 1) * 2 = D3`.
+//! Expressions about the values in a PLC, as people write them for breakpoints, the console of the debugger and alarms:
+//! `D0`, `X0 and not X1`, `T0 >= 5 or (C0 + 1) * 2 = D3`.
 //!
 //! Operators from the weakest to the strongest: `or`, `xor`, `and`, `not`, comparisons, `+ -`, `* / mod`, `-`. Also the
 //! signs of C (`|| ^ && ! == !=`), and `&`. In arithmetic and comparisons a bit is 0 or 1; a number by itself holds
 //! where it is not 0.
 
-use crate::simulate::{Code, Value, Variable};
+use super::{Code, Value, Variable};
 use crate::target::iec::is_identifier;
 use crate::text::Message;
 use std::cmp::Ordering;
 
+/// Where the names of an expression are looked for.
+pub trait Names {
+    /// What a name is found to be.
+    type Variable: Copy;
+
+    /// What is called so; nothing if nothing is.
+    fn variable(&self, name: &str) -> Option<Self::Variable>;
+
+    /// What a word means beside a variable that it is compared with; nothing for a name that says no value of it.
+    fn meant(&self, variable: Self::Variable, value: &Value) -> Option<Value>;
+}
+
+/// The names of a program, as they are known at one of its instructions, or anywhere.
+#[derive(Clone, Copy)]
+pub struct NamesOfCode<'a> {
+    /// The program.
+    pub code: &'a Code,
+    /// The number of an instruction, to whose instance or function names may belong.
+    pub instruction: Option<u32>,
+}
+
+impl Names for NamesOfCode<'_> {
+    type Variable = Variable;
+
+    fn variable(&self, name: &str) -> Option<Variable> {
+        match self.instruction {
+            Some(instruction) => self.code.variable_from(instruction, name),
+            None => self.code.variable(name),
+        }
+    }
+
+    fn meant(&self, variable: Variable, value: &Value) -> Option<Value> {
+        variable.meant(self.code, value)
+    }
+}
+
 /// Something that has a value.
 #[derive(Clone, Debug)]
-pub(super) enum Expression {
+pub struct Expression<V = Variable>(Node<V>);
+
+#[derive(Clone, Debug)]
+enum Node<V> {
     Value(Value),
-    Variable(Variable),
-    Not(Box<Expression>),
-    Minus(Box<Expression>),
-    Both(Operator, Box<Expression>, Box<Expression>),
+    Variable(V),
+    Not(Box<Node<V>>),
+    Minus(Box<Node<V>>),
+    Both(Operator, Box<Node<V>>, Box<Node<V>>),
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Operator {
+enum Operator {
     Or,
     Xor,
     And,
@@ -59,59 +99,76 @@ const NOT_AT: usize = 3;
 /// Parentheses do not nest deeper.
 const MOST_DEPTH: usize = 64;
 
-impl Expression {
-    /// Reads an expression about a program; names may be those of the instance or function
-    /// that an instruction belongs to, by the number of that.
+impl<V: Copy> Expression<V> {
+    /// Reads an expression.
     ///
     /// # Errors
     /// A sentence that says what is wrong.
-    pub(super) fn read(text: &str, code: &Code, instruction: Option<u32>) -> Result<Expression, Message> {
-        let mut reader = Reader { words: words(text), at: 0, code, instruction, text, depth: 0 };
-        let expression = reader.level(0)?;
+    pub fn read(text: &str, names: &impl Names<Variable = V>) -> Result<Expression<V>, Message> {
+        let mut reader = Reader { words: words(text), at: 0, names, text, depth: 0 };
+        let node = reader.level(0)?;
         match reader.peek() {
-            None => expression.meant(code),
+            None => node.meant(names).map(Expression),
             Some(_) => Err(reader.wrong()),
         }
-    }
-
-    /// The same, where words are what they mean beside the variables that they are compared with.
-    fn meant(self, code: &Code) -> Result<Expression, Message> {
-        let beside = |variable: Variable, value: &Value| {
-            let meant = variable.meant(code, value).map(|value| Box::new(Expression::Value(value)));
-            meant.ok_or_else(|| Message::new("cli.run-unknown").with("name", value))
-        };
-        Ok(match self {
-            Expression::Both(operator, left, right) => match (&*left, &*right) {
-                (Expression::Variable(variable), Expression::Value(value)) => {
-                    let right = beside(*variable, value)?;
-                    Expression::Both(operator, left, right)
-                }
-                (Expression::Value(value), Expression::Variable(variable)) => {
-                    let left = beside(*variable, value)?;
-                    Expression::Both(operator, left, right)
-                }
-                _ => Expression::Both(operator, Box::new(left.meant(code)?), Box::new(right.meant(code)?)),
-            },
-            Expression::Not(part) => Expression::Not(Box::new(part.meant(code)?)),
-            Expression::Minus(part) => Expression::Minus(Box::new(part.meant(code)?)),
-            Expression::Value(Value::Word(_, meant)) => Expression::Value(*meant),
-            Expression::Value(Value::Name(name)) if is_identifier(&name) => {
-                return Err(Message::new("cli.run-unknown").with("name", name));
-            }
-            other => other,
-        })
     }
 
     /// Its value, where `of` has those of variables.
     ///
     /// # Errors
     /// Where it divides by zero, or its numbers grow beyond 64 bits.
-    pub(super) fn value(&self, of: &impl Fn(Variable) -> Value) -> Result<Value, Message> {
+    pub fn value(&self, of: &impl Fn(V) -> Value) -> Result<Value, Message> {
+        self.0.value(of)
+    }
+
+    /// Whether it holds: it is on, or a number other than 0. What has no value does not.
+    pub fn holds(&self, of: &impl Fn(V) -> Value) -> bool {
+        self.value(of).is_ok_and(|value| holds(&value))
+    }
+
+    /// What it reads, in the order in which that stands in it.
+    pub fn variables(&self) -> Vec<V> {
+        let mut found = Vec::new();
+        self.0.collect(&mut found);
+        found
+    }
+}
+
+impl<V: Copy> Node<V> {
+    /// The same, where words are what they mean beside the variables that they are compared with.
+    fn meant(self, names: &impl Names<Variable = V>) -> Result<Node<V>, Message> {
+        let beside = |variable: V, value: &Value| {
+            let meant = names.meant(variable, value).map(|value| Box::new(Node::Value(value)));
+            meant.ok_or_else(|| Message::new("cli.run-unknown").with("name", value))
+        };
         Ok(match self {
-            Expression::Value(value) => value.clone(),
-            Expression::Variable(variable) => of(*variable),
-            Expression::Not(part) => Value::Bit(!holds(&part.value(of)?)),
-            Expression::Minus(part) => {
+            Node::Both(operator, left, right) => match (&*left, &*right) {
+                (Node::Variable(variable), Node::Value(value)) => {
+                    let right = beside(*variable, value)?;
+                    Node::Both(operator, left, right)
+                }
+                (Node::Value(value), Node::Variable(variable)) => {
+                    let left = beside(*variable, value)?;
+                    Node::Both(operator, left, right)
+                }
+                _ => Node::Both(operator, Box::new(left.meant(names)?), Box::new(right.meant(names)?)),
+            },
+            Node::Not(part) => Node::Not(Box::new(part.meant(names)?)),
+            Node::Minus(part) => Node::Minus(Box::new(part.meant(names)?)),
+            Node::Value(Value::Word(_, meant)) => Node::Value(*meant),
+            Node::Value(Value::Name(name)) if is_identifier(&name) => {
+                return Err(Message::new("cli.run-unknown").with("name", name));
+            }
+            other => other,
+        })
+    }
+
+    fn value(&self, of: &impl Fn(V) -> Value) -> Result<Value, Message> {
+        Ok(match self {
+            Node::Value(value) => value.clone(),
+            Node::Variable(variable) => of(*variable),
+            Node::Not(part) => Value::Bit(!holds(&part.value(of)?)),
+            Node::Minus(part) => {
                 let part = part.value(of)?;
                 let result = match (number(&part), &part) {
                     (Some(number), _) => number.checked_neg().and_then(whole),
@@ -121,13 +178,25 @@ impl Expression {
                 };
                 result.ok_or_else(no_result)?
             }
-            Expression::Both(operator, left, right) => operator.of(&left.value(of)?, &right.value(of)?)?,
+            Node::Both(operator, left, right) => operator.of(&left.value(of)?, &right.value(of)?)?,
         })
+    }
+
+    fn collect(&self, found: &mut Vec<V>) {
+        match self {
+            Node::Value(_) => {}
+            Node::Variable(variable) => found.push(*variable),
+            Node::Not(part) | Node::Minus(part) => part.collect(found),
+            Node::Both(_, left, right) => {
+                left.collect(found);
+                right.collect(found);
+            }
+        }
     }
 }
 
 /// Whether a condition holds that has this value.
-pub(super) fn holds(value: &Value) -> bool {
+fn holds(value: &Value) -> bool {
     match value {
         Value::Bit(on) => *on,
         value => value.as_number().is_some_and(|number| number != 0.0),
@@ -235,16 +304,15 @@ impl Operator {
     }
 }
 
-struct Reader<'a> {
+struct Reader<'a, N> {
     words: Vec<&'a str>,
     at: usize,
-    code: &'a Code,
-    instruction: Option<u32>,
+    names: &'a N,
     text: &'a str,
     depth: usize,
 }
 
-impl<'a> Reader<'a> {
+impl<'a, N: Names> Reader<'a, N> {
     fn peek(&self) -> Option<&'a str> {
         self.words.get(self.at).copied()
     }
@@ -253,12 +321,12 @@ impl<'a> Reader<'a> {
         Message::new("debug.expression").with("text", self.text.trim())
     }
 
-    fn level(&mut self, level: usize) -> Result<Expression, Message> {
+    fn level(&mut self, level: usize) -> Result<Node<N::Variable>, Message> {
         let Some(operators) = LEVELS.get(level) else { return self.part() };
         if level == NOT_AT && self.peek().is_some_and(|word| word == "!" || word.eq_ignore_ascii_case("not"))
         {
             self.at += 1;
-            return self.nested(|reader| Ok(Expression::Not(Box::new(reader.level(NOT_AT)?))));
+            return self.nested(|reader| Ok(Node::Not(Box::new(reader.level(NOT_AT)?))));
         }
         let mut left = self.level(level + 1)?;
         loop {
@@ -268,14 +336,14 @@ impl<'a> Reader<'a> {
             let Some((_, operator)) = operator else { return Ok(left) };
             self.at += 1;
             let right = self.level(level + 1)?;
-            left = Expression::Both(*operator, Box::new(left), Box::new(right));
+            left = Node::Both(*operator, Box::new(left), Box::new(right));
         }
     }
 
     fn nested(
         &mut self,
-        read: impl FnOnce(&mut Self) -> Result<Expression, Message>,
-    ) -> Result<Expression, Message> {
+        read: impl FnOnce(&mut Self) -> Result<Node<N::Variable>, Message>,
+    ) -> Result<Node<N::Variable>, Message> {
         self.depth += 1;
         if self.depth > MOST_DEPTH {
             return Err(self.wrong());
@@ -285,7 +353,7 @@ impl<'a> Reader<'a> {
         expression
     }
 
-    fn part(&mut self) -> Result<Expression, Message> {
+    fn part(&mut self) -> Result<Node<N::Variable>, Message> {
         let word = self.peek().ok_or_else(|| self.wrong())?;
         self.at += 1;
         match word {
@@ -295,15 +363,11 @@ impl<'a> Reader<'a> {
                 self.at += 1;
                 if is_closed { Ok(inner) } else { Err(self.wrong()) }
             }
-            "-" => self.nested(|reader| Ok(Expression::Minus(Box::new(reader.part()?)))),
+            "-" => self.nested(|reader| Ok(Node::Minus(Box::new(reader.part()?)))),
             word => {
                 // A name before a number: `H1` may be a variable of a program.
-                let variable = match self.instruction {
-                    Some(instruction) => self.code.variable_from(instruction, word),
-                    None => self.code.variable(word),
-                };
-                let variable = variable.map(Expression::Variable);
-                let known = variable.or_else(|| Value::read(word).map(Expression::Value));
+                let variable = self.names.variable(word).map(Node::Variable);
+                let known = variable.or_else(|| Value::read(word).map(Node::Value));
                 let is_name = word.starts_with(|c: char| c.is_alphanumeric() || c == '_' || c == '%');
                 known.ok_or_else(|| match is_name {
                     true => Message::new("cli.run-unknown").with("name", word),
