@@ -555,7 +555,7 @@ fn conditions_of_lists_of_iec_are_covered_and_contacts_are_called_what_they_are(
     ];
     assert_eq!(told, expected);
     let (_, json, _) = run(&folder, &["test", "--coverage", "--format", "json"]);
-    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let json: Value = serde_json::from_str(&json).unwrap();
     let summary = &json["coverage"]["summary"];
     assert_eq!((&summary["contacts"], &summary["decidable"]), (&json!(7), &json!(4)));
     // Nothing to count is not all of it.

@@ -81,13 +81,12 @@ fn elements_whose_number_is_known_at_run_time_have_reasons() {
         why(program, &[], "a[2]"),
         "\
 a[2] is 5: ST a[i] is executed  [main.il:9]
-  this is calculated: LD n  [main.il:8]
-    n is 5: LD n, ADD 1, ST n is executed  [main.il:5]
+  n is 5: LD n, ADD 1, ST n is executed  [main.il:5]
 "
     );
     assert_eq!(
         why(program, &[], "a[3]"),
-        "a[3] is 0: nothing that drives it has done so yet\n  ST a[i] is executed  [main.il:9]\n    this is calculated: LD n  [main.il:8]\n      n is 5: LD n, ADD 1, ST n is executed  [main.il:5]\n"
+        "a[3] is 0: nothing that drives it has done so yet\n  ST a[i] is executed  [main.il:9]\n    n is 5: LD n, ADD 1, ST n is executed  [main.il:5]\n"
     );
 }
 

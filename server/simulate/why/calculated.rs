@@ -121,10 +121,11 @@ impl Inquiry<'_> {
                 }
             }
         }
-        if first == own || reasons.is_empty() {
+        let before = &reading.tree.items[first..own];
+        let is_plain = matches!(before, [] | [Item { kind: ItemKind::Operation { .. }, .. }]);
+        if is_plain || reasons.is_empty() {
             return reasons;
         }
-        let before = &reading.tree.items[first..own];
         let lines = before.iter().map(|item| item.span.of(reading.text).split_whitespace());
         let lines: Vec<String> = lines.map(|words| words.collect::<Vec<_>>().join(" ")).collect();
         let message = Message::new("why.calculated").with("instruction", lines.join(", "));
