@@ -137,8 +137,11 @@ lamp is on: PROGRAM P WITH T : Main(go := start, out => lamp) is executed  [main
 /// What is known of the PLC of a test: a relay by its name.
 type Bits = BTreeMap<&'static str, bool>;
 
+/// What a condition is.
+type Holds = fn(&Bits) -> bool;
+
 /// Conditions with what they are while `w` is 16#3 and `n` is 101.
-const CONDITIONS: [(&str, fn(&Bits) -> bool); 10] = [
+const CONDITIONS: [(&str, Holds); 10] = [
     ("LD a\n", |bits| bits["a"]),
     ("LD a\nANDN b\n", |bits| bits["a"] && !bits["b"]),
     ("LD Motor\nOR b\n", |bits| bits["Motor"] || bits["b"]),
