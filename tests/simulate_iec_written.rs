@@ -80,14 +80,27 @@ fn elements_whose_number_is_known_at_run_time_have_reasons() {
     assert_eq!(
         why(program, &[], "a[2]"),
         "\
-a[2] is 5: ST a[i] is executed  [main.il:9]
+a[2] is 5: LD n, ST a[i] is executed  [main.il:8]
   n is 5: LD n, ADD 1, ST n is executed  [main.il:5]
 "
     );
     assert_eq!(
         why(program, &[], "a[3]"),
-        "a[3] is 0: nothing that drives it has done so yet\n  ST a[i] is executed  [main.il:9]\n    n is 5: LD n, ADD 1, ST n is executed  [main.il:5]\n"
+        "a[3] is 0: nothing that drives it has done so yet\n  LD n, ST a[i] is executed  [main.il:8]\n"
     );
+}
+
+#[test]
+fn drawn_coils_and_boxes_whose_element_is_known_at_run_time_are_followed() {
+    let program = "PROGRAM Main\nVAR\ngo : BOOL; i : INT := 2; lit : ARRAY[1..3] OF BOOL;\nEND_VAR\n\n\
+        |  go             lit[i] |\n+---| |-------------( )--+\n\nEND_PROGRAM\n";
+    let folder = folder(&[("main.lad", program)]);
+    let asked = ["run", "main.lad", "--watch", "go", "--scans", "3", "--set", "go=1", "--why", "lit[2]"];
+    let (code, out, err) = run(&folder, &asked);
+    assert_eq!((code, err.as_str()), (0, ""));
+    let expected = "lit[2] is on: ( ) lit[i] has power  [main.lad:7]\n  \
+        go is on since scan 0 (0 ms): it was set by hand  [main.lad:7]\n";
+    assert!(out.ends_with(expected), "{out}");
 }
 
 #[test]
