@@ -477,7 +477,8 @@ fn zones_are_compared_when_pulses_come() {
         plc.scans(1).check(expected);
     }
     faults("LD X0\nDHSZ K20 K10 C235 M10\nEND\n", "X0", Fault::Value(0), 6706, "~M10");
-    faults("LD X0\nDHSZ K10 K20 C235 M8130\nEND\n", "X0", Fault::NotSimulated(3), 6706, "");
+    faults("LD X0\nDHSZ K10 K20 C235 M8130\nEND\n", "X0", Fault::TableMode, 6706, "");
+    faults("LD X0\nDHSZ K10 K20 C235 M8132\nEND\n", "X0", Fault::TableMode, 6706, "");
 }
 
 #[test]
@@ -691,7 +692,7 @@ fn parameters_of_a_controller_have_their_own_error_codes() {
         faults(PID, &format!("{fine} {setting}"), Fault::Pid(code), i64::from(code), "D2=0");
     }
     faults(PID, &format!("{fine} D16=-1"), Fault::Pid(6736), 6736, "D2=0");
-    faults(PID, &format!("{fine} D11=81"), Fault::NotSimulated(2), 6706, "D2=0");
+    faults(PID, &format!("{fine} D11=81"), Fault::LimitCycle, 6706, "D2=0");
     faults(PID, &format!("{fine} D11=37"), Fault::Value(2), 6706, "D2=0");
     // With a sampling time below the scan it goes on, in each scan.
     let mut plc = Plc::list(PID);

@@ -31,7 +31,7 @@ fn disagreement(text: &str) -> Option<String> {
     }
 }
 
-/// So many programs of each kind are run, spread over all; `RUNGWISE_CASES` says how many, 0 means all.
+/// So many programs of each kind are run, spread over all; `RUNGWISE_CASES` says how many.
 fn cases() -> usize {
     std::env::var("RUNGWISE_CASES").ok().and_then(|cases| cases.parse().ok()).unwrap_or(1000)
 }

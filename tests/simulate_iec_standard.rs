@@ -144,3 +144,30 @@ fn instances_are_called_by_subscripts() {
     plc.set("i", "4").scan();
     assert_eq!((plc.get("all[3,0].n"), plc.errors.is_empty()), ("1".into(), false));
 }
+
+#[test]
+fn what_is_not_simulated_is_refused_where_it_stands() {
+    let refused = |text: &str| {
+        let files = folder(&[("main.il", text)]);
+        let (code, _, err) = run(&files, &["run", "main.il", "--scans", "1"]);
+        assert_eq!(code, 1, "{err}");
+        err
+    };
+    let err = refused(
+        "FUNCTION_BLOCK F\nVAR_INPUT i : BOOL; END_VAR\nLD i\nEND_FUNCTION_BLOCK\nPROGRAM Main\nVAR f : F; END_VAR\n\
+        CAL f()\nEND_PROGRAM\nCONFIGURATION C\nRESOURCE R ON PLC\nTASK slow(INTERVAL := T#1s, PRIORITY := 2);\n\
+        PROGRAM P WITH slow : Main(f WITH slow);\nEND_RESOURCE\nEND_CONFIGURATION\n",
+    );
+    assert!(err.contains("main.il:12:28: f has a task of its own (WITH), which is not simulated"), "{err}");
+    let err = refused("PROGRAM Main\nVAR a : INT; p : REF_TO INT; END_VAR\nLD REF(a)\nST p\nEND_PROGRAM\n");
+    assert!(err.contains("main.il:2:18: references (`REF_TO`, `REF(…)`, `^`) are not simulated"), "{err}");
+    assert!(err.contains("main.il:3:1: references (`REF_TO`"), "{err}");
+    let err = refused(
+        "TYPE P : STRUCT x : INT; END_STRUCT; END_TYPE\nPROGRAM Main\nVAR s AT %MW0 : P; b : INT; END_VAR\n\
+        LD 1\nST b\nEND_PROGRAM\n",
+    );
+    assert!(
+        err.contains("main.il:3:5: a structure or an instance lies at %MW0, which is not simulated"),
+        "{err}"
+    );
+}

@@ -80,15 +80,27 @@ fn elements_whose_number_is_known_at_run_time_have_reasons() {
     assert_eq!(
         why(program, &[], "a[2]"),
         "\
-a[2] is 5: ST a[i] is executed  [main.il:9]
-  this is calculated: LD n  [main.il:8]
-    n is 5: LD n, ADD 1, ST n is executed  [main.il:5]
+a[2] is 5: LD n, ST a[i] is executed  [main.il:8]
+  n is 5: LD n, ADD 1, ST n is executed  [main.il:5]
 "
     );
     assert_eq!(
         why(program, &[], "a[3]"),
-        "a[3] is 0: nothing that drives it has done so yet\n  ST a[i] is executed  [main.il:9]\n    this is calculated: LD n  [main.il:8]\n      n is 5: LD n, ADD 1, ST n is executed  [main.il:5]\n"
+        "a[3] is 0: nothing that drives it has done so yet\n  LD n, ST a[i] is executed  [main.il:8]\n"
     );
+}
+
+#[test]
+fn drawn_coils_and_boxes_whose_element_is_known_at_run_time_are_followed() {
+    let program = "PROGRAM Main\nVAR\ngo : BOOL; i : INT := 2; lit : ARRAY[1..3] OF BOOL;\nEND_VAR\n\n\
+        |  go             lit[i] |\n+---| |-------------( )--+\n\nEND_PROGRAM\n";
+    let folder = folder(&[("main.lad", program)]);
+    let asked = ["run", "main.lad", "--watch", "go", "--scans", "3", "--set", "go=1", "--why", "lit[2]"];
+    let (code, out, err) = run(&folder, &asked);
+    assert_eq!((code, err.as_str()), (0, ""));
+    let expected = "lit[2] is on: ( ) lit[i] has power  [main.lad:7]\n  \
+        go is on since scan 0 (0 ms): it was set by hand  [main.lad:7]\n";
+    assert!(out.ends_with(expected), "{out}");
 }
 
 #[test]
@@ -138,8 +150,11 @@ lamp is on: PROGRAM P WITH T : Main(go := start, out => lamp) is executed  [main
 /// What is known of the PLC of a test: a relay by its name.
 type Bits = BTreeMap<&'static str, bool>;
 
+/// What a condition is.
+type Holds = fn(&Bits) -> bool;
+
 /// Conditions with what they are while `w` is 16#3 and `n` is 101.
-const CONDITIONS: [(&str, fn(&Bits) -> bool); 10] = [
+const CONDITIONS: [(&str, Holds); 10] = [
     ("LD a\n", |bits| bits["a"]),
     ("LD a\nANDN b\n", |bits| bits["a"] && !bits["b"]),
     ("LD Motor\nOR b\n", |bits| bits["Motor"] || bits["b"]),

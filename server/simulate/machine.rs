@@ -102,6 +102,8 @@ impl ErrorKind {
             ErrorKind::Fault(Fault::NotSimulated(place)) => {
                 Message::new("simulate.not-simulated").with("number", place.saturating_add(1))
             }
+            ErrorKind::Fault(Fault::TableMode) => Message::new("simulate.table-mode"),
+            ErrorKind::Fault(Fault::LimitCycle) => Message::new("simulate.limit-cycle"),
             ErrorKind::Fault(Fault::Index) | ErrorKind::Calculation(Fault::Index) => {
                 Message::new("simulate.subscript")
             }

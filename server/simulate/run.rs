@@ -7,6 +7,7 @@ use super::row::{self, Row};
 use super::writes::Watch;
 use super::{ErrorKind, Glimpse, Lanes, Machine, Sight, iec, timing};
 use crate::target::Fault;
+use crate::target::iec::Datum;
 
 /// A scan that runs.
 #[derive(Default)]
@@ -21,6 +22,8 @@ pub(super) struct Run {
     ops: u64,
     /// How often WDT has given the scan more time.
     renewals: u32,
+    /// What calculations of IEC 61131-3 are made with, kept from one to the next so that none has to ask for memory.
+    values: Vec<Datum>,
 }
 
 /// More often WDT does not help: a loop without end is stopped all the same.
@@ -149,9 +152,11 @@ impl<L: Lanes> Machine<L> {
             Op::Transfer { power, state, list } => self.transfer(code, self.memory.cell(power), state, list),
             Op::Compute { power, number } => {
                 let power = self.memory.cell(power);
-                iec::compute(&mut self.memory, &code.iec, number, power, |fault, lane| {
+                let mut values = std::mem::take(&mut run.values);
+                iec::compute(&mut self.memory, &code.iec, number, power, &mut values, |fault, lane| {
                     run.error(code, at, ErrorKind::Calculation(fault), lane);
                 });
+                run.values = values;
             }
             Op::Copy { power, number } => {
                 let power = self.memory.cell(power);

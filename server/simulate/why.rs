@@ -406,9 +406,8 @@ impl<'a> Inquiry<'a> {
         let seen = self.seen(moment.scan);
         match seen.and_then(|seen| self.saw(&seen, driver, moment.before)) {
             Some((at, sight)) => {
-                let key = if sight.power != 0 { "why.powered" } else { "why.unpowered" };
                 let because = self.power(driver, Moment { before: at, ..moment }, sight.power != 0, asked);
-                let message = Message::new(key).with("instruction", instruction);
+                let message = Message::new(manner(driver, sight.power != 0)).with("instruction", instruction);
                 self.reason(message, Some(driver.place), moment.scan, because)
             }
             None => {
@@ -451,12 +450,7 @@ impl<'a> Inquiry<'a> {
             return self.called(subject, call, driver, at, told, asked);
         }
         let mut because = self.power(driver, at, has_power, asked);
-        let key = match (&driver.action.deed, &driver.wire) {
-            // Nothing is connected with what a list calculates.
-            (Deed::Compute(_), Some(Wire::Series(parts))) if parts.is_empty() => "why.executed",
-            _ if has_power => "why.powered",
-            _ => "why.unpowered",
-        };
+        let key = manner(driver, has_power);
         if let Deed::Compute(computation) = &driver.action.deed
             && let Some((inputs, _)) = computation.operands(&driver.action.terms)
         {
@@ -596,6 +590,16 @@ fn writes(driver: &Driver, has_power: bool, value: &Value) -> bool {
             _ => has_power,
         },
         _ => has_power,
+    }
+}
+
+/// How it is told that an instruction is executed with power or without.
+fn manner(driver: &Driver, has_power: bool) -> &'static str {
+    match (&driver.action.deed, &driver.wire) {
+        // Nothing is connected with what a list calculates.
+        (Deed::Compute(_), Some(Wire::Series(parts))) if parts.is_empty() => "why.executed",
+        _ if has_power => "why.powered",
+        _ => "why.unpowered",
     }
 }
 

@@ -54,6 +54,10 @@ pub enum Fault {
     Subrange,
     /// The simulator does not do what the operand at this place asks for, though a PLC does.
     NotSimulated(u8),
+    /// HSZ with a table (M8130) or for a speed pattern (M8132), which the simulator does not do.
+    TableMode,
+    /// PID that tunes itself by a limit cycle, which the simulator does not do.
+    LimitCycle,
 }
 
 impl Fault {
@@ -68,7 +72,9 @@ impl Fault {
             | Fault::Overflow
             | Fault::Index
             | Fault::Subrange
-            | Fault::NotSimulated(_) => 6706,
+            | Fault::NotSimulated(_)
+            | Fault::TableMode
+            | Fault::LimitCycle => 6706,
             Fault::NoModule => 6708,
             Fault::Pid(code) => i64::from(code),
         }

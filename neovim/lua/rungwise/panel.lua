@@ -10,7 +10,8 @@ local SPACE = vim.api.nvim_create_namespace('rungwise_panel')
 local CHART_MS, SCROLL_MS = 100, 50
 --- More signals are charted only if they are chosen.
 local FIRST_SIGNALS = 8
-local LABEL = 12
+--- Values begin in this column, or behind the longest name, but for names that are longer than is of use.
+local LABEL, LABEL_MAX = 12, 40
 --- Milliseconds in a column of the chart of a PLC, to begin with.
 local PLC_SCANS = 100
 
@@ -30,6 +31,15 @@ local function group_title(group)
     relays = t('Relays'), registers = t('Registers'), variables = t('Variables'),
   }
   return titles[group] or group
+end
+
+--- The column in which values and the chart begin: behind blanks, a lamp and the name.
+local function label_width(panel)
+  local width = LABEL
+  for _, row in pairs(panel.by_name) do
+    width = math.max(width, vim.fn.strdisplaywidth(row.label) + 5)
+  end
+  return math.min(width, LABEL_MAX)
 end
 
 --- A value as people read it: times of timers in seconds.
@@ -56,7 +66,7 @@ local function row_line(panel, row)
   if has_lamp then
     table.insert(marks, { 2, 2 + #lamp, is_on and 'RungwiseLampOn' or 'RungwiseLampOff' })
   end
-  text = text .. (' '):rep(math.max(1, LABEL - vim.fn.strdisplaywidth(text)))
+  text = text .. (' '):rep(math.max(1, label_width(panel) - vim.fn.strdisplaywidth(text)))
   if own and row.type == 'bit' then
     text = text .. (is_on and '1' or '0')
     if own.wired ~= nil and not own.forced then
@@ -77,7 +87,7 @@ local function row_line(panel, row)
   end
   local said = vim.trim(row.symbol .. '  ' .. row.comment)
   if said ~= '' then
-    text = text .. (' '):rep(math.max(2, LABEL + 14 - vim.fn.strdisplaywidth(text)))
+    text = text .. (' '):rep(math.max(2, label_width(panel) + 14 - vim.fn.strdisplaywidth(text)))
     table.insert(marks, { #text, #text + #said, 'Comment' })
     text = text .. said
   end
@@ -101,7 +111,7 @@ end
 local function width_of(panel)
   local window = vim.fn.bufwinid(panel.buffer)
   local info = window ~= -1 and vim.fn.getwininfo(window)[1]
-  return math.max(20, (info and info.width - info.textoff or 60) - LABEL - 1)
+  return math.max(20, (info and info.width - info.textoff or 60) - label_width(panel) - 1)
 end
 
 --- What the chart shows: the last scans, or where it was moved to.
@@ -122,13 +132,13 @@ local function chart_lines(panel, lines, marks)
   vim.list_extend(lines, { '', t('Timing chart') })
   marks[#lines] = { { 0, #lines[#lines], 'RungwiseGroup' } }
   local gap = math.max(1, view.width - vim.fn.strdisplaywidth(ends[1] .. ends[2]))
-  table.insert(lines, (' '):rep(LABEL) .. ends[1] .. (' '):rep(gap) .. ends[2])
+  table.insert(lines, (' '):rep(label_width(panel)) .. ends[1] .. (' '):rep(gap) .. ends[2])
   marks[#lines] = { { 0, #lines[#lines], 'Comment' } }
   for _, name in ipairs(panel.signals) do
     local row = panel.by_name[name]
     local columns = chart.columns(panel.points[name] or {}, view)
     local label = '  ' .. row.label
-    label = label .. (' '):rep(math.max(1, LABEL - vim.fn.strdisplaywidth(label)))
+    label = label .. (' '):rep(math.max(1, label_width(panel) - vim.fn.strdisplaywidth(label)))
     local line = row.type == 'bit' and chart.bit_line(columns) or chart.word_line(columns)
     table.insert(lines, label .. line)
     marks[#lines] = { { #label, #label + #line, row.type == 'bit' and 'RungwiseChartOn' or 'RungwiseChartWord' } }

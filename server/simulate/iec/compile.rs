@@ -138,7 +138,17 @@ impl<'a> Compiler<'a> {
             Some(elementary) => self.image.place(address, elementary, &mut ground).map(At::Other),
             None => self.image.row(address, kind, &mut ground).map(At::Image),
         };
-        let at = at.ok_or_else(wrong)?;
+        let has_structure = |kind: &Kind| match kind {
+            Kind::Array(_, element) => matches!(**element, Kind::Record(_)),
+            kind => matches!(kind, Kind::Record(_)),
+        };
+        let at = match at {
+            None if has_structure(kind) => {
+                let message = Message::new("simulate.address-structure");
+                return Err(Obstacle::Iec(message.with("address", address.to_string())));
+            }
+            at => at.ok_or_else(wrong)?,
+        };
         let variable = Variable { kind: kind.clone(), at, index: 0, is_constant: false };
         let here = self.parts.names.around.located.entry(address).or_default();
         if !here.iter().any(|own| own.kind.is_same(kind)) {

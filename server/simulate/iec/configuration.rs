@@ -132,8 +132,10 @@ impl Compiler<'_> {
                 }
             },
         };
-        if !declared.block_tasks.is_empty() {
-            return self.refuse(place, Obstacle::Iec(Message::new("simulate.block-tasks")));
+        if let Some(block) = declared.block_tasks.of(&tree.names).first() {
+            let name = self.declared.word(instance.source, *block);
+            let place = self.declared.place(instance.source, *block);
+            return self.refuse(place, said("simulate.block-tasks", name));
         }
         let path = instance.resource.iter().cloned().chain(name.map(SmolStr::from)).collect();
         if let Some(variable) = self.instance(unit, path) {

@@ -159,6 +159,9 @@ impl Compiler<'_> {
         if let Some(global) = self.globals.get(&key) {
             return Ok(global.clone());
         }
+        if ["REF", "NULL"].iter().any(|word| word.eq_ignore_ascii_case(name)) {
+            return Err(Obstacle::Iec(Message::new("simulate.reference")));
+        }
         if self.declared.units[unit].kind.is_some() || self.enumerated(name, None).is_some() {
             return Err(unknown());
         }

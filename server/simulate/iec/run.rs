@@ -179,19 +179,20 @@ pub(in crate::simulate) fn put<L: Lanes>(memory: &mut Memory<L>, parts: &Parts, 
     }
 }
 
-/// Runs a calculation in the scenarios in which it has power; `fault` is told what went wrong.
+/// Runs a calculation in the scenarios in which it has power; `fault` is told what went wrong. What `values` had before
+/// is no matter.
 pub(in crate::simulate) fn compute<L: Lanes>(
     memory: &mut Memory<L>,
     parts: &Parts,
     number: u32,
     power: L,
+    values: &mut Vec<Datum>,
     mut fault: impl FnMut(Fault, usize),
 ) {
     let Some(computing) = parts.computings.get(number as usize) else { return };
-    let mut values = Vec::with_capacity(computing.inputs.len());
     for lane in (0..L::COUNT).filter(|lane| power.lane(*lane)) {
         let mut store = Store { memory, parts, lane };
-        let done = store.computed(computing, &mut values);
+        let done = store.computed(computing, values);
         if let Some(ok) = computing.ok {
             memory.set_bit(ok, lane, done.is_ok());
         }

@@ -61,8 +61,8 @@ impl Inquiry<'_> {
 
     /// Whether an instruction stands in the text: what variables are at first does not.
     pub(super) fn stands(&self, instruction: u32) -> bool {
-        let place = self.place_of(instruction);
-        self.reading(place).is_none_or(|reading| reading.item(place).is_some())
+        let names = self.watched.iec.names();
+        names.scope_at(instruction).is_none_or(|frame| names.instructions_of(frame).start != instruction)
     }
 
     /// Whether something stands in an instruction list of IEC 61131-3.
@@ -71,12 +71,14 @@ impl Inquiry<'_> {
     }
 
     fn how(&self, instruction: u32, at: Moment) -> &'static str {
+        if !self.stands(instruction) {
+            return "why.begins";
+        }
         let place = self.place_of(instruction);
         let item = self.reading(place).and_then(|reading| Some(reading.tree.items[reading.item(place)?]));
         let role = match item.map(|item| item.kind) {
             Some(ItemKind::Operation { operation, .. }) => operation.operator.role,
-            Some(_) => return "why.executed",
-            None => return "why.begins",
+            _ => return "why.executed",
         };
         let sight = self.seen(at.scan).and_then(|seen| seen.at(at.before));
         match (role, sight) {
@@ -121,10 +123,11 @@ impl Inquiry<'_> {
                 }
             }
         }
-        if first == own || reasons.is_empty() {
+        let before = &reading.tree.items[first..own];
+        let is_plain = matches!(before, [] | [Item { kind: ItemKind::Operation { .. }, .. }]);
+        if is_plain || reasons.is_empty() {
             return reasons;
         }
-        let before = &reading.tree.items[first..own];
         let lines = before.iter().map(|item| item.span.of(reading.text).split_whitespace());
         let lines: Vec<String> = lines.map(|words| words.collect::<Vec<_>>().join(" ")).collect();
         let message = Message::new("why.calculated").with("instruction", lines.join(", "));

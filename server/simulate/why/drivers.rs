@@ -36,7 +36,7 @@ pub(super) struct Driver {
     /// Whether it takes a step away that it hands on.
     pub(super) leaves: bool,
     /// The folded name of the IEC 61131-3 unit in which it stands.
-    unit: SmolStr,
+    pub(super) unit: SmolStr,
     /// The body of that unit which is meant.
     pub(super) frame: Option<usize>,
 }
@@ -96,6 +96,11 @@ impl Drivers {
         let by_variable = self.by_variable.get_or_init(|| self.resolved(code));
         let own = by_variable.get(&variable).into_iter().flatten();
         own.map(|(frame, number)| Driver { frame: Some(*frame), ..self.all[*number].clone() }).collect()
+    }
+
+    /// What drives something in a unit of IEC 61131-3 with this folded name.
+    pub(super) fn of_unit<'d>(&'d self, unit: &'d str) -> impl Iterator<Item = &'d Driver> {
+        self.all.iter().filter(move |driver| driver.unit == unit)
     }
 
     fn resolved(&self, code: &Code) -> FxHashMap<Variable, Vec<(usize, usize)>> {

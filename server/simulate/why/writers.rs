@@ -53,12 +53,21 @@ impl Inquiry<'_> {
 
     fn known(&self, subject: &Subject, instruction: u32) -> Writer {
         let place = self.place_of(instruction);
-        let is_it = |driver: &Driver| {
-            let own = self.frame(driver).is_some_and(|frame| frame.contains(&instruction));
-            // A calculation of several lines ends where the value is stored.
-            own && (driver.place.document, driver.place.span.end) == (place.document, place.span.end)
+        // A calculation of several lines ends where the value is stored.
+        let ends_there = |driver: &Driver| {
+            (driver.place.document, driver.place.span.end) == (place.document, place.span.end)
         };
-        match self.drivers_of(subject).into_iter().find(is_it) {
+        let is_in_body =
+            |driver: &Driver| self.frame(driver).is_some_and(|frame| frame.contains(&instruction));
+        let named = self.drivers_of(subject).into_iter().find(|own| is_in_body(own) && ends_there(own));
+        // An element whose subscript is known at run time only is nothing that a name leads to.
+        let names = self.watched.iec.names();
+        let placed = || {
+            let frame = names.scope_at(instruction)?;
+            let found = self.drivers.of_unit(names.unit_of(frame)).find(|own| ends_there(own))?;
+            Some(Driver { frame: Some(frame), ..found.clone() })
+        };
+        match named.or_else(placed) {
             Some(driver) => Writer::Read(driver),
             None => Writer::Other(instruction),
         }

@@ -39,7 +39,7 @@ pub(super) fn zone(execution: &mut dyn Execution) -> Result<(), Fault> {
     let first = destination(execution, 3)?;
     // M8130 and M8132 ask for the modes that follow a table.
     if first.kind == DeviceKind::M && matches!(first.number, 8130 | 8132) {
-        return Err(Fault::NotSimulated(3));
+        return Err(Fault::TableMode);
     }
     execution.bit(3, 2)?;
     execution.outside().watch(Watch { counter, deed: WatchDeed::Zone(lower as i32, upper as i32, first) });

@@ -93,7 +93,7 @@ fn parameters(execution: &mut dyn Execution) -> Result<Parameters, Fault> {
     let switches = execution.word(2, 1)?;
     let is_limit_cycle = switches & LIMIT_CYCLE != 0 && execution.model() == Model::Fx3u;
     if switches & AUTOMATIC_TUNING != 0 && is_limit_cycle {
-        return Err(Fault::NotSimulated(2));
+        return Err(Fault::LimitCycle);
     }
     if switches & OUTPUT_ALARM != 0 && switches & LIMITS != 0 {
         return Err(Fault::Value(2));
