@@ -314,7 +314,11 @@ impl Converter<'_> {
             (Test::Compare(operator), [left, right]) => {
                 self.counts(operator, [left, right])?;
                 let width = self.types.width(&contact.terms);
-                let numbers = vec![self.number(left, width)?, self.number(right, width)?];
+                let number = |term: &Term| match self.count(term) {
+                    Some(count) => Ok(count),
+                    None => self.number(term, width),
+                };
+                let numbers = vec![number(left)?, number(right)?];
                 self.types.compared(operator, [left, right])?;
                 (Test::Compare(operator.in_width(width == Width::Double)), numbers)
             }
@@ -374,9 +378,8 @@ impl Converter<'_> {
                 false => Err(Lack::Reason("translate.torn", term.text.clone())),
             };
         }
-        if let Some((instance, member)) = member(term) {
-            let device = without(self.counting(instance).filter(|device| device.kind == DeviceKind::C))?;
-            return without(member.eq_ignore_ascii_case("CV").then(|| self.term(device, term.span)));
+        if self.count(term).is_some() {
+            return Err(Lack::Reason("translate.beyond-preset", term.text.clone()));
         }
         let device = without(self.device(term))?;
         without((device.kind == DeviceKind::D).then(|| self.term(device, term.span)))
@@ -412,6 +415,13 @@ impl Converter<'_> {
     /// The timer or counter that an instance of this name is, if no other has the name.
     fn counting(&self, instance: &str) -> Option<Device> {
         self.named(instance).filter(|device| self.names.is_free(*device))
+    }
+
+    /// The counter whose count a variable is.
+    fn count(&self, term: &Term) -> Option<Term> {
+        let (instance, member) = member(term)?;
+        let device = self.counting(instance).filter(|device| device.kind == DeviceKind::C)?;
+        member.eq_ignore_ascii_case("CV").then(|| self.term(device, term.span))
     }
 
     /// Whether a comparison is the same of a count that stops at its preset, if one of these is a count.
