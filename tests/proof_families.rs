@@ -631,6 +631,32 @@ fn the_least_preset_of_a_timer_is_one_step() {
 }
 
 #[test]
+fn what_a_configuration_decides_is_no_part_of_an_fx_list() {
+    let text = "PROGRAM A\nVAR a AT %IX0.0 : BOOL; y AT %QX0.0 : BOOL; END_VAR\nLD a\nST y\nEND_PROGRAM\n";
+    let configured = |inner: &str| {
+        iec(&format!("{text}CONFIGURATION c\nRESOURCE r ON plc\n{inner}\nEND_RESOURCE\nEND_CONFIGURATION\n"))
+    };
+    let other = list("LD X0; OUT Y0");
+    for (inner, is_plain) in [
+        ("TASK t(INTERVAL := T#10ms, PRIORITY := 1);\nPROGRAM p WITH t : A;", true),
+        ("TASK t(SINGLE := %IX0.5, PRIORITY := 1);\nPROGRAM p WITH t : A;", false),
+        ("PROGRAM p : A;\nPROGRAM q : A;", false),
+        ("PROGRAM RETAIN p : A;", false),
+        ("PROGRAM p : A(y => %QX1.0);", false),
+    ] {
+        let document = configured(inner);
+        let expected = if is_plain { "" } else { "translate.configuration" };
+        assert_eq!(said(&document, To::Fx).0, expected, "{inner}");
+        match is_plain {
+            true => assert!(matches!(prove(&document, &other), Proof::Equal { .. }), "{inner}"),
+            false => assert_eq!(reason(&document, &other), expected, "{inner}"),
+        }
+    }
+    let two = iec(&format!("{text}{}", text.replace("PROGRAM A", "PROGRAM B")));
+    assert_eq!(said(&two, To::Fx).0, "translate.configuration");
+}
+
+#[test]
 fn nothing_is_done_behind_the_end() {
     let text = list("LD X0; OUT Y0; END; LD X1; OUT Y1");
     let (note, written) = said(&text, To::Iec);

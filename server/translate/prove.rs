@@ -248,7 +248,7 @@ impl<'s> Prover<'s> {
             (None, None) | (Some(End::Rung(..)), Some(End::Rung(..))) => true,
             (Some(End::Label(_, left)), Some(End::Label(_, right))) => left.eq_ignore_ascii_case(right),
             (Some(End::Unit(_, left)), Some(End::Unit(_, right))) => self.paired.are(*left, *right),
-            (Some(End::Unread(_, left)), Some(End::Unread(_, right))) => left == right,
+            (Some(End::Unread(_, left)), Some(End::Unread(_, right))) => left == right && !self.is_mixed,
             _ => false,
         };
         if !is_alike {

@@ -4,7 +4,7 @@ use super::super::source::Program;
 mod calculation;
 
 use super::counted::{Instances, constant, is_alike, turned};
-use super::{Lack, PULSE, Registers, device_at, devices_at, pair_at, without};
+use super::{END_POINTER, Lack, PULSE, Registers, device_at, devices_at, pair_at, without};
 use crate::document::{DeclaredType, Scopes};
 use crate::il::iec::SectionKind;
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
@@ -34,11 +34,14 @@ impl Names {
     pub(super) fn of(program: &Program, scopes: &Scopes, target: &Target) -> Names {
         let mut labels = FxHashMap::default();
         let names = || program.rungs.iter().flat_map(|source| &source.rung.labels);
-        for name in names().filter(|name| pointer(name).is_some()) {
+        let is_pointer = |name: &&SmolStr| pointer(name).is_some() && !name.eq_ignore_ascii_case(END_POINTER);
+        for name in names().filter(is_pointer) {
             labels.insert(folded(name), name.to_uppercase().into());
         }
         let taken: FxHashSet<SmolStr> = labels.values().cloned().collect();
-        let mut free = (0..).map(|number| format_smolstr!("P{number}")).filter(|name| !taken.contains(name));
+        let mut free = (0..)
+            .map(|number| format_smolstr!("P{number}"))
+            .filter(|name| !taken.contains(name) && name != END_POINTER);
         for name in names() {
             if !labels.contains_key(&folded(name))
                 && let Some(pointer) = free.next()
