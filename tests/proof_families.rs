@@ -33,12 +33,12 @@ fn iec(text: &str) -> Document {
 /// A contact behind `word`: a bit, an edge, a comparison.
 fn fx_contact(dice: &mut Dice, word: &str) -> String {
     let bit = dice.one(&["X0", "X1", "X2", "M0", "M1", "Y0", "T0", "C0", "M500", "M8000", "S0"]);
-    let kind = match (word, dice.roll(9)) {
-        ("LD", 0..3) | (_, 0..4) => word,
-        (_, 4 | 3) => return format!("{}I {bit}\n", if word == "LD" { "LD" } else { &word[..2] }),
-        (_, 5) => return format!("{word}P {bit}\n"),
-        (_, 6) => return format!("{word}F {bit}\n"),
-        (_, 7) => {
+    let kind = match dice.roll(9) {
+        0..4 => word,
+        4 => return format!("{}I {bit}\n", if word == "LD" { "LD" } else { &word[..2] }),
+        5 => return format!("{word}P {bit}\n"),
+        6 => return format!("{word}F {bit}\n"),
+        7 => {
             let sign = dice.one(&["=", ">", "<", ">=", "<=", "<>"]);
             let sides = dice.one(&["C0 K1", "C0 K2", "C0 K3", "K2 C0", "D0 K1", "D0 D1", "C0 K-1", "C0 D0"]);
             return format!("{word}{sign} {sides}\n");

@@ -253,8 +253,8 @@ impl<'s> Prover<'s> {
         };
         if !is_alike {
             let at = [left, right].map(|side| side.end.as_ref().map(End::span));
-            let notes = [left, right].into_iter().filter_map(|side| side.end.as_ref()?.note());
-            let reason = notes.cloned().next().unwrap_or(Message::new("prove.structure"));
+            let note = [left, right].into_iter().find_map(|side| side.end.as_ref()?.note());
+            let reason = note.cloned().unwrap_or_else(|| Message::new("prove.structure"));
             return Err(Proof::Undecided { reason, at });
         }
         self.rungs([&left.rungs, &right.rungs])?;
