@@ -325,8 +325,8 @@ pub(super) fn part_calculations(program: &mut Program) {
 }
 
 /// Takes out of a program of IEC 61131-3 the rungs that mean another thing than the same words would on a model of the
-/// FX `family`: types decide how numbers compare and divide, declarations what there is at first. An F_TRIG becomes what
-/// it is there.
+/// FX `family`: types decide how numbers compare and divide, declarations what there is at first. An F_TRIG becomes
+/// what it is there.
 pub(super) fn refuse_others(document: &Document, family: &Target, sources: &mut [Source]) {
     if document.target().is_fx() {
         return;
