@@ -1,11 +1,11 @@
-//! What is proved equal of a program of the FX family and one of IEC 61131-3, and what a translation between them is sure
-//! of, does the same on the simulated PLC from the moment when it is switched on: random programs with edges, timers,
+//! What is proved equal of a program of the FX family and one of IEC 61131-3, and what a translation between them is
+//! sure of, does the same on the simulated PLC from the moment when it is switched on: random programs with edges, timers,
 //! counters, jumps, values at first and what is kept without power, run side by side with random inputs.
 
 use rungwise::document::{Document, Notation};
 use rungwise::simulate::{Code, Machine, Value, Variable, compile};
 use rungwise::target::{Model, Target};
-use rungwise::translate::{Options, Proof, To, Translation, prove, translate, variable_called};
+use rungwise::translate::{Certificate, Options, Proof, To, Translation, prove, translate, variable_called};
 use std::sync::Arc;
 
 /// Numbers that look random and are the same in each run.
@@ -33,12 +33,12 @@ fn iec(text: &str) -> Document {
 /// A contact behind `word`: a bit, an edge, a comparison.
 fn fx_contact(dice: &mut Dice, word: &str) -> String {
     let bit = dice.one(&["X0", "X1", "X2", "M0", "M1", "Y0", "T0", "C0", "M500", "M8000", "S0"]);
-    let kind = match (word, dice.roll(9)) {
-        ("LD", 0..3) | (_, 0..4) => word,
-        (_, 4) => return format!("{}I {bit}\n", if word == "LD" { "LD" } else { &word[..2] }),
-        (_, 5) => return format!("{word}P {bit}\n"),
-        (_, 6) => return format!("{word}F {bit}\n"),
-        (_, 7) => {
+    let kind = match dice.roll(9) {
+        0..4 => word,
+        4 => return format!("{}I {bit}\n", if word == "LD" { "LD" } else { &word[..2] }),
+        5 => return format!("{word}P {bit}\n"),
+        6 => return format!("{word}F {bit}\n"),
+        7 => {
             let sign = dice.one(&["=", ">", "<", ">=", "<=", "<>"]);
             let sides = dice.one(&["C0 K1", "C0 K2", "C0 K3", "K2 C0", "D0 K1", "D0 D1", "C0 K-1", "C0 D0"]);
             return format!("{word}{sign} {sides}\n");
@@ -198,7 +198,7 @@ fn iec_rung(dice: &mut Dice) -> String {
         }
         10 => format!("{}ST PLF_M1\nLD Was2\nANDN PLF_M1\nST M1\nLD PLF_M1\nST Was2\n", iec_condition(dice)),
         11 => format!("{}JMPCN Over{}\nLD D0\nADD D1\nST D0\nOver{0}:\n", iec_condition(dice), dice.roll(99)),
-        12 => format!("LD {}\nST {}\n", dice.one(&["3", "D0", "32767"]), dice.one(&["D0", "D1"])),
+        12 => format!("LD {}\nST {}\n", dice.one(&["3", "D0", "32767", "C0.CV"]), dice.one(&["D0", "D1"])),
         13 => {
             let call = "ST Pulse1.CLK\nCAL Pulse1\nLD Pulse1.Q\nJMPCN Past\nLD D0\nADD INT#1\nST D0\nPast:\n";
             iec_condition(dice) + call
@@ -355,4 +355,318 @@ fn what_is_equal_in_fx_runs_as_in_iec() {
         }
     }
     count.judge();
+}
+
+/// Instructions parted by semicolons, as a list has them.
+fn lines(text: &str) -> String {
+    text.replace("; ", "\n") + "\n"
+}
+
+/// A program of IEC 61131-3 with these declarations, of which each is a section or one in VAR.
+fn program(declared: &str, body: &str) -> Document {
+    let sections = declared.split(" | ").map(|own| match own.starts_with("VAR") {
+        true => format!("{own} END_VAR\n"),
+        false => format!("VAR {own} END_VAR\n"),
+    });
+    iec(&format!("PROGRAM Main\n{}{}END_PROGRAM\n", sections.collect::<String>(), lines(body)))
+}
+
+fn list(body: &str) -> Document {
+    fx(&lines(body))
+}
+
+/// The key of the reason why nothing is proved of two programs.
+fn reason(left: &Document, right: &Document) -> String {
+    match prove(left, right) {
+        Proof::Undecided { reason, .. } => reason.key().into(),
+        other => format!("{other:?}\n{}\n--\n{}", left.text(), right.text()),
+    }
+}
+
+/// What a translation says of the first rung that it says something of, and its text. What it says makes it uncertain.
+fn said(document: &Document, to: To) -> (String, String) {
+    let translation = translate(document, None, to, &Options::default());
+    let noted = translation.rungs.iter().find(|rung| rung.note.is_some());
+    let key = noted.and_then(|rung| rung.note.as_ref()).map(|note| note.key().to_string());
+    let is_silent = key.is_none();
+    assert_eq!(translation.is_certain(), is_silent, "{}", translation.text);
+    assert!(noted.is_none_or(|rung| rung.certificate == Some(Certificate::Undecided)));
+    (key.unwrap_or_default(), translation.text)
+}
+
+#[test]
+fn a_value_at_first_is_no_part_of_an_fx_list() {
+    let run = "run AT %MX0.0 : BOOL";
+    let rest = "y AT %QX0.0 : BOOL; T0 : TON; C0 : CTU; D0 AT %MW1000 : INT";
+    for (declared, body, other) in [
+        (format!("{run} := TRUE; {rest};"), "LD run; ST y", "LD M0; OUT Y0"),
+        // Nobody names it, and the output is on.
+        (format!("{run}; {rest}; z AT %QX0.1 : BOOL := TRUE;"), "LD run; ST y", "LD M0; OUT Y0"),
+        (format!("{run}; y AT %QX0.0 : BOOL; T0 : TON := (Q := TRUE);"), "LD T0.Q; ST y", "LD T0; OUT Y0"),
+        (format!("{run}; {rest} := 5;"), "LD D0; GT 3; ST y", "LD> D0 K3; OUT Y0"),
+    ] {
+        let (document, other) = (program(&declared, body), list(other));
+        assert_eq!(reason(&document, &other), "translate.initial", "{declared}");
+        assert_eq!(reason(&other, &document), "translate.initial", "{declared}");
+        assert_eq!(said(&document, To::Fx).0, "translate.initial", "{declared}");
+    }
+    // By its type, and where another section says it.
+    let typed = "TYPE On : BOOL := TRUE; END_TYPE\nPROGRAM Main\nVAR run AT %MX0.0 : On; y AT %QX0.0 : BOOL; END_VAR\n\
+                 LD run\nST y\nEND_PROGRAM\n";
+    assert_ne!(said(&iec(typed), To::Fx).0, "");
+    let plain = program(&format!("{run} := FALSE; {rest} := 0;"), "LD run; ST y");
+    assert!(matches!(prove(&plain, &list("LD M0; OUT Y0")), Proof::Equal { .. }));
+    assert_eq!(said(&plain, To::Fx), (String::new(), "LD M0\nOUT Y0\nEND\n".into()));
+    let temporary = program("VAR_TEMP M0 : BOOL; | Y0 AT %QX0.0 : BOOL;", "LD Y0; S M0; LD M0; ST Y0");
+    assert_eq!(said(&temporary, To::Fx).0, "translate.temporary");
+}
+
+#[test]
+fn what_is_kept_without_power_is_declared_so() {
+    let text = "LD X0; OUT M500; OUT Y0; LD X0; SET S500; LD X0; MOV K3 D200; LD X0; DMOV K3 D202; LD X0; OUT M499; \
+                LD X0; MOV K3 D199; LD X0; SET S499";
+    let (note, written) = said(&list(text), To::Iec);
+    assert_eq!(note, "");
+    let (kept, plain) = written.split_once("END_VAR").unwrap();
+    assert!(kept.contains("VAR RETAIN"), "{written}");
+    for (name, is_kept) in [
+        ("M500 ", true),
+        ("S500 ", true),
+        ("D200 ", true),
+        ("D202 ", true),
+        ("M499 ", false),
+        ("D199 ", false),
+        ("S499 ", false),
+        ("Y0 ", false),
+        ("X0 ", false),
+    ] {
+        let declared = format!("{name}AT");
+        assert_eq!((kept.contains(&declared), plain.contains(&declared)), (is_kept, !is_kept), "{written}");
+    }
+    let again = iec(&written);
+    assert!(matches!(prove(&list(text), &again), Proof::Equal { .. }), "{written}");
+    assert_eq!(said(&again, To::Fx).0, "", "{written}");
+    let forgotten = iec(&written.replace("VAR RETAIN", "VAR"));
+    assert_eq!(reason(&list(text), &forgotten), "translate.not-retained");
+    assert_eq!(said(&forgotten, To::Fx).0, "translate.not-retained");
+    let kept = iec(&written.replace("VAR\n", "VAR RETAIN\n"));
+    assert_eq!(reason(&list(text), &kept), "translate.retained");
+    assert_eq!(said(&kept, To::Fx).0, "translate.retained");
+    let detector = program(
+        "VAR RETAIN e : R_TRIG; | X0 AT %IX0.0 : BOOL; Y0 AT %QX0.0 : BOOL;",
+        "CAL e(CLK := X0); LD e.Q; ST Y0",
+    );
+    let own = program(
+        "VAR RETAIN Pulse1 : R_TRIG; | X0 AT %IX0.0 : BOOL; D0 AT %MW1000 : INT;",
+        "LD X0; ST Pulse1.CLK; CAL Pulse1; LD Pulse1.Q; JMPCN Past; LD D0; ADD INT#1; ST D0; Past:",
+    );
+    assert_ne!(said(&detector, To::Fx).0, "");
+    assert_eq!(said(&own, To::Fx).0, "translate.retained-alone");
+    // Of a latched counter more is kept than its count.
+    let counter = list("LD X0; OUT C100 K3; LD C100; OUT Y0");
+    let (note, written) = said(&counter, To::Iec);
+    assert!(
+        note == "translate.latched-counter" && written.contains("VAR RETAIN\n    C100 : CTU"),
+        "{note}\n{written}"
+    );
+    assert_eq!(reason(&counter, &iec(&written)), "translate.latched-counter");
+    // What is kept depends on the model.
+    let fx1n = Document::new("LD X0\nSET M400\nEND\n", Notation::FxIl, Target::of(Model::Fx1n));
+    assert!(said(&fx1n, To::Iec).1.contains("VAR RETAIN\n    M400"));
+    assert!(!said(&list("LD X0; SET M400"), To::Iec).1.contains("RETAIN"));
+}
+
+#[test]
+fn a_falling_edge_is_none_in_the_first_scan() {
+    let declared = "a AT %IX0.0 : BOOL; y AT %QX0.0 : BOOL; f : F_TRIG;";
+    let trig = program(declared, "CAL f(CLK := a); LD f.Q; S y");
+    let (note, written) = said(&trig, To::Fx);
+    assert_eq!((note.as_str(), written.as_str()), ("", "LDF X0\nLD M8002\nANI X0\nORB\nSET Y0\nEND\n"));
+    assert!(matches!(prove(&trig, &fx(written.trim_end_matches("END\n"))), Proof::Equal { .. }));
+    assert!(matches!(prove(&trig, &list("LDF X0; SET Y0")), Proof::Different(_)));
+    assert!(matches!(prove(&trig, &list("LDF X0; LD M8002; AND X0; ORB; SET Y0")), Proof::Different(_)));
+    // One that is called later has its first call later.
+    for body in [
+        "LD a; JMPC over; CAL f(CLK := a); LD f.Q; S y; over:",
+        "CAL f(CLK := a); LD f.Q; S y; CAL f(CLK := a); LD f.Q; R y",
+        "LD a; AND y; ST f.CLK; CAL f; LD f.Q; S y",
+    ] {
+        let (note, written) = said(&program(declared, body), To::Fx);
+        assert!(note == "translate.no-counterpart" && !written.contains("LDF"), "{body}\n{written}");
+    }
+    for text in [
+        "LDF X0; OUT Y0",
+        "LD X0; PLF M0; OUT Y0",
+        "LD X0; ORF T0; OUT T0 K3; OUT Y0",
+        "LD X0; ANDF M0; INV; OUT M0",
+    ] {
+        let (note, written) = said(&list(text), To::Iec);
+        assert!(note.is_empty() && !written.contains("F_TRIG"), "{written}");
+        assert!(matches!(prove(&list(text), &iec(&written)), Proof::Equal { .. }), "{written}");
+        assert_eq!(seen_apart([&list(text), &iec(&written)]), None, "{written}");
+        assert_eq!(said(&iec(&written), To::Fx), (String::new(), list(text).text()), "{written}");
+    }
+    // M2800 has one edge for all contacts.
+    let shared = ["LDP M2800; OUT Y0; LDP M2800; OUT Y1", "LDP M2800; OUT Y1; LDP M2800; OUT Y0"].map(list);
+    assert_eq!(reason(&shared[0], &shared[1]), "translate.single-edge");
+    assert_eq!(said(&shared[0], To::Iec).0, "translate.single-edge");
+    assert!(matches!(prove(&shared[0], &shared[0]), Proof::Equal { .. }));
+}
+
+#[test]
+fn a_counter_stops_at_its_preset() {
+    let head = "LD X1; RST C0; LD X0; OUT C0 K3; ";
+    for (test, expected) in [
+        ("LD>= C0 K3", "LD C0.CV\nGE 3"),
+        ("LD>= C0 K4", "LD FALSE"),
+        ("LD> C0 K2", "LD C0.CV\nGT 2"),
+        ("LD> C0 K3", "LD FALSE"),
+        ("LD= C0 K2", "LD C0.CV\nEQ 2"),
+        ("LD= C0 K3", "LD C0.CV\nGE 3"),
+        ("LD= C0 K4", "LD FALSE"),
+        ("LD<= C0 K2", "LD C0.CV\nLE 2"),
+        ("LD<= C0 K3", "LD TRUE"),
+        ("LD< C0 K3", "LD C0.CV\nLT 3"),
+        ("LD< C0 K4", "LD TRUE"),
+        ("LD<> C0 K3", "LD C0.CV\nLT 3"),
+        ("LD<> C0 K4", "LD TRUE"),
+        ("LD< K3 C0", "LD FALSE"),
+        ("LD> K3 C0", "LD C0.CV\nLT 3"),
+    ] {
+        let text = list(&format!("{head}{test}; OUT Y0"));
+        let (note, written) = said(&text, To::Iec);
+        let own: String = written
+            .lines()
+            .map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ") + "\n")
+            .collect();
+        assert!(note.is_empty() && own.contains(&format!("{expected}\nST Y0")), "{test}\n{written}");
+        assert!(own.contains("C0 : CTU := (PV := 3);"), "{written}");
+        assert!(matches!(prove(&text, &iec(&written)), Proof::Equal { .. }), "{written}");
+        assert_eq!(seen_apart([&text, &iec(&written)]), None, "{written}");
+    }
+    let declared =
+        "a AT %IX0.0 : BOOL; b AT %IX0.1 : BOOL; y AT %QX0.0 : BOOL; D0 AT %MW1000 : INT; C0 : CTU;";
+    let preset = declared.replace("CTU;", "CTU := (PV := 3);");
+    let call = "CAL C0(CU := a, PV := 3)";
+    for (declared, body, expected) in [
+        (declared, format!("LD b; R C0; {call}"), "translate.reset-first"),
+        (&preset, format!("LD b; R C0; {call}"), ""),
+        (declared, format!("{call}; LD b; R C0"), ""),
+        (declared, format!("LD a; JMPC over; {call}; over:; LD b; R C0"), "translate.reset-first"),
+        (declared, format!("{call}; LD C0.CV; GE 3; ST y"), ""),
+        (declared, format!("{call}; LD C0.CV; GE 4; ST y"), "translate.beyond-preset"),
+        (declared, format!("{call}; LD C0.CV; EQ 3; ST y"), "translate.beyond-preset"),
+        (declared, format!("{call}; LD 3; GT C0.CV; ST y"), ""),
+        (declared, format!("{call}; LD 2; LT C0.CV; ST y"), ""),
+        (declared, format!("{call}; LD 3; LT C0.CV; ST y"), "translate.beyond-preset"),
+        (declared, format!("{call}; LD C0.CV; GE D0; ST y"), "translate.beyond-preset"),
+        (declared, format!("{call}; LD C0.CV; ST D0"), "translate.beyond-preset"),
+        (declared, format!("{call}; {call}"), "translate.several-calls"),
+        (declared, "CAL C0(CU := a, PV := 0)".into(), "translate.preset"),
+        (declared, "CAL C0(CU := a, PV := D0)".into(), "translate.preset"),
+    ] {
+        assert_eq!(said(&program(declared, &body), To::Fx).0, expected, "{body}");
+    }
+    assert_eq!(
+        reason(&program(declared, &format!("LD b; R C0; {call}")), &list("LD X1; RST C0; LD X0; OUT C0 K3")),
+        "translate.reset-first"
+    );
+    for (text, expected) in [
+        ("LD X0; OUT C0 K2; LD X1; OUT C0 K5", "translate.several-coils"),
+        ("LD X0; OUT T0 K2; LD X1; OUT T0 K2", "translate.several-coils"),
+        ("LD X0; OUT C0 D0", "translate.preset"),
+        ("LD X0; RST C0", "translate.preset"),
+        ("LD X0; OUT C0 K2; MOV C0 D0", "translate.counter-number"),
+        ("LD X0; OUT C0 K2; LD= C0 D0; OUT Y0", "translate.counter-number"),
+    ] {
+        assert_eq!(said(&list(text), To::Iec).0, expected, "{text}");
+    }
+}
+
+#[test]
+fn a_timer_that_may_be_left_out_is_none_of_the_other_family() {
+    let text = "LD X5; CJ P0; LD X0; OUT T0 K30; P0; LD T0; OUT Y0";
+    let (note, written) = said(&list(text), To::Iec);
+    assert!(note == "translate.jumped-timer" && written.contains("CAL     T0("), "{written}");
+    assert_eq!(reason(&list(text), &iec(&written)), "translate.jumped-timer");
+    assert_eq!(said(&iec(&written), To::Fx).0, "translate.jumped-timer");
+    let leaving = text.replace("P0; ", "").replace("P0", "P63");
+    assert_eq!(
+        said(&list(&text.replace("CJ P0", "CJ P63").replace("P0; ", "")), To::Iec).0,
+        "translate.jumped-timer",
+        "{leaving}"
+    );
+    let part = list(text);
+    let at = part.text().find("LD X0").unwrap() as u32;
+    let span = rungwise::text::Span { start: at, end: at + 5 };
+    let of_part = translate(&part, Some(span), To::Iec, &Options { is_whole: false, ..Options::default() });
+    assert_eq!(of_part.rungs[0].note.as_ref().map(|note| note.key()), Some("translate.jumped-timer"));
+    // Before the jump and behind its label it runs.
+    for text in [
+        "LD X0; OUT T0 K30; LD X5; CJ P0; LD T0; OUT Y0; P0",
+        "LD X5; CJ P0; LD T0; OUT Y0; P0; LD X0; OUT T0 K30",
+    ] {
+        let (note, written) = said(&list(text), To::Iec);
+        assert_eq!(note, "", "{written}");
+        assert!(matches!(prove(&list(text), &iec(&written)), Proof::Equal { .. }), "{written}");
+    }
+}
+
+#[test]
+fn the_least_preset_of_a_timer_is_one_step() {
+    for (text, time) in
+        [("LD X0; OUT T0 K0", "T#100ms"), ("LD X0; OUT T200 K0", "T#10ms"), ("LD X0; OUT T0 K1", "T#100ms")]
+    {
+        let text = list(&format!("{text}; LD T0; OUT Y0"));
+        let (note, written) = said(&text, To::Iec);
+        assert!(note.is_empty() && written.contains(&format!("PT := {time}")), "{written}");
+        assert_eq!(seen_apart([&text, &iec(&written)]), None, "{written}");
+    }
+    let declared = "a AT %IX0.0 : BOOL; T0 : TON;";
+    let at_once = program(declared, "CAL T0(IN := a, PT := T#0s)");
+    assert_eq!(said(&at_once, To::Fx).0, "translate.zero-time");
+    assert!(!matches!(prove(&at_once, &list("LD X0; OUT T0 K0")), Proof::Equal { .. }));
+    let step = program(declared, "CAL T0(IN := a, PT := T#100ms)");
+    assert!(matches!(prove(&step, &list("LD X0; OUT T0 K0")), Proof::Equal { .. }));
+}
+
+#[test]
+fn what_a_configuration_decides_is_no_part_of_an_fx_list() {
+    let text = "PROGRAM A\nVAR a AT %IX0.0 : BOOL; y AT %QX0.0 : BOOL; END_VAR\nLD a\nST y\nEND_PROGRAM\n";
+    let configured = |inner: &str| {
+        iec(&format!("{text}CONFIGURATION c\nRESOURCE r ON plc\n{inner}\nEND_RESOURCE\nEND_CONFIGURATION\n"))
+    };
+    let other = list("LD X0; OUT Y0");
+    for (inner, is_plain) in [
+        ("TASK t(INTERVAL := T#10ms, PRIORITY := 1);\nPROGRAM p WITH t : A;", true),
+        ("TASK t(SINGLE := %IX0.5, PRIORITY := 1);\nPROGRAM p WITH t : A;", false),
+        ("PROGRAM p : A;\nPROGRAM q : A;", false),
+        ("PROGRAM RETAIN p : A;", false),
+        ("PROGRAM p : A(y => %QX1.0);", false),
+    ] {
+        let document = configured(inner);
+        let expected = if is_plain { "" } else { "translate.configuration" };
+        assert_eq!(said(&document, To::Fx).0, expected, "{inner}");
+        match is_plain {
+            true => assert!(matches!(prove(&document, &other), Proof::Equal { .. }), "{inner}"),
+            false => assert_eq!(reason(&document, &other), expected, "{inner}"),
+        }
+    }
+    let two = iec(&format!("{text}{}", text.replace("PROGRAM A", "PROGRAM B")));
+    assert_eq!(said(&two, To::Fx).0, "translate.configuration");
+}
+
+#[test]
+fn nothing_is_done_behind_the_end() {
+    let text = list("LD X0; OUT Y0; END; LD X1; OUT Y1");
+    let (note, written) = said(&text, To::Iec);
+    assert!(note.is_empty() && written.contains("RET\n"), "{written}");
+    assert!(matches!(prove(&text, &iec(&written)), Proof::Equal { .. }), "{written}");
+    assert_eq!(seen_apart([&text, &iec(&written)]), None, "{written}");
+    let all = iec(&written.replace("    RET\n", ""));
+    assert!(!matches!(prove(&text, &all), Proof::Equal { .. }), "{written}");
+    let jump = list("LD X0; CJ P63; LD X1; OUT Y1");
+    let (note, written) = said(&jump, To::Iec);
+    assert!(note.is_empty() && written.contains("RETC\n"), "{written}");
+    assert_eq!(seen_apart([&jump, &iec(&written)]), None, "{written}");
 }

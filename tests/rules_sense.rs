@@ -573,7 +573,14 @@ fn the_server_offers_to_allow() {
     const URI: &str = "file:///tmp/allowed.il";
     let mut client = Client::start();
     client.open(URI, "plc-il", TWICE);
-    assert_eq!(codes(&client.diagnostics(URI, 1)), ["double-coil", "double-coil"]);
+    // The rules about whole programs may follow the others in a message of their own.
+    let awaits = |version: i64, wanted: &[&str], client: &mut Client| {
+        client.wait_for(&format!("{wanted:?}"), |message| {
+            message["params"]["version"] == json!(version)
+                && message["params"]["diagnostics"].as_array().is_some_and(|found| codes(found) == wanted)
+        });
+    };
+    awaits(1, &["double-coil", "double-coil"], &mut client);
     let line = |line: u32, column: u32| json!({"line": line, "character": column});
     let actions = client.request(
         "textDocument/codeAction",
@@ -585,13 +592,6 @@ fn the_server_offers_to_allow() {
     let edit = &allow.expect("offered")["edit"];
     assert!(edit.to_string().contains("// rungwise: allow(double-coil)\\n"), "{edit}");
     assert!(actions.iter().any(|action| action["title"] == json!("Allow double-coil in this file")));
-    // The rules about whole programs may follow the others in a message of their own.
-    let awaits = |version: i64, wanted: &[&str], client: &mut Client| {
-        client.wait_for(&format!("{wanted:?}"), |message| {
-            message["params"]["version"] == json!(version)
-                && message["params"]["diagnostics"].as_array().is_some_and(|found| codes(found) == wanted)
-        });
-    };
     client.change(URI, 2, (0, 0), (0, 0), "// rungwise: allow(double-coil)\n");
     awaits(2, &["double-coil"], &mut client);
     client.change(URI, 3, (0, 19), (0, 30), "latched-range");

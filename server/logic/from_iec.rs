@@ -452,11 +452,14 @@ impl<'a> Source<'a> {
         self.detector(pou, instance).is_some_and(|detector| detector.fed == 1 && detector.read == 1)
     }
 
-    /// A detector that is called in one place, and that nobody outside of its program unit knows.
+    /// A detector that is called in one place, that nobody outside of its program unit knows, and that begins with
+    /// nothing remembered.
     fn detector(&self, pou: Option<usize>, instance: &str) -> Option<&Detector> {
         let name = folded(instance);
         let is_own = pou.is_none()
-            || self.scopes.variable(pou, &name).is_some_and(|found| found.section == SectionKind::Local);
+            || self.scopes.variable(pou, &name).is_some_and(|found| {
+                found.section == SectionKind::Local && !found.is_retained() && !found.has_value()
+            });
         let detector = self.detectors.get(&(pou, name));
         detector.filter(|detector| is_own && detector.bare == 1 && !detector.is_opened)
     }

@@ -76,7 +76,7 @@ pub(super) fn difference(
 }
 
 /// The words of the configurations in a document.
-fn configurations(document: &Document) -> Vec<SmolStr> {
+pub(super) fn configurations(document: &Document) -> Vec<SmolStr> {
     let configured = document.chunks().filter_map(|at| {
         let reading = at.chunk.reading();
         let Tree::Iec(tree) = reading.tree() else { return None };

@@ -155,7 +155,8 @@ pub(super) fn header(document: &Document, program: &Program, helpers: &[Helper])
     };
     let scopes = document.scopes();
     let mut known: FxHashSet<SmolStr> = FxHashSet::default();
-    let (mut variables, mut kept): (Vec<(SmolStr, SmolStr)>, Vec<(SmolStr, SmolStr)>) = Default::default();
+    let mut variables: Vec<(SmolStr, SmolStr)> = Vec::new();
+    let mut kept = Vec::new();
     let paths = || sources.iter().filter_map(|source| source.rung.path.as_ref().ok()?.as_ref());
     // Instances first, for a member of one says nothing of its type.
     for is_instance in [true, false] {

@@ -255,7 +255,7 @@ fn written(
         certificate::add((document, target), sources, to, &mut translation, is_cancelled)?;
     }
     for (source, rung) in program.rungs.iter().zip(&mut translation.rungs) {
-        if let (Some(doubt), None) = (&source.doubt, &rung.note) {
+        if let Some(doubt) = source.doubt.as_ref().filter(|_| !rung.is_kept) {
             rung.note = Some(doubt.clone());
             rung.certificate = rung.certificate.map(|_| Certificate::Undecided);
         }

@@ -252,13 +252,13 @@ impl<'s> Prover<'s> {
             (None, None) | (Some(End::Rung(..)), Some(End::Rung(..))) => true,
             (Some(End::Label(_, left)), Some(End::Label(_, right))) => left.eq_ignore_ascii_case(right),
             (Some(End::Unit(_, left)), Some(End::Unit(_, right))) => self.paired.are(*left, *right),
-            (Some(End::Unread(_, left)), Some(End::Unread(_, right))) => left == right,
+            (Some(End::Unread(_, left)), Some(End::Unread(_, right))) => left == right && !self.is_mixed,
             _ => false,
         };
         if !is_alike {
             let at = [left, right].map(|side| side.end.as_ref().map(End::span));
-            let notes = [left, right].into_iter().filter_map(|side| side.end.as_ref()?.note());
-            let reason = notes.cloned().next().unwrap_or(Message::new("prove.structure"));
+            let note = [left, right].into_iter().find_map(|side| side.end.as_ref()?.note());
+            let reason = note.cloned().unwrap_or_else(|| Message::new("prove.structure"));
             return Err(Proof::undecided(reason, at));
         }
         self.rungs([&left.rungs, &right.rungs])?;

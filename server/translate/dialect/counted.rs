@@ -1,9 +1,9 @@
 //! Timers and counters of the FX family, and the blocks of IEC 61131-3 that stand for them.
 //!
 //! A counter of the FX family stops at its preset, and its contact stays on whatever becomes of that; CTU counts on,
-//! and its output compares anew in each call. They do the same where one constant is the preset in all scans, the
-//! count is compared with nothing beyond it, and one coil or call counts. RST calls the block, too, so that its
-//! preset must be known by then, for which its declaration says it: `C0 : CTU := (PV := 10)`.
+//! and its output compares anew in each call. They do the same where one constant is the preset in all scans, the count
+//! is compared with nothing beyond it, and one coil or call counts. RST calls the block, too, so that its preset must
+//! be known by then, for which its declaration says it: `C0 : CTU := (PV := 10)`.
 
 use super::super::source::Source;
 use super::{Lack, guarded};

@@ -8,7 +8,7 @@ use crate::il::iec::{PouKind, SectionKind};
 use crate::logic::{Action, Deed, Path, Term};
 use crate::target::{Device, DeviceKind, Operand, Target};
 use crate::text::{Message, folded};
-use crate::translate::Source;
+use crate::translate::{Source, declared};
 use smol_str::SmolStr;
 
 /// For each rung why it is doubtful whether it does the same in the other language; nothing where it is not. The
@@ -31,9 +31,30 @@ pub(super) fn all(
     if let Some(first) = sources.iter().position(|source| source.path().is_some())
         && doubts[first].is_none()
     {
-        doubts[first] = first_value(document.scopes(), family);
+        doubts[first] = configuration(document).or_else(|| first_value(document.scopes(), family));
     }
     doubts
+}
+
+/// What decides when, how often and with what the programs of IEC 61131-3 run. An FX list runs in each scan, from its
+/// beginning to its end.
+fn configuration(document: &Document) -> Option<Message> {
+    let scopes = document.scopes();
+    let programs = scopes.own_pous().iter().filter(|pou| pou.kind == PouKind::Program).count();
+    if programs > 1 {
+        return Some(doubt("translate.configuration", "PROGRAM"));
+    }
+    declared::configurations(document).iter().find_map(|words| {
+        let words: Vec<&str> = words.split(' ').collect();
+        let deciding = ["single", "retain"].into_iter().find(|word| words.contains(word));
+        let runs: Vec<usize> = (0..words.len()).filter(|at| words[*at] == "program").collect();
+        // What its inputs and outputs are connected to stands behind its type.
+        let is_connected =
+            |at: &usize| words[*at..].iter().take_while(|word| **word != ";").any(|word| *word == "(");
+        let is_plain = runs.len() == 1 && !runs.iter().any(is_connected);
+        let word = deciding.map(str::to_uppercase).or((!is_plain).then(|| "PROGRAM".into()))?;
+        Some(doubt("translate.configuration", word))
+    })
 }
 
 /// The first variable of a program, or known to all, that is a device and has a value at first.

@@ -4,7 +4,7 @@ use super::super::source::Program;
 mod calculation;
 
 use super::counted::{Instances, constant, is_alike, turned};
-use super::{Lack, PULSE, Registers, device_at, devices_at, pair_at, single_edge, without};
+use super::{END_POINTER, Lack, PULSE, Registers, device_at, devices_at, pair_at, single_edge, without};
 use crate::document::{DeclaredType, Scopes};
 use crate::il::iec::SectionKind;
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
@@ -34,11 +34,14 @@ impl Names {
     pub(super) fn of(program: &Program, scopes: &Scopes, target: &Target) -> Names {
         let mut labels = FxHashMap::default();
         let names = || program.rungs.iter().flat_map(|source| &source.rung.labels);
-        for name in names().filter(|name| pointer(name).is_some()) {
+        let is_pointer = |name: &&SmolStr| pointer(name).is_some() && !name.eq_ignore_ascii_case(END_POINTER);
+        for name in names().filter(is_pointer) {
             labels.insert(folded(name), name.to_uppercase().into());
         }
         let taken: FxHashSet<SmolStr> = labels.values().cloned().collect();
-        let mut free = (0..).map(|number| format_smolstr!("P{number}")).filter(|name| !taken.contains(name));
+        let mut free = (0..)
+            .map(|number| format_smolstr!("P{number}"))
+            .filter(|name| !taken.contains(name) && name != END_POINTER);
         for name in names() {
             if !labels.contains_key(&folded(name))
                 && let Some(pointer) = free.next()
@@ -316,7 +319,11 @@ impl Converter<'_> {
             (Test::Compare(operator), [left, right]) => {
                 self.counts(operator, [left, right])?;
                 let width = self.types.width(&contact.terms);
-                let numbers = vec![self.number(left, width)?, self.number(right, width)?];
+                let number = |term: &Term| match self.count(term) {
+                    Some(count) => Ok(count),
+                    None => self.number(term, width),
+                };
+                let numbers = vec![number(left)?, number(right)?];
                 self.types.compared(operator, [left, right])?;
                 (Test::Compare(operator.in_width(width == Width::Double)), numbers)
             }
@@ -376,9 +383,8 @@ impl Converter<'_> {
                 false => Err(Lack::Reason("translate.torn", term.text.clone())),
             };
         }
-        if let Some((instance, member)) = member(term) {
-            let device = without(self.counting(instance).filter(|device| device.kind == DeviceKind::C))?;
-            return without(member.eq_ignore_ascii_case("CV").then(|| self.term(device, term.span)));
+        if self.count(term).is_some() {
+            return Err(Lack::Reason("translate.beyond-preset", term.text.clone()));
         }
         let device = without(self.device(term))?;
         without((device.kind == DeviceKind::D).then(|| self.term(device, term.span)))
@@ -414,6 +420,13 @@ impl Converter<'_> {
     /// The timer or counter that an instance of this name is, if no other has the name.
     fn counting(&self, instance: &str) -> Option<Device> {
         self.named(instance).filter(|device| self.names.is_free(*device))
+    }
+
+    /// The counter whose count a variable is.
+    fn count(&self, term: &Term) -> Option<Term> {
+        let (instance, member) = member(term)?;
+        let device = self.counting(instance).filter(|device| device.kind == DeviceKind::C)?;
+        member.eq_ignore_ascii_case("CV").then(|| self.term(device, term.span))
     }
 
     /// Whether a comparison is the same of a count that stops at its preset, if one of these is a count.

@@ -274,9 +274,9 @@ fn argument<'t>(
     Ok((formal.ok_or(Refusal::Element)?.name, is_output, id))
 }
 
-/// Whether a block is the one whose call stands for the contact of a rising edge. `F_TRIG` is none: its memory begins
-/// as if its input had been on, so that in its first call it is on without an edge (IEC 61131-3, table of edge
-/// detection).
+/// Whether a block is the one whose call stands for the contact of a rising edge. `F_TRIG` is none of a falling one:
+/// its memory begins as if its input had been on, so that its first call may be on without an edge (IEC 61131-3, table
+/// of edge detection).
 pub(in crate::logic) fn detects_rise(block: &Callee) -> bool {
     block.is_standard("R_TRIG")
 }
