@@ -5,6 +5,7 @@ use rungwise::link::frame::STX;
 use rungwise::link::plc::{Faults, Plc, Server};
 use rungwise::link::{Fate, Host, Line, LinkError, Mode, Patience, Switch, Transport};
 use rungwise::machine_code::{END, Image};
+use rungwise::simulate::Value;
 use rungwise::target::{Model, Target};
 use std::io;
 use std::ops::Range;
@@ -261,6 +262,8 @@ fn a_download_that_is_ended_at_any_request_is_told_truly_and_can_be_finished() {
                 Err(failure) => failure,
             };
             assert_eq!(failure.cause, LinkError::Cancelled, "{requests}");
+            // What lets hosts write the program is taken back in any case.
+            assert_eq!(line.ends().server.plc().shown("M8118"), Some(Value::Bit(false)), "{requests}");
             let (program, is_running) = (program_in(&line), is_running());
             let is_true = match failure.fate {
                 Fate::Untouched => program == *before && is_running,

@@ -89,7 +89,11 @@ fn a_program_is_compared_downloaded_watched_and_driven() {
     assert_eq!(state["match"], "different");
     // Everything but END is new.
     assert_eq!(state["drift"].as_array().unwrap().len(), 7, "{state}");
-    let done = editor.tell("download", json!({ "start": true, "confirmed": true }));
+    // What somebody has seen and agreed to is another program than that in the PLC.
+    let answer = editor.answer("download", json!({ "confirmed": true, "sum": "1234" }));
+    assert!(answer["error"]["message"].as_str().unwrap().contains("no longer what was read"), "{answer}");
+    let sum = &plan["sum"];
+    let done = editor.tell("download", json!({ "start": true, "confirmed": true, "sum": sum }));
     assert_eq!((&done["mode"], &done["steps"]), (&json!("RUN"), &json!(14)), "{done}");
     let backup = std::fs::read_to_string(done["backup"].as_str().unwrap()).unwrap();
     assert!(backup.contains("fx2n"), "{backup}");
