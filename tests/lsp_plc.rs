@@ -275,7 +275,7 @@ fn what_was_seen_is_a_chart_and_a_file_also_when_the_line_is_gone() {
     let times: Vec<u64> = points.iter().map(|point| point[0].as_u64().unwrap()).collect();
     assert!(times.is_sorted() && *times.last().unwrap() <= last["to"].as_u64().unwrap(), "{last}");
     // The panel has what the program uses, and what is named besides, as far as the port reaches it.
-    let panel = editor.tell("panel", json!({ "names": ["D77", "T300"] }));
+    let panel = editor.tell("panel", json!({ "names": ["D77", "Z0"] }));
     let rows: Vec<&str> =
         panel["rows"].as_array().unwrap().iter().map(|row| row["name"].as_str().unwrap()).collect();
     assert_eq!(rows, ["X0", "X1", "Y0", "T0", "D0", "D1", "D77"]);
