@@ -244,7 +244,8 @@ const OTHER: &str = "LDI X0\nOUT Y1\nEND\n";
 
 /// A folder with two programs, and a virtual PLC.
 fn programs_and_plc(arguments: &[&str]) -> (TempDir, VirtualPlc) {
-    let folder = folder(&[("motor.il", MOTOR), ("other.il", OTHER)]);
+    let third = "LD X7\nOUT Y7\nEND\n";
+    let folder = folder(&[("motor.il", MOTOR), ("other.il", OTHER), ("third.il", third)]);
     let plc = VirtualPlc::start(folder.path(), arguments);
     (folder, plc)
 }
@@ -364,7 +365,12 @@ fn what_was_in_the_plc_is_kept_for_its_owner_and_comes_back() {
     check(&folder, &["download", "motor.il", "--yes", "--port", port], 0);
     check(&folder, &["download", "other.il", "--yes", "--port", port], 0);
     check(&folder, &["verify", "other.il", "--port", port], 0);
-    check(&folder, &["download", "--rollback", "--yes", "--port", port], 0);
+    // Another PLC answers at the port: that is said before anything is written.
+    let other = VirtualPlc::start(folder.path(), &["--program", "third.il"]);
+    let (_, err) = check(&folder, &["download", "--rollback", "--dry-run", "--port", &other.port], 1);
+    assert!(err.contains("warning[other-plc]") && err.contains("its program has the sum"), "{err}");
+    let (_, err) = check(&folder, &["download", "--rollback", "--yes", "--port", port], 0);
+    assert!(!err.contains("other-plc"), "{err}");
     check(&folder, &["verify", "motor.il", "--port", port], 0);
     let backups = folder.path().join(".rungwise/backup");
     let mut files: Vec<PathBuf> =
@@ -417,9 +423,11 @@ fn program_and_latched_devices_outlast_the_process() {
     }
 }
 
+#[cfg(unix)]
 #[test]
 fn a_faster_line_is_found_again() {
-    let (folder, plc) = programs_and_plc(&["--baud", "9600"]);
+    let folder = folder(&[("motor.il", MOTOR)]);
+    let plc = VirtualPlc::listening(folder.path(), &["--pty", "--baud", "9600"]);
     let port = plc.port.as_str();
     for _ in 0..2 {
         check(&folder, &["download", "motor.il", "--yes", "--baud", "115200", "--port", port], 0);

@@ -131,7 +131,10 @@ fn nobody_has_said_yes() {
     let err = refused(&folder, &["download", "long.il", "--start", "--port", port], 1, "not-confirmed");
     assert!(err.contains("--yes") && err.contains("may move"), "{err}");
     refused(&folder, &["start", "--port", port], 1, "not-confirmed");
-    refused(&folder, &["clear", "--port", port], 1, "not-confirmed");
+    let err = refused(&folder, &["clear", "--port", port], 1, "not-confirmed");
+    assert!(err.contains("FX2N (8000 steps of memory, sum ") && err.contains("comments"), "{err}");
+    let err = refused(&folder, &["clear", "--devices", "--port", port], 1, "not-confirmed");
+    assert!(err.contains("latched"), "{err}");
     check(&folder, &["verify", "motor.il", "--port", port], 0);
     assert!(run(&folder, &["status", "--port", port]).1.contains("STOP"));
 }
@@ -163,6 +166,10 @@ fn wrong_usage() {
     ] {
         check(&folder, wrong, 2);
     }
+    // The line behind a device server keeps its speed, so a PLC that changes its own would be lost.
+    let err = refused(&folder, &["status", "--port", port, "--baud", "19200"], 1, "speed-elsewhere");
+    assert!(err.contains("tcp://"), "{err}");
+    check(&folder, &["status", "--port", port], 0);
     // A mistake in a program is a finding, and nothing is sent.
     std::fs::write(folder.path().join("wrong.il"), "LD X8\nOUT Y0\nEND\n").unwrap();
     let err = check(&folder, &["download", "wrong.il", "--yes", "--port", "tcp://127.0.0.1:1"], 1);

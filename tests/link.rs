@@ -5,7 +5,8 @@ use rungwise::link::Logbook;
 use rungwise::link::frame::{ACK, ENQ, NAK, framed};
 use rungwise::link::plc::Plc;
 use rungwise::link::{
-    Address, BitAddress, Command, Extended, LinkError, Lying, Map, Mode, Part, Plain, Point, Program, Watch,
+    Address, BitAddress, Command, Extended, Fate, LinkError, Lying, Map, Mode, Part, Plain, Point, Program,
+    Space, Watch,
 };
 use rungwise::machine_code::{Image, ParameterBlock};
 use rungwise::simulate::Value;
@@ -352,4 +353,41 @@ fn a_logbook_keeps_the_latest_changes_and_the_last_value_of_each_point() {
     assert!(dump[at("97000000")..at("98000000")].contains("b0000000000000111 !"), "{dump}");
     book.begin(10);
     assert!(book.points().is_empty() && book.beginnings() == 2);
+}
+
+#[test]
+fn a_plan_is_not_carried_out_on_what_somebody_else_has_written_meanwhile() {
+    let target = Target::of(Model::Fx2n);
+    let [before, after, other] = ["LD X0\nOUT Y0\nEND\n", "LD X1\nOUT Y1\nEND\n", "LD X2\nOUT Y2\nEND\n"]
+        .map(|list| words(list, Model::Fx2n));
+    let line = Loopback::new(Model::Fx2n);
+    line.ends().server.plc_mut().load(&before);
+    let mut host = line.host().unwrap();
+    let plan = host.plan(&after, target, &mut |_| {}).unwrap();
+    line.ends().server.plc_mut().load(&other);
+    let failure = host.download(&plan, false, &mut |_| {}).unwrap_err();
+    assert_eq!((failure.cause, failure.fate), (LinkError::Changed, Fate::Untouched));
+    assert!(line.ends().server.plc().words().starts_with(&other));
+    // Planned again, it is; and so is what undoes it.
+    let plan = host.plan(&after, target, &mut |_| {}).unwrap();
+    host.download(&plan, false, &mut |_| {}).unwrap();
+    host.download(&plan.undone(), false, &mut |_| {}).unwrap();
+    assert!(line.ends().server.plc().words().starts_with(&other));
+}
+
+#[test]
+fn a_virtual_fx1s_knows_plain_commands_only() {
+    let line = Loopback::new(Model::Fx1s);
+    let mut host = line.host().unwrap();
+    let read = |space| Command::Read { space, address: 0x0E02, length: 2 };
+    assert!(host.line().ask(&read(Space::Plain)).is_ok());
+    for refused in [
+        read(Space::Extended),
+        Command::Force { space: Space::Extended, bit: 5, on: true },
+        Command::Search { from: 0x8000, word: [0x0F, 0] },
+        Command::Clear(1),
+    ] {
+        let answer = host.line().ask(&refused);
+        assert!(matches!(answer, Err(LinkError::Refused { .. })), "{refused:?}: {answer:?}");
+    }
 }

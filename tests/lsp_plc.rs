@@ -89,7 +89,11 @@ fn a_program_is_compared_downloaded_watched_and_driven() {
     assert_eq!(state["match"], "different");
     // Everything but END is new.
     assert_eq!(state["drift"].as_array().unwrap().len(), 7, "{state}");
-    let done = editor.tell("download", json!({ "start": true, "confirmed": true }));
+    // What somebody has seen and agreed to is another program than that in the PLC.
+    let answer = editor.answer("download", json!({ "confirmed": true, "sum": "1234" }));
+    assert!(answer["error"]["message"].as_str().unwrap().contains("no longer what was read"), "{answer}");
+    let sum = &plan["sum"];
+    let done = editor.tell("download", json!({ "start": true, "confirmed": true, "sum": sum }));
     assert_eq!((&done["mode"], &done["steps"]), (&json!("RUN"), &json!(14)), "{done}");
     let backup = std::fs::read_to_string(done["backup"].as_str().unwrap()).unwrap();
     assert!(backup.contains("fx2n"), "{backup}");
@@ -271,7 +275,7 @@ fn what_was_seen_is_a_chart_and_a_file_also_when_the_line_is_gone() {
     let times: Vec<u64> = points.iter().map(|point| point[0].as_u64().unwrap()).collect();
     assert!(times.is_sorted() && *times.last().unwrap() <= last["to"].as_u64().unwrap(), "{last}");
     // The panel has what the program uses, and what is named besides, as far as the port reaches it.
-    let panel = editor.tell("panel", json!({ "names": ["D77", "T300"] }));
+    let panel = editor.tell("panel", json!({ "names": ["D77", "Z0"] }));
     let rows: Vec<&str> =
         panel["rows"].as_array().unwrap().iter().map(|row| row["name"].as_str().unwrap()).collect();
     assert_eq!(rows, ["X0", "X1", "Y0", "T0", "D0", "D1", "D77"]);

@@ -27,6 +27,9 @@ pub(super) struct Arguments {
     /// The model [default: that of the program, else fx2n].
     #[arg(long, value_name = "MODEL", value_parser = target_named)]
     model: Option<&'static Target>,
+    /// Thousands of steps of its memory [default: as the model comes].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=16))]
+    memory: Option<u16>,
     /// A program that is in the memory from the beginning.
     #[arg(long, value_name = "FILE")]
     program: Option<PathBuf>,
@@ -151,7 +154,13 @@ fn plc_of(arguments: &Arguments, language: Language) -> Option<Plc> {
     // A model that is asked for is another PLC than the one that was left.
     let is_asked =
         |plc: &Plc| arguments.model.or(of_program).is_none_or(|target| target.model == plc.target().model);
-    let mut plc = saved.filter(is_asked).unwrap_or_else(|| Plc::new(target, arguments.scan_time));
+    let mut plc = saved.filter(is_asked).unwrap_or_else(|| {
+        let plc = Plc::new(target, arguments.scan_time);
+        match arguments.memory {
+            Some(thousands) => plc.with_memory(thousands),
+            None => plc,
+        }
+    });
     if let Some(program) = program {
         plc.load(&program.words());
     }

@@ -118,6 +118,17 @@ pub enum Reply {
 }
 
 impl Command {
+    /// Whether only an FX1N, FX2N or FX3U knows it.
+    pub fn is_extended(&self) -> bool {
+        match self {
+            Command::Read { space, .. } | Command::Write { space, .. } | Command::Force { space, .. } => {
+                *space != Space::Plain
+            }
+            Command::Search { .. } | Command::Clear(_) => true,
+            Command::Commit | Command::Speed(_) => false,
+        }
+    }
+
     /// The body of the request's frame.
     pub fn body(&self) -> Vec<u8> {
         let address = |address: &u16| hex(&address.to_be_bytes());

@@ -102,6 +102,10 @@ pub enum LinkError {
         /// Bits a second.
         baud: u32,
     },
+    /// The serial port is that of a device server, which keeps its speed.
+    SpeedElsewhere,
+    /// What is in the PLC is not what was there when the download was planned.
+    Changed,
     /// The PLC has no such device, or none that the port reaches.
     NoDevice {
         /// Its name.
@@ -122,6 +126,8 @@ impl LinkError {
             LinkError::Cancelled
                 | LinkError::NotOnThisModel
                 | LinkError::NoSpeed { .. }
+                | LinkError::SpeedElsewhere
+                | LinkError::Changed
                 | LinkError::NoEnd
                 | LinkError::IsOrder { .. }
                 | LinkError::NoDevice { .. }
@@ -155,6 +161,8 @@ impl LinkError {
             LinkError::Parameters { .. } => "bad-parameters",
             LinkError::IsOrder { .. } => "is-order",
             LinkError::NoSpeed { .. } => "no-speed",
+            LinkError::SpeedElsewhere => "speed-elsewhere",
+            LinkError::Changed => "plc-changed",
             LinkError::NoDevice { .. } => "no-device",
         }
     }
@@ -193,6 +201,8 @@ impl LinkError {
             LinkError::FileRegisters => Message::new("link.file-registers"),
             LinkError::Parameters { capacity } => Message::new("link.parameters").with("capacity", capacity),
             LinkError::IsOrder { device } => Message::new("link.is-order").with("device", device),
+            LinkError::SpeedElsewhere => Message::new("link.speed-elsewhere"),
+            LinkError::Changed => Message::new("link.changed"),
             LinkError::NoSpeed { baud } => Message::new("link.no-speed").with("baud", baud),
             LinkError::NoDevice { device } => Message::new("link.no-device").with("device", device),
         }
@@ -223,6 +233,8 @@ impl LinkError {
             LinkError::Parameters { .. } => "link.help-parameters",
             LinkError::IsOrder { .. } => "link.help-is-order",
             LinkError::NoSpeed { .. } => "link.help-no-speed",
+            LinkError::SpeedElsewhere => "link.help-speed-elsewhere",
+            LinkError::Changed => "link.help-changed",
             LinkError::NoDevice { .. } => "link.help-no-device",
         })
     }

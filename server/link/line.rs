@@ -134,6 +134,14 @@ impl<T: Transport> Line<T> {
         }
     }
 
+    /// Sees whether the speed can be changed at this end.
+    ///
+    /// # Errors
+    /// If somebody else has the serial port.
+    pub fn check_speed(&self) -> Result<(), LinkError> {
+        if self.transport.has_speed() { Ok(()) } else { Err(LinkError::SpeedElsewhere) }
+    }
+
     /// Changes the speed at this end; the PLC has changed its own.
     ///
     /// # Errors
@@ -145,9 +153,9 @@ impl<T: Transport> Line<T> {
         Ok(())
     }
 
-    /// From now on this ends what goes on.
-    pub fn set_cancel(&mut self, cancel: Arc<AtomicBool>) {
-        self.cancel = cancel;
+    /// From now on this ends what goes on; gives what did before.
+    pub fn set_cancel(&mut self, cancel: Arc<AtomicBool>) -> Arc<AtomicBool> {
+        std::mem::replace(&mut self.cancel, cancel)
     }
 
     /// Its speed in bits a second.

@@ -24,6 +24,11 @@ pub trait Transport: Send {
     /// If the line is gone.
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize>;
 
+    /// Whether the speed of the line can be changed from here. That behind a device server is the server's.
+    fn has_speed(&self) -> bool {
+        true
+    }
+
     /// Changes the speed, in bits a second; a line that has none does nothing.
     ///
     /// # Errors
@@ -55,6 +60,10 @@ impl Transport for Box<dyn Transport> {
 
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
         (**self).receive(buffer, wait)
+    }
+
+    fn has_speed(&self) -> bool {
+        (**self).has_speed()
     }
 
     fn set_baud(&mut self, baud: u32) -> io::Result<()> {

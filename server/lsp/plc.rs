@@ -8,9 +8,9 @@
 //! rungwise.plc.connect      { uri?, port?: string, timeout?: ms = 1000 }   // the port of the project of `uri`
 //! rungwise.plc.disconnect   { }
 //! rungwise.plc.state        { uri? }                     // with what of `uri` is not in the PLC as it stands there
-//! rungwise.plc.plan         { uri }                      → { same, bytes, steps, before, after }
+//! rungwise.plc.plan         { uri }                      → { same, bytes, steps, sum, before, after }
 //! rungwise.plc.verify       { uri }                      // the same
-//! rungwise.plc.download     { uri, start?: boolean, confirmed?: boolean }
+//! rungwise.plc.download     { uri, start?: boolean, confirmed?: boolean, sum? }
 //!                                                        → { written, compared, steps, mode, backup? }
 //! rungwise.plc.upload       { }                          → { text, model, steps, unread }
 //! rungwise.plc.start        { confirmed?: boolean }
@@ -27,6 +27,8 @@
 //! rungwise.plc.export       { format: "vcd" | "csv", names?: string[] }  → { from, to, text }
 //! ```
 //!
+//! `sum` is that of the program in the PLC; a download that is told one is refused if another program is there
+//! meanwhile.
 //! `before` and `after` are the instruction lists of what is in the PLC and of what shall be. Whoever does not send
 //! `confirmed` is asked by the server before a PLC is written or started. A request that is cancelled ends at the next
 //! exchange on the line; what has become of the PLC is then told in a message. The others answer the state, which is
@@ -94,6 +96,7 @@ struct Asked {
     to: Option<u64>,
     most: Option<usize>,
     format: Option<String>,
+    sum: Option<String>,
 }
 
 /// How long an answer may take to begin if nobody says otherwise.
@@ -179,7 +182,7 @@ fn order(command: &str, verb: &str, asked: &Asked) -> std::result::Result<Order,
         }
         "disconnect" => Order::Disconnect,
         "plan" | "verify" => Order::Plan { uri: uri()? },
-        "download" => Order::Download { uri: uri()?, is_started: asked.start },
+        "download" => Order::Download { uri: uri()?, is_started: asked.start, sum: asked.sum.clone() },
         "upload" => Order::Upload,
         "start" => Order::Start,
         "stop" => Order::Stop,

@@ -18,6 +18,12 @@ pub struct Backup {
     /// Through which port.
     #[serde(default)]
     pub port: String,
+    /// The version of the PLC, `3.10`.
+    #[serde(default)]
+    pub version: String,
+    /// The sum of the program that was to take the place of this one.
+    #[serde(default)]
+    pub replaced_by: Option<u16>,
     /// Whether it was a program that the PLC had taken over, and not one that was written in part.
     #[serde(default)]
     pub whole: bool,
@@ -26,6 +32,18 @@ pub struct Backup {
     parameters: Vec<u16>,
     /// The program up to END.
     pub words: Vec<u16>,
+}
+
+/// The PLC that a backup is read from, and what will be in it.
+pub struct Origin<'a> {
+    /// The model.
+    pub target: &'a Target,
+    /// The port.
+    pub port: &'a str,
+    /// The version, `3.10`.
+    pub version: String,
+    /// The sum of the program that takes the place of what is read.
+    pub replaced_by: u16,
 }
 
 impl Backup {
@@ -43,18 +61,16 @@ impl Backup {
     ///
     /// # Errors
     /// If that cannot be written.
-    pub fn keep(
-        beside: &Path,
-        (target, port): (&Target, &str),
-        (image, is_whole): (&Image, bool),
-    ) -> io::Result<PathBuf> {
+    pub fn keep(beside: &Path, from: &Origin<'_>, (image, is_whole): (&Image, bool)) -> io::Result<PathBuf> {
         let folder = folder(beside);
         private_folder(&folder)?;
         let time = Timestamp::now();
         let backup = Backup {
-            model: target.name.into(),
+            model: from.target.name.into(),
             time: time.to_string(),
-            port: port.into(),
+            port: from.port.into(),
+            version: from.version.clone(),
+            replaced_by: Some(from.replaced_by),
             whole: is_whole,
             steps: image.program().len(),
             parameters: image.parameters().to_words().to_vec(),
@@ -64,7 +80,7 @@ impl Backup {
         serde_json::to_writer_pretty(&mut file, &backup)?;
         file.flush()?;
         file.as_file().sync_all()?;
-        let path = folder.join(format!("{}-{}.json", time.strftime("%Y%m%dT%H%M%S%.3fZ"), target.name));
+        let path = folder.join(format!("{}-{}.json", time.strftime("%Y%m%dT%H%M%S%.3fZ"), from.target.name));
         file.persist(&path)?;
         Ok(path)
     }

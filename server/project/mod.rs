@@ -19,7 +19,7 @@ pub use around::Surroundings;
 pub mod encoding;
 
 mod backup;
-pub use backup::Backup;
+pub use backup::{Backup, Origin};
 
 mod disk;
 pub use disk::{Stamp, read_text};

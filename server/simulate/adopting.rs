@@ -6,7 +6,7 @@
 
 use super::clock::CLOCK_SLOTS;
 use super::code::{Call, Code, Op};
-use super::layout::SCAN_SEEN;
+use super::layout::{SCAN_SEEN, SLOTS_OF_TIMER};
 use super::row::Cell;
 use super::{Lanes, Machine, Memory, Slot, iec};
 use crate::target::{DeviceKind, Form};
@@ -161,15 +161,19 @@ impl<L: Lanes> Machine<L> {
         }
         let layout = &code.layout;
         let registers = layout.devices().filter(|device| device.kind == DeviceKind::D && device.is_special());
-        for device in layout.latched().chain(registers) {
-            let (cells, slots) = layout.whole(device);
-            new.memory.cells[cells.clone()].copy_from_slice(&self.memory.cells[cells]);
-            slots.clone().for_each(|slot| self.keep_slot(slot, &mut new.memory, slot));
-            if device.kind == DeviceKind::T {
+        for (kind, cells, slots) in layout.latched_runs() {
+            new.memory.keep(&self.memory, cells, slots.clone());
+            if kind == DeviceKind::T {
                 // Scans are counted from 0 again.
-                let seen = slots.start as Slot + SCAN_SEEN;
-                (0..L::COUNT).for_each(|lane| new.memory.set_word(seen, lane, 0));
+                for timer in slots.step_by(SLOTS_OF_TIMER) {
+                    let seen = timer as Slot + SCAN_SEEN;
+                    (0..L::COUNT).for_each(|lane| new.memory.set_word(seen, lane, 0));
+                }
             }
+        }
+        for register in registers {
+            let (cells, slots) = layout.whole(register);
+            new.memory.keep(&self.memory, cells, slots);
         }
         let clock = layout.clock() as usize;
         (clock..clock + CLOCK_SLOTS).for_each(|slot| self.keep_slot(slot, &mut new.memory, slot));

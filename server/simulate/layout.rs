@@ -40,7 +40,7 @@ pub(super) const RESET: Cell = 2;
 pub(super) const WRITTEN: Cell = 3;
 /// Behind the current value of a timer lie the nanoseconds that are no whole unit yet, and the scan in which its coil
 /// had power last.
-const SLOTS_OF_TIMER: usize = 3;
+pub(super) const SLOTS_OF_TIMER: usize = 3;
 /// See [`SLOTS_OF_TIMER`].
 pub(super) const NS_BEYOND: Slot = 1;
 /// See [`SLOTS_OF_TIMER`].
@@ -190,6 +190,21 @@ impl Layout {
     /// The devices that forget their values when the CPU leaves RUN.
     pub fn forgetful(&self) -> impl Iterator<Item = Device> {
         self.all(|run| !run.latched)
+    }
+
+    /// The devices that keep them, those that lie one behind the other together: all of their cells and slots.
+    pub(super) fn latched_runs(&self) -> impl Iterator<Item = (DeviceKind, Range<usize>, Range<usize>)> {
+        DeviceKind::ALL.into_iter().flat_map(move |kind| {
+            let (cells, slots) = match kind {
+                _ if kind.has_preset() => (CELLS_OF_COUNTER, SLOTS_OF_TIMER),
+                _ if kind.is_bit() => (1, 0),
+                _ => (0, 1),
+            };
+            self.kinds[kind as usize].iter().filter(|run| run.latched).map(move |run| {
+                let count = (run.last - run.first + 1) as usize;
+                (kind, run.cells..run.cells + cells * count, run.slots..run.slots + slots * count)
+            })
+        })
     }
 
     /// The devices that keep them.

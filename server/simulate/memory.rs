@@ -3,6 +3,7 @@
 use super::row::{CELLS, Cell};
 use super::{Lanes, Slot};
 use smol_str::SmolStr;
+use std::ops::Range;
 
 /// Relays and words of all scenarios that run side by side.
 #[derive(Clone, PartialEq, Eq, Debug)]
@@ -21,6 +22,13 @@ impl<L: Lanes> Memory<L> {
         // The length is right, so nothing is lost.
         let cells = cells.try_into().unwrap_or_else(|_| Box::new([L::NONE; CELLS]));
         Memory { cells, words: vec![0; slots * L::COUNT], texts: vec![SmolStr::default(); texts * L::COUNT] }
+    }
+
+    /// Takes relays and words over from a memory of the same layout.
+    pub(super) fn keep(&mut self, from: &Memory<L>, cells: Range<usize>, slots: Range<usize>) {
+        self.cells[cells.clone()].copy_from_slice(&from.cells[cells]);
+        let words = slots.start * L::COUNT..slots.end * L::COUNT;
+        self.words[words.clone()].copy_from_slice(&from.words[words]);
     }
 
     /// The relay in all scenarios.

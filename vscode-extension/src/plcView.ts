@@ -19,6 +19,8 @@ interface Plan {
   readonly same: boolean;
   readonly bytes: number;
   readonly steps: number;
+  /** That of the program in the PLC. */
+  readonly sum: string;
   readonly before: string;
   readonly after: string;
 }
@@ -183,7 +185,7 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
     if (chosen === undefined) {
       return;
     }
-    const more = { uri, confirmed: true, start: chosen === start };
+    const more = { uri, confirmed: true, start: chosen === start, sum: plan.sum };
     const done = (await this.long('download', t('Downloading'), more)) as { written: number; compared: number; mode: string };
     void vscode.window.showInformationMessage(t('{0} bytes written, {1} read back and compared; the PLC is in {2}.', done.written, done.compared, done.mode));
   }

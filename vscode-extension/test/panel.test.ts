@@ -48,8 +48,8 @@ test('numbers are read and written as people do', () => {
 });
 
 test('a state of the server is a moment, and anything else is none', () => {
-  const moment = parseMoment({ source: 'simulator', mode: 'paused', scan: 3, time_ms: 30, first_scan: 1, scan_ms: 10, edition: 2, branch: 1, values: [] });
-  assert.deepEqual(moment, { mode: 'paused', scan: 3, timeMs: 30, firstScan: 1, scanMs: 10, edition: 2, branch: 1, values: [] });
+  const moment = parseMoment({ mode: 'paused', scan: 3, time_ms: 30, first_scan: 1, scan_ms: 10, edition: 2, branch: 1, values: [] });
+  assert.deepEqual(moment, { source: 'simulator', mode: 'paused', scan: 3, timeMs: 30, firstScan: 1, scanMs: 10, edition: 2, branch: 1, values: [] });
   assert.equal(parseMoment({ uri: 'file:///a.lad' }), undefined);
   assert.equal(parseMoment(null), undefined);
 });

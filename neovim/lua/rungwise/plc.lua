@@ -169,7 +169,7 @@ M.verbs = {
         question = t('Stop the PLC, write %d bytes into it and start it? The machine may move.', plan.bytes)
       end
       if is_confirmed(question) then
-        tell(buffer, 'download', { confirmed = true, start = is_start }, function(done)
+        tell(buffer, 'download', { confirmed = true, start = is_start, sum = plan.sum }, function(done)
           client.notify(t('%d bytes written, %d read back and compared; the PLC is in %s',
             done.written, done.compared, done.mode))
         end)

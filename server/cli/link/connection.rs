@@ -58,6 +58,7 @@ impl Connection {
             Patience { answer: Duration::from_nanos(self.timeout.max(1) as u64), ..Patience::default() };
         let mut line = Line::new(transport::open(port)?, patience, interruption());
         let Some(baud) = self.baud else { return Host::connect(line) };
+        line.check_speed()?;
         match line.greet() {
             Ok(()) => {
                 let mut host = Host::connect(line)?;

@@ -65,7 +65,14 @@ pub(in crate::cli) fn clear(arguments: &Clear, language: Language) -> Outcome {
     let cleared = || -> Result<Outcome, Outcome> {
         let mut host = arguments.connection.open(Path::new("."), language)?;
         let question = if arguments.devices { "link.ask-clear-devices" } else { "link.ask-clear-program" };
-        if !confirmed(&Message::new(question), arguments.yes, language) {
+        let parameters = host.status().map_err(|error| failed(&error, language))?.parameters;
+        let title = parameters.title();
+        let question = Message::new(question)
+            .with("model", host.identity().target.title)
+            .with("title", if title.is_empty() { String::new() } else { format!(" \"{title}\"") })
+            .with("capacity", parameters.capacity())
+            .with("sum", format!("{:04X}", parameters.sum()));
+        if !confirmed(&question, arguments.yes, language) {
             return Err(Outcome::Findings);
         }
         host.clear(!arguments.devices).map_err(|error| failed(&error, language))?;

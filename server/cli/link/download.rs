@@ -6,11 +6,10 @@ use super::contents::words_at;
 use crate::cli::Outcome;
 use crate::cli::colour::Colour;
 use crate::cli::diff::unified;
-use crate::cli::input::{complain, remark, say};
+use crate::cli::input::{caution, complain, remark, say};
 use crate::link::{Mode, Plan};
 use crate::machine_code::decode;
-use crate::project::Backup;
-use crate::target::Target;
+use crate::project::{Backup, Origin};
 use crate::text::{Language, Message};
 use std::path::{Path, PathBuf};
 
@@ -58,6 +57,9 @@ fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Resul
     let plan = host.plan(&words, target, &mut |progress| bar.show(progress));
     bar.clear();
     let plan = plan.map_err(|error| failed(&error, language))?;
+    if let Some((_, backup)) = &backup {
+        caution_other_plc(backup, &host.identity().version(), plan.found, language);
+    }
     say(&changes(&plan, colour, language));
     if plan.bytes() == 0 {
         remark(&Message::new("link.same").render(language));
@@ -75,7 +77,11 @@ fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Resul
     // What changes nothing leaves nothing to go back to.
     if plan.bytes() > 0 {
         let port = arguments.connection.port(beside).unwrap_or_default();
-        back_up(beside, (host.identity().target, &port), &plan, language)?;
+        let identity = host.identity();
+        let replaced_by = plan.wanted.parameters().sum();
+        let version = identity.version();
+        let origin = Origin { target: identity.target, port: &port, version, replaced_by };
+        back_up(beside, &origin, &plan, language)?;
     }
     let report = host.download(&plan, arguments.start, &mut |progress| bar.show(progress));
     bar.clear();
@@ -99,6 +105,24 @@ fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Resul
     }
 }
 
+/// Says if the PLC does not look like the one that a backup was read from.
+fn caution_other_plc(backup: &Backup, version: &str, sum: u16, language: Language) {
+    let differs = |key| Message::new(key);
+    let mut reasons = Vec::new();
+    if !backup.version.is_empty() && backup.version != version {
+        let told = differs("link.differs-version").with("found", version);
+        reasons.push(told.with("kept", &backup.version));
+    }
+    if let Some(kept) = backup.replaced_by.filter(|kept| *kept != sum) {
+        let told = differs("link.differs-sum").with("found", format!("{sum:04X}"));
+        reasons.push(told.with("kept", format!("{kept:04X}")));
+    }
+    if !reasons.is_empty() {
+        let reason = Message::new("link.other-plc").with_messages("differs", reasons).render(language);
+        caution("other-plc", &reason, &Message::new("link.help-other-plc").render(language), language);
+    }
+}
+
 /// What changes in the PLC, as a diff of instruction lists.
 pub(super) fn changes(plan: &Plan, colour: Colour, language: Language) -> String {
     let list = |words: &[u16]| decode(words, plan.model).text;
@@ -109,8 +133,8 @@ pub(super) fn changes(plan: &Plan, colour: Colour, language: Language) -> String
     unified(&Message::new("link.program-in-plc").render(language), &before, &after, colour)
 }
 
-fn back_up(beside: &Path, plc: (&Target, &str), plan: &Plan, language: Language) -> Result<(), Outcome> {
-    match Backup::keep(beside, plc, (&plan.before, plan.is_whole)) {
+fn back_up(beside: &Path, from: &Origin<'_>, plan: &Plan, language: Language) -> Result<(), Outcome> {
+    match Backup::keep(beside, from, (&plan.before, plan.is_whole)) {
         Ok(path) => {
             remark(&Message::new("link.backed-up").with("path", path.display()).render(language));
             Ok(())

@@ -99,6 +99,7 @@ impl<T: Transport> Host<T> {
     /// If there is no such speed, the PLC does not know it, or the line fails.
     pub fn set_speed(&mut self, baud: u32) -> Result<(), LinkError> {
         let speed = Speed::of_baud(baud).ok_or(LinkError::NoSpeed { baud })?;
+        self.line.check_speed()?;
         let before = self.line.baud();
         self.line.ask(&Command::Speed(speed))?;
         self.line.set_baud(baud)?;

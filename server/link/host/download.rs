@@ -4,9 +4,10 @@ use super::program::Teller;
 use super::{Dialect, Host};
 use crate::link::frame::MOST_DATA;
 use crate::link::{Command, LinkError, Mode, Transport};
-use crate::machine_code::{END, Image, PARAMETER_ADDRESS, PROGRAM_ADDRESS, ParameterBlock};
+use crate::machine_code::{Chunk, END, Image, PARAMETER_ADDRESS, PROGRAM_ADDRESS, ParameterBlock};
 use crate::target::{Model, Target};
 use crate::text::Message;
+use std::sync::Arc;
 use std::time::Duration;
 
 /// What is going on.
@@ -51,6 +52,8 @@ pub struct Plan {
     pub model: Model,
     /// What was read from the PLC.
     pub before: Image,
+    /// The sum that the PLC had computed.
+    pub found: u16,
     /// Whether that is a program that was taken over, and not one that is written in part.
     pub is_whole: bool,
     /// What shall be there.
@@ -118,7 +121,13 @@ impl Plan {
 
     /// The plan that undoes this one.
     pub fn undone(&self) -> Plan {
-        Plan { before: self.wanted.clone(), is_whole: true, wanted: self.before.clone(), model: self.model }
+        Plan {
+            model: self.model,
+            found: self.wanted.parameters().sum(),
+            before: self.wanted.clone(),
+            is_whole: true,
+            wanted: self.before.clone(),
+        }
     }
 }
 
@@ -154,7 +163,7 @@ impl<T: Transport> Host<T> {
         let capacity = parameters.program_steps() as usize;
         let wanted = Image::new(parameters, program).filter(|_| program.len() <= capacity);
         let wanted = wanted.ok_or(LinkError::TooLarge { steps: program.len(), capacity })?;
-        Ok(Plan { model: target.model, before, is_whole, wanted })
+        Ok(Plan { model: target.model, found: raw.sum(), before, is_whole, wanted })
     }
 
     /// Carries a plan out: stop, write what has changed, read all of it back, compare the sum, and start if
@@ -169,6 +178,12 @@ impl<T: Transport> Host<T> {
         tell: &mut dyn FnMut(Progress),
     ) -> Result<Report, DownloadFailure> {
         let mut fate = Fate::Untouched;
+        // Whoever was asked may have taken time, in which somebody else came.
+        match self.sum() {
+            Ok(sum) if sum == plan.found => {}
+            Ok(_) => return Err(DownloadFailure { cause: LinkError::Changed, fate }),
+            Err(cause) => return Err(DownloadFailure { cause, fate }),
+        }
         self.carry_out(plan, is_started, &mut fate, tell).map_err(|cause| DownloadFailure { cause, fate })
     }
 
@@ -220,22 +235,46 @@ impl<T: Transport> Host<T> {
             self.line.ask(&Command::Commit)?;
             return Ok(0);
         }
-        let is_guarded = self.dialect() == Dialect::Extended;
-        if is_guarded {
-            self.order(WRITE_ENABLE, true)?;
-        }
         let since = self.line.now();
         let mut teller = Teller::new(Stage::Writing, total, since, tell);
-        for chunk in &chunks {
+        let written = self.write_chunks(&chunks, fate, &mut teller);
+        self.forbid_writing(written)?;
+        self.line.ask(&Command::Commit)?;
+        Ok(total)
+    }
+
+    fn write_chunks(
+        &mut self,
+        chunks: &[Chunk],
+        fate: &mut Fate,
+        teller: &mut Teller<'_>,
+    ) -> Result<(), LinkError> {
+        if self.dialect() == Dialect::Extended {
+            self.order(WRITE_ENABLE, true)?;
+        }
+        for chunk in chunks {
             *fate = Fate::Partial;
             self.write_program(chunk.address, &chunk.bytes)?;
             teller.add(chunk.bytes.len(), self.line.now());
         }
-        if is_guarded {
-            self.order(WRITE_ENABLE, false)?;
+        Ok(())
+    }
+
+    /// Takes back that the program may be written, also if that went wrong or the user has ended it.
+    fn forbid_writing(&mut self, written: Result<(), LinkError>) -> Result<(), LinkError> {
+        if self.dialect() == Dialect::Plain {
+            return written;
         }
-        self.line.ask(&Command::Commit)?;
-        Ok(total)
+        let forbidden = written.and_then(|()| self.order(WRITE_ENABLE, false));
+        let Err(error) = forbidden else { return Ok(()) };
+        if matches!(error, LinkError::Gone { .. }) {
+            return Err(error);
+        }
+        let cancel = self.line.set_cancel(Arc::default());
+        // What went wrong first is what is told.
+        let _ = self.order(WRITE_ENABLE, false);
+        self.line.set_cancel(cancel);
+        Err(error)
     }
 
     /// What is in the PLC where the old or the new program is.

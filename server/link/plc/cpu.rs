@@ -55,11 +55,9 @@ impl Plc {
     /// A new PLC with nothing in its memory, its switch at RUN.
     pub fn new(target: &'static Target, scan_ns: i64) -> Plc {
         let steps = (target.limits.steps as usize).min(MOST_STEPS);
-        let parameters = ParameterBlock::new(target.model).with_capacity((steps / 1000) as u16);
-        let image = Image::new(parameters, &[END]);
         let mut plc = Plc {
             target,
-            program: image.map(|image| image.to_bytes()).unwrap_or_default(),
+            program: blank(target, (steps / 1000) as u16),
             is_open: false,
             machine: Machine::new(Arc::new(nothing(target))),
             watch_list: Vec::new(),
@@ -74,6 +72,13 @@ impl Plc {
         plc.machine.set_word(Device::new(DeviceKind::D, 8003), 0x10);
         plc.add_up();
         plc
+    }
+
+    /// With another memory, of so many thousands of steps, which is blank.
+    pub fn with_memory(mut self, thousands: u16) -> Plc {
+        self.program = blank(self.target, thousands);
+        self.add_up();
+        self
     }
 
     /// The model.
@@ -212,8 +217,8 @@ impl Plc {
 
     /// All of the program is forgotten.
     pub(super) fn clear_program(&mut self) {
-        let blank = Plc::new(self.target, self.scan_ns);
-        self.program = blank.program;
+        let thousands = self.words().len() / 1000;
+        self.program = blank(self.target, thousands as u16);
         self.take_over();
     }
 
@@ -225,6 +230,12 @@ impl Plc {
         let document = Document::new(&list, Notation::FxIl, self.target);
         compile(&[&document], false).ok()
     }
+}
+
+/// The bytes of a memory of so many thousands of steps with nothing but END.
+fn blank(target: &Target, thousands: u16) -> Vec<u8> {
+    let parameters = ParameterBlock::new(target.model).with_capacity(thousands);
+    Image::new(parameters, &[END]).map(|image| image.to_bytes()).unwrap_or_default()
 }
 
 /// A program that does nothing.

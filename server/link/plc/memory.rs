@@ -20,6 +20,10 @@ const WATCH_RESULT: std::ops::Range<usize> = 0x1790..0x1790 + 0x388;
 impl Plc {
     /// Does what a host asks; nothing where a PLC says no.
     pub fn obey_host(&mut self, command: &Command, now_ns: i64) -> Option<Reply> {
+        // The maker's tools speak plainly with it; what it would do otherwise is not known.
+        if self.target().model == Model::Fx1s && command.is_extended() {
+            return None;
+        }
         match command {
             Command::Read { space, address, length } => {
                 self.read(*space, usize::from(*address), usize::from(*length)).map(Reply::Data)

@@ -1,6 +1,6 @@
 //! What the virtual PLC keeps without power: its program, and latched devices.
 
-use super::cpu::Plc;
+use super::cpu::{MOST_STEPS, Plc};
 use crate::link::{Mode, Switch};
 use crate::simulate::{Value, Variable};
 use crate::target::{Device, DeviceKind, Target};
@@ -57,8 +57,14 @@ impl Plc {
         let wrong = |what: &str| Message::new("link.saved-wrong").with("what", what);
         let target = Target::named(&saved.model).filter(|target| target.is_fx());
         let target = target.ok_or_else(|| wrong(&saved.model))?;
-        let mut plc = Plc::new(target, scan_ns);
         let bytes = crate::link::frame::unhex(saved.program.as_bytes()).ok_or_else(|| wrong("program"))?;
+        // The first of the parameters says how much memory it has.
+        let mut plc = Plc::new(target, scan_ns);
+        let thousands = bytes.first_chunk().map(|word| u16::from_le_bytes(*word));
+        let most = target.limits.steps_at_most.min(MOST_STEPS as u32) / 1000;
+        if let Some(thousands) = thousands.filter(|thousands| (1..=most).contains(&u32::from(*thousands))) {
+            plc = plc.with_memory(thousands);
+        }
         plc.program.get_mut(..bytes.len()).ok_or_else(|| wrong("program"))?.copy_from_slice(&bytes);
         if let Some(rest) = plc.program.get_mut(bytes.len()..) {
             rest.fill(0xFF);

@@ -62,6 +62,10 @@ impl Transport for TcpTransport {
         }
     }
 
+    fn has_speed(&self) -> bool {
+        false
+    }
+
     fn set_baud(&mut self, _baud: u32) -> io::Result<()> {
         Ok(())
     }

@@ -11,7 +11,7 @@ use super::watching::Watching;
 use crate::link::transport;
 use crate::link::{Host, Line, LinkError, Mode, Patience, Plan, Point, Progress, Stage, Status, Transport};
 use crate::machine_code::{Image, decode};
-use crate::project::Backup;
+use crate::project::{Backup, Origin};
 use crate::simulate::Value;
 use crate::text::Message;
 use serde_json::{Value as Json, json};
@@ -26,19 +26,43 @@ use tower_lsp::ls_types::{MessageType, NumberOrString, Range, Uri};
 /// What is to be done with a PLC.
 #[derive(Clone, Debug)]
 pub(super) enum Order {
-    Connect { port: String, patience: Duration },
+    Connect {
+        port: String,
+        patience: Duration,
+    },
     Disconnect,
-    State { uri: Option<Uri> },
-    Plan { uri: Uri },
-    Download { uri: Uri, is_started: bool },
+    State {
+        uri: Option<Uri>,
+    },
+    Plan {
+        uri: Uri,
+    },
+    /// With the sum of what somebody has seen before, if that is to be what is replaced.
+    Download {
+        uri: Uri,
+        is_started: bool,
+        sum: Option<String>,
+    },
     Upload,
     Start,
     Stop,
-    Monitor { uri: Uri, ranges: Option<Vec<Range>>, names: Option<Vec<String>> },
+    Monitor {
+        uri: Uri,
+        ranges: Option<Vec<Range>>,
+        names: Option<Vec<String>>,
+    },
     Unmonitor,
-    Write { name: String, value: Json, way: Way },
-    Release { name: Option<String> },
-    Panel { more: Vec<String> },
+    Write {
+        name: String,
+        value: Json,
+        way: Way,
+    },
+    Release {
+        name: Option<String>,
+    },
+    Panel {
+        more: Vec<String>,
+    },
 }
 
 /// How a value is written.
@@ -394,11 +418,11 @@ impl Thread {
                 answer = Some(planned(&encoded, &plan));
                 about = Some(uri);
             }
-            Order::Download { uri, is_started } => {
+            Order::Download { uri, is_started, sum } => {
                 // What was held was meant for the program that is replaced.
                 self.release_all();
                 let plc = self.plc.as_mut().ok_or_else(gone)?;
-                answer = Some(plc.download(&workspace, &uri, is_started, bar)?);
+                answer = Some(plc.download(&workspace, &uri, is_started, sum.as_deref(), bar)?);
                 about = Some(uri);
             }
             Order::Upload => answer = Some(plc.upload(bar)?),
@@ -485,15 +509,31 @@ impl Connected {
         Ok((encoded, plan))
     }
 
-    fn download(&mut self, workspace: &Workspace, uri: &Uri, is_started: bool, bar: &Bar) -> Reply {
+    fn download(
+        &mut self,
+        workspace: &Workspace,
+        uri: &Uri,
+        is_started: bool,
+        sum: Option<&str>,
+        bar: &Bar,
+    ) -> Reply {
         let (encoded, plan) = self.plan(workspace, uri, bar)?;
+        if sum.is_some_and(|sum| sum != format!("{:04X}", plan.found)) {
+            return Err(told(&LinkError::Changed));
+        }
         // What changes nothing leaves nothing to go back to.
         let backup = match plan.bytes() {
             0 => None,
             _ => {
                 let path = file_path(uri).ok_or_else(|| Message::new("link.save-first"))?;
-                let plc = (encoded.target, self.port.as_str());
-                let kept = Backup::keep(&path, plc, (&plan.before, plan.is_whole));
+                let identity = self.host.identity();
+                let from = Origin {
+                    target: identity.target,
+                    port: &self.port,
+                    version: identity.version(),
+                    replaced_by: plan.wanted.parameters().sum(),
+                };
+                let kept = Backup::keep(&path, &from, (&plan.before, plan.is_whole));
                 Some(kept.map_err(|error| Message::new("link.cannot-back-up").with("reason", error))?)
             }
         };
@@ -572,6 +612,7 @@ fn planned(encoded: &Encoded, plan: &Plan) -> Json {
     json!({
         "same": plan.before.program() == plan.wanted.program(),
         "bytes": plan.bytes(),
+        "sum": format!("{:04X}", plan.found),
         "steps": encoded.words.len(),
         "before": list(plan.before.program()),
         "after": list(plan.wanted.program()),
