@@ -5,9 +5,9 @@
 //! the power is loaded again: a single contact that nothing changed meanwhile as it is, anything else from a helper, a
 //! variable that was stored before. A contact of a rising edge is the output of a detector called before the load, a
 //! coil of one that of a detector called behind it. F_TRIG is on in its first call if its input is off, which no
-//! contact of a falling edge is, so two variables find these: `Was1` keeps what the bit was, `Fall1` is on where it fell. A
-//! function block is called with its first input stored, and its first output is loaded. Calculations with words
-//! are jumped over where power does not reach them.
+//! contact of a falling edge is, so two variables find these: `Was1` keeps what the bit was, `Fall1` is on where it
+//! fell. A function block is called with its first input stored, and its first output is loaded. Calculations with
+//! words are jumped over where power does not reach them.
 
 mod helpers;
 pub use helpers::{Helper, Helpers};
