@@ -1,6 +1,6 @@
 //! What is proved equal of a program of the FX family and one of IEC 61131-3, and what a translation between them is
-//! sure of, does the same on the simulated PLC from the moment when it is switched on: random programs with edges, timers,
-//! counters, jumps, values at first and what is kept without power, run side by side with random inputs.
+//! sure of, does the same on the simulated PLC from the moment when it is switched on: random programs with edges,
+//! timers, counters, jumps, values at first and what is kept without power, run side by side with random inputs.
 
 use rungwise::document::{Document, Notation};
 use rungwise::simulate::{Code, Machine, Value, Variable, compile};
