@@ -234,6 +234,12 @@ impl Scopes {
         self.own_globals.iter()
     }
 
+    /// Whether a variable called `name`, of whichever unit, is declared CONSTANT.
+    pub fn is_constant(&self, name: &str) -> bool {
+        let mut all = self.pous.iter().flat_map(|pou| &pou.variables).chain(self.globals.values());
+        all.any(|variable| variable.constant && variable.name.eq_ignore_ascii_case(name))
+    }
+
     /// Whether `name` is a declared data type.
     pub fn is_type(&self, name: &str) -> bool {
         self.types.contains_key(&folded(name))

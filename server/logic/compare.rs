@@ -238,6 +238,7 @@ pub fn shown(action: &Action) -> String {
             std::iter::once(form.mnemonic().as_str()).chain(words).collect::<Vec<_>>().join(" ")
         }
         (Deed::Compute(_), _) => action.terms.last().map(|term| term.text.to_string()).unwrap_or_default(),
+        (Deed::Return, _) => "RET".into(),
         (_, term) => term.map(|term| term.text.to_string()).unwrap_or_default(),
     }
 }

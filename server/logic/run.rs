@@ -404,6 +404,8 @@ impl<'p> Run<'p> {
             Deed::Coil(CoilKind::Negated) => formulas.not(power),
             _ => power,
         };
+        // Whatever is inverted on the way, nothing is done without power at the left rail.
+        let guard = formulas.and([guard, self.rail]);
         if let Some((term, value)) = self.bit_driven(action, guard, formulas) {
             self.effects.push(Effect { action, guard, event: None, reads: Vec::new() });
             let key = term.key();

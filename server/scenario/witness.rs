@@ -153,7 +153,8 @@ impl Trial {
             let is_relay = matches!(own, Variable::Relay(_));
             // Without a state from a proof to begin with, only those are set that any values go together of.
             let is_loose = || !name.contains('.') && parts_of(&name).get(1).is_none_or(|own| *own == name);
-            let is_free = !found.what.is_empty() || is_loose();
+            let last = name.rsplit('.').next().unwrap_or(&name);
+            let is_free = !documents[0].scopes().is_constant(last) && (!found.what.is_empty() || is_loose());
             let is_settable = is_free && (!is_relay || own.set(&codes[0], &Value::Bit(false)).is_some());
             Handle { name, own, is_settable, other }
         });
@@ -558,7 +559,10 @@ fn wanted(found: &Counterexample, handles: &[Handle], finder: &Finder<'_>) -> (V
             || name.contains(&format!(".{instance}"))
     };
     let is_helper = |handle: &Handle| is_helper_name(handle.name.rsplit('.').next().unwrap_or(&handle.name));
+    // No instruction reads the coil of a timer or a counter.
+    let is_coil = |handle: &Handle| parts_of(&handle.name).get(2) == Some(&handle.name);
     let shared = (0..handles.len()).filter(|number| handles[*number].other.is_some());
+    let shared = shared.filter(|number| !is_coil(&handles[*number]));
     let (own, others): (Vec<usize>, Vec<usize>) = shared.partition(|number| is_own(&handles[*number]));
     (own, others.into_iter().filter(|number| !is_helper(&handles[*number])).collect())
 }

@@ -448,6 +448,8 @@ impl Builder {
     pub(super) fn invert(&mut self) {
         let power = self.power();
         self.row(Row::load(power, true));
+        // Without power at the left rail there is none behind it, either.
+        self.is_from_rail = false;
     }
 
     /// The left rail from here on.
@@ -521,7 +523,13 @@ impl Builder {
     pub(super) fn out(&mut self, cell: Cell, is_inverse: bool) {
         if is_inverse {
             let power = self.settle();
-            self.row(Row::load(power, true).to(cell));
+            match self.rail {
+                Row::RAIL => self.row(Row::load(power, true).to(cell)),
+                rail => {
+                    self.row(Row::load(power, true));
+                    self.row(Row::and(rail, false).to(cell));
+                }
+            }
             self.power = Power::At(power);
             return;
         }

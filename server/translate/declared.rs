@@ -71,8 +71,7 @@ pub(super) fn difference(
     }
     // Which programs run, how often, in which order, and what their variables are connected to.
     let [left, right] = documents.map(configurations);
-    let is_other = !left.is_empty() && !right.is_empty() && left != right;
-    is_other.then(|| (Message::new("prove.declared").with("name", "CONFIGURATION"), [None, None]))
+    (left != right).then(|| (Message::new("prove.declared").with("name", "CONFIGURATION"), [None, None]))
 }
 
 /// The words of the configurations in a document.

@@ -2,7 +2,7 @@
 
 use super::source::Source;
 use crate::document::Document;
-use crate::il::iec::SectionKind;
+use crate::il::iec::{PouKind, SectionKind};
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{Deed, Term, Test, is_helper_name};
 use crate::text::folded;
@@ -10,17 +10,23 @@ use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 use std::cell::RefCell;
 
-/// The variables, by their keys, that keep the power of a rung and that nobody outside of their program unit knows. A
-/// program of the FX family has nothing that stands for them; in one of IEC 61131-3 they are only looked at behind the
+/// The variables, by their keys, that keep the power of a rung and that nobody outside of their program unit knows, and
+/// those that are made anew in each call. A program of the FX family has nothing that stands for them; in one of IEC 61131-3 they are only looked at behind the
 /// store that gives them their value, so that no scan knows what they were in the one before.
 pub(super) fn of(documents: [&Document; 2], sources: [&[Source]; 2]) -> FxHashSet<SmolStr> {
     let mut helpers = FxHashSet::default();
     let mut known = FxHashSet::default();
     for scopes in documents.map(Document::scopes) {
         known.extend(scopes.globals.keys().cloned());
-        for variable in scopes.pous.iter().flat_map(|pou| &pou.variables) {
-            let is_own = variable.section == SectionKind::Local && variable.address.is_none();
-            let kind = if is_own && is_helper_name(&variable.name) { &mut helpers } else { &mut known };
+        for (pou, variable) in
+            scopes.pous.iter().flat_map(|pou| pou.variables.iter().map(move |one| (pou, one)))
+        {
+            let is_own = match variable.section {
+                SectionKind::Local => pou.kind == PouKind::Function || is_helper_name(&variable.name),
+                SectionKind::Temporary => true,
+                _ => false,
+            };
+            let kind = if is_own && variable.address.is_none() { &mut helpers } else { &mut known };
             kind.insert(folded(&variable.name));
         }
     }

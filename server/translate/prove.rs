@@ -8,10 +8,11 @@ use super::paired::Paired;
 use super::source::{self, Source};
 use super::{Purpose, To, declared, dialect, helpers, reached, types, units};
 use crate::document::{DeclaredType, Document, Scopes};
+use crate::il::iec::PouKind;
 use crate::ladder::CoilKind;
 use crate::logic::{
-    Action, Comparison, Deed, Effort, Path, Place, State, Storage, Term, compare, compare_outcome, may_drive,
-    shown, touches_bits,
+    Action, Comparison, Deed, Drive, Effort, Path, Place, State, Storage, Term, compare, compare_outcome,
+    may_drive, shown, touches_bits,
 };
 use crate::target::iec::ElementaryType;
 use crate::target::{DeviceKind, Flow, Model, Target};
@@ -118,8 +119,14 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
     }
 }
 
-/// Whether a rung begins a part of the program in which there may be no power at the left rail.
+/// Whether a rung begins a part of the program in which there may be no power at the left rail. One that cannot be read
+/// does if it has such a word.
 fn leaves_out(source: &Source) -> bool {
+    if source.rung.path.is_err() {
+        let words = source.words();
+        let mut words = words.split(|c: char| !c.is_alphanumeric());
+        return words.any(|word| ["MC", "STL"].iter().any(|own| own.eq_ignore_ascii_case(word)));
+    }
     let actions = source.rung.path.iter().flatten().flat_map(Path::actions);
     actions.into_iter().any(|action| match &action.deed {
         Deed::Instruction(form) => matches!(form.instruction.flow(), Flow::SectionBegin | Flow::Step),
@@ -201,7 +208,8 @@ fn stretches(sources: &[Source]) -> Vec<Stretch<'_>> {
             Ok(Some(path)) if path.actions().iter().any(|action| touches_bits(action)) => {
                 open.end = Some(End::Rung(source, path));
                 stretches.push(std::mem::take(&mut open));
-                is_left = path.gates.is_empty() && path.actions().iter().any(|action| leaves(&action.deed));
+                let ends = |drive: &Drive| matches!(drive, Drive::Action(action) if leaves(&action.deed));
+                is_left = path.gates.is_empty() && path.drives.iter().any(ends);
             }
             Ok(Some(path)) => open.rungs.push((source, path)),
             Err(_) => {
@@ -430,13 +438,34 @@ fn behind(all: &[Source], span: Span) -> usize {
 }
 
 impl Prover<'_> {
-    /// A proof that there is this difference, unless a master control or a step may leave out what differs.
+    /// A proof that there is this difference, unless only running both programs can tell: a master control or a step
+    /// may leave out what differs, who calls a unit may never do it so, a constant has one value.
     fn told(&self, found: Counterexample) -> Proof {
+        let doubt = match () {
+            () if self.may_be_off => Some("prove.left-out"),
+            () if (0..2).any(|side| self.is_called(side, found.at[side])) => Some("prove.called"),
+            () if found.inputs.keys().any(|name| self.is_constant(name)) => Some("prove.unconfirmed"),
+            () => None,
+        };
         let (at, found) = (found.at, Box::new(found));
-        match self.may_be_off {
-            true => Proof::Undecided { reason: Message::new("prove.left-out"), at, suspect: Some(found) },
-            false => Proof::Different(found),
+        match doubt {
+            Some(key) => Proof::Undecided { reason: Message::new(key), at, suspect: Some(found) },
+            None => Proof::Different(found),
         }
+    }
+
+    /// Whether the rung at a place belongs to a routine or a unit that others call.
+    fn is_called(&self, side: usize, at: Option<Span>) -> bool {
+        let all = self.all[side];
+        let number = at.and_then(|at| all.iter().position(|source| source.span() == at));
+        let Some(number) = number else { return false };
+        let unit = all[number].pou.and_then(|pou| self.scopes[side].pous.get(pou));
+        unit.is_some_and(|unit| unit.kind != PouKind::Program) || all[..number].iter().any(reached::ends_main)
+    }
+
+    /// Whether a variable of either program is one that never changes.
+    fn is_constant(&self, name: &str) -> bool {
+        self.scopes.iter().any(|scopes| scopes.is_constant(name))
     }
 
     /// The difference that running both programs from `state` confirms. Formulas know less than a PLC: what they leave

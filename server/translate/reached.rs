@@ -76,6 +76,15 @@ pub(super) fn leaves(action: &Action) -> bool {
     }
 }
 
+/// Whether the main program of the FX family ends with a rung, so that what follows is called.
+pub(super) fn ends_main(source: &Source) -> bool {
+    let actions = source.rung.path.iter().flatten().flat_map(Path::actions);
+    actions.into_iter().any(|action| match &action.deed {
+        Deed::Instruction(form) => form.instruction.flow() == Flow::MainEnd,
+        _ => false,
+    })
+}
+
 /// Whether a routine of the FX family ends with a rung.
 fn ends_routine(source: &Source) -> bool {
     let actions = source.rung.path.iter().flatten().flat_map(Path::actions);
