@@ -72,6 +72,10 @@ class Page {
   }
 
   takeRows(rows: readonly Row[]): void {
+    // The keyboard stays where it is if nothing is new.
+    if (rows.length > 0 && JSON.stringify(rows) === JSON.stringify(this.rows)) {
+      return;
+    }
     this.rows = rows;
     const names = new Set(rows.map(({ name }) => name));
     const signals = this.kept.signals?.filter((name) => names.has(name)) ?? [];
