@@ -4,7 +4,9 @@
 use crate::binary::{folder, run};
 use crate::proof_values::word;
 use rungwise::document::{Document, Notation};
+use rungwise::scenario::shown;
 use rungwise::target::{Model, Target};
+use rungwise::translate::{Proof, prove};
 
 fn iec(text: &str) -> Document {
     Document::new(text, Notation::IecIl, Target::of(Model::Iec))
@@ -133,6 +135,46 @@ fn what_a_configuration_runs_counts() {
         let folder = folder(&[("a.il", &own), ("b.il", &other)]);
         let (_, out, err) = run(&folder, &["prove", "a.il", "b.il"]);
         assert!(out.starts_with(expected), "{other}: {out}{err}");
+    }
+}
+
+/// One that only one side has decides as well which programs run, and in which order.
+#[test]
+fn a_configuration_of_one_side_counts() {
+    let program = "PROGRAM P\nVAR x AT %IX0.0 : BOOL; y AT %QX0.0 : BOOL; END_VAR\nLD x\nST y\nEND_PROGRAM\n";
+    let configured = format!(
+        "{program}CONFIGURATION C\nRESOURCE R ON X\nTASK t(INTERVAL := T#10s, PRIORITY := 1);\n\
+         PROGRAM p1 WITH t : P;\nEND_RESOURCE\nEND_CONFIGURATION\n"
+    );
+    assert_eq!(word(&iec(program), &iec(&configured)), "undecided");
+}
+
+/// A constant has one value, and what is made anew in each call is nothing that lasts.
+#[test]
+fn what_never_changes_or_never_lasts_is_no_difference() {
+    let shown_word = |left: &Document, right: &Document| {
+        let names = ["left", "right"].map(String::from);
+        match shown(prove(left, right), [left, right], &names) {
+            Proof::Equal { .. } => "equal",
+            Proof::Different(_) => "different",
+            Proof::Undecided { .. } => "undecided",
+        }
+    };
+    let text = |sections: &str, body: &str| {
+        let body = body.replace(';', "\n");
+        iec(&format!(
+            "PROGRAM p\nVAR x : INT; b : BOOL; q : BOOL; END_VAR\n{sections}\n{body}\nEND_PROGRAM\n"
+        ))
+    };
+    let constant = "VAR CONSTANT k : INT := 5; END_VAR";
+    let temporary = "VAR_TEMP t : BOOL; END_VAR";
+    for (section, left, right, expected) in [
+        (constant, "LD x;GE k;ST q", "LD x;GE 5;ST q", "undecided"),
+        (constant, "LD x;GE k;ST q", "LD x;GE 6;ST q", "different"),
+        (temporary, "LD b;ST t;LD t;ST q", "LD b;STN t;LDN t;ST q", "equal"),
+        (temporary, "LD b;ST t;LD t;ST q", "LD b;STN t;LD t;ST q", "different"),
+    ] {
+        assert_eq!(shown_word(&text(section, left), &text(section, right)), expected, "{left} | {right}");
     }
 }
 

@@ -508,7 +508,7 @@ fn a_falling_edge_is_none_in_the_first_scan() {
     }
     // M2800 has one edge for all contacts.
     let shared = ["LDP M2800; OUT Y0; LDP M2800; OUT Y1", "LDP M2800; OUT Y1; LDP M2800; OUT Y0"].map(list);
-    assert_eq!(reason(&shared[0], &shared[1]), "translate.single-edge");
+    assert!(matches!(prove(&shared[0], &shared[1]), Proof::Undecided { .. }));
     assert_eq!(said(&shared[0], To::Iec).0, "translate.single-edge");
     assert!(matches!(prove(&shared[0], &shared[0]), Proof::Equal { .. }));
 }

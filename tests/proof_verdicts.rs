@@ -34,6 +34,44 @@ fn what_formulas_cannot_tell_apart_differs_where_running_shows_it() {
 }
 
 #[test]
+fn what_who_calls_may_never_do_is_no_difference() {
+    check(
+        &[
+            ("LD X0;CALL P1;FEND;P1;LD X0;AND X1;SET Y1;SRET", "LD X0;CALL P1;FEND;P1;LD X1;SET Y1;SRET"),
+            ("LD X0;OUT Y0;FEND;P1;LD X0;SET Y1;SRET", "LD X0;OUT Y0;FEND;P1;LD X1;SET Y1;SRET"),
+            // Nothing looks at the coil of a counter.
+            ("LD X0;OUT C0 K3;LD C0;OUT Y0", "LDP X0;OUT C0 K3;LD C0;OUT Y0"),
+        ],
+        |verdict| verdict == "undecided",
+    );
+}
+
+#[test]
+fn behind_a_branch_that_leaves_nothing_is_left_out() {
+    let drawing = |contact: &str, end: &str| {
+        let declared = "X0 AT %IX0.0 : BOOL; X1 AT %IX0.1 : BOOL; Y0 AT %QX0.0 : BOOL; Y1 AT %QX0.1 : BOOL;";
+        let text = format!(
+            "PROGRAM Main\nVAR {declared} END_VAR\n\
+             |   X1                                     Y0  |\n\
+             +-+-| |------------------------------------( )-+\n\
+             | |                                            |\n\
+             | | X0                                         |\n\
+             | +-| |--------------------------{end}      |\n\
+             \n\
+             |   X1                                     Y1  |\n\
+             +---|{contact}|------------------------------------( )-+\n\
+             {}END_PROGRAM\n",
+            if end == "-->>L1--" { "L1:\n\n" } else { "" }
+        );
+        Document::new(&text, Notation::Ladder, Target::of(Model::Iec))
+    };
+    for end in ["<RETURN>", "-->>L1--"] {
+        assert_eq!(word(&prove(&drawing(" ", end), &drawing(" ", end))), "equal", "{end}");
+        assert_ne!(word(&prove(&drawing(" ", end), &drawing("/", end))), "equal", "{end}");
+    }
+}
+
+#[test]
 fn what_a_master_control_leaves_out_differs_where_that_is_seen() {
     check(
         &[
@@ -101,6 +139,11 @@ fn what_looks_elsewhere_is_never_equal() {
             ("LDP M2800;AND X1;ORP M2800;OUT Y0", "LDP M2800;OUT Y0"),
             ("LD X0;LDP M2800;AND X0;ORB;OUT Y0;LDP M2800;OUT Y1", "LD X0;OUT Y0;LDP M2800;OUT Y1"),
             ("LDF M3071;OUT Y0;LD X0;OUT M3071", "LD X0;OUT M3071;LDF M3071;OUT Y0"),
+            // A rung that cannot be read may begin a master control.
+            (
+                "LD X1;FOO X2;MC N0 M10;LD X0;OUT Y0;MCR N0",
+                "LD X1;FOO X2;MC N0 M10;LDI X0;RST Y0;LD X0;SET Y0;MCR N0",
+            ),
             // Power may be missing at the left rail.
             ("LD X7;MC N0 M100;LD X0;OUT Y0;MCR N0", "LD X7;MC N0 M100;LD X0;SET Y0;LDI X0;RST Y0;MCR N0"),
         ],
@@ -143,6 +186,11 @@ fn what_is_the_same_is_equal() {
             ("LD M8000;AND X0;OUT Y0", "LD X0;ANI M8001;OUT Y0"),
             ("LD X0;OUT Y0;END;LD X1;OUT Y1", "LD X0;OUT Y0;END;LD X2;OUT Y1"),
             ("LD X0;OUT M0;LD M0;OUT Y0", "LD X0;OUT M0;LD X0;OUT Y0"),
+            // Without power at the left rail nothing is on, whatever is inverted.
+            (
+                "LD X1;MC N0 M10;LD X0;OUT Y0;INV;OUT Y1;INC D1;MCR N0",
+                "LD X1;MC N0 M10;LD X0;OUT Y0;LDI X0;OUT Y1;LDI X0;INC D1;MCR N0",
+            ),
             ("LDP M2799;AND X1;ORP M2799;OUT Y0", "LDP M2799;OUT Y0"),
             ("LDP M2800;AND X1;OUT Y0;LDP M2800;OUT Y1", "LD X1;ANDP M2800;OUT Y0;LDP M2800;OUT Y1"),
             ("LD X0;OR X1;OUT Y0", "LDI X0;ANI X1;INV;OUT Y0"),

@@ -171,3 +171,36 @@ fn what_is_not_simulated_is_refused_where_it_stands() {
         "{err}"
     );
 }
+
+#[test]
+fn blocks_that_are_nested_beyond_measure_are_refused() {
+    let chain = |count: usize, leaf_first: bool| {
+        let block = |number: usize| {
+            let inside = if number + 1 < count {
+                format!("VAR next : B{}; END_VAR\n", number + 1)
+            } else {
+                String::new()
+            };
+            let call = if number + 1 < count { "CAL next(run := run)\nLD next.q\n" } else { "LD run\n" };
+            format!(
+                "FUNCTION_BLOCK B{number}\nVAR_INPUT run : BOOL; END_VAR\nVAR_OUTPUT q : BOOL; END_VAR\n\
+                 {inside}{call}ST q\nEND_FUNCTION_BLOCK\n"
+            )
+        };
+        let mut blocks: Vec<String> = (0..count).map(block).collect();
+        if leaf_first {
+            blocks.reverse();
+        }
+        let main =
+            "PROGRAM Main\nVAR a, y : BOOL; b : B0; END_VAR\nCAL b(run := a)\nLD b.q\nST y\nEND_PROGRAM\n";
+        blocks.concat() + main
+    };
+    for leaf_first in [false, true] {
+        let mut plc = Plc::new(&chain(60, leaf_first));
+        plc.set("a", "1").scan();
+        assert_eq!(plc.get("y"), "1");
+        let files = folder(&[("main.il", &chain(3000, leaf_first))]);
+        let (code, _, err) = run(&files, &["run", "main.il"]);
+        assert!(code == 1 && err.contains("is nested deeper than 64 times"), "{code} {err}");
+    }
+}

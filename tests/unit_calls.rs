@@ -532,7 +532,8 @@ fn a_long_chain_of_blocks_that_call_each_other_is_translated_and_proved() {
     };
     let (own, other) = (chain("LD"), chain("LDN"));
     assert!(matches!(prove(&own, &own), Proof::Equal { .. }));
-    assert!(matches!(prove(&own, &other), Proof::Different(_)));
+    // Who calls a block may never do it so that a difference inside is seen, and so many are not run.
+    assert!(matches!(prove(&own, &other), Proof::Undecided { .. }));
     let translation = to(&own, To::Ladder);
     assert!(translation.rungs.iter().all(|rung| rung.certificate.is_some_and(Certificate::is_certain)));
 }

@@ -211,8 +211,10 @@ impl Trial {
     /// A way to run both programs so that they differ: as the proof says, with timers that have run out, a few scans
     /// later, or with other values.
     fn search(&mut self, found: &Counterexample) -> Option<(Attempt, Seen)> {
-        let at =
-            |name: &String| self.handles.iter().position(|handle| handle.name.eq_ignore_ascii_case(name));
+        let at = |name: &String| {
+            let is_it = |handle: &Handle| handle.is_settable && handle.name.eq_ignore_ascii_case(name);
+            self.handles.iter().position(is_it)
+        };
         let values = |of: &BTreeMap<String, Held>| -> Values {
             of.iter().filter_map(|(name, value)| Some((at(name)?, given(value)))).collect()
         };
@@ -560,7 +562,10 @@ fn wanted(found: &Counterexample, handles: &[Handle], finder: &Finder<'_>) -> (V
     };
     let is_helper = |handle: &Handle| is_helper_name(handle.name.rsplit('.').next().unwrap_or(&handle.name));
     // No instruction reads the coil of a timer or a counter.
-    let is_coil = |handle: &Handle| parts_of(&handle.name).get(2) == Some(&handle.name);
+    let is_coil = |handle: &Handle| {
+        let number = ["TC", "CC"].iter().find_map(|coil| handle.name.strip_prefix(coil));
+        number.is_some_and(|number| number.parse::<u32>().is_ok())
+    };
     let shared = (0..handles.len()).filter(|number| handles[*number].other.is_some());
     let shared = shared.filter(|number| !is_coil(&handles[*number]));
     let (own, others): (Vec<usize>, Vec<usize>) = shared.partition(|number| is_own(&handles[*number]));

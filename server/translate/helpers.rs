@@ -11,8 +11,9 @@ use smol_str::SmolStr;
 use std::cell::RefCell;
 
 /// The variables, by their keys, that keep the power of a rung and that nobody outside of their program unit knows, and
-/// those that are made anew in each call. A program of the FX family has nothing that stands for them; in one of IEC 61131-3 they are only looked at behind the
-/// store that gives them their value, so that no scan knows what they were in the one before.
+/// those that are made anew in each call. A program of the FX family has nothing that stands for them; in one of IEC
+/// 61131-3 they are only looked at behind the store that gives them their value, so that no scan knows what they were
+/// in the one before.
 pub(super) fn of(documents: [&Document; 2], sources: [&[Source]; 2]) -> FxHashSet<SmolStr> {
     let mut helpers = FxHashSet::default();
     let mut known = FxHashSet::default();

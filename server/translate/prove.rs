@@ -3,12 +3,13 @@
 //! Rungs are compared in step as far as they drive the same things in the same order. Where one program does so in
 //! another way, stretches between jumps, labels and the like are compared by what comes of them.
 
+mod telling;
+
 use super::counterexample::{self, Counterexample, Inputs, Shown, Value};
 use super::paired::Paired;
 use super::source::{self, Source};
 use super::{Purpose, To, declared, dialect, helpers, reached, types, units};
 use crate::document::{DeclaredType, Document, Scopes};
-use crate::il::iec::PouKind;
 use crate::ladder::CoilKind;
 use crate::logic::{
     Action, Comparison, Deed, Drive, Effort, Path, Place, State, Storage, Term, compare, compare_outcome,
@@ -350,7 +351,7 @@ impl<'s> Prover<'s> {
             Comparison::AsksOtherwise(relay) => {
                 Err(Proof::undecided(Message::new("prove.single-edge").with("relay", relay), at))
             }
-            Comparison::Unlike(sides) => Err(Proof::undecided(unlike(sides), at)),
+            Comparison::Unlike(sides) => Err(Proof::undecided(telling::unlike(sides), at)),
             Comparison::Different { place: Place::Bit(key), .. } if self.is_driven_behind(sides, &key) => {
                 let found = self.beyond(sides).or_else(|| self.by_running(state, sides));
                 found.map_or_else(|| undecided("prove.driven-again"), |found| Err(self.told(found)))
@@ -421,53 +422,12 @@ impl<'s> Prover<'s> {
     }
 }
 
-/// That two sides do not the same, where they part.
-fn unlike(sides: [Option<String>; 2]) -> Message {
-    match sides {
-        [Some(left), Some(right)] if left != right => {
-            Message::new("prove.unlike").with("left", left).with("right", right)
-        }
-        [Some(what), None] | [None, Some(what)] => Message::new("prove.one-side").with("what", what),
-        _ => Message::new("prove.otherwise"),
-    }
-}
-
 /// The number of the first rung behind the one at `span`.
 fn behind(all: &[Source], span: Span) -> usize {
     all.partition_point(|source| source.span().start <= span.start)
 }
 
 impl Prover<'_> {
-    /// A proof that there is this difference, unless only running both programs can tell: a master control or a step
-    /// may leave out what differs, who calls a unit may never do it so, a constant has one value.
-    fn told(&self, found: Counterexample) -> Proof {
-        let doubt = match () {
-            () if self.may_be_off => Some("prove.left-out"),
-            () if (0..2).any(|side| self.is_called(side, found.at[side])) => Some("prove.called"),
-            () if found.inputs.keys().any(|name| self.is_constant(name)) => Some("prove.unconfirmed"),
-            () => None,
-        };
-        let (at, found) = (found.at, Box::new(found));
-        match doubt {
-            Some(key) => Proof::Undecided { reason: Message::new(key), at, suspect: Some(found) },
-            None => Proof::Different(found),
-        }
-    }
-
-    /// Whether the rung at a place belongs to a routine or a unit that others call.
-    fn is_called(&self, side: usize, at: Option<Span>) -> bool {
-        let all = self.all[side];
-        let number = at.and_then(|at| all.iter().position(|source| source.span() == at));
-        let Some(number) = number else { return false };
-        let unit = all[number].pou.and_then(|pou| self.scopes[side].pous.get(pou));
-        unit.is_some_and(|unit| unit.kind != PouKind::Program) || all[..number].iter().any(reached::ends_main)
-    }
-
-    /// Whether a variable of either program is one that never changes.
-    fn is_constant(&self, name: &str) -> bool {
-        self.scopes.iter().any(|scopes| scopes.is_constant(name))
-    }
-
     /// The difference that running both programs from `state` confirms. Formulas know less than a PLC: what they leave
     /// open may be what it never does.
     fn different(

@@ -193,11 +193,22 @@ impl Source<'_> {
         // The coil is no variable that finds an edge for others.
         fall.found.terms.first().filter(|coil| self.mentions(pou, coil).is_none())?;
         change_last(&mut path, |drives| {
-            let (power, _) = plain(drives.last()?)?;
+            // Behind NOT it is a negated coil that keeps the power.
+            let Drive::Action(keeper) = drives.last()? else { return None };
+            let is_inverse = keeper.deed == Deed::Coil(CoilKind::Negated);
+            let ([power], true) = (&keeper.terms[..], is_inverse || plain(drives.last()?).is_some()) else {
+                return None;
+            };
             (*power == fall.of && self.mentions(pou, power) == Some(3)).then_some(())?;
             drives.pop();
-            drives.push(Drive::Action(Action { deed: Deed::Coil(CoilKind::Falling), ..fall.found.clone() }));
-            drives.extend_from_slice(others);
+            let coil = Drive::Action(Action { deed: Deed::Coil(CoilKind::Falling), ..fall.found.clone() });
+            let behind = std::iter::once(coil).chain(others.iter().cloned());
+            match is_inverse {
+                true => {
+                    drives.push(Drive::Path(Path { gates: vec![Gate::Invert], drives: behind.collect() }));
+                }
+                false => drives.extend(behind),
+            }
             Some(())
         })?;
         Some(path)

@@ -33,6 +33,8 @@ pub(in crate::simulate) struct Record {
     pub(in crate::simulate) what: RecordKind,
     pub(in crate::simulate) fields: Vec<Field>,
     pub(in crate::simulate) size: Extent,
+    /// How deep records are nested: 1 if there is none inside.
+    pub(in crate::simulate) depth: usize,
 }
 
 /// What a record is.
@@ -129,6 +131,15 @@ impl Kind {
         }
     }
 
+    /// How deep records are nested in it; 0 if it has none.
+    pub(in crate::simulate) fn depth(&self) -> usize {
+        match self {
+            Kind::Array(_, element) => element.depth() + 1,
+            Kind::Record(record) => record.depth,
+            _ => 0,
+        }
+    }
+
     /// The elementary type that its values are: of an enumeration that of the numbers of its names.
     pub(in crate::simulate) fn elementary(&self) -> Option<ElementaryType> {
         match self {
@@ -179,7 +190,8 @@ pub(in crate::simulate) fn count(bounds: &[(i64, i64)]) -> u64 {
 impl Record {
     /// A record of these fields, which get their places here.
     pub(in crate::simulate) fn new(what: RecordKind, fields: Vec<Field>, behind: Extent) -> Record {
-        let mut record = Record { what, fields, size: Extent::default() };
+        let depth = fields.iter().map(|field| field.kind.depth()).max().unwrap_or(0) + 1;
+        let mut record = Record { what, fields, size: Extent::default(), depth };
         for field in &mut record.fields {
             field.at = record.size;
             let memory = match field.edge {

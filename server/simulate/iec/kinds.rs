@@ -12,6 +12,9 @@ use crate::text::{Message, Span, folded};
 use smol_str::SmolStr;
 use std::sync::Arc;
 
+/// Instances and structures may be nested so deep.
+const NESTED_MAX: usize = 64;
+
 impl Compiler<'_> {
     fn problem(&self, source: usize, span: Span, obstacle: Obstacle) -> Problem {
         Problem { place: self.declared.place(source, span), obstacle }
@@ -90,9 +93,15 @@ impl Compiler<'_> {
         if let Some(kind) = self.kinds.get(&name) {
             return Ok(kind.clone());
         }
+        let refused = |own: &Self, message: Message| {
+            Err(own.problem(source, span, Obstacle::Iec(message.with("name", word))))
+        };
         if self.open.contains(&name) {
-            let message = Message::new("simulate.recursion").with("name", word);
-            return Err(self.problem(source, span, Obstacle::Iec(message)));
+            return refused(self, Message::new("simulate.recursion"));
+        }
+        let too_deep = || Message::new("simulate.nested").with("most", NESTED_MAX);
+        if self.open.len() >= NESTED_MAX {
+            return refused(self, too_deep());
         }
         self.open.push(name.clone());
         let kind = self.unnamed(&name, word, unit);
@@ -100,6 +109,9 @@ impl Compiler<'_> {
         let unknown =
             || self.problem(source, span, Obstacle::Iec(Message::new("simulate.no-type").with("name", word)));
         let kind = kind.unwrap_or_else(|| Err(unknown()))?;
+        if kind.depth() > NESTED_MAX {
+            return refused(self, too_deep());
+        }
         self.kinds.insert(name, kind.clone());
         Ok(kind)
     }
