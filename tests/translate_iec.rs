@@ -1044,3 +1044,20 @@ fn what_depends_on_a_rung_that_is_kept_is_kept_with_it() {
         translation.rungs.iter().filter_map(|rung| rung.note.as_ref()).map(|note| note.key()).collect();
     assert_eq!(notes, ["translate.no-counterpart", "translate.guarded"]);
 }
+
+/// Whether the writer or the converter has no words for a jump, what it may leave out is not done in each scan.
+#[test]
+fn what_a_kept_rung_may_leave_out_is_kept_with_it() {
+    for text in [
+        "LD X0\nCJ P1\nAND X1\nOUT Y0\nLD X2\nOUT Y1\nP1\nLD X3\nOUT Y2\nEND\n",
+        "LD X0\nCJ P63\nAND X1\nOUT Y0\nLD X2\nOUT Y1\nLD X3\nOUT Y2\nEND\n",
+    ] {
+        let document = Document::new(text, Notation::FxIl, Target::of(Model::Fx3u));
+        let written = translate(&document, None, To::Iec, &Options::default());
+        let stores: Vec<&str> =
+            written.text.lines().map(str::trim).filter(|line| line.starts_with("ST ")).collect();
+        let expected: &[&str] = if text.contains("P63") { &[] } else { &["ST      Y2"] };
+        assert_eq!(stores, expected, "{}", written.text);
+        assert_eq!(written.rungs[1].note.as_ref().map(|note| note.key()), Some("translate.guarded"));
+    }
+}

@@ -49,8 +49,8 @@ use self::counted::{Coils, Instances};
 use self::guarded::Guard;
 use self::lack::{Lack, single_edge, without};
 use self::registers::Registers;
-use super::To;
 use super::source::{self, Program, Source};
+use super::{To, Translated};
 use crate::document::Document;
 use crate::il::iec::PouKind;
 use crate::logic::{Action, Deed, Drive, Path, Refusal, Term};
@@ -238,6 +238,31 @@ pub(super) fn convert(
         }
     }
     program.presets = presets;
+}
+
+/// Keeps as they are the rungs that depend on one that was kept only when it was `written`; gives whether there are any.
+pub(super) fn keep_guarded(sources: &mut [Source], written: &[Translated]) -> bool {
+    let mut has_more = false;
+    let guards = guarded::all(sources);
+    let mut open: Vec<Guard> = Vec::new();
+    let mut unit = None;
+    for ((source, own), written) in sources.iter_mut().zip(guards).zip(written) {
+        if unit.replace(source.pou) != Some(source.pou) {
+            open.clear();
+        }
+        guarded::close_before(&mut open, source);
+        let guard = open.last().map(|guard| Message::new("translate.guarded").with("word", &guard.word));
+        guarded::close_with(&mut open, source);
+        if let (Ok(Some(_)), Some(guard)) = (&source.rung.path, guard) {
+            has_more |= !written.is_kept;
+            source.note = Some(guard);
+            source.rung.path = Err(Refusal::NoCounterpart);
+        }
+        if written.is_kept || source.rung.path.is_err() {
+            open.extend(own);
+        }
+    }
+    has_more
 }
 
 /// Whether what lies at an address is kept while the PLC of the FX `family` is off.

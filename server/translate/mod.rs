@@ -248,8 +248,15 @@ fn written(
 ) -> Option<Translation> {
     let target = dialect::target(document, to, options.model);
     dialect::convert(document, (to, target), &mut program, Purpose::Text { is_whole });
-    let (mut translation, helpers) =
-        page::write(document, &program, (to, target), options, is_whole, is_cancelled)?;
+    let write = |program: &source::Program| {
+        page::write(document, program, (to, target), options, is_whole, is_cancelled)
+    };
+    let (mut translation, mut helpers) = write(&program)?;
+    // A drawing has a box for what it has no symbols for; elsewhere that is but a comment.
+    let is_mixed = document.target().is_fx() != target.is_fx();
+    if (to != To::Ladder || is_mixed) && dialect::keep_guarded(&mut program.rungs, &translation.rungs) {
+        (translation, helpers) = write(&program)?;
+    }
     if options.proves {
         let sources = (&program.rungs[..], &helpers[..]);
         certificate::add((document, target), sources, to, &mut translation, is_cancelled)?;
