@@ -84,13 +84,20 @@ impl Compiler<'_> {
                 }
             };
             let single = task.single.map(|id| self.declared.operand(one.source, id).to_string());
-            let single = single.and_then(|word| match self.global_spot(&word) {
-                Some(spot) if spot.kind == ElementaryType::Bool => Some((spot, self.builder.kept())),
-                _ => {
-                    self.refuse(place, Obstacle::Iec(Message::new("simulate.undeclared").with("name", word)));
-                    None
-                }
-            });
+            // What is never on starts nothing.
+            let is_never =
+                |word: &String| ["FALSE", "BOOL#FALSE", "0"].contains(&word.to_uppercase().as_str());
+            let single =
+                single.filter(|word| !is_never(word)).and_then(|word| match self.global_spot(&word) {
+                    Some(spot) if spot.kind == ElementaryType::Bool => Some((spot, self.builder.kept())),
+                    _ => {
+                        self.refuse(
+                            place,
+                            Obstacle::Iec(Message::new("simulate.undeclared").with("name", word)),
+                        );
+                        None
+                    }
+                });
             let priority = task.priority.and_then(|id| self.declared.operand(one.source, id).parse().ok());
             let (next, due) = (self.builder.words(1), self.builder.kept());
             let number = self.parts.tasks.len() as u32;
