@@ -240,7 +240,7 @@ pub(super) fn convert(
     program.presets = presets;
 }
 
-/// Keeps as they are the rungs that depend on one that was kept only when it was `written`; gives whether there are any.
+/// Keeps as they are the rungs that depend on one that was kept when it was `written`; gives whether there are any.
 pub(super) fn keep_guarded(sources: &mut [Source], written: &[Translated]) -> bool {
     let mut has_more = false;
     let guards = guarded::all(sources);
