@@ -2,25 +2,12 @@
 //! sure of, does the same on the simulated PLC from the moment when it is switched on: random programs with edges,
 //! timers, counters, jumps, values at first and what is kept without power, run side by side with random inputs.
 
+use crate::proof_shown::Dice;
 use rungwise::document::{Document, Notation};
 use rungwise::simulate::{Code, Machine, Value, Variable, compile};
 use rungwise::target::{Model, Target};
 use rungwise::translate::{Certificate, Options, Proof, To, Translation, prove, translate, variable_called};
 use std::sync::Arc;
-
-/// Numbers that look random and are the same in each run.
-struct Dice(u64);
-
-impl Dice {
-    fn roll(&mut self, sides: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as usize % sides
-    }
-
-    fn one<'a>(&mut self, words: &[&'a str]) -> &'a str {
-        words[self.roll(words.len())]
-    }
-}
 
 fn fx(body: &str) -> Document {
     Document::new(&format!("{body}END\n"), Notation::FxIl, Target::of(Model::Fx2n))
