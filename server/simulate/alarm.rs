@@ -2,7 +2,7 @@
 //! they no longer do.
 
 use super::expression::{Expression, Names};
-use super::{Layout, Value, Variable, milliseconds};
+use super::{Layout, Value, Variable};
 use crate::target::Target;
 use crate::target::iec::is_identifier;
 use crate::text::{Message, Severity};
@@ -115,7 +115,7 @@ impl AlarmChange {
     /// As people read it.
     pub fn told(&self) -> Message {
         Message::new(if self.is_raised { "simulate.alarm-raised" } else { "simulate.alarm-gone" })
-            .with("time", milliseconds(self.time_ns))
+            .with("time", self.time_ns / 1_000_000)
             .with("message", &self.alarm.message)
             .with("when", &self.alarm.when)
     }
