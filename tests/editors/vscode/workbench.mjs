@@ -39,7 +39,8 @@ export class Workbench {
     await this.page.keyboard.press('Control+p');
     await this.page.waitForSelector('.quick-input-widget:visible', { timeout: SHORT_MS });
     await this.page.keyboard.type(name);
-    await this.page.locator('.quick-input-list .monaco-list-row', { hasText: name }).first().waitFor({ timeout: SHORT_MS });
+    // The list of files that were open lately stands there before it is filtered: Enter takes the row that is focused.
+    await this.page.locator('.quick-input-list .monaco-list-row.focused', { hasText: name }).waitFor({ timeout: SHORT_MS });
     await this.page.keyboard.press('Enter');
   }
 
