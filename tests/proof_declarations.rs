@@ -3,10 +3,11 @@
 
 use crate::binary::{folder, run};
 use crate::proof_values::word;
+use crate::proof_verdicts;
 use rungwise::document::{Document, Notation};
 use rungwise::scenario::shown;
 use rungwise::target::{Model, Target};
-use rungwise::translate::{Proof, prove};
+use rungwise::translate::prove;
 
 fn iec(text: &str) -> Document {
     Document::new(text, Notation::IecIl, Target::of(Model::Iec))
@@ -154,11 +155,7 @@ fn a_configuration_of_one_side_counts() {
 fn what_never_changes_or_never_lasts_is_no_difference() {
     let shown_word = |left: &Document, right: &Document| {
         let names = ["left", "right"].map(String::from);
-        match shown(prove(left, right), [left, right], &names) {
-            Proof::Equal { .. } => "equal",
-            Proof::Different(_) => "different",
-            Proof::Undecided { .. } => "undecided",
-        }
+        proof_verdicts::word(&shown(prove(left, right), [left, right], &names))
     };
     let text = |sections: &str, body: &str| {
         let body = body.replace(';', "\n");

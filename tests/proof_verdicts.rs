@@ -82,7 +82,7 @@ fn what_a_master_control_leaves_out_differs_where_that_is_seen() {
     );
 }
 
-fn word(proof: &Proof) -> &'static str {
+pub(crate) fn word(proof: &Proof) -> &'static str {
     match proof {
         Proof::Equal { .. } => "equal",
         Proof::Different(_) => "different",

@@ -46,7 +46,7 @@ mod to_devices;
 mod to_variables;
 
 use self::counted::{Coils, Instances};
-use self::guarded::Guard;
+use self::guarded::Open;
 use self::lack::{Lack, single_edge, without};
 use self::registers::Registers;
 use super::source::{self, Program, Source};
@@ -205,15 +205,9 @@ pub(super) fn convert(
         true => to_devices::path(path, target, (&names, &registers, &instances), (document.scopes(), unit)),
     };
     let guards = guarded::all(&program.rungs);
-    let mut open: Vec<Guard> = Vec::new();
-    let mut unit = None;
+    let mut open = Open::default();
     for (source, own) in program.rungs.iter_mut().zip(guards) {
-        if unit.replace(source.pou) != Some(source.pou) {
-            open.clear();
-        }
-        guarded::close_before(&mut open, source);
-        let guard = open.last().map(|guard| Message::new("translate.guarded").with("word", &guard.word));
-        guarded::close_with(&mut open, source);
+        let guard = open.enter(source).map(guarded::reason);
         source.doubt = doubts.get(&source.span()).cloned();
         if target.is_fx() {
             source.rung.labels.iter_mut().for_each(|label| *label = names.of_label(label));
@@ -234,7 +228,7 @@ pub(super) fn convert(
             source.rung.path = converted.map(Some).map_err(|_| Refusal::NoCounterpart);
         }
         if source.rung.path.is_err() {
-            open.extend(own);
+            open.set_up(own);
         }
     }
     program.presets = presets;
@@ -244,22 +238,16 @@ pub(super) fn convert(
 pub(super) fn keep_guarded(sources: &mut [Source], written: &[Translated]) -> bool {
     let mut has_more = false;
     let guards = guarded::all(sources);
-    let mut open: Vec<Guard> = Vec::new();
-    let mut unit = None;
+    let mut open = Open::default();
     for ((source, own), written) in sources.iter_mut().zip(guards).zip(written) {
-        if unit.replace(source.pou) != Some(source.pou) {
-            open.clear();
-        }
-        guarded::close_before(&mut open, source);
-        let guard = open.last().map(|guard| Message::new("translate.guarded").with("word", &guard.word));
-        guarded::close_with(&mut open, source);
+        let guard = open.enter(source).map(guarded::reason);
         if let (Ok(Some(_)), Some(guard)) = (&source.rung.path, guard) {
             has_more |= !written.is_kept;
             source.note = Some(guard);
             source.rung.path = Err(Refusal::NoCounterpart);
         }
         if written.is_kept || source.rung.path.is_err() {
-            open.extend(own);
+            open.set_up(own);
         }
     }
     has_more

@@ -128,11 +128,7 @@ fn leaves_out(source: &Source) -> bool {
         let mut words = words.split(|c: char| !c.is_alphanumeric());
         return words.any(|word| ["MC", "STL"].iter().any(|own| own.eq_ignore_ascii_case(word)));
     }
-    let actions = source.rung.path.iter().flatten().flat_map(Path::actions);
-    actions.into_iter().any(|action| match &action.deed {
-        Deed::Instruction(form) => matches!(form.instruction.flow(), Flow::SectionBegin | Flow::Step),
-        _ => false,
-    })
+    reached::has_flow(source, |flow| matches!(flow, Flow::SectionBegin | Flow::Step))
 }
 
 /// Rungs that are executed one after the other, and what ends them: a label, a jump, another program unit, or an

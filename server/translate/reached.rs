@@ -78,20 +78,19 @@ pub(super) fn leaves(action: &Action) -> bool {
 
 /// Whether the main program of the FX family ends with a rung, so that what follows is called.
 pub(super) fn ends_main(source: &Source) -> bool {
-    let actions = source.rung.path.iter().flatten().flat_map(Path::actions);
-    actions.into_iter().any(|action| match &action.deed {
-        Deed::Instruction(form) => form.instruction.flow() == Flow::MainEnd,
-        _ => false,
-    })
+    has_flow(source, |flow| flow == Flow::MainEnd)
 }
 
 /// Whether a routine of the FX family ends with a rung.
 fn ends_routine(source: &Source) -> bool {
+    has_flow(source, |flow| matches!(flow, Flow::MainEnd | Flow::SubroutineEnd | Flow::InterruptEnd))
+}
+
+/// Whether a rung has an instruction that leads on in such a way.
+pub(super) fn has_flow(source: &Source, is_such: impl Fn(Flow) -> bool) -> bool {
     let actions = source.rung.path.iter().flatten().flat_map(Path::actions);
     actions.into_iter().any(|action| match &action.deed {
-        Deed::Instruction(form) => {
-            matches!(form.instruction.flow(), Flow::MainEnd | Flow::SubroutineEnd | Flow::InterruptEnd)
-        }
+        Deed::Instruction(form) => is_such(form.instruction.flow()),
         _ => false,
     })
 }

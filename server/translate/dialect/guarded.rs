@@ -4,7 +4,7 @@
 use super::END_POINTER;
 use crate::logic::{Action, Deed, Path};
 use crate::target::Flow;
-use crate::text::folded;
+use crate::text::{Message, folded};
 use crate::translate::Source;
 use rustc_hash::FxHashMap;
 use smol_str::{SmolStr, format_smolstr};
@@ -12,7 +12,7 @@ use smol_str::{SmolStr, format_smolstr};
 /// Something that decides whether, or how often, the rungs behind it are done.
 pub(super) struct Guard {
     /// As it is said in a message.
-    pub(super) word: SmolStr,
+    word: SmolStr,
     until: Until,
 }
 
@@ -43,19 +43,43 @@ pub(super) fn all(sources: &[Source]) -> Vec<Vec<Guard>> {
 
 /// Whether each rung may be left out, as a guard before it says.
 pub(super) fn are(sources: &[Source]) -> Vec<bool> {
-    let mut open: Vec<Guard> = Vec::new();
-    let mut unit = None;
+    let mut open = Open::default();
     let guarded = sources.iter().zip(all(sources)).map(|(source, own)| {
-        if unit.replace(source.pou) != Some(source.pou) {
-            open.clear();
-        }
-        close_before(&mut open, source);
-        let is_guarded = !open.is_empty();
-        close_with(&mut open, source);
-        open.extend(own);
+        let is_guarded = open.enter(source).is_some();
+        open.set_up(own);
         is_guarded
     });
     guarded.collect()
+}
+
+/// The guards that are open on the way through the rungs of a program, from the first one on.
+#[derive(Default)]
+pub(super) struct Open {
+    guards: Vec<Guard>,
+    unit: Option<Option<usize>>,
+}
+
+impl Open {
+    /// Comes to the next rung; gives the word of the guard that decides about it, if there is one.
+    pub(super) fn enter(&mut self, source: &Source) -> Option<SmolStr> {
+        if self.unit.replace(source.pou) != Some(source.pou) {
+            self.guards.clear();
+        }
+        close_before(&mut self.guards, source);
+        let word = self.guards.last().map(|guard| guard.word.clone());
+        close_with(&mut self.guards, source);
+        word
+    }
+
+    /// Opens the guards of the rung that was entered.
+    pub(super) fn set_up(&mut self, guards: Vec<Guard>) {
+        self.guards.extend(guards);
+    }
+}
+
+/// Why a rung is kept that depends on a guard which is: `word` is that of the guard.
+pub(super) fn reason(word: SmolStr) -> Message {
+    Message::new("translate.guarded").with("word", word)
 }
 
 fn of(source: &Source) -> Vec<Guard> {
@@ -73,13 +97,13 @@ fn of(source: &Source) -> Vec<Guard> {
 }
 
 /// Closes the guards that end before a rung.
-pub(super) fn close_before(guards: &mut Vec<Guard>, source: &Source) {
+fn close_before(guards: &mut Vec<Guard>, source: &Source) {
     let labels: Vec<SmolStr> = source.rung.labels.iter().map(|label| folded(label)).collect();
     guards.retain(|guard| !matches!(&guard.until, Until::Label(label) if labels.contains(label)));
 }
 
 /// Closes the guards that end with a rung.
-pub(super) fn close_with(guards: &mut Vec<Guard>, source: &Source) {
+fn close_with(guards: &mut Vec<Guard>, source: &Source) {
     let flows = source.path().map(Path::actions).unwrap_or_default();
     let flows: Vec<Flow> = flows.into_iter().filter_map(flow).collect();
     guards.retain(|guard| !matches!(guard.until, Until::Behind(flow) if flows.contains(&flow)));
