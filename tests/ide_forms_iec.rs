@@ -80,6 +80,14 @@ fn said<'t>(translation: &'t Translation, part: Option<Span>) -> Said<'t> {
         .collect()
 }
 
+/// What is said of a few rungs by themselves, but for those that the whole unit keeps only because a jump before them
+/// has no words: alone, a rung is shown whoever skips it.
+fn shown_apart<'t>(own: Said<'t>, in_whole: &Said<'t>) -> Said<'t> {
+    let is_guarded = |(_, _, note): &&(Span, String, Option<&'t str>)| *note == Some("translate.guarded");
+    let guarded = |span: Span| in_whole.iter().filter(is_guarded).find(|(other, ..)| *other == span);
+    own.into_iter().map(|said| guarded(said.0).cloned().unwrap_or(said)).collect()
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 12, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -96,7 +104,8 @@ proptest! {
                     let part = part.span();
                     let own = translate(&document, Some(part), to, &options);
                     let place = document.slice(part);
-                    prop_assert_eq!(said(&own, None), said(&whole, Some(part)), "{}\n--\n{}", place, text);
+                    let (own, in_whole) = (said(&own, None), said(&whole, Some(part)));
+                    prop_assert_eq!(shown_apart(own, &in_whole), in_whole, "{}\n--\n{}", place, text);
                 }
             }
         }
