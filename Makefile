@@ -6,7 +6,7 @@ SHELL := /bin/bash
 .DEFAULT_GOAL := help
 RUNGWISE := target/release/rungwise
 
-.PHONY: help demo test test-rust test-clients test-editors lint bench fuzz vscode neovim clean linker
+.PHONY: help demo test test-rust test-clients test-editors lint bench fuzz soak vscode neovim clean linker
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -44,9 +44,16 @@ lint: linker ## format and lint
 	cargo fmt --check
 	cargo clippy --all-targets -- -D warnings
 
+# What is random in a test is the same each time, so that a change is judged by what it changes; `make soak` takes others.
 test-rust: linker ## tests of the server
-	cargo test
+	PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-61131} cargo test
 	cargo build --release
+
+soak: linker ## the random tests with other programs than in `make test`, SOAK_ROUNDS=10 times
+	for round in $$(seq $${SOAK_ROUNDS:-10}); do seed=$$RANDOM; echo "PROPTEST_RNG_SEED=$$seed"; \
+	  PROPTEST_RNG_SEED=$$seed cargo test --test all -- \
+	    $$(grep -l 'proptest!' -r tests --include='*.rs' | sed 's/.*\///; s/\.rs$$/::/'); \
+	done
 
 test-clients: $(RUNGWISE) ## the virtual PLC under a client that was not written with it
 	cd tests/clients && npm ci --no-audit --no-fund && RUNGWISE_SERVER=$(abspath $(RUNGWISE)) node --test fxplc.mjs
