@@ -4,6 +4,7 @@ use crate::binary::{folder, run};
 use crate::simulate_iec::{Plc, result};
 use rungwise::simulate::ErrorKind;
 use rungwise::target::Fault;
+use rungwise::target::iec::{Datum, ElementaryType, Formula, Function, Inputs};
 
 const UNITS: &str = "FUNCTION Half : INT\nVAR_INPUT\nn : INT;\nEND_VAR\nVAR_OUTPUT\nodd : BOOL;\nEND_VAR\n\
     LD n\nMOD 2\nEQ 1\nST odd\nLD n\nDIV 2\nST Half\nEND_FUNCTION\n\
@@ -203,4 +204,34 @@ fn blocks_that_are_nested_beyond_measure_are_refused() {
         let (code, _, err) = run(&files, &["run", "main.il"]);
         assert!(code == 1 && err.contains("is nested deeper than 64 times"), "{code} {err}");
     }
+}
+
+/// What functions make of whole numbers without looking at types is what their rows say.
+#[test]
+fn the_short_way_of_a_function_leads_where_the_long_one_does() {
+    const ENDS: [i64; 12] =
+        [i64::MIN, i64::MIN + 1, i64::MIN / 2, -32_769, -7, -1, 0, 1, 2, 65_536, i64::MAX / 2, i64::MAX];
+    let formulas = Function::all().map(|function| (function.name, function.formula, function.inputs.len()));
+    let mut told = 0;
+    for (name, formula, inputs) in formulas.chain([("copy", Formula::COPY, 1)]) {
+        let Some(kernel) = formula.kernel else { continue };
+        for (left, right) in ENDS.into_iter().flat_map(|left| ENDS.map(|right| (left, right))) {
+            let values = [left, right].map(|value| Datum::Whole(value.into()));
+            let asked = Inputs {
+                values: &values[..inputs],
+                kinds: &[ElementaryType::Lint; 2][..inputs],
+                result: ElementaryType::Lint,
+            };
+            let long = formula.apply(&asked);
+            if let Some(short) = kernel(left, right) {
+                assert_eq!(long, Ok(Datum::Whole(short.into())), "{name} {left} {right}");
+                told += 1;
+            } else {
+                let is_less = |datum: &Datum| i64::try_from(datum.whole()).is_ok();
+                let is_zero = name == "MOD" && long == Ok(Datum::Whole(0));
+                assert!(is_zero || !long.as_ref().is_ok_and(is_less), "{name} {left} {right}: {long:?}");
+            }
+        }
+    }
+    assert!(told > 2_000, "{told}");
 }

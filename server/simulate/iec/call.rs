@@ -14,7 +14,7 @@ use crate::simulate::code::{Op, Place};
 use crate::simulate::row::Row;
 use crate::simulate::{Cell, Obstacle};
 use crate::target::iec::semantics::NOTES;
-use crate::target::iec::{Datum, EN, ENO, ElementaryType, Function, Parameter};
+use crate::target::iec::{Datum, EN, ENO, ElementaryType, Formula, Function, Parameter};
 use crate::text::{Message, folded};
 use smol_str::SmolStr;
 use std::iter::repeat;
@@ -446,7 +446,7 @@ impl Compiler<'_> {
                 // What is not executed has the result that a variable of its type has at first.
                 let off = self.inverse(enable);
                 let nothing = vec![(Input::Constant(Datum::default_of(to.kind)), to.kind)];
-                self.compute_with(super::compile::copied, nothing, to.kind, to, off, None);
+                self.compute_with(Formula::COPY, nothing, to.kind, to, off, None);
             }
         }
         Ok(to)

@@ -6,6 +6,7 @@ use super::kind::{Extent, Kind, Record};
 use super::list::Jumps;
 use super::parts::{Computing, Input, Parts, Spot};
 use super::place::{At, Place as Variable};
+use super::quick::Quick;
 use super::scopes::Scope;
 use crate::document::Document;
 use crate::il::iec::SectionKind;
@@ -13,7 +14,7 @@ use crate::simulate::builder::Builder;
 use crate::simulate::code::{Code, Op, Place};
 use crate::simulate::row::{Cell, Row};
 use crate::simulate::{Layout, Obstacle, Problem};
-use crate::target::iec::{Datum, ElementaryType, Formula};
+use crate::target::iec::{ElementaryType, Formula};
 use crate::target::{DirectAddress, Target};
 use crate::text::{Message, folded};
 use rustc_hash::FxHashMap;
@@ -243,15 +244,16 @@ impl<'a> Compiler<'a> {
         power: Cell,
         ok: Option<Cell>,
     ) {
-        let (inputs, kinds) = inputs.into_iter().unzip();
+        let (inputs, kinds): (Vec<_>, Vec<_>) = inputs.into_iter().unzip();
         let number = self.parts.computings.len() as u32;
-        self.parts.computings.push(Computing { formula, inputs, kinds, result, to, ok });
+        let quick = Quick::of(formula, (&inputs, &kinds), result, to);
+        self.parts.computings.push(Computing { quick, formula, inputs, kinds, result, to, ok });
         self.builder.op(Op::Compute { power, number });
     }
 
     /// Copies an elementary value.
     pub(super) fn copy(&mut self, from: Input, kind: ElementaryType, to: Spot) {
-        self.compute(copied, vec![(from, kind)], to.kind, to);
+        self.compute(Formula::COPY, vec![(from, kind)], to.kind, to);
     }
 
     fn finish(mut self) -> Result<Code, Vec<Problem>> {
@@ -316,11 +318,6 @@ impl<'a> Compiler<'a> {
 
 /// More words than that are refused.
 const MOST_WORDS: usize = 1 << 24;
-
-/// The formula of a copy.
-pub(super) fn copied(inputs: &crate::target::iec::Inputs<'_>) -> Result<Datum, crate::target::Fault> {
-    inputs.values.first().cloned().ok_or(crate::target::Fault::Value(0))
-}
 
 /// Whether the callers of a unit see its variables of a section.
 pub(super) fn is_input(section: SectionKind) -> bool {

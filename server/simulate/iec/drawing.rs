@@ -14,7 +14,7 @@ use crate::simulate::from_path::{Circuit, Dialect};
 use crate::simulate::row::Row;
 use crate::simulate::{Cell, Obstacle};
 use crate::target::Target;
-use crate::target::iec::{ENO, ElementaryType, Function};
+use crate::target::iec::{ENO, ElementaryType, Formula, Function};
 use crate::text::Span;
 use std::sync::Arc;
 
@@ -198,7 +198,7 @@ impl Drawing<'_, '_> {
                 let spot = to.spot().ok_or(Obstacle::Unreadable)?;
                 let value = super::parts::Input::Constant((kind == CoilKind::Set).into());
                 let inputs = vec![(value, spot.kind)];
-                self.compiler.compute_with(super::compile::copied, inputs, spot.kind, spot, power, None);
+                self.compiler.compute_with(Formula::COPY, inputs, spot.kind, spot, power, None);
                 Ok(())
             }
             CoilKind::Toggle => Err(Obstacle::Unreadable),

@@ -11,7 +11,7 @@ use crate::simulate::builder::Position;
 use crate::simulate::code::Op;
 use crate::simulate::row::Row;
 use crate::simulate::{Cell, Obstacle};
-use crate::target::iec::{ElementaryType, Function, GenericType, OperatorRole};
+use crate::target::iec::{ElementaryType, Formula, Function, GenericType, OperatorRole};
 use crate::target::{Model, Operand as TargetOperand};
 use crate::text::{Message, Span, folded};
 use rustc_hash::FxHashMap;
@@ -620,9 +620,8 @@ impl<'a> List<'_, 'a> {
             None => {
                 let power = self.compiler.builder.settle();
                 let value = Input::Constant(on.into());
-                let formula = super::compile::copied;
                 let inputs = vec![(value, ElementaryType::Bool)];
-                self.compiler.compute_with(formula, inputs, ElementaryType::Bool, spot, power, None);
+                self.compiler.compute_with(Formula::COPY, inputs, ElementaryType::Bool, spot, power, None);
             }
         }
         Ok(())

@@ -12,6 +12,8 @@ mod parts;
 pub(super) use parts::Parts;
 pub use parts::{Lies, Spot};
 
+mod quick;
+
 mod image;
 
 mod names;

@@ -2,6 +2,7 @@
 
 use super::kind::Extent;
 use super::names::{Leaf, Names};
+use super::quick::Quick;
 use crate::simulate::{Cell, Slot};
 use crate::target::Location;
 use crate::target::iec::{Datum, ElementaryType, Formula, FunctionBlock};
@@ -31,6 +32,8 @@ pub(in crate::simulate) struct Parts {
 /// A calculation: the result of a formula goes to a place.
 #[derive(Debug)]
 pub(super) struct Computing {
+    /// The shorter way for whole numbers.
+    pub(super) quick: Option<Quick>,
     pub(super) formula: Formula,
     pub(super) inputs: Vec<Input>,
     pub(super) kinds: Vec<ElementaryType>,

@@ -191,8 +191,11 @@ pub(in crate::simulate) fn compute<L: Lanes>(
 ) {
     let Some(computing) = parts.computings.get(number as usize) else { return };
     for lane in (0..L::COUNT).filter(|lane| power.lane(*lane)) {
-        let mut store = Store { memory, parts, lane };
-        let done = store.computed(computing, values);
+        let is_done = computing.quick.as_ref().is_some_and(|quick| quick.run(memory, lane));
+        let done = match is_done {
+            true => Ok(()),
+            false => Store { memory, parts, lane }.computed(computing, values),
+        };
         if let Some(ok) = computing.ok {
             memory.set_bit(ok, lane, done.is_ok());
         }
@@ -222,7 +225,7 @@ impl<L: Lanes> Store<'_, L> {
         let inputs = Inputs { values, kinds: &computing.kinds, result: computing.result };
         let result = match fault {
             Some(fault) => Err(fault),
-            None => (computing.formula)(&inputs),
+            None => computing.formula.apply(&inputs),
         };
         let (result, is_all) = match result {
             Ok(result) => {

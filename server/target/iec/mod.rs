@@ -26,7 +26,7 @@ mod blocks;
 pub use blocks::FunctionBlock;
 
 pub mod semantics;
-pub use semantics::{Datum, Formula, Inputs, Instance, Working};
+pub use semantics::{Datum, Formula, Inputs, Instance, Kernel, Working};
 
 mod suggest;
 pub use suggest::{nearest, suggestions};

@@ -31,7 +31,37 @@ pub struct Inputs<'a> {
 
 /// The code of a function. A whole number that the type of the result does not hold is cut to it by whoever asks, and
 /// told as [`Fault::Overflow`].
-pub type Formula = fn(&Inputs<'_>) -> Result<Datum, Fault>;
+#[derive(Clone, Copy, Debug)]
+pub struct Formula {
+    general: fn(&Inputs<'_>) -> Result<Datum, Fault>,
+    /// The same for one or two whole numbers of 64 bits, if there is a shorter way for them.
+    pub kernel: Option<Kernel>,
+}
+
+/// What a function makes of two whole numbers, or of the first one if it has one input: BOOL and bit strings, integers
+/// and durations; nothing where 64 bits do not hold the result or something is wrong, which the formula then tells.
+pub type Kernel = fn(i64, i64) -> Option<i64>;
+
+impl Formula {
+    /// A value as it is.
+    pub const COPY: Formula = Formula::new(|inputs| inputs.values.first().cloned().ok_or(Fault::Value(0)))
+        .with_kernel(|value, _| Some(value));
+
+    /// By this code for inputs of all types.
+    pub const fn new(general: fn(&Inputs<'_>) -> Result<Datum, Fault>) -> Formula {
+        Formula { general, kernel: None }
+    }
+
+    /// With a shorter way for whole numbers, that leads to the same result or to none.
+    pub const fn with_kernel(self, kernel: Kernel) -> Formula {
+        Formula { kernel: Some(kernel), ..self }
+    }
+
+    /// The result, or what is wrong.
+    pub fn apply(&self, inputs: &Inputs<'_>) -> Result<Datum, Fault> {
+        (self.general)(inputs)
+    }
+}
 
 /// The code of a function block: what a call does to the instance.
 pub type Working = fn(&mut dyn Instance);

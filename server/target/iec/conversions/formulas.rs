@@ -12,14 +12,14 @@ use smol_str::SmolStr;
 impl Conversion {
     /// The code of its row.
     pub(super) fn formula(self) -> Formula {
-        match self {
+        Formula::new(match self {
             Conversion::Value(..) | Conversion::ToValue(_) => value,
             Conversion::Truncate(..) | Conversion::ToTruncated(_) | Conversion::AnyTruncate => {
                 |inputs| real_to_whole(inputs.real(0).trunc())
             }
             Conversion::FromBcd(..) | Conversion::FromAnyBcd(_) => from_bcd,
             Conversion::ToBcd(..) | Conversion::AnyToBcd(_) | Conversion::ToAnyBcd(_) => to_bcd,
-        }
+        })
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Function, FunctionPage, Parameter, ParameterType};
 use crate::target::Fault;
 use crate::target::iec::GenericType;
 use crate::target::iec::page::Page;
-use crate::target::iec::{Datum, Inputs};
+use crate::target::iec::{Datum, Formula, Inputs};
 
 const SHIFT: &[Parameter] = &[
     Parameter::any("IN", GenericType::AnyBit, "bit string"),
@@ -23,7 +23,9 @@ pub const ROWS: &[Function] = &[
         inputs: SHIFT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyBit),
-        formula: |inputs| shifted(inputs, |bits, by, width| if by < width { bits << by } else { 0 }),
+        formula: Formula::new(|inputs| {
+            shifted(inputs, |bits, by, width| if by < width { bits << by } else { 0 })
+        }),
         page: FunctionPage::Own(Page {
             about: "Shifts a bit string left by N places; zeros come in on the right and the bits pushed \
                     out on the left are lost. The current result is IN, the operand is N. With N as \
@@ -38,7 +40,9 @@ pub const ROWS: &[Function] = &[
         inputs: SHIFT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyBit),
-        formula: |inputs| shifted(inputs, |bits, by, width| if by < width { bits >> by } else { 0 }),
+        formula: Formula::new(|inputs| {
+            shifted(inputs, |bits, by, width| if by < width { bits >> by } else { 0 })
+        }),
         page: FunctionPage::Own(Page {
             about: "Shifts a bit string right by N places; zeros come in on the left, so this is no \
                     division of a negative number. The current result is IN, the operand is N. With N as \
@@ -53,9 +57,9 @@ pub const ROWS: &[Function] = &[
         inputs: SHIFT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyBit),
-        formula: |inputs| {
+        formula: Formula::new(|inputs| {
             shifted(inputs, |bits, by, width| bits << (by % width) | bits >> (width - by % width))
-        },
+        }),
         page: FunctionPage::Own(Page {
             about: "Turns a bit string left by N places; bits pushed out on the left come in again on \
                     the right. The current result is IN, the operand is N. Rotating by the full width \
@@ -70,9 +74,9 @@ pub const ROWS: &[Function] = &[
         inputs: SHIFT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyBit),
-        formula: |inputs| {
+        formula: Formula::new(|inputs| {
             shifted(inputs, |bits, by, width| bits >> (by % width) | bits << (width - by % width))
-        },
+        }),
         page: FunctionPage::Own(Page {
             about: "Turns a bit string right by N places; bits pushed out on the right come in again on \
                     the left. The current result is IN, the operand is N. Rotating by the full width \
@@ -87,7 +91,8 @@ pub const ROWS: &[Function] = &[
         inputs: BITS,
         extensible: true,
         result: ParameterType::Generic(GenericType::AnyBit),
-        formula: |inputs| each_bit(inputs, |left, right| left & right),
+        formula: Formula::new(|inputs| each_bit(inputs, |left, right| left & right))
+            .with_kernel(|left, right| Some(left & right)),
         page: FunctionPage::Own(Page {
             about: "The bitwise AND of two or more bit strings of one type, BOOL included. In \
                     Instruction List the operator AND does the same with one operand; with more \
@@ -108,7 +113,8 @@ pub const ROWS: &[Function] = &[
         inputs: BITS,
         extensible: true,
         result: ParameterType::Generic(GenericType::AnyBit),
-        formula: |inputs| each_bit(inputs, |left, right| left | right),
+        formula: Formula::new(|inputs| each_bit(inputs, |left, right| left | right))
+            .with_kernel(|left, right| Some(left | right)),
         page: FunctionPage::Own(Page {
             about: "The bitwise OR of two or more bit strings of one type, BOOL included. In Instruction \
                     List the operator OR does the same with one operand; with more operands, separated \
@@ -128,7 +134,8 @@ pub const ROWS: &[Function] = &[
         inputs: BITS,
         extensible: true,
         result: ParameterType::Generic(GenericType::AnyBit),
-        formula: |inputs| each_bit(inputs, |left, right| left ^ right),
+        formula: Formula::new(|inputs| each_bit(inputs, |left, right| left ^ right))
+            .with_kernel(|left, right| Some(left ^ right)),
         page: FunctionPage::Own(Page {
             about: "The bitwise exclusive OR of two or more bit strings of one type, BOOL included. With \
                     more than two inputs a bit of the result is 1 where an odd number of inputs has it, \
@@ -148,7 +155,7 @@ pub const ROWS: &[Function] = &[
         inputs: &[Parameter::any("IN", GenericType::AnyBit, "bit string")],
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyBit),
-        formula: complement,
+        formula: Formula::new(complement),
         page: FunctionPage::Own(Page {
             about: "The complement of a bit string: every bit turns over, so NOT of WORD 16#F0F0 is \
                     16#0F0F and NOT of TRUE is FALSE. In Instruction List it works on the current result \

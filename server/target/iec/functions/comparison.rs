@@ -3,7 +3,7 @@
 use super::{Function, FunctionPage, Parameter, ParameterType};
 use crate::target::Fault;
 use crate::target::iec::page::Page;
-use crate::target::iec::{Datum, Inputs};
+use crate::target::iec::{Datum, Formula, Inputs};
 use crate::target::iec::{ElementaryType, GenericType};
 use std::cmp::Ordering;
 
@@ -20,7 +20,8 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2,
         extensible: true,
         result: ParameterType::Elementary(ElementaryType::Bool),
-        formula: |inputs| chained(inputs, Ordering::is_gt),
+        formula: Formula::new(|inputs| chained(inputs, Ordering::is_gt))
+            .with_kernel(|left, right| Some(i64::from(left > right))),
         page: FunctionPage::Own(Page {
             about: "1 if each value is greater than the next, else 0; two or more values of one \
                     elementary type. With three inputs it says whether IN1 > IN2 and IN2 > IN3. In \
@@ -42,7 +43,8 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2,
         extensible: true,
         result: ParameterType::Elementary(ElementaryType::Bool),
-        formula: |inputs| chained(inputs, Ordering::is_ge),
+        formula: Formula::new(|inputs| chained(inputs, Ordering::is_ge))
+            .with_kernel(|left, right| Some(i64::from(left >= right))),
         page: FunctionPage::Own(Page {
             about: "1 if no value is less than the next, else 0; two or more values of one elementary \
                     type. With three inputs it says whether IN1 >= IN2 and IN2 >= IN3. In Instruction \
@@ -63,7 +65,8 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2,
         extensible: true,
         result: ParameterType::Elementary(ElementaryType::Bool),
-        formula: |inputs| chained(inputs, Ordering::is_eq),
+        formula: Formula::new(|inputs| chained(inputs, Ordering::is_eq))
+            .with_kernel(|left, right| Some(i64::from(left == right))),
         page: FunctionPage::Own(Page {
             about: "1 if all values are equal, else 0; two or more values of one elementary type. With \
                     three inputs it says whether IN1 = IN2 and IN2 = IN3. In Instruction List the \
@@ -84,7 +87,8 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2,
         extensible: true,
         result: ParameterType::Elementary(ElementaryType::Bool),
-        formula: |inputs| chained(inputs, Ordering::is_le),
+        formula: Formula::new(|inputs| chained(inputs, Ordering::is_le))
+            .with_kernel(|left, right| Some(i64::from(left <= right))),
         page: FunctionPage::Own(Page {
             about: "1 if no value is greater than the next, else 0; two or more values of one elementary \
                     type. With three inputs it says whether IN1 <= IN2 and IN2 <= IN3. In Instruction \
@@ -105,7 +109,8 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2,
         extensible: true,
         result: ParameterType::Elementary(ElementaryType::Bool),
-        formula: |inputs| chained(inputs, Ordering::is_lt),
+        formula: Formula::new(|inputs| chained(inputs, Ordering::is_lt))
+            .with_kernel(|left, right| Some(i64::from(left < right))),
         page: FunctionPage::Own(Page {
             about: "1 if each value is less than the next, else 0; two or more values of one elementary \
                     type. With three inputs it says whether IN1 < IN2 and IN2 < IN3. In Instruction List \
@@ -126,9 +131,10 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2,
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Bool),
-        formula: |inputs| {
+        formula: Formula::new(|inputs| {
             chained(inputs, Ordering::is_eq).map(|same| Datum::from(same == Datum::from(false)))
-        },
+        })
+        .with_kernel(|left, right| Some(i64::from(left != right))),
         page: FunctionPage::Own(Page {
             about: "1 if the two values differ, else 0; both of one elementary type. Unlike the other \
                     comparisons it takes two inputs only, because a chain of unequal values would say \

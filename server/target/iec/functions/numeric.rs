@@ -5,7 +5,7 @@ use crate::target::Fault;
 use crate::target::iec::GenericType;
 use crate::target::iec::page::Page;
 use crate::target::iec::semantics::NS_OF_DAY;
-use crate::target::iec::{Datum, ElementaryType, Inputs};
+use crate::target::iec::{Datum, ElementaryType, Formula, Inputs};
 
 const REAL_INPUT: &[Parameter] = &[Parameter::any("IN", GenericType::AnyReal, "number")];
 const IN1_IN2_NUM: &[Parameter] = &[
@@ -21,7 +21,7 @@ pub const ROWS: &[Function] = &[
         inputs: &[Parameter::any("IN", GenericType::AnyNum, "number")],
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyNum),
-        formula: absolute,
+        formula: Formula::new(absolute).with_kernel(|number, _| number.checked_abs()),
         page: FunctionPage::Own(Page {
             about: "The absolute value of a number of any type, in the same type. The most negative \
                     signed integer has none: ABS of INT -32768 does not fit and is an error, or -32768 \
@@ -36,7 +36,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
-        formula: |inputs| defined(inputs, f64::sqrt),
+        formula: Formula::new(|inputs| defined(inputs, f64::sqrt)),
         page: FunctionPage::Own(Page {
             about: "The square root of a REAL or an LREAL, in the same type. A negative input is an \
                     error. A flow from a differential pressure is the usual case; cut the pressure off \
@@ -51,7 +51,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
-        formula: |inputs| defined(inputs, f64::ln),
+        formula: Formula::new(|inputs| defined(inputs, f64::ln)),
         page: FunctionPage::Own(Page {
             about: "The logarithm to base e of a REAL or an LREAL, in the same type. The input must be \
                     greater than 0, or the result is an error.",
@@ -65,7 +65,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
-        formula: |inputs| defined(inputs, f64::log10),
+        formula: Formula::new(|inputs| defined(inputs, f64::log10)),
         page: FunctionPage::Own(Page {
             about: "The logarithm to base 10 of a REAL or an LREAL, in the same type. The input must be \
                     greater than 0, or the result is an error. Mind the name: in many programming \
@@ -80,7 +80,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
-        formula: |inputs| defined(inputs, f64::exp),
+        formula: Formula::new(|inputs| defined(inputs, f64::exp)),
         page: FunctionPage::Own(Page {
             about: "e to the power of a REAL or an LREAL, in the same type. The result grows out of a \
                     REAL's range above 88.7, which is an error.",
@@ -94,7 +94,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
-        formula: |inputs| defined(inputs, f64::sin),
+        formula: Formula::new(|inputs| defined(inputs, f64::sin)),
         page: FunctionPage::Own(Page {
             about: "The sine of an angle in radians, REAL or LREAL, in the same type. Multiply degrees \
                     by 0.01745329 first. Large angles lose accuracy, so keep them within a turn.",
@@ -108,7 +108,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
-        formula: |inputs| defined(inputs, f64::cos),
+        formula: Formula::new(|inputs| defined(inputs, f64::cos)),
         page: FunctionPage::Own(Page {
             about: "The cosine of an angle in radians, REAL or LREAL, in the same type. Multiply degrees \
                     by 0.01745329 first.",
@@ -122,7 +122,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
-        formula: |inputs| defined(inputs, f64::tan),
+        formula: Formula::new(|inputs| defined(inputs, f64::tan)),
         page: FunctionPage::Own(Page {
             about: "The tangent of an angle in radians, REAL or LREAL, in the same type. Near a quarter \
                     turn, 1.570796, it grows beyond every bound and the result is of no use.",
@@ -136,7 +136,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
-        formula: |inputs| defined(inputs, f64::asin),
+        formula: Formula::new(|inputs| defined(inputs, f64::asin)),
         page: FunctionPage::Own(Page {
             about: "The angle in radians, from -1.570796 to 1.570796, whose sine is the input, REAL or \
                     LREAL, in the same type. An input outside -1.0 to 1.0 is an error, so limit a \
@@ -151,7 +151,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
-        formula: |inputs| defined(inputs, f64::acos),
+        formula: Formula::new(|inputs| defined(inputs, f64::acos)),
         page: FunctionPage::Own(Page {
             about: "The angle in radians, from 0.0 to 3.141593, whose cosine is the input, REAL or \
                     LREAL, in the same type. An input outside -1.0 to 1.0 is an error, so limit a \
@@ -166,7 +166,7 @@ pub const ROWS: &[Function] = &[
         inputs: REAL_INPUT,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
-        formula: |inputs| defined(inputs, f64::atan),
+        formula: Formula::new(|inputs| defined(inputs, f64::atan)),
         page: FunctionPage::Own(Page {
             about: "The angle in radians, from -1.570796 to 1.570796, whose tangent is the input, REAL \
                     or LREAL, in the same type. Every input is allowed. For the direction of a point use \
@@ -184,7 +184,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
-        formula: |inputs| Ok(Datum::Real(inputs.real(0).atan2(inputs.real(1)))),
+        formula: Formula::new(|inputs| Ok(Datum::Real(inputs.real(0).atan2(inputs.real(1))))),
         page: FunctionPage::Own(Page {
             about: "The angle in radians between the X axis and the point (X, Y), from -3.141593 to \
                     3.141593; REAL or LREAL, all of one type. Y comes first, so in a non-formal call the \
@@ -199,7 +199,7 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2_NUM,
         extensible: true,
         result: ParameterType::Generic(GenericType::AnyNum),
-        formula: sum,
+        formula: Formula::new(sum).with_kernel(i64::checked_add),
         page: FunctionPage::Own(Page {
             about: "The sum of two or more numbers of one type. In Instruction List the operator ADD \
                     does the same with the current result and one operand; with more operands after it, \
@@ -219,7 +219,7 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2_NUM,
         extensible: true,
         result: ParameterType::Generic(GenericType::AnyNum),
-        formula: product,
+        formula: Formula::new(product).with_kernel(i64::checked_mul),
         page: FunctionPage::Own(Page {
             about: "The product of two or more numbers of one type, in that type and not in a wider one. \
                     In Instruction List the operator MUL does the same with one operand; with more \
@@ -239,7 +239,7 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2_NUM,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyNum),
-        formula: difference,
+        formula: Formula::new(difference).with_kernel(i64::checked_sub),
         page: FunctionPage::Own(Page {
             about: "IN1 minus IN2, numbers of one type. In Instruction List the current result is IN1, \
                     as with the operator of the same name. An unsigned type cannot go below 0.",
@@ -253,7 +253,7 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2_NUM,
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyNum),
-        formula: quotient,
+        formula: Formula::new(quotient).with_kernel(i64::checked_div),
         page: FunctionPage::Own(Page {
             about: "IN1 divided by IN2, numbers of one type; in Instruction List the current result is \
                     IN1. Integers are truncated towards zero: -7 divided by 2 gives -3. Division by zero \
@@ -273,7 +273,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyInt),
-        formula: remainder,
+        formula: Formula::new(remainder).with_kernel(i64::checked_rem),
         page: FunctionPage::Own(Page {
             about: "The remainder of IN1 divided by IN2, integers of one type; in Instruction List the \
                     current result is IN1. It has the sign of IN1, and with IN2 = 0 the standard gives \
@@ -291,7 +291,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyReal),
-        formula: power,
+        formula: Formula::new(power),
         page: FunctionPage::Own(Page {
             about: "IN1 to the power of IN2; in Instruction List the current result is the base, a REAL \
                     or an LREAL, and the result has its type. The exponent may be of any numeric type. A \
@@ -306,7 +306,7 @@ pub const ROWS: &[Function] = &[
         inputs: &[Parameter::any("IN", GenericType::Any, "value")],
         extensible: false,
         result: ParameterType::Generic(GenericType::Any),
-        formula: copy,
+        formula: Formula::COPY,
         page: FunctionPage::Own(Page {
             about: "Gives its input unchanged, of any type. In Instruction List it does nothing that \
                     `LD` and `ST` do not do; in ladder it is the block that copies a value while its EN \
@@ -402,8 +402,4 @@ fn remainder(inputs: &Inputs<'_>) -> Result<Datum, Fault> {
 
 fn power(inputs: &Inputs<'_>) -> Result<Datum, Fault> {
     finite(inputs.real(0).powf(inputs.real(1)), inputs)
-}
-
-fn copy(inputs: &Inputs<'_>) -> Result<Datum, Fault> {
-    inputs.values.first().cloned().ok_or(Fault::Value(0))
 }

@@ -3,7 +3,7 @@
 use super::{Function, FunctionPage, Parameter, ParameterType};
 use crate::target::Fault;
 use crate::target::iec::page::Page;
-use crate::target::iec::{Datum, Inputs};
+use crate::target::iec::{Datum, Formula, Inputs};
 use crate::target::iec::{ElementaryType, GenericType};
 use std::cmp::Ordering;
 
@@ -24,7 +24,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Generic(GenericType::Any),
-        formula: |inputs| picked(inputs, 1 + inputs.whole(0)),
+        formula: Formula::new(|inputs| picked(inputs, 1 + inputs.whole(0))),
         page: FunctionPage::Own(Page {
             about: "One of two values of the same type: IN0 while the selector G is 0, IN1 while it is \
                     1. In a non-formal call the current result is G. Mind the order: the value for FALSE \
@@ -44,7 +44,8 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2,
         extensible: true,
         result: ParameterType::Generic(GenericType::AnyElementary),
-        formula: |inputs| outermost(inputs, Ordering::is_gt),
+        formula: Formula::new(|inputs| outermost(inputs, Ordering::is_gt))
+            .with_kernel(|left, right| Some(left.max(right))),
         page: FunctionPage::Own(Page {
             about: "The greatest of two or more values of one elementary type. The current result is the \
                     first of them. `MAX` with a constant is a lower limit: `MAX 0` lets nothing below 0 \
@@ -64,7 +65,8 @@ pub const ROWS: &[Function] = &[
         inputs: IN1_IN2,
         extensible: true,
         result: ParameterType::Generic(GenericType::AnyElementary),
-        formula: |inputs| outermost(inputs, Ordering::is_lt),
+        formula: Formula::new(|inputs| outermost(inputs, Ordering::is_lt))
+            .with_kernel(|left, right| Some(left.min(right))),
         page: FunctionPage::Own(Page {
             about: "The smallest of two or more values of one elementary type. The current result is the \
                     first of them. `MIN` with a constant is an upper limit: `MIN 100` lets nothing above \
@@ -88,7 +90,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyElementary),
-        formula: limited,
+        formula: Formula::new(limited),
         page: FunctionPage::Own(Page {
             about: "IN, but no less than MN and no more than MX; all of one elementary type. The trap is \
                     the order: MN is declared first, so in a non-formal call the current result is the \
@@ -108,7 +110,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: true,
         result: ParameterType::Generic(GenericType::Any),
-        formula: |inputs| picked(inputs, 1 + inputs.whole(0)),
+        formula: Formula::new(|inputs| picked(inputs, 1 + inputs.whole(0))),
         page: FunctionPage::Own(Page {
             about: "One of several values of the same type: IN0 for K = 0, IN1 for K = 1 and so on, \
                     counted from zero. In a non-formal call the current result is K. A selector below 0 \

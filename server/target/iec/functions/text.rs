@@ -3,7 +3,7 @@
 use super::{Function, FunctionPage, Parameter, ParameterType};
 use crate::target::Fault;
 use crate::target::iec::page::Page;
-use crate::target::iec::{Datum, Inputs};
+use crate::target::iec::{Datum, Formula, Inputs};
 use crate::target::iec::{ElementaryType, GenericType};
 
 /// LEN LEFT RIGHT MID CONCAT INSERT DELETE REPLACE FIND.
@@ -14,7 +14,7 @@ pub const ROWS: &[Function] = &[
         inputs: &[Parameter::any("IN", GenericType::AnyString, "text")],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Int),
-        formula: |inputs| Ok(Datum::Whole(count(inputs.text(0)))),
+        formula: Formula::new(|inputs| Ok(Datum::Whole(count(inputs.text(0))))),
         page: FunctionPage::Own(Page {
             about: "The number of characters in a text, 0 for an empty one. The capacity that the \
                     declaration gives, `STRING[20]`, plays no part.",
@@ -31,7 +31,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyString),
-        formula: |inputs| part(inputs.text(0), 1, length(inputs, 1)?),
+        formula: Formula::new(|inputs| part(inputs.text(0), 1, length(inputs, 1)?)),
         page: FunctionPage::Own(Page {
             about: "The first L characters of a text. The current result is the text, the operand L. \
                     With L greater than the length the whole text is the result; a negative L is an \
@@ -49,7 +49,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyString),
-        formula: right,
+        formula: Formula::new(right),
         page: FunctionPage::Own(Page {
             about: "The last L characters of a text. The current result is the text, the operand L. With \
                     L greater than the length the whole text is the result; a negative L is an error.",
@@ -67,7 +67,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyString),
-        formula: |inputs| part(inputs.text(0), position(inputs, 2)?, length(inputs, 1)?),
+        formula: Formula::new(|inputs| part(inputs.text(0), position(inputs, 2)?, length(inputs, 1)?)),
         page: FunctionPage::Own(Page {
             about: "L characters of a text from position P on, the first character being number 1. The \
                     order is text, length, position: in a non-formal call the current result is the \
@@ -85,7 +85,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: true,
         result: ParameterType::Generic(GenericType::AnyString),
-        formula: concatenated,
+        formula: Formula::new(concatenated),
         page: FunctionPage::Own(Page {
             about: "Two or more texts of one type joined into one; the current result comes first. What \
                     does not fit into the variable that it is stored to is cut off.",
@@ -103,7 +103,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyString),
-        formula: inserted,
+        formula: Formula::new(inserted),
         page: FunctionPage::Own(Page {
             about: "IN1 with IN2 put in after its character number P; P = 0 puts it in front. In a \
                     non-formal call the current result is IN1.",
@@ -121,7 +121,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyString),
-        formula: deleted,
+        formula: Formula::new(deleted),
         page: FunctionPage::Own(Page {
             about: "A text without the L characters from position P on, the first character being number \
                     1. As with `MID` the length comes before the position.",
@@ -140,7 +140,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Generic(GenericType::AnyString),
-        formula: replaced,
+        formula: Formula::new(replaced),
         page: FunctionPage::Own(Page {
             about: "IN1 with the L characters from position P on replaced by IN2, which may be longer or \
                     shorter. In a non-formal call the current result is IN1 and the operands are IN2, L, \
@@ -158,7 +158,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Int),
-        formula: found,
+        formula: Formula::new(found),
         page: FunctionPage::Own(Page {
             about: "The position in IN1 where IN2 first occurs, the first character being number 1, and \
                     0 if it does not occur. In a non-formal call the current result is the text that is \

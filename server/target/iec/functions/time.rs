@@ -2,9 +2,9 @@
 
 use super::numeric::{difference, product, quotient, sum};
 use super::{Function, FunctionPage, Parameter, ParameterType};
-use crate::target::iec::Datum;
 use crate::target::iec::page::Page;
 use crate::target::iec::semantics::NS_OF_DAY;
+use crate::target::iec::{Datum, Formula};
 use crate::target::iec::{ElementaryType, GenericType};
 
 /// ADD_TIME to CONCAT_DATE_TOD.
@@ -18,7 +18,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Time),
-        formula: sum,
+        formula: Formula::new(sum),
         page: FunctionPage::Own(Page {
             about: "The sum of two TIMEs. The operator `ADD` with two TIMEs does the same; the name says \
                     what is added where that is not plain to see.",
@@ -35,7 +35,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::TimeOfDay),
-        formula: sum,
+        formula: Formula::new(sum),
         page: FunctionPage::Own(Page {
             about: "A time of day moved on by a TIME. The current result is the TOD. The standard does \
                     not say what comes after midnight; most controllers start again at 00:00:00.",
@@ -52,7 +52,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::DateAndTime),
-        formula: sum,
+        formula: Formula::new(sum),
         page: FunctionPage::Own(Page {
             about: "A date and time moved on by a TIME. The current result is the DT.",
             variables: &["Begin : DT := DT#2024-01-31-22:00:00", "Duration : TIME := T#8h", "Finish : DT"],
@@ -68,7 +68,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Time),
-        formula: difference,
+        formula: Formula::new(difference),
         page: FunctionPage::Own(Page {
             about: "IN1 minus IN2, two TIMEs. The current result is IN1. The difference may be negative \
                     where the controller's TIME has a sign.",
@@ -85,7 +85,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Time),
-        formula: difference,
+        formula: Formula::new(difference),
         page: FunctionPage::Own(Page {
             about: "The TIME from IN2 to IN1, two DATEs, in whole days. The current result is IN1, the \
                     later date for a positive result.",
@@ -102,7 +102,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::TimeOfDay),
-        formula: difference,
+        formula: Formula::new(difference),
         page: FunctionPage::Own(Page {
             about: "A time of day moved back by a TIME. The current result is the TOD. The standard does \
                     not say what comes before midnight.",
@@ -119,7 +119,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Time),
-        formula: difference,
+        formula: Formula::new(difference),
         page: FunctionPage::Own(Page {
             about: "The TIME from IN2 to IN1, two times of day. The current result is IN1. Across \
                     midnight the result is negative; add T#24h then.",
@@ -136,7 +136,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::DateAndTime),
-        formula: difference,
+        formula: Formula::new(difference),
         page: FunctionPage::Own(Page {
             about: "A date and time moved back by a TIME. The current result is the DT.",
             variables: &[
@@ -156,7 +156,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Time),
-        formula: difference,
+        formula: Formula::new(difference),
         page: FunctionPage::Own(Page {
             about: "The TIME from IN2 to IN1, two dates with times. The current result is IN1. A TIME of \
                     32 bits in milliseconds holds some 24 days only, so a longer distance may not fit.",
@@ -177,7 +177,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Time),
-        formula: product,
+        formula: Formula::new(product),
         page: FunctionPage::Own(Page {
             about: "A TIME multiplied by a number of any type. The current result is the TIME. This is \
                     the third edition's name; the second calls it `MULTIME`.",
@@ -194,7 +194,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Time),
-        formula: product,
+        formula: Formula::new(product),
         page: FunctionPage::Own(Page {
             about: "A TIME multiplied by a number of any type. The current result is the TIME. This is \
                     the second edition's name; the third calls it `MUL_TIME`.",
@@ -211,7 +211,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Time),
-        formula: quotient,
+        formula: Formula::new(quotient),
         page: FunctionPage::Own(Page {
             about: "A TIME divided by a number of any type. The current result is the TIME; a divisor of \
                     0 is an error. This is the third edition's name; the second calls it `DIVTIME`.",
@@ -228,7 +228,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::Time),
-        formula: quotient,
+        formula: Formula::new(quotient),
         page: FunctionPage::Own(Page {
             about: "A TIME divided by a number of any type. The current result is the TIME; a divisor of \
                     0 is an error. This is the second edition's name; the third calls it `DIV_TIME`.",
@@ -245,7 +245,7 @@ pub const ROWS: &[Function] = &[
         ],
         extensible: false,
         result: ParameterType::Elementary(ElementaryType::DateAndTime),
-        formula: |inputs| Ok(Datum::Whole(inputs.whole(0) * NS_OF_DAY + inputs.whole(1))),
+        formula: Formula::new(|inputs| Ok(Datum::Whole(inputs.whole(0) * NS_OF_DAY + inputs.whole(1)))),
         page: FunctionPage::Own(Page {
             about: "A date and a time of day joined to a DT. The current result is the DATE. \
                     `DT_TO_DATE` and `DT_TO_TOD` take it apart again.",
