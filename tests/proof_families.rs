@@ -6,6 +6,7 @@ use crate::proof_shown::Dice;
 use rungwise::document::{Document, Notation};
 use rungwise::simulate::{Code, Machine, Value, Variable, compile};
 use rungwise::target::{Model, Target};
+use rungwise::text::Span;
 use rungwise::translate::{Certificate, Options, Proof, To, Translation, prove, translate, variable_called};
 use std::sync::Arc;
 
@@ -382,30 +383,119 @@ fn said(document: &Document, to: To) -> (String, String) {
 }
 
 #[test]
-fn a_value_at_first_is_no_part_of_an_fx_list() {
+fn a_value_at_first_is_given_in_the_first_scan_of_an_fx_list() {
     let run = "run AT %MX0.0 : BOOL";
-    let rest = "y AT %QX0.0 : BOOL; T0 : TON; C0 : CTU; D0 AT %MW1000 : INT";
-    for (declared, body, other) in [
-        (format!("{run} := TRUE; {rest};"), "LD run; ST y", "LD M0; OUT Y0"),
+    let rest = "y AT %QX0.0 : BOOL; D0 AT %MW1000 : INT";
+    for (declared, body, other, first) in [
+        (format!("{run} := TRUE; {rest};"), "LD run; ST y", "LD M0; OUT Y0", "SET M0"),
+        (format!("{run} := BOOL#1; {rest};"), "LD run; ST y", "LD M0; OUT Y0", "SET M0"),
         // Nobody names it, and the output is on.
-        (format!("{run}; {rest}; z AT %QX0.1 : BOOL := TRUE;"), "LD run; ST y", "LD M0; OUT Y0"),
-        (format!("{run}; y AT %QX0.0 : BOOL; T0 : TON := (Q := TRUE);"), "LD T0.Q; ST y", "LD T0; OUT Y0"),
-        (format!("{run}; {rest} := 5;"), "LD D0; GT 3; ST y", "LD> D0 K3; OUT Y0"),
+        (format!("{run}; {rest}; z AT %QX0.1 : BOOL := TRUE;"), "LD run; ST y", "LD M0; OUT Y0", "SET Y1"),
+        (
+            format!("{run} := 1; {rest} := 16#FF; d AT %MD510 : DINT := -70000;"),
+            "LD D0; GT 3; ST y; LD d; EQ 0; ST run",
+            "LD> D0 K3; OUT Y0; LDD= D20 K0; OUT M0",
+            "SET M0\nMOV K255 D0\nDMOV K-70000 D20",
+        ),
+        (
+            "VAR_GLOBAL M3 AT %MX0.3 : BOOL := TRUE; | y AT %QX0.0 : BOOL;".into(),
+            "LD y; ST y",
+            "LD Y0; OUT Y0",
+            "SET M3",
+        ),
     ] {
-        let (document, other) = (program(&declared, body), list(other));
-        assert_eq!(reason(&document, &other), "translate.initial", "{declared}");
-        assert_eq!(reason(&other, &document), "translate.initial", "{declared}");
-        assert_eq!(said(&document, To::Fx).0, "translate.initial", "{declared}");
+        // What all know stands before the program.
+        let declared = declared.split_once(" | ").map_or(program(&declared, body), |(global, own)| {
+            iec(&format!("{global} END_VAR\n{}", program(own, body).text()))
+        });
+        let (note, written) = said(&declared, To::Fx);
+        assert_eq!(note, "", "{}", declared.text());
+        assert_eq!(written, format!("LD M8002\n{first}\n{}END\n", lines(other)));
+        let (without, with) = (list(other), fx(written.trim_end_matches("END\n")));
+        for [left, right] in [[&declared, &with], [&with, &declared]] {
+            assert!(matches!(prove(left, right), Proof::Equal { .. }), "{written}");
+        }
+        for [left, right] in [[&declared, &without], [&without, &declared]] {
+            assert!(!matches!(prove(left, right), Proof::Equal { .. }), "{written}");
+        }
+        assert_eq!(seen_apart([&declared, &with]), None);
     }
-    // By its type, and where another section says it.
+    let on = program(&format!("{run} := TRUE; {rest};"), "LD run; ST y");
+    assert!(matches!(prove(&on, &list("LD M0; OUT Y0")), Proof::Different(_)));
+    // A part of a program has no first scan.
+    let part = on.text().find("LD run").map(|at| Span::new(at, at + 1));
+    let rung = translate(&on, part, To::Fx, &Options { is_whole: false, ..Options::default() });
+    assert!(!rung.text.contains("M8002") && rung.rungs[0].note.is_some(), "{}", rung.text);
+    // What is no device, what is kept, what no literal says, and in a program beside another one.
+    for text in [
+        program(&format!("{run}; y AT %QX0.0 : BOOL; T0 : TON := (Q := TRUE);"), "LD T0.Q; ST y").text(),
+        program(&format!("VAR RETAIN M500 AT %MX62.4 : BOOL := TRUE; | {rest};"), "LD M500; ST y").text(),
+        program(&format!("VAR CONSTANT k : INT := 7; | {run}; {rest} := k;"), "LD run; ST y").text(),
+    ] {
+        assert_eq!(said(&iec(&text), To::Fx).0, "translate.initial", "{text}");
+    }
+    // By its type.
     let typed = "TYPE On : BOOL := TRUE; END_TYPE\nPROGRAM Main\nVAR run AT %MX0.0 : On; y AT %QX0.0 : BOOL; END_VAR\n\
                  LD run\nST y\nEND_PROGRAM\n";
     assert_ne!(said(&iec(typed), To::Fx).0, "");
-    let plain = program(&format!("{run} := FALSE; {rest} := 0;"), "LD run; ST y");
+    let plain = program(&format!("{run} := FALSE; {rest} := 0; M4 AT %MX0.4 : BOOL := 2#0;"), "LD run; ST y");
     assert!(matches!(prove(&plain, &list("LD M0; OUT Y0")), Proof::Equal { .. }));
     assert_eq!(said(&plain, To::Fx), (String::new(), "LD M0\nOUT Y0\nEND\n".into()));
     let temporary = program("VAR_TEMP M0 : BOOL; | Y0 AT %QX0.0 : BOOL;", "LD Y0; S M0; LD M0; ST Y0");
     assert_eq!(said(&temporary, To::Fx).0, "translate.temporary");
+}
+
+#[test]
+fn the_first_scan_is_a_variable_that_the_first_rung_switches() {
+    let switch = "LDN M8002_Done; ST M8002; S M8002_Done";
+    for (text, body) in [
+        ("LD M8002; SET M0", "LD M8002; S M0"),
+        ("LD X0; ANI M8002; OUT Y0", "LD X0; ANDN M8002; ST Y0"),
+        ("LD M8003; OUT Y0", "LDN M8002; ST Y0"),
+        ("LD X0; ORI M8003; MOV K5 D0", "LD X0; OR M8002; JMPCN Skip1; LD 5; ST D0; Skip1:"),
+    ] {
+        let list = list(text);
+        let (note, written) = said(&list, To::Iec);
+        assert_eq!(note, "", "{text}");
+        let again = iec(&written);
+        let said_body: Vec<&str> = written.split_once("END_VAR\n").unwrap().1.split_whitespace().collect();
+        let expected = lines(&format!("{switch}; {body}; END_PROGRAM"));
+        assert_eq!(said_body, expected.split_whitespace().collect::<Vec<_>>(), "{written}");
+        assert!(matches!(prove(&list, &again), Proof::Equal { .. }), "{written}");
+        assert_eq!(seen_apart([&list, &again]), None, "{written}");
+        // And back, but for the relay that is off: a closed contact of the other one is as good.
+        let back = said(&again, To::Fx);
+        let closed = text.replace("ORI M8003", "OR M8002").replace("LD M8003", "LDI M8002");
+        assert_eq!(back, (String::new(), lines(&closed) + "END\n"));
+    }
+    // Whatever they are called.
+    let declared = "First, Ran : BOOL; y AT %QX0.0 : BOOL;";
+    let own = "LDN Ran; ST First; S Ran";
+    let is_relay = |text: &str| said(&iec(text), To::Fx).1.contains("M8002");
+    let named = program(declared, &format!("{own}; LD First; ST y"));
+    assert_eq!(said(&named, To::Fx).1, "LD M8002\nOUT Y0\nEND\n");
+    assert!(matches!(prove(&named, &list("LD M8002; OUT Y0")), Proof::Equal { .. }));
+    assert!(matches!(prove(&named, &list("LDI M8002; OUT Y0")), Proof::Different(_)));
+    for body in [
+        format!("LD y; ST y; {own}; LD First; ST y"),
+        format!("{own}; LD First; ST y; LD y; ST First"),
+        format!("{own}; LD First; ST y; LD y; R Ran"),
+        format!("{own}; LD First; AND Ran; ST y"),
+        format!("again:; {own}; LD First; ST y; LD y; JMPC again"),
+        format!("{own}; LD First; ST y; LD y; FROB"),
+        "LD Ran; ST First; S Ran; LD First; ST y".into(),
+        "LDN Ran; ST First; R Ran; LD First; ST y".into(),
+        "LDN Ran; STN First; S Ran; LD First; ST y".into(),
+    ] {
+        assert!(!is_relay(&program(declared, &body).text()), "{body}");
+    }
+    for declared in [
+        "First : BOOL; Ran : BOOL := TRUE; y AT %QX0.0 : BOOL;",
+        "VAR RETAIN Ran : BOOL; | First : BOOL; y AT %QX0.0 : BOOL;",
+        "First, Ran AT %MX0.1 : BOOL; y AT %QX0.0 : BOOL;",
+    ] {
+        assert!(!is_relay(&program(declared, &format!("{own}; LD First; ST y")).text()), "{declared}");
+    }
 }
 
 #[test]
@@ -585,7 +675,7 @@ fn a_timer_that_may_be_left_out_is_none_of_the_other_family() {
     );
     let part = list(text);
     let at = part.text().find("LD X0").unwrap() as u32;
-    let span = rungwise::text::Span { start: at, end: at + 5 };
+    let span = Span { start: at, end: at + 5 };
     let of_part = translate(&part, Some(span), To::Iec, &Options { is_whole: false, ..Options::default() });
     assert_eq!(of_part.rungs[0].note.as_ref().map(|note| note.key()), Some("translate.jumped-timer"));
     // Before the jump and behind its label it runs.

@@ -30,6 +30,8 @@
 //! | `ZRST`, `FMOV`, `BMOV` | one reset or store for each device, up to 16; these come back as they are |
 //! | `MOVP` and the like | the same behind an instance `Pulse1 : R_TRIG` |
 //! | `M8000`, `M8001` | `TRUE`, `FALSE` |
+//! | `M8002`, `M8003` | the variable `M8002`, which the first rung switches: `LDN M8002_Done`, `ST M8002`, `S M8002_Done` |
+//! | `LD M8002`, `SET M5`, `MOV K7 D0` as the first rung | from `M5 AT %MX0.5 : BOOL := TRUE`, `D0 AT %MW1000 : INT := 7` |
 //!
 //! `END` is dropped and put back. What has no counterpart keeps its words in a comment: retentive timers, counters of
 //! 32 bits, special relays, steps, groups of bits, and applied instructions for which IEC 61131-3 has no operator that
@@ -39,6 +41,7 @@
 
 mod counted;
 mod doubts;
+mod first_scan;
 mod guarded;
 mod lack;
 mod registers;
@@ -46,6 +49,7 @@ mod to_devices;
 mod to_variables;
 
 use self::counted::{Coils, Instances};
+use self::first_scan::Initials;
 use self::guarded::Open;
 use self::lack::{Lack, single_edge, without};
 use self::registers::Registers;
@@ -173,6 +177,9 @@ pub(super) fn convert(
         return;
     }
     let is_whole = purpose != Purpose::Text { is_whole: false };
+    if target.is_fx() && is_whole {
+        first_scan::take_relay(document, &mut program.rungs);
+    }
     // What timers and counters do depends on all that is done with them.
     let whole =
         (!is_whole && program.rungs.iter().any(counts)).then(|| source::program(document, None).rungs);
@@ -180,11 +187,6 @@ pub(super) fn convert(
     let coils = Coils::of(all);
     let instances = Instances::of(document, all);
     let family = if target.is_fx() { target } else { document.target() };
-    let doubts: FxHashMap<Span, Message> = doubts::all(document, all, family, &instances)
-        .into_iter()
-        .zip(all)
-        .filter_map(|(doubt, source)| Some((source.span(), doubt?)))
-        .collect();
     let presets = coils.declared();
     let pulses = Cell::new(0);
     let registers = match target.is_fx() {
@@ -192,9 +194,6 @@ pub(super) fn convert(
         false => Registers::of_devices(document, program, is_whole),
     };
     let names = to_devices::Names::of(program, document.scopes(), target);
-    if target.is_fx() {
-        join_divisions(document, target, (&names, &registers, &instances), program);
-    }
     let convert_path = |path: &Path, unit: Option<usize>| match target.is_fx() {
         false => to_variables::path(path, (document.target(), purpose), (&registers, &coils), &pulses),
         // What a function or a block does it does for whoever calls it.
@@ -204,6 +203,19 @@ pub(super) fn convert(
         }
         true => to_devices::path(path, target, (&names, &registers, &instances), (document.scopes(), unit)),
     };
+    let initials = match is_whole {
+        true => Initials::of(document, family, |path, unit| convert_path(path, unit).is_ok()),
+        false => Initials::default(),
+    };
+    let doubts: FxHashMap<Span, Message> = doubts::all(document, all, family, (&instances, &initials))
+        .into_iter()
+        .zip(all)
+        .filter_map(|(doubt, source)| Some((source.span(), doubt?)))
+        .collect();
+    if target.is_fx() {
+        join_divisions(document, target, (&names, &registers, &instances), program);
+    }
+    initials.put_before(&mut program.rungs);
     let guards = guarded::all(&program.rungs);
     let mut open = Open::default();
     for (source, own) in program.rungs.iter_mut().zip(guards) {
@@ -230,6 +242,9 @@ pub(super) fn convert(
         if source.rung.path.is_err() {
             open.set_up(own);
         }
+    }
+    if purpose == (Purpose::Text { is_whole: true }) && !target.is_fx() {
+        first_scan::put_relay_before(&mut program.rungs);
     }
     program.presets = presets;
 }
@@ -337,13 +352,16 @@ pub(super) fn part_calculations(program: &mut Program) {
 
 /// Takes out of a program of IEC 61131-3 the rungs that mean another thing than the same words would on a model of the
 /// FX `family`: types decide how numbers compare and divide, declarations what there is at first. An F_TRIG becomes
-/// what it is there.
-pub(super) fn refuse_others(document: &Document, family: &Target, sources: &mut [Source]) {
+/// what it is there, and so do values at first.
+pub(super) fn refuse_others(document: &Document, family: &Target, sources: &mut Vec<Source>) {
     if document.target().is_fx() {
         return;
     }
+    first_scan::take_relay(document, sources);
     let instances = Instances::of(document, sources);
-    let doubts = doubts::all(document, sources, family, &instances);
+    let is_written = |path: &Path, unit| to_devices::is_of_family(path, document.scopes(), unit);
+    let initials = Initials::of(document, family, is_written);
+    let doubts = doubts::all(document, sources, family, (&instances, &initials));
     for (source, doubt) in sources.iter_mut().zip(doubts) {
         let Ok(Some(path)) = &source.rung.path else { continue };
         let other = match to_devices::is_of_family(path, document.scopes(), source.pou) {
@@ -358,6 +376,7 @@ pub(super) fn refuse_others(document: &Document, family: &Target, sources: &mut 
             None => Ok(Some(to_devices::with_first_scan(path, &instances))),
         };
     }
+    initials.put_before(sources);
 }
 
 /// Whether a rung belongs to a program, not to a function or a block.

@@ -88,7 +88,12 @@ impl Source {
     }
 
     /// The rungs of a chunk before which `pous` program units start.
-    fn of_chunk(document: &Document, start: usize, chunk: &Arc<Chunk>, pous: usize) -> Vec<Source> {
+    pub(super) fn of_chunk(
+        document: &Document,
+        start: usize,
+        chunk: &Arc<Chunk>,
+        pous: usize,
+    ) -> Vec<Source> {
         let declared = Declared { scopes: document.scopes(), pous };
         let rungs = logic::rungs_with(&chunk.reading(), document.reader(), declared).into_iter();
         let source = |rung| Source {

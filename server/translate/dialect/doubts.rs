@@ -2,6 +2,7 @@
 //! one that is kept while the PLC is off where the device is not, a timer that a jump may leave out.
 
 use super::counted::{Instances, declares_preset};
+use super::first_scan::Initials;
 use super::{devices_at, guarded};
 use crate::document::{Document, Scopes, Variable};
 use crate::il::iec::{PouKind, SectionKind};
@@ -12,18 +13,19 @@ use crate::translate::{Source, declared};
 use smol_str::SmolStr;
 
 /// For each rung why it is doubtful whether it does the same in the other language; nothing where it is not. The
-/// devices are those of `family`, and `instances` those of a program of IEC 61131-3.
+/// devices are those of `family`, `instances` those of a program of IEC 61131-3, and `initials` the variables there that
+/// a rung gives their values.
 pub(super) fn all(
     document: &Document,
     sources: &[Source],
     family: &Target,
-    instances: &Instances,
+    (instances, initials): (&Instances, &Initials),
 ) -> Vec<Option<Message>> {
     let doubts = sources.iter().zip(guarded::are(sources)).map(|(source, is_guarded)| {
         let path = source.path()?;
         match document.target().is_fx() {
             true => of_devices(path, family, is_guarded),
-            false => of_variables(path, (document.scopes(), source.pou), family, instances),
+            false => of_variables(path, (document.scopes(), source.pou), family, (instances, initials)),
         }
     });
     let mut doubts: Vec<Option<Message>> = doubts.collect();
@@ -31,7 +33,7 @@ pub(super) fn all(
     if let Some(first) = sources.iter().position(|source| source.path().is_some())
         && doubts[first].is_none()
     {
-        doubts[first] = configuration(document).or_else(|| first_value(document.scopes(), family));
+        doubts[first] = configuration(document).or_else(|| first_value(document.scopes(), family, initials));
     }
     doubts
 }
@@ -58,13 +60,15 @@ fn configuration(document: &Document) -> Option<Message> {
 }
 
 /// The first variable of a program, or known to all, that is a device and has a value at first.
-fn first_value(scopes: &Scopes, family: &Target) -> Option<Message> {
-    let programs = scopes.own_pous().iter().filter(|pou| pou.kind == PouKind::Program);
-    let mut variables = programs.flat_map(|pou| &pou.variables).chain(scopes.globals.values());
-    let has_value = |variable: &&Variable| {
-        has_value(variable, scopes) && !declares_preset(variable) && !devices(variable, family).is_empty()
+fn first_value(scopes: &Scopes, family: &Target, initials: &Initials) -> Option<Message> {
+    let units = scopes.own_pous().iter().enumerate();
+    let programs = units.filter(|(_, pou)| pou.kind == PouKind::Program);
+    let own = programs.flat_map(|(unit, pou)| pou.variables.iter().map(move |own| (Some(unit), own)));
+    let mut variables = own.chain(scopes.globals.values().map(|global| (None, global)));
+    let is_doubtful = |(unit, variable): &(Option<usize>, &Variable)| {
+        is_doubtful(variable, scopes, (*unit, initials)) && !devices(variable, family).is_empty()
     };
-    variables.find(has_value).map(|variable| doubt("translate.initial", &variable.name))
+    variables.find(is_doubtful).map(|(_, variable)| doubt("translate.initial", &variable.name))
 }
 
 fn doubt(key: &'static str, word: impl AsRef<str>) -> Message {
@@ -98,7 +102,7 @@ fn of_variables(
     path: &Path,
     (scopes, unit): (&Scopes, Option<usize>),
     family: &Target,
-    instances: &Instances,
+    (instances, initials): (&Instances, &Initials),
 ) -> Option<Message> {
     let called = path.actions().into_iter().find_map(|action| match (&action.deed, action.terms.first()) {
         (Deed::Call(call), Some(instance)) => {
@@ -107,10 +111,17 @@ fn of_variables(
         }
         _ => None,
     });
-    called.or_else(|| path.terms().into_iter().find_map(|term| of_variable(term, scopes, unit, family)))
+    called.or_else(|| {
+        path.terms().into_iter().find_map(|term| of_variable(term, scopes, (unit, initials), family))
+    })
 }
 
-fn of_variable(term: &Term, scopes: &Scopes, unit: Option<usize>, family: &Target) -> Option<Message> {
+fn of_variable(
+    term: &Term,
+    scopes: &Scopes,
+    (unit, initials): (Option<usize>, &Initials),
+    family: &Target,
+) -> Option<Message> {
     if term.operand != Operand::Variable {
         return None;
     }
@@ -122,7 +133,7 @@ fn of_variable(term: &Term, scopes: &Scopes, unit: Option<usize>, family: &Targe
     if variable.section == SectionKind::Temporary {
         return Some(doubt("translate.temporary", name));
     }
-    if has_value(variable, scopes) && !declares_preset(variable) {
+    if is_doubtful(variable, scopes, (unit, initials)) {
         return Some(doubt("translate.initial", name));
     }
     let devices = devices(variable, family);
@@ -139,8 +150,13 @@ fn of_variable(term: &Term, scopes: &Scopes, unit: Option<usize>, family: &Targe
     devices.into_iter().find_map(|device| latched_counter(device, family))
 }
 
+/// Whether a variable has a value at first that nothing gives it in the other language.
+fn is_doubtful(variable: &Variable, scopes: &Scopes, (unit, initials): (Option<usize>, &Initials)) -> bool {
+    has_value(variable, scopes) && !declares_preset(variable) && !initials.have(scopes, unit, &variable.name)
+}
+
 /// The devices that a variable stands for.
-fn devices(variable: &Variable, family: &Target) -> Vec<Device> {
+pub(super) fn devices(variable: &Variable, family: &Target) -> Vec<Device> {
     match variable.address {
         Some(address) => devices_at(address).collect(),
         None => match Operand::read(&variable.name, family.model) {
@@ -151,7 +167,7 @@ fn devices(variable: &Variable, family: &Target) -> Vec<Device> {
 }
 
 /// Whether a variable is something else than off or 0 at first, by its declaration, its type or VAR_CONFIG.
-fn has_value(variable: &Variable, scopes: &Scopes) -> bool {
+pub(super) fn has_value(variable: &Variable, scopes: &Scopes) -> bool {
     let says =
         |words: &str| words.split_once(":=").is_some_and(|(_, value)| !matches!(value.trim(), "false" | "0"));
     let name = folded(&variable.name);

@@ -4,6 +4,7 @@ use super::super::source::Program;
 mod calculation;
 
 use super::counted::{Instances, constant, is_alike, turned};
+use super::first_scan::bit_of;
 use super::{END_POINTER, Lack, PULSE, Registers, device_at, devices_at, pair_at, single_edge, without};
 use crate::document::{DeclaredType, Scopes};
 use crate::il::iec::SectionKind;
@@ -303,9 +304,7 @@ impl Converter<'_> {
     fn contact(&self, contact: &Contact) -> Result<Expression, Lack> {
         let (test, terms) = match (contact.test, &contact.terms[..]) {
             (Test::Bit(kind), [term]) => {
-                if let Operand::Literal(literal) = term.operand
-                    && let LiteralValue::Bool(value) = literal.value
-                {
+                if let Some(value) = bit_of(term) {
                     return match kind {
                         ContactKind::NormallyOpen => Ok(Expression::Constant(value)),
                         ContactKind::NormallyClosed => Ok(Expression::Constant(!value)),

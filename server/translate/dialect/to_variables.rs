@@ -3,6 +3,7 @@
 mod applied;
 
 use super::counted::{Coils, Reached, stopping, turned};
+use super::first_scan;
 use super::registers::is_wide_counter;
 use super::{END_POINTER, Lack, PULSE, Purpose, Registers, address, pair_address, single_edge, without};
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
@@ -86,6 +87,11 @@ impl Converter<'_> {
                     if self.purpose == Purpose::Proof && is_first_scan(term) =>
                 {
                     (contact.test, vec![term.clone()])
+                }
+                _ if self.purpose == (Purpose::Text { is_whole: true })
+                    && let Some((kind, relay)) = first_scan::contact(kind, term) =>
+                {
+                    (Test::Bit(kind), vec![relay])
                 }
                 _ => {
                     single_edge(kind, term)?;
