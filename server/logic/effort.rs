@@ -17,12 +17,13 @@ pub struct Effort {
     left: usize,
     most: usize,
     types: Arc<Types>,
+    is_straight: bool,
 }
 
 impl Effort {
     /// So much in all, and `most` for each question.
     pub fn of(all: usize, most: usize) -> Effort {
-        Effort { left: all, most, types: Arc::default() }
+        Effort { left: all, most, types: Arc::default(), is_straight: false }
     }
 
     /// For all the proofs of a program.
@@ -35,6 +36,12 @@ impl Effort {
         self.types = Arc::new(types);
     }
 
+    /// The questions to come are about programs without jumps, loops and the like: each contact is executed once in each
+    /// scan, from the first on.
+    pub fn know_straight(&mut self) {
+        self.is_straight = true;
+    }
+
     /// What is left.
     pub fn left(&self) -> usize {
         self.left
@@ -43,7 +50,8 @@ impl Effort {
     /// The answer of `question`, whose work is taken off.
     pub fn ask<T>(&mut self, question: impl FnOnce(&mut Formulas) -> T) -> T {
         let given = self.left.min(self.most);
-        let mut formulas = Formulas::limited(given).with_types(self.types.clone());
+        let formulas = Formulas::limited(given).with_types(self.types.clone());
+        let mut formulas = if self.is_straight { formulas.straight() } else { formulas };
         let answer = question(&mut formulas);
         self.left -= given - formulas.effort();
         answer

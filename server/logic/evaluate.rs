@@ -170,7 +170,7 @@ impl<'s> Scan<'s> {
         match (contact.test, &contact.terms[..]) {
             (Test::Bit(kind), [term]) => {
                 let value = self.value(term);
-                let before = self.state.before.get(&term.key()).copied().unwrap_or(value);
+                let before = self.before(term).unwrap_or(value);
                 match kind {
                     ContactKind::NormallyOpen => value,
                     ContactKind::NormallyClosed => !value,
@@ -191,6 +191,22 @@ impl<'s> Scan<'s> {
             }
             _ => false,
         }
+    }
+
+    /// What a contact for the edge of `term` saw before; nothing if that did not change.
+    fn before(&self, term: &Term) -> Option<bool> {
+        let known = |key: &str| self.state.before.get(key).copied();
+        known(&term.key()).or_else(|| {
+            let first = Device::FIRST_SCAN.to_string();
+            match term.operand {
+                Operand::Device(Device::ALWAYS_ON) => Some(!self.bit(&first)),
+                Operand::Device(Device::FIRST_SCAN) => Some(false),
+                Operand::Device(Device::OFF_AT_FIRST) => {
+                    Some(!self.bit(&first) && known(&first) != Some(true))
+                }
+                _ => None,
+            }
+        })
     }
 
     fn value(&self, term: &Term) -> bool {

@@ -126,6 +126,7 @@ pub struct Formulas {
     steps: Vec<Step>,
     step_numbers: FxHashMap<Step, u32>,
     types: Arc<Types>,
+    is_straight: bool,
     effort: usize,
 }
 
@@ -151,6 +152,7 @@ impl Formulas {
             steps: Vec::new(),
             step_numbers: FxHashMap::default(),
             types: Arc::default(),
+            is_straight: false,
             effort,
         }
     }
@@ -158,6 +160,16 @@ impl Formulas {
     /// The same, about variables of these types.
     pub fn with_types(self, types: Arc<Types>) -> Formulas {
         Formulas { types, ..self }
+    }
+
+    /// The same, about programs of which each contact is executed once in each scan.
+    pub fn straight(self) -> Formulas {
+        Formulas { is_straight: true, ..self }
+    }
+
+    /// Whether each contact is executed once in each scan.
+    pub fn is_straight(&self) -> bool {
+        self.is_straight
     }
 
     /// The type of the variable with this key, if it is known.

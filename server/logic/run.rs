@@ -8,7 +8,7 @@ use super::{
 };
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::target::iec::LiteralValue;
-use crate::target::{Access, Device, DeviceKind, Flow, Form, Location, Operand};
+use crate::target::{Access, Constant, Device, DeviceKind, Flow, Form, Location, Operand};
 use crate::text::folded;
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
@@ -38,7 +38,21 @@ impl Effect<'_> {
 
     /// Whether two effects do the same to the same operands, whatever the conditions.
     pub fn is_like(&self, other: &Effect<'_>) -> bool {
-        self.deed() == other.deed() && self.action.terms == other.action.terms
+        let counts_alike = || self.counted().is_some_and(|own| other.counted() == Some(own));
+        self.deed() == other.deed() && (self.action.terms == other.action.terms || counts_alike())
+    }
+
+    /// The timer or counter of 16 bits that a coil drives, and the constant up to which it counts: 0 works as 1 does.
+    fn counted(&self) -> Option<(Device, i64)> {
+        let (Deed::Coil(_), [own, preset]) = (&self.action.deed, &self.action.terms[..]) else { return None };
+        let device =
+            own.operand.device().filter(|device| device.kind == DeviceKind::T || device.number < 200)?;
+        match preset.operand {
+            Operand::Constant { value: Constant::Decimal(number @ 0..), index: None } => {
+                Some((device, number.max(1)))
+            }
+            _ => None,
+        }
     }
 }
 
@@ -246,6 +260,9 @@ impl<'p> Run<'p> {
                     let name = term.key();
                     let value = self.value(term, &name);
                     let rising = kind == ContactKind::Rising;
+                    if let Some(edge) = self.edge_of_scans(term, rising, formulas) {
+                        return edge;
+                    }
                     let is_single =
                         matches!(term.operand, Operand::Device(device) if device.has_single_edge());
                     let of = self.moment(term, name.clone(), formulas);
@@ -260,6 +277,27 @@ impl<'p> Run<'p> {
             },
             (Test::Compare(operator), [left, right]) => self.compare(operator, left, right, formulas),
             _ => Formulas::FALSE,
+        }
+    }
+
+    /// The edge of a special relay that tells of the scan, if the program leaves it to the CPU: before the first scan
+    /// all of them count as off, and no edge falls in it.
+    fn edge_of_scans(&self, term: &Term, rising: bool, formulas: &mut Formulas) -> Option<Formula> {
+        let Operand::Device(device) = term.operand else { return None };
+        match (device, rising) {
+            (Device::ALWAYS_OFF, _) => Some(Formulas::FALSE),
+            _ if !formulas.is_straight() => None,
+            (Device::ALWAYS_ON | Device::FIRST_SCAN, true) => {
+                Some(self.bit(&Term::of_device(Device::FIRST_SCAN, term.span), formulas))
+            }
+            (Device::ALWAYS_ON | Device::OFF_AT_FIRST, false) => Some(Formulas::FALSE),
+            // It comes on when the other one goes off.
+            (Device::OFF_AT_FIRST, true) => {
+                let first = Term::of_device(Device::FIRST_SCAN, term.span);
+                let of = self.moment(&first, first.key(), formulas);
+                Some(formulas.atom(Atom::Edge { of, value: None, rising: false }))
+            }
+            _ => None,
         }
     }
 

@@ -31,6 +31,10 @@ const MOST_HOLD: u64 = 6;
 pub(super) const USUAL_SCAN_NS: i64 = 10_000_000;
 /// The same with what lets timers run out.
 const SCANS_NS: [i64; 3] = [USUAL_SCAN_NS, 1_000_000_000, 60_000_000_000];
+/// Where clocks are used also these, in a few scans of which each is seen on and off: M8011 to M8014, which change each 5
+/// ms, 50 ms, half second and half minute.
+const SCANS_OF_CLOCKS_NS: [i64; 3] = [3_000_000, 273_000_000, 17_273_000_000];
+const CLOCKS: std::ops::RangeInclusive<u32> = 8011..=8014;
 /// The current value of a timer that has run out, whatever its preset.
 const RUN_OUT: i64 = i16::MAX as i64;
 
@@ -65,6 +69,8 @@ struct Trial {
     own: usize,
     /// Numbers that the first program names, and those beside them.
     numbers: Vec<i64>,
+    /// From one scan to the next.
+    scans_ns: Vec<i64>,
     work: usize,
     /// What went wrong last in a scan that would have shown a difference.
     error: Option<Message>,
@@ -166,9 +172,12 @@ impl Trial {
             Message::new("prove.not-there").with("name", &found.what).with("program", &programs[side])
         });
         let numbers = numbers_in(&documents[0].text());
+        let has_clock = handles.iter().any(|handle| is_clock(&handle.name));
+        let clocked = SCANS_OF_CLOCKS_NS.into_iter().filter(|_| has_clock);
+        let scans_ns = SCANS_NS.into_iter().chain(clocked).collect();
         let (wanted, own) = (own.iter().chain(&others).copied().collect(), own.len());
         let work = if found.what.is_empty() { WORK_UNASKED } else { WORK };
-        Ok(Trial { codes, handles, wanted, own, numbers, work, error })
+        Ok(Trial { codes, handles, wanted, own, numbers, scans_ns, work, error })
     }
 
     /// The difference as it is seen.
@@ -232,9 +241,9 @@ impl Trial {
         let mut spare = None;
         let runs = [0, MOST_HOLD].into_iter().flat_map(|hold| {
             let leads = move |scan_ns| (0..2).map(move |lead| Run { lead, hold, scan_ns });
-            SCANS_NS.into_iter().flat_map(leads)
+            self.scans_ns.clone().into_iter().flat_map(leads)
         });
-        for run in runs {
+        for run in runs.collect::<Vec<_>>() {
             for now in [&now, &full] {
                 let attempt = Attempt { run, before: before.clone(), now: now.clone() };
                 if let Some(shown) = self.tried(attempt, &mut spare) {
@@ -281,7 +290,7 @@ impl Trial {
             run: Run {
                 lead: draw(1) % 2,
                 hold: MOST_HOLD,
-                scan_ns: SCANS_NS[(draw(2) % SCANS_NS.len() as u64) as usize],
+                scan_ns: self.scans_ns[(draw(2) % self.scans_ns.len() as u64) as usize],
             },
             before: before.clone(),
             now: now.clone(),
@@ -592,6 +601,11 @@ fn parts_of(name: &str) -> Vec<String> {
 pub(super) fn is_first_scan(name: &str) -> Option<bool> {
     let is = |device: Device| name.eq_ignore_ascii_case(&device.to_string());
     is(Device::FIRST_SCAN).then_some(true).or_else(|| is(Device::OFF_AT_FIRST).then_some(false))
+}
+
+/// Whether a name is that of a relay that goes on and off by itself.
+fn is_clock(name: &str) -> bool {
+    CLOCKS.map(|number| Device::new(DeviceKind::M, number)).any(|clock| clock.to_string() == name)
 }
 
 /// The whole numbers in a text, those beside them, and 0.

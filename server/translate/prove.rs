@@ -16,7 +16,7 @@ use crate::logic::{
     may_drive, shown, touches_bits,
 };
 use crate::target::iec::ElementaryType;
-use crate::target::{DeviceKind, Flow, Model, Target};
+use crate::target::{Device, DeviceKind, Flow, Model, Target};
 use crate::text::{Message, Span, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
@@ -88,6 +88,9 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
     let may_be_off = sources.iter().flatten().any(leaves_out);
     let mut effort = Effort::of_program();
     effort.know(types::compared([left, right], [&sources[0], &sources[1]]));
+    if sources.iter().flatten().all(is_straight) {
+        effort.know_straight();
+    }
     let mut prover = Prover {
         all: [&sources[0], &sources[1]],
         before: [Vec::new(), Vec::new()],
@@ -129,6 +132,24 @@ fn leaves_out(source: &Source) -> bool {
         return words.any(|word| ["MC", "STL"].iter().any(|own| own.eq_ignore_ascii_case(word)));
     }
     reached::has_flow(source, |flow| matches!(flow, Flow::SectionBegin | Flow::Step))
+}
+
+/// Whether a rung is executed once in each scan if all rungs are such, and leaves to the CPU what tells of the scan.
+fn is_straight(source: &Source) -> bool {
+    let is_plain = |action: &Action| match &action.deed {
+        Deed::Jump | Deed::Return => false,
+        Deed::Instruction(form) => {
+            matches!(form.instruction.flow(), Flow::Straight | Flow::Nothing | Flow::ProgramEnd)
+        }
+        _ => !action.runs_unit(),
+    };
+    let is_of_scans = |device: Device| {
+        device.kind == DeviceKind::M && (Device::ALWAYS_ON.number..=8003).contains(&device.number)
+    };
+    let drives =
+        |action: &Action| action.changes().iter().any(|term| term.operand.device().is_some_and(is_of_scans));
+    let is_such = |path: &Path| path.actions().into_iter().all(|action| is_plain(action) && !drives(action));
+    source.rung.labels.is_empty() && source.rung.path.as_ref().is_ok_and(|path| path.iter().all(is_such))
 }
 
 /// Rungs that are executed one after the other, and what ends them: a label, a jump, another program unit, or an
