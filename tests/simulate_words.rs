@@ -474,8 +474,9 @@ fn row_of(instruction: &str) -> &'static str {
 
 /// The rows whose code this file tests.
 fn rows() -> impl Iterator<Item = &'static Instruction> {
-    instructions::all()
-        .filter(|row| matches!(row.opcode, Opcode::Function(7 | 10..=49 | 110..=132 | 147 | 160..=171 | 176..=177)))
+    instructions::all().filter(|row| {
+        matches!(row.opcode, Opcode::Function(7 | 10..=49 | 110..=132 | 147 | 160..=171 | 176..=177))
+    })
 }
 
 #[test]
