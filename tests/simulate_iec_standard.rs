@@ -174,6 +174,28 @@ fn what_is_not_simulated_is_refused_where_it_stands() {
 }
 
 #[test]
+fn what_follows_from_a_refusal_is_not_told() {
+    let refused = |text: &str| {
+        let (code, _, err) = run(&folder(&[("main.il", text)]), &["run", "main.il", "--scans", "1"]);
+        assert_eq!(code, 1, "{err}");
+        let places = err.lines().filter_map(|line| line.strip_prefix("error[simulation]: main.il:"));
+        places.map(|line| line.split(": ").next().unwrap_or_default().to_string()).collect::<Vec<_>>()
+    };
+    let text = "TYPE P : STRUCT x : INT; END_STRUCT; END_TYPE\nVAR_GLOBAL g : REF_TO INT; h AT %MD4 : P; END_VAR\n\
+        PROGRAM Main\nVAR go : BOOL; r : REF_TO INT; s AT %MW0 : P; u : Unknown; i : INT; END_VAR\n\
+        LD r\nST i\nLD go\nAND u\nST go\nLD s.x\nADD g\nST i\nLD h.x\nJMPC Over\nLD go\nST r\nOver:\nEND_PROGRAM\n";
+    assert_eq!(refused(text), ["2:16", "2:28", "4:20", "4:32", "4:51"]);
+    // What is wrong besides is told.
+    let text =
+        "PROGRAM Main\nVAR r : REF_TO INT; i : INT; END_VAR\nST i\nLD r\nST i\nLD other\nST i\nEND_PROGRAM\n";
+    assert_eq!(refused(text), ["2:9", "3:1", "6:1"]);
+    assert_eq!(
+        refused("OUT Y0\nLD X0\nAND Y777\nOUT Y1\nAND X1\nOUT Y2\nLD M9999\nOUT Y3\nEND\n"),
+        ["1:1", "3:1", "7:1"]
+    );
+}
+
+#[test]
 fn blocks_that_are_nested_beyond_measure_are_refused() {
     let chain = |count: usize, leaf_first: bool| {
         let block = |number: usize| {

@@ -110,3 +110,58 @@ fn names_that_several_units_have_are_kept_apart() {
         "One.x is on: ST x has power  [main.il:6]\n  One.a is on since scan 0 (0 ms): it was set by hand  [main.il:5]\n"
     );
 }
+
+const LEFT: &str = "PROGRAM Main\nVAR\nf : F; go, has, y, w : BOOL; n, m : INT;\nEND_VAR\nLD go\nCALC f\nLD go\nJMPCN Past\n\
+    LD has\nST y\nLD n\nADD 1\nST m\nJMP Over\nPast:\nLD has\nST w\nOver:\nLD go\nRETCN\nLD has\nS w\nEND_PROGRAM\n\
+    FUNCTION_BLOCK F\nVAR q : BOOL; g : G; END_VAR\nLD TRUE\nST q\nCAL g\nEND_FUNCTION_BLOCK\n\
+    FUNCTION_BLOCK G\nVAR k : INT; END_VAR\nLD k\nADD 1\nST k\nEND_FUNCTION_BLOCK\n";
+
+#[test]
+fn what_was_jumped_over_or_not_called_names_the_jump_and_the_call() {
+    let tells = |settings: &[&str], question: &str, expected: &str| {
+        assert_eq!(why(LEFT, settings, question), expected);
+    };
+    tells(
+        &["has=1"],
+        "y",
+        "\
+y is off: nothing that drives it has done so yet
+  ST y is not executed  [main.il:10]
+    JMPCN Past led past it  [main.il:8]
+      go is off: nothing drives it  [main.il:7]
+",
+    );
+    tells(
+        &["go=1"],
+        "w",
+        "\
+w is off: nothing that drives it has done so yet
+  ST w is not executed  [main.il:17]
+    JMP Over led past it  [main.il:14]
+  S w has no power  [main.il:22]
+    has is off: nothing drives it  [main.il:21]
+",
+    );
+    tells(
+        &["has=0"],
+        "f.g.k",
+        "\
+f.g.k is 0: nothing that drives it has done so yet
+  LD k, ADD 1, ST k is not executed  [main.il:32]
+    CAL g is not executed  [main.il:28]
+      CALC f has no power  [main.il:6]
+        go is off: nothing drives it  [main.il:5]
+",
+    );
+    tells(
+        &["go=1", "go=0@100ms"],
+        "m",
+        "\
+m is 1 since scan 0 (0 ms): LD n, ADD 1, ST m is executed  [main.il:11]
+  n is 0: nothing drives it
+  LD n, ADD 1, ST m is not executed  [main.il:11]
+    JMPCN Past led past it  [main.il:8]
+      go is off since scan 10 (100 ms): it was set by hand  [main.il:7]
+",
+    );
+}

@@ -286,7 +286,9 @@ Y2 is off: nothing that drives it has done so yet
         "Y3",
         "\
 Y3 is off: nothing that drives it has done so yet
-  OUT Y3 is not executed  [19]",
+  OUT Y3 is not executed  [19]
+    CJ P0 led past it  [17]
+      X4 is on: an input, since scan 0 (0 ms)  [16]",
     );
     plc.run("X2", 1).run("X2=0", 3).check(
         "Y1",
@@ -347,4 +349,70 @@ fn the_command_line_says_why() {
     assert!(code == 2 && err.contains("Q9"), "{err}");
     let (_, out, _) = run(&folder, &[&set[..], &["--why", "Y0", "--lang", "zh-CN"]].concat());
     assert!(out.contains("Y0 断开：OUT Y0 没有能流"), "{out}");
+}
+
+#[test]
+fn what_was_jumped_over_or_not_called_names_the_jump_and_the_call() {
+    let text = "LD X0\nCJ P1\nLD X1\nOUT Y0\nP1\nLD X2\nCALL P2\nFEND\nP2\nLD X3\nCALL P3\nLD X4\nOUT Y1\nSRET\n\
+        P3\nLD X4\nOUT Y2\nSRET\nI001\nLD X5\nOUT Y3\nIRET\nP4\nLD X5\nOUT Y4\nSRET\nEND\n";
+    let mut plc = Plc::list(text);
+    plc.run("X0 X1", 2).check(
+        "Y0",
+        "\
+Y0 is off: nothing that drives it has done so yet
+  OUT Y0 is not executed  [4]
+    CJ P1 led past it  [2]
+      X0 is on: an input, since scan 0 (0 ms)  [1]",
+    );
+    plc.check(
+        "Y2",
+        "\
+Y2 is off: nothing that drives it has done so yet
+  OUT Y2 is not executed  [17]
+    CALL P3 is not executed  [11]
+      CALL P2 has no power  [7]
+        X2 is off: an input  [6]",
+    );
+    plc.check("Y3", "Y3 is off: nothing that drives it has done so yet\n  OUT Y3 is not executed  [21]\n    the interrupt I001 did not come\n");
+    plc.check("Y4", "Y4 is off: nothing that drives it has done so yet\n  OUT Y4 is not executed  [25]\n");
+    plc.run("X2", 1).check(
+        "Y2",
+        "\
+Y2 is off: nothing that drives it has done so yet
+  OUT Y2 is not executed  [17]
+    CALL P3 has no power  [11]
+      X3 is off: an input  [10]",
+    );
+    // A coil that is left behind keeps what it had.
+    plc.run("X0=0 X4", 1).run("X0 X1=0 X2=0", 2).check(
+        "Y0",
+        "\
+Y0 is on since scan 3 (30 ms): OUT Y0 has power  [4]
+  X1 is on: an input, since scan 0 (0 ms)  [3]
+  OUT Y0 is not executed  [4]
+    CJ P1 led past it  [2]
+      X0 is on: an input, since scan 4 (40 ms)  [1]",
+    );
+    plc.check(
+        "Y1",
+        "\
+Y1 is on since scan 3 (30 ms): OUT Y1 has power  [13]
+  X4 is on: an input, since scan 3 (30 ms)  [12]
+  OUT Y1 is not executed  [13]
+    CALL P2 has no power  [7]
+      X2 is off: an input, since scan 4 (40 ms)  [6]",
+    );
+}
+
+#[test]
+fn a_step_that_is_jumped_over_is_not_called_inactive() {
+    let text = "LD M8002\nSET S20\nLD X0\nCJ P1\nSTL S20\nLD X1\nOUT Y0\nRET\nP1\nEND\n";
+    Plc::list(text).run("X0 X1", 3).check(
+        "Y0",
+        "\
+Y0 is off: nothing that drives it has done so yet
+  OUT Y0 is not executed  [7]
+    CJ P1 led past it  [4]
+      X0 is on: an input, since scan 0 (0 ms)  [3]",
+    );
 }

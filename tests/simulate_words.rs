@@ -67,6 +67,10 @@ const MOVES: &[Case] = &[
     ("XCH D0 D0", "M8160 D0=258", "D0=513"),
     ("XCH D0 D0", "M8160 D0=-256", "D0=255"),
     ("DXCH D0 D0", "M8160 D0=16909060L", "D0=33620995L"),
+    ("SWAP D0", "D0=258", "D0=513"),
+    ("SWAP D0", "D0=-256", "D0=255"),
+    ("DSWAP D0", "D0=16909060L", "D0=33620995L"),
+    ("SWAP K4M0", "M0 M9", "~M0 M1 M8 ~M9"),
     ("BCD D0 D1", "D0=1234", "D1=4660"),
     ("BCD D0 D1", "D0=9999", "D1=-26215"),
     ("BCD D0 K2Y0", "D0=1234", "K2Y0=52"),
@@ -470,8 +474,9 @@ fn row_of(instruction: &str) -> &'static str {
 
 /// The rows whose code this file tests.
 fn rows() -> impl Iterator<Item = &'static Instruction> {
-    instructions::all()
-        .filter(|row| matches!(row.opcode, Opcode::Function(7 | 10..=49 | 110..=132 | 160..=171 | 176..=177)))
+    instructions::all().filter(|row| {
+        matches!(row.opcode, Opcode::Function(7 | 10..=49 | 110..=132 | 147 | 160..=171 | 176..=177))
+    })
 }
 
 #[test]

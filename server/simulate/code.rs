@@ -284,6 +284,11 @@ impl Code {
         })
     }
 
+    /// The labels of an FX program.
+    pub(super) fn labels(&self) -> impl Iterator<Item = Device> {
+        self.labels.iter().map(|(label, _)| *label)
+    }
+
     /// The first instructions of a routine, by its label, or of the bodies of a program unit of IEC 61131-3, by their
     /// numbers; letter case is no matter.
     pub fn entries(&self, name: &str) -> Vec<u32> {

@@ -10,7 +10,7 @@ use crate::target::{Flow, Form, Role};
 
 /// Compiles a chunk.
 pub(super) fn compile(compiler: &mut Compiler, text: &str, tree: &FxTree) {
-    let mut list = List { compiler, text, tree, blocks: Vec::new(), branches: Vec::new() };
+    let mut list = List { compiler, text, tree, blocks: Vec::new(), branches: Vec::new(), is_lost: false };
     let calls = |line: &FxLine| match line.kind {
         LineKind::Instruction(form) => form.instruction.flow() == Flow::Call,
         _ => false,
@@ -31,8 +31,14 @@ pub(super) fn compile(compiler: &mut Compiler, text: &str, tree: &FxTree) {
             LineKind::Instruction(form) => list.instruction(form, line, is_block),
             LineKind::Unknown => Err(Obstacle::Unreadable),
         };
-        if let Err(obstacle) = done {
-            list.compiler.refuse(line.span, obstacle);
+        match done {
+            Ok(()) => list.is_lost &= !list.compiler.builder.has_power(),
+            Err(obstacle) => {
+                if !list.is_lost || obstacle != Obstacle::NoCurrentResult {
+                    list.compiler.refuse(line.span, obstacle);
+                }
+                list.is_lost = true;
+            }
         }
     }
     if is_calling {
@@ -67,6 +73,8 @@ struct List<'a> {
     blocks: Vec<Cell>,
     /// What MPS keeps.
     branches: Vec<Cell>,
+    /// Whether there is no power because a contact before was refused, which is told once.
+    is_lost: bool,
 }
 
 impl List<'_> {

@@ -39,6 +39,8 @@ pub enum Obstacle {
     NoSimulation(Form),
     /// Something of a program in IEC 61131-3, said by this sentence.
     Iec(Message),
+    /// What comes of another problem that is told, such as a variable whose declaration is refused. It is never told.
+    Follows,
     /// The program has more contacts that remember something than fit into memory.
     TooLarge,
 }
@@ -48,7 +50,7 @@ impl Obstacle {
     pub fn message(&self) -> Message {
         match self {
             Obstacle::Refusal(refusal) => refusal.message(),
-            Obstacle::Unreadable => Message::new("simulate.unreadable"),
+            Obstacle::Unreadable | Obstacle::Follows => Message::new("simulate.unreadable"),
             Obstacle::NoCurrentResult => Refusal::NoCurrentResult.message(),
             Obstacle::Blocks => Refusal::Blocks.message(),
             Obstacle::Branches => Refusal::Branches.message(),

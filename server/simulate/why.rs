@@ -19,6 +19,8 @@ use subject::Subject;
 
 mod calls;
 
+mod skipped;
+
 mod writers;
 use writers::Writer;
 
@@ -363,7 +365,8 @@ impl<'a> Inquiry<'a> {
                 };
                 asked.push(subject.clone());
                 let at = Moment { before: number, ..at };
-                let reason = self.given(subject, value, &writer, at, &told, asked);
+                let mut reason = self.given(subject, value, &writer, at, &told, asked);
+                reason.because.extend(self.passed_over(&writer, value, moment, asked));
                 asked.pop();
                 reason
             }
@@ -381,6 +384,30 @@ impl<'a> Inquiry<'a> {
                 self.reason(told(Message::new("why.never")), None, moment.scan, because)
             }
         }
+    }
+
+    /// Why what gave something its value in an earlier scan, and would write it in each, has not done so since.
+    fn passed_over(
+        &self,
+        writer: &Writer,
+        value: &Value,
+        moment: Moment,
+        asked: &mut Vec<Subject>,
+    ) -> Option<Reason> {
+        let (place, frame) = match writer {
+            Writer::Read(driver) if always_writes(driver, value) => (driver.place, driver.frame),
+            Writer::Read(_) => return None,
+            Writer::Other(own) => (self.place_of(*own), self.watched.iec.names().scope_at(*own)),
+        };
+        let before = moment.scan.checked_sub(1).filter(|scan| *scan > self.session.first_scan());
+        let before = before.and_then(|scan| Some(Moment { scan, before: self.seen(scan)?.len() }));
+        // What comes later in the scan of the question had its last turn in the one before.
+        let moments = [Some(moment), before].into_iter().flatten();
+        moments.into_iter().find_map(|at| {
+            let because = self.skipped(place, frame, at, asked)?;
+            let message = Message::new("why.not-executed").with("instruction", self.words(place));
+            Some(self.reason(message, Some(place), at.scan, vec![because]))
+        })
     }
 
     fn since(&self, state: Message, scan: u64) -> Message {
@@ -411,7 +438,9 @@ impl<'a> Inquiry<'a> {
                 self.reason(message, Some(driver.place), moment.scan, because)
             }
             None => {
-                let because = driver.rail.and_then(|rail| self.rail_reason(rail, moment, false, asked));
+                let because = self
+                    .skipped(driver.place, driver.frame, moment, asked)
+                    .or_else(|| driver.rail.and_then(|rail| self.rail_reason(rail, moment, false, asked)));
                 let message = Message::new("why.not-executed").with("instruction", instruction);
                 self.reason(message, Some(driver.place), moment.scan, because.into_iter().collect())
             }
@@ -591,6 +620,12 @@ fn writes(driver: &Driver, has_power: bool, value: &Value) -> bool {
         },
         _ => has_power,
     }
+}
+
+/// Whether an instruction gives a device this value, or may give it one, whenever it is executed.
+fn always_writes(driver: &Driver, value: &Value) -> bool {
+    let is_bare = manner(driver, true) == "why.executed";
+    is_bare || [false, true].into_iter().all(|power| writes(driver, power, value))
 }
 
 /// How it is told that an instruction is executed with power or without.

@@ -17,7 +17,7 @@ use crate::simulate::{Layout, Obstacle, Problem};
 use crate::target::iec::{ElementaryType, Formula};
 use crate::target::{DirectAddress, Target};
 use crate::text::{Message, folded};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 use std::ops::Range;
 use std::sync::Arc;
@@ -56,6 +56,8 @@ pub(super) struct Compiler<'a> {
     pub(super) globals: FxHashMap<SmolStr, Variable>,
     /// Variables of instances that VAR_CONFIG lays at addresses, by where they would lie.
     pub(super) rebound: FxHashMap<Extent, Variable>,
+    /// Variables whose declaration is refused, and told to be: folded names, with the unit that they are of.
+    pub(super) refused: FxHashSet<(Option<usize>, SmolStr)>,
     /// Variables that nothing declares, of what stands outside of all units.
     pub(super) undeclared: FxHashMap<SmolStr, Cell>,
     /// The bodies of units with their variables, as far as something calls them.
@@ -109,6 +111,7 @@ impl<'a> Compiler<'a> {
             open: Vec::new(),
             globals: FxHashMap::default(),
             rebound: FxHashMap::default(),
+            refused: FxHashSet::default(),
             undeclared: FxHashMap::default(),
             bodies: Vec::new(),
             functions: FxHashMap::default(),
@@ -183,6 +186,7 @@ impl<'a> Compiler<'a> {
                             .map(|at| (at.source, self.declared.declaration(at.source, at.index).span));
                         let place = span.map(|(source, span)| self.declared.place(source, span));
                         self.refuse(place.unwrap_or(Place::START), obstacle);
+                        self.refused.insert((None, folded(&field.name)));
                         continue;
                     }
                 };
@@ -265,6 +269,7 @@ impl<'a> Compiler<'a> {
         }
         self.refuse_recursion();
         if !self.problems.is_empty() {
+            self.problems.retain(|problem| problem.obstacle != Obstacle::Follows);
             self.problems.sort_by_key(|problem| problem.place);
             self.problems.dedup();
             return Err(self.problems);
@@ -291,6 +296,12 @@ impl<'a> Compiler<'a> {
                 base: body.base,
                 aliases: body.aliases,
                 instructions: self.instructions.get(number).cloned().unwrap_or_default(),
+                callers: self
+                    .called
+                    .iter()
+                    .filter(|(_, called, _)| *called == number)
+                    .map(|(caller, _, place)| (*caller, *place))
+                    .collect(),
             });
         }
         self.parts.names.around.globals = std::mem::take(&mut self.globals);

@@ -4,7 +4,7 @@
 use super::arguments::Arguments;
 use super::compile::{Compiler, is_input};
 use super::declarations::Configured;
-use super::kind::{Declared, Kind};
+use super::kind::{Declared, Kind, RecordKind};
 use super::operand::{Value, said};
 use super::parts::{Spot, Task};
 use super::place::{At, Place as Variable};
@@ -219,6 +219,10 @@ impl Compiler<'_> {
     /// Names the variables of a program that lie at addresses.
     fn name_located(&mut self, path: &[SmolStr], variable: &Variable) {
         let Kind::Record(record) = variable.kind.clone() else { return };
+        let unit = match record.what {
+            RecordKind::Unit(unit) => Some(unit),
+            _ => None,
+        };
         for field in &record.fields {
             let Some(address) = field.address else { continue };
             match self.located(address, &field.kind) {
@@ -232,6 +236,7 @@ impl Compiler<'_> {
                         self.declared.place(at.source, span)
                     });
                     self.refuse(place.unwrap_or(Place::START), obstacle);
+                    self.refused.insert((unit, folded(&field.name)));
                 }
             }
         }

@@ -224,7 +224,14 @@ impl Compiler<'_> {
                 self.declaration(section.source, index as usize, section.kind, section.is_constant, unit);
             match read {
                 Ok(read) => fields.extend(read),
-                Err(problem) => self.problems.push(problem),
+                Err(problem) => {
+                    self.problems.push(problem);
+                    let tree = self.declared.sources[section.source].tree;
+                    let names = tree.declarations[index as usize].names.of(&tree.names).iter();
+                    let names = names.map(|name| folded(self.declared.word(section.source, *name)));
+                    let names: Vec<_> = names.map(|name| (unit, name)).collect();
+                    self.refused.extend(names);
+                }
             }
         }
         fields

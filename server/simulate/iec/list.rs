@@ -42,6 +42,8 @@ pub(super) struct List<'c, 'a> {
     /// What waits for closing parentheses.
     pub(super) open: Vec<Open>,
     pub(super) depth: usize,
+    /// Whether the current result is missing because an instruction before was refused.
+    is_lost: bool,
     /// The relay that tells whether the condition holds that the present instruction is, and whether that inverts it.
     condition: Option<(Cell, bool)>,
 }
@@ -67,6 +69,7 @@ impl<'a> Compiler<'a> {
             current,
             open: Vec::new(),
             depth: 0,
+            is_lost: false,
             condition: None,
         };
         list.run(items);
@@ -191,9 +194,14 @@ impl<'a> List<'_, 'a> {
             }
             let next = self.item(at, item);
             at = match next {
-                Ok(next) => next,
+                Ok(next) => {
+                    self.is_lost &= matches!(self.current, Current::Nothing);
+                    next
+                }
                 Err(obstacle) => {
-                    self.refuse(item.span, obstacle);
+                    let follows = self.is_lost && obstacle == Obstacle::NoCurrentResult;
+                    self.refuse(item.span, if follows { Obstacle::Follows } else { obstacle });
+                    self.is_lost = true;
                     self.current = Current::Nothing;
                     self.compiler.builder.forget_power();
                     self.behind(at)

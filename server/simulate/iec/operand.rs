@@ -130,8 +130,9 @@ impl Compiler<'_> {
 
     /// The variable that a name stands for.
     fn root(&mut self, name: &str) -> Result<Variable, Obstacle> {
-        let unknown = || said("simulate.undeclared", name);
         let key = folded(name);
+        let is_refused = self.refused.contains(&(None, key.clone()));
+        let unknown = || if is_refused { Obstacle::Follows } else { said("simulate.undeclared", name) };
         let Some(body) = self.bodies.get(self.now) else {
             return self.globals.get(&key).cloned().ok_or_else(unknown);
         };
@@ -140,6 +141,9 @@ impl Compiler<'_> {
             return Ok(variable.clone());
         }
         let record = self.record(unit);
+        if self.refused.contains(&(Some(unit), key.clone())) {
+            return Err(Obstacle::Follows);
+        }
         if let Some(field) = record.field(name).filter(|field| field.section != SectionKind::External) {
             if field.section == SectionKind::InOut {
                 return Err(unknown());

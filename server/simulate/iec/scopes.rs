@@ -5,6 +5,7 @@ use super::members::{joined, parts};
 use super::names::{Leaf, Names, Step, steps};
 use super::place::{At, Place as Variable};
 use crate::il::iec::{PouKind, SectionKind};
+use crate::simulate::Place;
 use crate::target::{DirectAddress, Model, Operand};
 use crate::text::folded;
 use rustc_hash::FxHashMap;
@@ -24,6 +25,8 @@ pub(super) struct Scope {
     pub(super) aliases: Vec<(SmolStr, Variable)>,
     /// Its instructions, by their numbers among the places of the code.
     pub(super) instructions: Range<u32>,
+    /// The bodies that call it, by their numbers, and where.
+    pub(super) callers: Vec<(usize, Place)>,
 }
 
 /// What bodies see besides their own variables.
@@ -67,6 +70,11 @@ impl Names {
     /// The folded name of the unit that a body is of.
     pub(in crate::simulate) fn unit_of(&self, scope: usize) -> &str {
         self.scopes.get(scope).map_or("", |scope| &scope.unit)
+    }
+
+    /// The bodies that call a body, and where they do.
+    pub(in crate::simulate) fn callers_of(&self, scope: usize) -> &[(usize, Place)] {
+        self.scopes.get(scope).map_or(&[], |scope| &scope.callers)
     }
 
     /// The instructions of a body, by their numbers.

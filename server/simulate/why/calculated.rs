@@ -54,7 +54,9 @@ impl Inquiry<'_> {
             None => {
                 let place = self.place_of(instruction);
                 let message = Message::new("why.not-executed").with("instruction", self.words(place));
-                self.reason(message, Some(place), moment.scan, Vec::new())
+                let frame = self.watched.iec.names().scope_at(instruction);
+                let because = frame.and_then(|frame| self.skipped(place, Some(frame), moment, asked));
+                self.reason(message, Some(place), moment.scan, because.into_iter().collect())
             }
         }
     }

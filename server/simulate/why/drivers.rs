@@ -16,6 +16,8 @@ pub struct Drivers {
     by_name: FxHashMap<SmolStr, Vec<Driver>>,
     /// Master controls and steps by their places.
     rails: FxHashMap<Place, Driver>,
+    /// Jumps, calls and returns by where they end.
+    leaving: FxHashMap<Place, Driver>,
     /// Those of IEC 61131-3, and what each drives: of which body, and the number of the driver.
     all: Vec<Driver>,
     by_variable: OnceCell<FxHashMap<Variable, Vec<(usize, usize)>>>,
@@ -130,6 +132,31 @@ impl Drivers {
             .filter(|own| own.span.start <= place.span.start && *own == place)
     }
 
+    /// The jump, call or return at a place.
+    pub(super) fn leaving(&self, place: Place) -> Option<&Driver> {
+        self.leaving.get(&ending(place))
+    }
+
+    /// Whether a routine of an FX program ends between two places.
+    pub(super) fn ends_between(&self, first: Place, last: Place) -> bool {
+        let ends = |driver: &Driver| {
+            let is_end = matches!(flow(&driver.action), Flow::SubroutineEnd | Flow::InterruptEnd);
+            is_end && (first..last).contains(&driver.place)
+        };
+        self.leaving.values().any(ends)
+    }
+
+    /// The calls of a routine of an FX program, in the order of the text.
+    pub(super) fn calls_of(&self, label: Device) -> Vec<Driver> {
+        let is_call = |driver: &&Driver| {
+            let first = driver.action.terms.first().and_then(|term| term.operand.device());
+            first == Some(label) && flow(&driver.action) == Flow::Call
+        };
+        let mut calls: Vec<Driver> = self.leaving.values().filter(is_call).cloned().collect();
+        calls.sort_unstable_by_key(|call| call.place);
+        calls
+    }
+
     /// The master control or the step at a place.
     pub(super) fn rail(&self, place: Place) -> Option<&Driver> {
         self.rails.get(&place)
@@ -226,6 +253,11 @@ impl Reader {
             unit: self.unit.clone(),
             frame: None,
         };
+        let flow = flow(action);
+        let leaves = matches!(flow, Flow::Jump | Flow::Call | Flow::SubroutineEnd | Flow::InterruptEnd);
+        if leaves || matches!(action.deed, Deed::Jump | Deed::Return) {
+            self.drivers.leaving.insert(ending(place), driver.clone());
+        }
         if !self.is_fx {
             if whole.is_none() && matches!(action.deed, Deed::Compute(_)) {
                 self.drivers.lines.insert(ending(place), place);
@@ -233,10 +265,6 @@ impl Reader {
             return self.drivers.all.push(driver);
         }
         let first = action.terms.first().and_then(|term| term.operand.device());
-        let flow = match &action.deed {
-            Deed::Instruction(form) => form.instruction.flow(),
-            _ => Flow::Straight,
-        };
         match (flow, first) {
             (Flow::SectionBegin, Some(level)) => {
                 self.sections.retain(|(open, _)| *open < level.number);
@@ -259,6 +287,14 @@ impl Reader {
         for name in written(action) {
             self.drivers.by_name.entry(name).or_default().push(driver.clone());
         }
+    }
+}
+
+/// What an instruction of an FX program does to the order of execution.
+fn flow(action: &Action) -> Flow {
+    match &action.deed {
+        Deed::Instruction(form) => form.instruction.flow(),
+        _ => Flow::Straight,
     }
 }
 

@@ -69,8 +69,10 @@ impl<'i, 'a> Literals<'i, 'a> {
         let is_inverse = contact.test == Test::Bit(ContactKind::NormallyClosed);
         let is_plain = is_inverse || contact.test == Test::Bit(ContactKind::NormallyOpen);
         let sight = self.last(place);
+        // What JMPCN goes by is read as the opposite of the contact that the list has.
+        let is_listed = is_plain && subject.is_some() && self.inquiry.is_in_list(place);
         let (at, conducts) = match (sight, &subject) {
-            (Some((at, Sight { conducts: Some(conducts), .. })), _) => (at, conducts != 0),
+            (Some((at, Sight { conducts: Some(conducts), .. })), _) if !is_listed => (at, conducts != 0),
             // A list tells of the current result, and nothing of what is handed over in a call.
             (sight, Some(subject)) if is_plain => {
                 let at = sight.map_or(self.at.before, |(at, _)| at);

@@ -25,6 +25,11 @@ impl Seen {
         self.sights.get(number).copied()
     }
 
+    /// Whether an instruction with one of these numbers was executed before the sight with this one.
+    pub(super) fn has_begun(&self, body: &Range<u32>, before: usize) -> bool {
+        self.sights.iter().take(before).any(|sight| body.contains(&sight.instruction))
+    }
+
     /// What the instruction at a place saw last before the sight with this number, and the number of that; of a body
     /// that has these instructions, if one is given. What stands in several lines of a list is seen at the last of
     /// them.

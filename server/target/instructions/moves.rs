@@ -245,7 +245,13 @@ fn exchange(execution: &mut dyn Execution) -> Result<(), Fault> {
     if execution.device(0)? != execution.device(1)? || execution.group_bits(0) != execution.group_bits(1) {
         return Err(Fault::Value(1));
     }
-    execution.put(0, (one & 0x00FF_00FF) << 8 | one >> 8 & 0x00FF_00FF)
+    swap_bytes(execution)
+}
+
+/// Exchanges the two bytes of each word of the first operand.
+pub(super) fn swap_bytes(execution: &mut dyn Execution) -> Result<(), Fault> {
+    let value = execution.value(0)?;
+    execution.put(0, (value & 0x00FF_00FF) << 8 | value >> 8 & 0x00FF_00FF)
 }
 
 fn to_bcd(execution: &mut dyn Execution) -> Result<(), Fault> {

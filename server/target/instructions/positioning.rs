@@ -2,6 +2,7 @@
 
 mod drives;
 
+use super::moves::swap_bytes;
 use super::specs::{FX2N_UP, applied, bits, bits_out, changed, destination, operand, source};
 use crate::target::{Accepts, Access, Instruction, Model, OperandSpec};
 
@@ -34,7 +35,8 @@ pub const ROWS: &[Instruction] = &[
     )
     .wide()
     .pulse()
-    .on(FX2N_UP),
+    .on(FX2N_UP)
+    .doing(swap_bytes),
     applied(
         155,
         "ABS",
