@@ -30,8 +30,8 @@
 //! | `ZRST`, `FMOV`, `BMOV` | one reset or store for each device, up to 16; these come back as they are |
 //! | `MOVP` and the like | the same behind an instance `Pulse1 : R_TRIG` |
 //! | `M8000`, `M8001` | `TRUE`, `FALSE` |
-//! | `M8002`, `M8003` | the variable `M8002`, which the first rung switches: `LDN M8002_Done`, `ST M8002`, `S M8002_Done` |
-//! | `LD M8002`, `SET M5`, `MOV K7 D0` as the first rung | from `M5 AT %MX0.5 : BOOL := TRUE`, `D0 AT %MW1000 : INT := 7` |
+//! | `M8002`, `M8003` | the variable `M8002`, which the first rung switches: see `first_scan` |
+//! | `LD M8002`, `SET M5`, `MOV K7 D0` as the first rung | from `M5 AT %MX0.5 : BOOL := TRUE` and the like |
 //!
 //! `END` is dropped and put back. What has no counterpart keeps its words in a comment: retentive timers, counters of
 //! 32 bits, special relays, steps, groups of bits, and applied instructions for which IEC 61131-3 has no operator that

@@ -4,7 +4,7 @@ use super::arguments::Arguments;
 use super::compile::Compiler;
 use super::current::{Current, Given};
 use super::declarations::Part;
-use super::kind::{Extent, Field, Kind, RecordKind, count};
+use super::kind::{Extent, Field, Kind, Record, RecordKind, count};
 use super::operand::{Value, cell_spot, said, word_spot};
 use super::parts::{BlockCall, Copying, Input, Spot};
 use super::place::{At, Place as Variable, lies};
@@ -164,12 +164,12 @@ impl Compiler<'_> {
         let Kind::Record(record) = variable.kind.clone() else { return Err(Obstacle::Unreadable) };
         let part = |field: &Field| variable.part(field.kind.clone(), field.at).ok_or(Obstacle::Unreadable);
         for (name, given) in std::mem::take(&mut arguments.inputs) {
-            let field = input(&record.fields, &name)?;
+            let field = input(&record, &name)?;
             let spot = part(field)?.spot().ok_or_else(|| said("simulate.not-elementary", &name))?;
             self.stored(given, spot)?;
         }
         for (name, whole) in std::mem::take(&mut arguments.wholes) {
-            let field = input(&record.fields, &name)?;
+            let field = input(&record, &name)?;
             self.copy_whole(&whole, &part(field)?, &name)?;
         }
         let mut aliases = Vec::new();
@@ -497,7 +497,7 @@ impl Compiler<'_> {
 const MOST_INSTANCES: u64 = 256;
 
 /// The input with a name.
-fn input<'f>(fields: &'f [Field], name: &str) -> Result<&'f Field, Obstacle> {
-    let own = fields.iter().find(|field| folded(&field.name) == folded(name));
+fn input<'r>(record: &'r Record, name: &str) -> Result<&'r Field, Obstacle> {
+    let own = record.field(name);
     own.filter(|field| field.section == SectionKind::Input).ok_or_else(|| said("simulate.no-member", name))
 }

@@ -3,6 +3,8 @@
 use crate::il::iec::{Edge, SectionKind};
 use crate::target::DirectAddress;
 use crate::target::iec::{ElementaryType, FunctionBlock};
+use crate::text::folded;
+use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 use std::sync::Arc;
 
@@ -35,6 +37,8 @@ pub(in crate::simulate) struct Record {
     pub(in crate::simulate) size: Extent,
     /// How deep records are nested: 1 if there is none inside.
     pub(in crate::simulate) depth: usize,
+    /// Where the fields are, by their folded names.
+    places: FxHashMap<SmolStr, usize>,
 }
 
 /// What a record is.
@@ -191,7 +195,11 @@ impl Record {
     /// A record of these fields, which get their places here.
     pub(in crate::simulate) fn new(what: RecordKind, fields: Vec<Field>, behind: Extent) -> Record {
         let depth = fields.iter().map(|field| field.kind.depth()).max().unwrap_or(0) + 1;
-        let mut record = Record { what, fields, size: Extent::default(), depth };
+        let mut places = FxHashMap::default();
+        for (place, field) in fields.iter().enumerate() {
+            places.entry(folded(&field.name)).or_insert(place);
+        }
+        let mut record = Record { what, fields, size: Extent::default(), depth, places };
         for field in &mut record.fields {
             field.at = record.size;
             let memory = match field.edge {
@@ -207,7 +215,7 @@ impl Record {
 
     /// The field called `name`, letter case aside.
     pub(in crate::simulate) fn field(&self, name: &str) -> Option<&Field> {
-        self.fields.iter().find(|field| crate::text::folded(&field.name) == crate::text::folded(name))
+        self.fields.get(*self.places.get(&folded(name))?)
     }
 }
 

@@ -9,6 +9,7 @@ use crate::target::iec::semantics::NOTES;
 use crate::target::iec::{ElementaryType, FunctionBlock, LiteralValue, Parameter, ParameterType};
 use crate::target::{DirectAddress, Location, Operand};
 use crate::text::{Message, Span, folded};
+use rustc_hash::FxHashSet;
 use smol_str::SmolStr;
 use std::sync::Arc;
 
@@ -268,11 +269,11 @@ impl Compiler<'_> {
         if let Some(record) = self.records.get(&unit) {
             return Arc::clone(record);
         }
-        let mut fields: Vec<Field> = Vec::new();
+        let (mut fields, mut known) = (Vec::new(), FxHashSet::default());
         for section in self.declared.units[unit].sections.clone() {
             for field in self.fields(section, Some(unit)) {
                 // The first declaration of a name holds.
-                if !fields.iter().any(|own| folded(&own.name) == folded(&field.name)) {
+                if known.insert(folded(&field.name)) {
                     fields.push(field);
                 }
             }

@@ -142,7 +142,7 @@ impl Names {
         };
         let part = match (step, &variable.kind) {
             (Step::Member(name), Kind::Record(record)) => {
-                let field = record.fields.iter().find(|field| folded(&field.name) == *name)?;
+                let field = record.field(name)?;
                 field.has_place().then(|| variable.part(field.kind.clone(), field.at))??
             }
             (Step::Element(subscripts), Kind::Array(bounds, element)) if subscripts.len() == bounds.len() => {

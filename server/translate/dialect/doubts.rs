@@ -13,8 +13,8 @@ use crate::translate::{Source, declared};
 use smol_str::SmolStr;
 
 /// For each rung why it is doubtful whether it does the same in the other language; nothing where it is not. The
-/// devices are those of `family`, `instances` those of a program of IEC 61131-3, and `initials` the variables there that
-/// a rung gives their values.
+/// devices are those of `family`, `instances` those of a program of IEC 61131-3, and `initials` the variables there
+/// that a rung gives their values.
 pub(super) fn all(
     document: &Document,
     sources: &[Source],

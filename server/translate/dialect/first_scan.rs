@@ -20,7 +20,7 @@ const RELAY: &str = "M8002";
 /// The one that keeps it from coming on again.
 const DONE: &str = "M8002_Done";
 
-/// The variables of a program of IEC 61131-3 that a rung of the first scan can give the values which they have at first.
+/// The variables of a program of IEC 61131-3 that a rung of the first scan can give the values which they have.
 #[derive(Default)]
 pub(super) struct Initials {
     /// The program, by its number; nothing for a variable that all know.
