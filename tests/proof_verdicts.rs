@@ -60,6 +60,55 @@ fn special_relays_that_tell_of_the_scan_are_what_the_cpu_makes_them() {
 }
 
 #[test]
+fn what_comes_before_a_jump_may_stand_in_its_rung() {
+    check(
+        &[
+            (
+                "LD X0;OUT Y0;CJ P0;LD X1;OUT Y1;P0;LD X2;OUT Y2",
+                "LD X0;OUT Y0;LD X0;CJ P0;LD X1;OUT Y1;P0;LD X2;OUT Y2",
+            ),
+            (
+                "LD X0;MPS;AND X1;CJ P0;MPP;OUT Y0;OUT Y1;P0;LD X2;OUT Y2",
+                "LD X0;AND X1;CJ P0;LD X0;OUT Y0;OUT Y1;P0;LD X2;OUT Y2",
+            ),
+            ("LD X0;MOV D0 D1;CMP D0 K1 M0;LD X1;OUT Y1", "LD X0;MOV D0 D1;LD X0;CMP D0 K1 M0;LD X1;OUT Y1"),
+        ],
+        |verdict| verdict == "equal",
+    );
+    check(
+        &[
+            // The condition is asked again when what it asks for has changed.
+            (
+                "LD Y0;RST Y0;CJ P0;LD X1;OUT Y1;P0;LD X2;OUT Y2",
+                "LD Y0;RST Y0;LD Y0;CJ P0;LD X1;OUT Y1;P0;LD X2;OUT Y2",
+            ),
+            (
+                "LDP M2800;OUT Y0;CJ P0;LD X1;OUT Y1;P0;LD X2;OUT Y2",
+                "LDP M2800;OUT Y0;LDP M2800;CJ P0;LD X1;OUT Y1;P0;LD X2;OUT Y2",
+            ),
+            ("LD X0;REF X0 K8;CMP D0 K1 M0;LD X1;OUT Y1", "LD X0;REF X0 K8;LD X0;CMP D0 K1 M0;LD X1;OUT Y1"),
+            (
+                "LD M0;CMP D0 K1 M0;MOV D0 K1M4;LD X1;OUT Y1",
+                "LD M0;CMP D0 K1 M0;LD M0;MOV D0 K1M4;LD X1;OUT Y1",
+            ),
+        ],
+        |verdict| verdict != "equal",
+    );
+}
+
+#[test]
+fn what_an_edge_of_a_relay_with_one_memory_tells_of_the_relay() {
+    check(
+        &[
+            ("LDP M2800;AND M2800;OUT Y0", "LDP M2800;OUT Y0"),
+            ("LDF M2800;ANI M2800;OUT Y0", "LDF M2800;OUT Y0"),
+            ("LDP M2800;ANDF M2800;OUT Y0", "LDP M2800;ANDF M2800;AND X0;OUT Y0"),
+        ],
+        |verdict| verdict == "equal",
+    );
+}
+
+#[test]
 fn clocks_are_seen_on_and_off() {
     for clock in ["M8011", "M8012", "M8013", "M8014"] {
         let [left, right] = ["LD", "LDP"].map(|word| {

@@ -3,6 +3,7 @@
 //! Rungs are compared in step as far as they drive the same things in the same order. Where one program does so in
 //! another way, stretches between jumps, labels and the like are compared by what comes of them.
 
+mod parted;
 mod telling;
 
 use super::counterexample::{self, Counterexample, Inputs, Shown, Value};
@@ -69,7 +70,7 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
             dialect::convert(document, (To::Iec, Target::of(Model::Iec)), &mut program, Purpose::Proof);
             dialect::part_calculations(&mut program);
         }
-        program.rungs
+        parted::parted(program.rungs)
     });
     let paired = Paired::of([left, right]);
     let unlike = declared::difference([left, right], [&sources[0], &sources[1]], &paired)
