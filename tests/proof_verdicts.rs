@@ -97,6 +97,51 @@ fn what_comes_before_a_jump_may_stand_in_its_rung() {
 }
 
 #[test]
+fn a_rung_that_cannot_be_read_is_told_at_its_place() {
+    let document = |text: &str| Document::new(text, Notation::FxIl, Target::of(Model::Fx3u));
+    let plain = document("LD X0\nOUT Y0\nLD X1\nOUT Y1\nEND\n");
+    let unread = document("LD X0\nOUT Y0\nLD X1\nFOO Y1\nEND\n");
+    let bytes = document("\u{1}\u{fffd}%PDF ~~\n\u{2}\n");
+    for (other, line) in [(&unread, "LD X1"), (&bytes, "%PDF")] {
+        for (documents, side) in [([&plain, other], 1), ([other, &plain], 0)] {
+            let Proof::Undecided { reason, at, .. } = prove(documents[0], documents[1]) else { panic!() };
+            assert_eq!(reason.key(), "prove.unread");
+            let place = at[side].map(|span| other.slice(span)).unwrap_or_default();
+            assert!(place.starts_with(line), "{place:?}");
+            assert_eq!(at[1 - side], None);
+        }
+    }
+}
+
+#[test]
+fn what_a_label_is_called_makes_no_difference() {
+    let list = |labels: [&str; 2], jump: &str| {
+        let text = format!(
+            "PROGRAM p\nVAR X0 AT %IX0.0 : BOOL; Y0 AT %QX0.0 : BOOL; Y1 AT %QX0.1 : BOOL; END_VAR\n\
+             LD X0\nJMPC {jump}\nLD X0\nST Y0\n{}:\nLDN X0\nST Y1\n{}:\nLD X0\nST Y1\nEND_PROGRAM\n",
+            labels[0], labels[1]
+        );
+        Document::new(&text, Notation::IecIl, Target::of(Model::Iec))
+    };
+    let own = list(["First", "Second"], "First");
+    assert_eq!(word(&prove(&own, &list(["a", "b"], "a"))), "equal");
+    assert_eq!(word(&prove(&own, &list(["Second", "First"], "second"))), "equal");
+    for (labels, jump) in
+        [(["a", "b"], "b"), (["Second", "First"], "First"), (["a", "a"], "a"), (["a", "b"], "First")]
+    {
+        assert_ne!(word(&prove(&own, &list(labels, jump))), "equal", "{labels:?} {jump}");
+    }
+    let fx = |jump: &str| {
+        let text = format!("LD X0\nCJ {jump}\nLD X0\nOUT Y0\nP4\nLDI X0\nOUT Y1\nP5\nLD X0\nOUT Y1\nEND\n");
+        Document::new(&text, Notation::FxIl, Target::of(Model::Fx2n))
+    };
+    for (jump, expected) in [("P4", true), ("P5", false)] {
+        assert_eq!(word(&prove(&own, &fx(jump))) == "equal", expected, "{jump}");
+        assert_eq!(word(&prove(&fx(jump), &own)) == "equal", expected, "{jump}");
+    }
+}
+
+#[test]
 fn what_an_edge_of_a_relay_with_one_memory_tells_of_the_relay() {
     check(
         &[
