@@ -60,6 +60,100 @@ fn special_relays_that_tell_of_the_scan_are_what_the_cpu_makes_them() {
 }
 
 #[test]
+fn what_comes_before_a_jump_may_stand_in_its_rung() {
+    check(
+        &[
+            (
+                "LD X0;OUT Y0;CJ P0;LD X1;OUT Y1;P0;LD X2;OUT Y2",
+                "LD X0;OUT Y0;LD X0;CJ P0;LD X1;OUT Y1;P0;LD X2;OUT Y2",
+            ),
+            (
+                "LD X0;MPS;AND X1;CJ P0;MPP;OUT Y0;OUT Y1;P0;LD X2;OUT Y2",
+                "LD X0;AND X1;CJ P0;LD X0;OUT Y0;OUT Y1;P0;LD X2;OUT Y2",
+            ),
+            ("LD X0;MOV D0 D1;CMP D0 K1 M0;LD X1;OUT Y1", "LD X0;MOV D0 D1;LD X0;CMP D0 K1 M0;LD X1;OUT Y1"),
+        ],
+        |verdict| verdict == "equal",
+    );
+    check(
+        &[
+            // The condition is asked again when what it asks for has changed.
+            (
+                "LD Y0;RST Y0;CJ P0;LD X1;OUT Y1;P0;LD X2;OUT Y2",
+                "LD Y0;RST Y0;LD Y0;CJ P0;LD X1;OUT Y1;P0;LD X2;OUT Y2",
+            ),
+            (
+                "LDP M2800;OUT Y0;CJ P0;LD X1;OUT Y1;P0;LD X2;OUT Y2",
+                "LDP M2800;OUT Y0;LDP M2800;CJ P0;LD X1;OUT Y1;P0;LD X2;OUT Y2",
+            ),
+            ("LD X0;REF X0 K8;CMP D0 K1 M0;LD X1;OUT Y1", "LD X0;REF X0 K8;LD X0;CMP D0 K1 M0;LD X1;OUT Y1"),
+            (
+                "LD M0;CMP D0 K1 M0;MOV D0 K1M4;LD X1;OUT Y1",
+                "LD M0;CMP D0 K1 M0;LD M0;MOV D0 K1M4;LD X1;OUT Y1",
+            ),
+        ],
+        |verdict| verdict != "equal",
+    );
+}
+
+#[test]
+fn a_rung_that_cannot_be_read_is_told_at_its_place() {
+    let document = |text: &str| Document::new(text, Notation::FxIl, Target::of(Model::Fx3u));
+    let plain = document("LD X0\nOUT Y0\nLD X1\nOUT Y1\nEND\n");
+    let unread = document("LD X0\nOUT Y0\nLD X1\nFOO Y1\nEND\n");
+    let bytes = document("\u{1}\u{fffd}%PDF ~~\n\u{2}\n");
+    for (other, line) in [(&unread, "LD X1"), (&bytes, "%PDF")] {
+        for (documents, side) in [([&plain, other], 1), ([other, &plain], 0)] {
+            let Proof::Undecided { reason, at, .. } = prove(documents[0], documents[1]) else { panic!() };
+            assert_eq!(reason.key(), "prove.unread");
+            let place = at[side].map(|span| other.slice(span)).unwrap_or_default();
+            assert!(place.starts_with(line), "{place:?}");
+            assert_eq!(at[1 - side], None);
+        }
+    }
+}
+
+#[test]
+fn what_a_label_is_called_makes_no_difference() {
+    let list = |labels: [&str; 2], jump: &str| {
+        let text = format!(
+            "PROGRAM p\nVAR X0 AT %IX0.0 : BOOL; Y0 AT %QX0.0 : BOOL; Y1 AT %QX0.1 : BOOL; END_VAR\n\
+             LD X0\nJMPC {jump}\nLD X0\nST Y0\n{}:\nLDN X0\nST Y1\n{}:\nLD X0\nST Y1\nEND_PROGRAM\n",
+            labels[0], labels[1]
+        );
+        Document::new(&text, Notation::IecIl, Target::of(Model::Iec))
+    };
+    let own = list(["First", "Second"], "First");
+    assert_eq!(word(&prove(&own, &list(["a", "b"], "a"))), "equal");
+    assert_eq!(word(&prove(&own, &list(["Second", "First"], "second"))), "equal");
+    for (labels, jump) in
+        [(["a", "b"], "b"), (["Second", "First"], "First"), (["a", "a"], "a"), (["a", "b"], "First")]
+    {
+        assert_ne!(word(&prove(&own, &list(labels, jump))), "equal", "{labels:?} {jump}");
+    }
+    let fx = |jump: &str| {
+        let text = format!("LD X0\nCJ {jump}\nLD X0\nOUT Y0\nP4\nLDI X0\nOUT Y1\nP5\nLD X0\nOUT Y1\nEND\n");
+        Document::new(&text, Notation::FxIl, Target::of(Model::Fx2n))
+    };
+    for (jump, expected) in [("P4", true), ("P5", false)] {
+        assert_eq!(word(&prove(&own, &fx(jump))) == "equal", expected, "{jump}");
+        assert_eq!(word(&prove(&fx(jump), &own)) == "equal", expected, "{jump}");
+    }
+}
+
+#[test]
+fn what_an_edge_of_a_relay_with_one_memory_tells_of_the_relay() {
+    check(
+        &[
+            ("LDP M2800;AND M2800;OUT Y0", "LDP M2800;OUT Y0"),
+            ("LDF M2800;ANI M2800;OUT Y0", "LDF M2800;OUT Y0"),
+            ("LDP M2800;ANDF M2800;OUT Y0", "LDP M2800;ANDF M2800;AND X0;OUT Y0"),
+        ],
+        |verdict| verdict == "equal",
+    );
+}
+
+#[test]
 fn clocks_are_seen_on_and_off() {
     for clock in ["M8011", "M8012", "M8013", "M8014"] {
         let [left, right] = ["LD", "LDP"].map(|word| {

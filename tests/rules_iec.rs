@@ -215,6 +215,52 @@ fn an_external_variable_has_the_type_of_the_global_one() {
 }
 
 #[test]
+fn what_a_configuration_says_of_programs_is_judged() {
+    let alone = "CONFIGURATION Line\n    PROGRAM First : Cutter;\nEND_CONFIGURATION\n";
+    assert_eq!(told(alone), ["unknown-type: Cutter"]);
+    let program = "PROGRAM Cutter\nVAR_INPUT\n    Go : BOOL;\nEND_VAR\nVAR_OUTPUT\n    Blade : BOOL;\nEND_VAR\n    \
+                   LD Go\n    ST Blade\nEND_PROGRAM\n\n";
+    let connected = |with: &str| {
+        told(&format!(
+            "{program}CONFIGURATION Line\n    PROGRAM First : Cutter({with});\nEND_CONFIGURATION\n"
+        ))
+    };
+    assert_eq!(connected("Go := %IX0.0, Blade => %QX0.0"), Vec::<String>::new());
+    assert_eq!(connected("Goo := %IX0.0"), ["unknown-parameter: Goo"]);
+    assert_eq!(connected("Knife => %QX0.0"), ["unknown-parameter: Knife"]);
+    assert_eq!(connected("Blade := %IX0.0"), ["unknown-parameter: Blade"]);
+}
+
+#[test]
+fn constants_alone_have_a_type_in_common() {
+    let of = |lines: &str| {
+        let variables = "Go : BOOL;\n    Lamp : BOOL;\n    Count : INT;\n    Level : REAL;\n    Wait : TIME;";
+        told(&format!(
+            "PROGRAM Mixer\nVAR\n    {variables}\nEND_VAR\n    {}\nEND_PROGRAM\n",
+            lines.replace("; ", "\n    ")
+        ))
+    };
+    for fine in [
+        "LD Go; SEL TRUE, 1; ST Lamp",
+        "LD Go; SEL 1, 2.5; ST Level",
+        "LD 0; LIMIT 5, 100000; ST Count",
+        "LD Go; SEL T#1s, T#2s; ST Wait",
+        "LD Go; SEL 1, 2; ST Level",
+    ] {
+        assert_eq!(
+            of(fine).iter().filter(|one| one.contains("mismatch")).count(),
+            0,
+            "{fine}: {:?}",
+            of(fine)
+        );
+    }
+    assert_eq!(of("LD Go; SEL TRUE, 5; ST Lamp"), ["result-type-mismatch: 5"]);
+    assert_eq!(of("LD Go; SEL 5, TRUE; ST Count"), ["result-type-mismatch: TRUE"]);
+    assert_eq!(of("LD Go; SEL TRUE, FALSE; ST Count"), ["result-type-mismatch: Count"]);
+    assert_eq!(of("LD 5; MAX T#1s; ST Count"), ["result-type-mismatch: T#1s"]);
+}
+
+#[test]
 fn the_mixer_is_clean() {
     let text =
         std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/mixer/mixer.il")).unwrap();
@@ -332,7 +378,7 @@ fn declarations_against_each_other() {
         ("FUNCTION_BLOCK A\nVAR b : ARRAY[0..1] OF A; END_VAR\nEND_FUNCTION_BLOCK\n", &["recursive-pou: A"]),
         ("FUNCTION_BLOCK A\nVAR_IN_OUT b : A; END_VAR\nEND_FUNCTION_BLOCK\n", &[]),
         ("LD a\nST b\n", &[]),
-        ("CONFIGURATION c\nPROGRAM p : Elsewhere;\nEND_CONFIGURATION\n", &[]),
+        ("CONFIGURATION c\nPROGRAM p : Elsewhere;\nEND_CONFIGURATION\n", &["unknown-type: Elsewhere"]),
         (
             "PROGRAM Main\nEND_PROGRAM\nCONFIGURATION c\nPROGRAM p : Mian;\nEND_CONFIGURATION\n",
             &["unknown-type: Mian"],

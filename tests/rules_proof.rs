@@ -27,6 +27,22 @@ fn told(program: &str) -> Vec<String> {
     proved(&text).iter().map(|one| format!("{} {}", one.code, one.span.of(&text))).collect()
 }
 
+#[test]
+fn in_a_master_control_an_output_is_on_when_that_is() {
+    let message = |program: &str| {
+        let text = format!("{}\nEND\n", program.replace("; ", "\n"));
+        let found = proved(&text).into_iter().find(|one| one.code == "always-energised");
+        found.map(|one| one.message.render(Language::English)).unwrap_or_default()
+    };
+    let rung = "LD X0; ORI X0; OUT Y0";
+    let control = message(&format!("LD X1; MC N0 M10; {rung}; MCR N0; LD X2; OUT Y1"));
+    assert!(control.starts_with("`Y0` is on whenever the master control"), "{control}");
+    let step = message(&format!("LD X1; SET S20; STL S20; LD X2; OUT Y2; {rung}; RET"));
+    assert!(step.starts_with("`Y0` is on whenever"), "{step}");
+    let behind = message(&format!("LD X1; MC N0 M10; LD X2; OUT Y1; MCR N0; {rung}"));
+    assert!(behind.starts_with("`Y0` is always on"), "{behind}");
+}
+
 fn path_of(text: &str) -> Path {
     let document = document(text);
     let chunk = document.chunks().next().expect("a rung").chunk;
@@ -41,6 +57,7 @@ fn what_is_proved_is_told_once() {
         ("LD> D0 K10; AND< D0 K5; OUT Y0", &["contradiction-on-path AND< D0 K5", "never-energised Y0"]),
         ("LD= D0 K1; AND= D0 K2; OUT Y0", &["contradiction-on-path AND= D0 K2", "never-energised Y0"]),
         ("LDP X0; ANI X0; OUT Y0", &["contradiction-on-path ANI X0", "never-energised Y0"]),
+        ("LDP M2800; ANI M2800; OUT Y0", &["contradiction-on-path ANI M2800", "never-energised Y0"]),
         ("LD X0; LDI X0; OR X1; ANB; OUT Y0", &["contradiction-on-path LDI X0"]),
         ("LDI X0; OR X1; AND X0; OUT Y0", &["contradiction-on-path LDI X0"]),
         ("LD X0; MPS; OUT Y0; MPP; ANI X0; OUT Y1", &["contradiction-on-path ANI X0", "never-energised Y1"]),

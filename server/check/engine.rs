@@ -1,5 +1,6 @@
 //! Runs the rules and puts their findings together.
 
+use super::proof::always_energised;
 use super::rule::ChunkJudge;
 use super::sense::unused;
 use super::suppression::Suppression;
@@ -172,7 +173,7 @@ pub fn batch(
     let found = judge_program(&context)?.into_iter();
     let mut found: Vec<Diagnostic> = found.map(|(_, diagnostic)| diagnostic).collect();
     told(&found);
-    found.extend(proofs::of(here, &|| view.is_cancelled(), &mut told)?);
+    found.extend(proved(&context, view.here_number(), &|| view.is_cancelled(), &mut told)?);
     Some(finished(here, found, severities))
 }
 
@@ -191,10 +192,12 @@ pub fn project(view: &ProjectView<'_>, severities: &Severities) -> Vec<Vec<Diagn
         for (number, diagnostic) in judge_program(&context).unwrap_or_default() {
             of_programs[number].push(diagnostic);
         }
+        for file in context.files() {
+            let proved = proved(&context, file.number, &|| view.is_cancelled(), &mut |_| {});
+            of_programs[file.number].extend(proved.unwrap_or_default());
+        }
     }
-    for (number, mut found) in of_programs.into_iter().enumerate() {
-        let proved = proofs::of(document(number), &|| view.is_cancelled(), &mut |_| {});
-        found.extend(proved.unwrap_or_default());
+    for (number, found) in of_programs.into_iter().enumerate() {
         by_file[number].extend(finished(document(number), found, severities));
     }
     by_file.into_iter().map(sorted).collect()
@@ -212,6 +215,25 @@ fn judge_program(context: &ProgramContext<'_>) -> Option<Vec<(usize, Diagnostic)
         }
     }
     Some(context.distributed(found).collect())
+}
+
+/// What proofs find in the file with this number, as it holds at its place in the program; nothing if nobody waits for
+/// it any more.
+fn proved(
+    context: &ProgramContext<'_>,
+    number: usize,
+    is_cancelled: &dyn Fn() -> bool,
+    tell: &mut dyn FnMut(&[Diagnostic]),
+) -> Option<Vec<Diagnostic>> {
+    let Some(file) = context.files().iter().find(|file| file.number == number) else {
+        return Some(Vec::new());
+    };
+    let placed = |found: &[Diagnostic]| -> Vec<Diagnostic> {
+        let region = |span: Span| context.regions().at(span.shifted(file.start).start);
+        found.iter().cloned().map(|found| always_energised::within(found, region)).collect()
+    };
+    let found = proofs::of(file.document, is_cancelled, &mut |found| tell(&placed(found)))?;
+    Some(placed(&found))
 }
 
 /// By place, then gravity, then code.

@@ -1,7 +1,7 @@
 //! Decides whether formulas are equal, with decision diagrams. Work has a limit that no clock gives, so the same
 //! question has the same answer on every machine.
 
-use super::formula::{Atom, Node};
+use super::formula::{Atom, Node, Step};
 use super::{Bounds, Formula, Formulas, Moment};
 use biodivine_lib_bdd::{Bdd, BddPartialValuation, BddVariable, BddVariableSet, op_function};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -226,12 +226,16 @@ pub(super) fn axioms(formulas: &mut Formulas, wanted: &[Formula]) -> Vec<Formula
     let mut numbers: BTreeMap<Moment, Vec<i64>> = BTreeMap::new();
     for atom in atoms {
         match formulas.atom_at(atom).clone() {
-            Atom::Bit(_) | Atom::SingleEdge(_) | Atom::NoNumber(_) | Atom::Behind(_) | Atom::Rail => {}
+            Atom::Bit(_) | Atom::NoNumber(_) | Atom::Behind(_) | Atom::Rail => {}
+            Atom::SingleEdge(step) => {
+                if let Some(Step::Asked { of, value, rising, .. }) = formulas.step_at(step).cloned() {
+                    let edge = formulas.atom(Atom::SingleEdge(step));
+                    axioms.push(edge_tells(formulas, edge, (of, value, rising)));
+                }
+            }
             Atom::Edge { of, value, rising } => {
                 let edge = formulas.atom(Atom::Edge { of: of.clone(), value, rising });
-                let bit = value.unwrap_or_else(|| formulas.atom(Atom::Bit(of)));
-                let bit = if rising { bit } else { formulas.not(bit) };
-                axioms.push(implies(formulas, edge, bit));
+                axioms.push(edge_tells(formulas, edge, (of, value, rising)));
             }
             Atom::Reaches { word, number } => numbers.entry(word).or_default().push(number),
             Atom::AtLeast { word, other } => {
@@ -253,6 +257,17 @@ pub(super) fn axioms(formulas: &mut Formulas, wanted: &[Formula]) -> Vec<Formula
         }
     }
     axioms
+}
+
+/// An edge is one of a bit that is on behind it, or off.
+fn edge_tells(
+    formulas: &mut Formulas,
+    edge: Formula,
+    (of, value, rising): (Moment, Option<Formula>, bool),
+) -> Formula {
+    let bit = value.unwrap_or_else(|| formulas.atom(Atom::Bit(of)));
+    let bit = if rising { bit } else { formulas.not(bit) };
+    implies(formulas, edge, bit)
 }
 
 fn implies(formulas: &mut Formulas, left: Formula, right: Formula) -> Formula {

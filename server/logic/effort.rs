@@ -36,8 +36,8 @@ impl Effort {
         self.types = Arc::new(types);
     }
 
-    /// The questions to come are about programs without jumps, loops and the like: each contact is executed once in each
-    /// scan, from the first on.
+    /// The questions to come are about programs without jumps, loops and the like: each contact is executed once in
+    /// each scan, from the first on.
     pub fn know_straight(&mut self) {
         self.is_straight = true;
     }

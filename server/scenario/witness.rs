@@ -31,8 +31,8 @@ const MOST_HOLD: u64 = 6;
 pub(super) const USUAL_SCAN_NS: i64 = 10_000_000;
 /// The same with what lets timers run out.
 const SCANS_NS: [i64; 3] = [USUAL_SCAN_NS, 1_000_000_000, 60_000_000_000];
-/// Where clocks are used also these, in a few scans of which each is seen on and off: M8011 to M8014, which change each 5
-/// ms, 50 ms, half second and half minute.
+/// Where clocks are used also these, in a few scans of which each is seen on and off: M8011 to M8014, which change each
+/// 5 ms, 50 ms, half second and half minute.
 const SCANS_OF_CLOCKS_NS: [i64; 3] = [3_000_000, 273_000_000, 17_273_000_000];
 const CLOCKS: std::ops::RangeInclusive<u32> = 8011..=8014;
 /// The current value of a timer that has run out, whatever its preset.

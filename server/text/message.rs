@@ -104,6 +104,11 @@ impl Message {
         self
     }
 
+    /// The same arguments in another sentence.
+    pub fn under(self, key: &'static str) -> Message {
+        Message { key, ..self }
+    }
+
     /// The catalogue key.
     pub fn key(&self) -> &'static str {
         self.key

@@ -3,6 +3,8 @@
 //! Rungs are compared in step as far as they drive the same things in the same order. Where one program does so in
 //! another way, stretches between jumps, labels and the like are compared by what comes of them.
 
+mod labels;
+mod parted;
 mod telling;
 
 use super::counterexample::{self, Counterexample, Inputs, Shown, Value};
@@ -12,8 +14,8 @@ use super::{Purpose, To, declared, dialect, helpers, reached, types, units};
 use crate::document::{DeclaredType, Document, Scopes};
 use crate::ladder::CoilKind;
 use crate::logic::{
-    Action, Comparison, Deed, Drive, Effort, Path, Place, State, Storage, Term, compare, compare_outcome,
-    may_drive, shown, touches_bits,
+    Action, Comparison, Deed, Drive, Effort, Path, Place, Refusal, State, Storage, Term, compare,
+    compare_outcome, may_drive, shown, touches_bits,
 };
 use crate::target::iec::ElementaryType;
 use crate::target::{Device, DeviceKind, Flow, Model, Target};
@@ -69,8 +71,11 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
             dialect::convert(document, (To::Iec, Target::of(Model::Iec)), &mut program, Purpose::Proof);
             dialect::part_calculations(&mut program);
         }
-        program.rungs
+        parted::parted(program.rungs)
     });
+    if ![left, right].iter().all(|document| document.target().is_fx()) {
+        labels::named_alike(&mut sources);
+    }
     let paired = Paired::of([left, right]);
     let unlike = declared::difference([left, right], [&sources[0], &sources[1]], &paired)
         .or_else(|| declared::other_type([left, right], [&sources[0], &sources[1]]));
@@ -185,12 +190,14 @@ impl End<'_> {
         }
     }
 
-    /// Why it is not compared, if that is known.
-    fn note(&self) -> Option<&Message> {
-        match self {
-            End::Unread(source, _) => source.note.as_ref(),
-            _ => None,
-        }
+    /// Why it is not compared, if it cannot be read or has no counterpart.
+    fn obstacle(&self) -> Option<Message> {
+        let End::Unread(source, _) = self else { return None };
+        let refusal = source.rung.path.as_ref().err().map(Refusal::message);
+        source
+            .note
+            .clone()
+            .or_else(|| Some(Message::new("prove.unread").with_messages("why", vec![refusal?])))
     }
 
     /// Whether it is nothing but END.
@@ -282,10 +289,12 @@ impl<'s> Prover<'s> {
             _ => false,
         };
         if !is_alike {
-            let at = [left, right].map(|side| side.end.as_ref().map(End::span));
-            let note = [left, right].into_iter().find_map(|side| side.end.as_ref()?.note());
-            let reason = note.cloned().unwrap_or_else(|| Message::new("prove.structure"));
-            return Err(Proof::undecided(reason, at));
+            let ends = [left, right].map(|side| side.end.as_ref());
+            let reason = ends.into_iter().flatten().find_map(End::obstacle);
+            // What cannot be read is what has to be looked at.
+            let is_meant = |end: &&End<'_>| reason.is_none() || matches!(end, End::Unread(..));
+            let at = ends.map(|end| end.filter(is_meant).map(End::span));
+            return Err(Proof::undecided(reason.unwrap_or_else(|| Message::new("prove.structure")), at));
         }
         self.rungs([&left.rungs, &right.rungs])?;
         match (&left.end, &right.end) {

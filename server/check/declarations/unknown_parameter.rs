@@ -70,7 +70,7 @@
 use crate::check::iec::{Callee, Flow, Pin, Place, ValueType, View};
 use crate::check::{ChunkContext, Rule, Run};
 use crate::document::DeclaredType;
-use crate::il::iec::{Direction, ItemKind, ListForm, OperandId, Parameter, Run as Records};
+use crate::il::iec::{Direction, ItemKind, ListForm, OperandId, Parameter, PouKind, Run as Records};
 use crate::target::Operand;
 use crate::target::iec::nearest;
 use crate::text::{Diagnostic, Message, Severity, Span, TextEdit};
@@ -108,6 +108,16 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
                     if pin.is_none_or(|pin| pin.flow == Flow::Out) {
                         found.push(unknown(&view, block, input, Flow::In));
                     }
+                }
+            }
+            // A program that a configuration runs, with what it is connected to.
+            ItemKind::Instance(index) => {
+                if let Some(instance) = view.tree.instances.get(index as usize)
+                    && let Some(program) = instance.program
+                    && let Some(pou) = view.scopes.pou_named(program.of(view.text))
+                    && pou.kind == PouKind::Program
+                {
+                    list(&view, Callee::Declared(pou), ListForm::Formal, instance.parameters, found);
                 }
             }
             _ => {}
@@ -179,7 +189,12 @@ fn unknown(view: &View<'_>, callee: Callee<'_>, name: Span, flow: Flow) -> Diagn
     let pins = callee.pins(view);
     let same_flow = |pin: &&Pin<'_>| (pin.flow == Flow::Out) == (flow == Flow::Out);
     let names: Vec<&str> = pins.iter().filter(same_flow).map(|pin| pin.name).collect();
-    let key = if flow == Flow::Out { "unknown-parameter.no-output" } else { "unknown-parameter.no-input" };
+    let key = match (flow == Flow::Out, names.is_empty()) {
+        (true, false) => "unknown-parameter.no-output",
+        (false, false) => "unknown-parameter.no-input",
+        (true, true) => "unknown-parameter.no-outputs",
+        (false, true) => "unknown-parameter.no-inputs",
+    };
     let message = Message::new(key)
         .with("word", name.of(view.text))
         .with("name", callee.name())

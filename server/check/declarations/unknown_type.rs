@@ -74,8 +74,7 @@ fn check(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
         {
             let name = span.of(view.text);
             let is_program = view.scopes.pou_named(name).is_some_and(|pou| pou.kind == PouKind::Program);
-            // A configuration in a file of its own speaks about programs in other files.
-            if !is_program && !view.scopes.pous.is_empty() {
+            if !is_program {
                 let message = Message::new("unknown-type.no-program").with("name", name);
                 let programs = view.scopes.pous.iter().filter(|pou| pou.kind == PouKind::Program);
                 let near = nearest(name, programs.map(|pou| pou.name.as_str()));

@@ -53,6 +53,7 @@ impl Walk<'_> {
                 ParameterValue::Missing => {}
             }
         }
+        groups.of_constants(&constants);
         for (value, group) in constants {
             if let Some(kind) = groups.of(group) {
                 self.judge_value(&value, Expected::Elementary(kind));
@@ -317,6 +318,23 @@ impl Groups {
     /// The type of the parameters of `group`.
     fn of(&self, group: GenericType) -> Option<ElementaryType> {
         self.0.iter().find(|(own, _)| *own == group).map(|(_, kind)| *kind)
+    }
+
+    /// Constants that are alone in a group must have a type in common: one of their own, which says it where it is BOOL
+    /// or none is; a number may still be of several.
+    fn of_constants(&mut self, constants: &[(Value, GenericType)]) {
+        for (_, group) in constants {
+            let own = || constants.iter().filter(|(_, other)| other == group).map(|(value, _)| &value.kind);
+            let is_common = |kind: &ElementaryType| {
+                own().all(|value| fit(value, Expected::Elementary(*kind)) != Fit::Mismatch)
+            };
+            let mut kinds = own().filter_map(ValueType::elementary);
+            let Some(first) = kinds.clone().next().filter(|_| self.of(*group).is_none()) else { continue };
+            let common = kinds.find(is_common).unwrap_or(first);
+            if common == ElementaryType::Bool || !is_common(&common) {
+                self.0.push((*group, common));
+            }
+        }
     }
 
     /// Adds a parameter; gives the type of the others if it cannot go together with them.

@@ -25,7 +25,7 @@ mod redundant_branch;
 
 mod never_energised;
 
-mod always_energised;
+pub(super) mod always_energised;
 
 mod across;
 

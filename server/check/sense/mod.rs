@@ -6,7 +6,7 @@ mod uses;
 pub(super) use uses::{Key, Name, Use, Uses};
 
 mod regions;
-pub(super) use regions::Regions;
+pub(super) use regions::{Region, Regions};
 
 mod rungs;
 

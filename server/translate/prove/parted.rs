@@ -1,0 +1,107 @@
+//! Rungs cut where that changes nothing, so that it makes no difference whether what comes before a jump stands in the
+//! rung of the jump or in one of its own.
+
+use super::may_overlap;
+use crate::logic::{Action, Deed, Drive, Gate, Path, Term, touches_bits};
+use crate::target::{Device, DeviceKind, Flow, Operand};
+use crate::translate::source::Source;
+
+/// The rungs, those with a jump or the like among other drives cut before it and behind it. A part stands where its
+/// first drive does.
+pub(super) fn parted(rungs: Vec<Source>) -> Vec<Source> {
+    rungs.into_iter().flat_map(parts).collect()
+}
+
+fn parts(source: Source) -> Vec<Source> {
+    let Some(path) = source.path().filter(|path| path.drives.len() > 1 && is_cut_anywhere(path)) else {
+        return vec![source];
+    };
+    let gates: Vec<&Term> = path.gates.iter().flat_map(terms).collect();
+    let mut groups: Vec<Vec<Drive>> = Vec::new();
+    let mut starts = Vec::new();
+    let (mut is_steady, mut was_steering) = (true, false);
+    for drive in &path.drives {
+        let actions = actions(drive);
+        let touches = actions.iter().any(|action| touches_bits(action));
+        let start = actions.iter().map(|action| action.span.start).min().unwrap_or_default();
+        let is_behind = starts.last().is_some_and(|last| *last < start) && source.rung.span.start < start;
+        match groups.last_mut() {
+            Some(group) if !(is_steady && is_behind && (touches || was_steering)) => {
+                group.push(drive.clone())
+            }
+            _ => {
+                groups.push(vec![drive.clone()]);
+                starts.push(if groups.len() == 1 { source.rung.span.start } else { start });
+            }
+        }
+        is_steady &= actions.iter().all(|action| leaves_alone(action, &gates));
+        was_steering = touches;
+    }
+    let part = |(number, (drives, start)): (usize, (Vec<Drive>, u32))| {
+        let mut part = source.clone();
+        part.rung.path = Ok(Some(Path { gates: path.gates.clone(), drives }));
+        part.rung.span.start = start;
+        if number > 0 {
+            part.rung.labels.clear();
+        }
+        part
+    };
+    groups.into_iter().zip(starts).enumerate().map(part).collect()
+}
+
+/// Whether a drive of it looks at more than its condition, and its condition is the same however often it is asked.
+fn is_cut_anywhere(path: &Path) -> bool {
+    let is_single =
+        |term: &&Term| matches!(term.operand, Operand::Device(device) if device.has_single_edge());
+    let is_passed = |gate: &Gate| !matches!(gate, Gate::Through(_)) && !terms(gate).iter().any(is_single);
+    path.gates.iter().all(is_passed)
+        && path.drives.iter().flat_map(actions).any(|action| touches_bits(action))
+}
+
+fn terms(gate: &Gate) -> Vec<&Term> {
+    match gate {
+        Gate::Pass(condition) => {
+            condition.contacts().into_iter().flat_map(|contact| &contact.terms).collect()
+        }
+        Gate::Invert | Gate::Through(_) => Vec::new(),
+    }
+}
+
+fn actions(drive: &Drive) -> Vec<&Action> {
+    match drive {
+        Drive::Action(action) => vec![action],
+        Drive::Path(path) => path.actions(),
+    }
+}
+
+fn device_of(term: &Term) -> Option<Device> {
+    match term.operand {
+        Operand::Device(device) => Some(device),
+        _ => None,
+    }
+}
+
+/// Whether an action changes nothing that one of these may be: it jumps, or what it writes is something else.
+fn leaves_alone(action: &Action, terms: &[&Term]) -> bool {
+    match action.deed {
+        Deed::Jump | Deed::Return => true,
+        Deed::Instruction(form) if form.instruction.flow() == Flow::Jump => true,
+        // It sets flags besides.
+        Deed::Instruction(form) if form.instruction.flow() == Flow::Straight => {
+            let is_register = |device: Device| device.kind == DeviceKind::D && !device.is_special();
+            let is_relay =
+                |term: &&Term| term.is_lone() && device_of(term).is_some_and(|own| !own.is_special());
+            let mut changes = action.changes().into_iter();
+            changes.all(|own| device_of(&own).is_some_and(is_register)) && terms.iter().all(is_relay)
+        }
+        Deed::Coil(_) if !touches_bits(action) => action.changes().iter().all(|own| {
+            let kind = |term: &Term| term.operand.device().map(|device| device.kind);
+            let is_counted = |term: &Term| kind(term).is_some_and(|kind| kind.has_preset());
+            terms.iter().all(|term| {
+                let is_kin = is_counted(own) && kind(own) == kind(term);
+                !is_kin && !own.may_cover(term) && !term.may_cover(own) && !may_overlap(own, term)
+            })
+        }),
+        _ => false,
+    }
+}
