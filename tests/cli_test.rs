@@ -603,3 +603,25 @@ fn faults_with_which_nothing_runs_are_named() {
         (&json!(1), Some("main.il"))
     );
 }
+
+#[test]
+fn faults_that_cannot_be_written_are_named_and_are_no_success() {
+    // What finds a falling edge needs variables, and nothing heads the unit behind which they could be declared.
+    let program = "VAR\ngo, Motor : BOOL; e : R_TRIG;\nEND_VAR\nCAL e(CLK := go)\nLD e.Q\nST Motor\n";
+    let scenarios = "[[scenario]]\nname = \"a\"\nsteps = [ { expect = { Motor = 0 } }, { at = 20, set = { go = 1 }, \
+        expect = { Motor = 1 } } ]\n";
+    let folder = folder(&[("main.il", program), ("main.test.toml", scenarios)]);
+    let (code, out, _) = run(&folder, &["test", "--mutate"]);
+    let told = "2 of 2 faults tried: 1 found, 0 not found, 0 proved to change nothing, 1 that cannot be run\n\
+        1 of them cannot be written, so nothing is known of them:\n  \
+        main.il:5:4: go: normally closed in place of normally open, or the other way round\n";
+    assert!(code == 1 && out.contains(told), "{out}");
+    let (code, json, _) = run(&folder, &["test", "--mutate", "--format", "json"]);
+    let json: Value = serde_json::from_str(&json).unwrap();
+    let mutants = &json["mutants"];
+    let line = &mutants["not_written"][0]["range"]["start"]["line"];
+    assert_eq!((code, &mutants["invalid"], &mutants["killed"], line), (1, &json!(1), &json!(1), &json!(5)));
+    assert_eq!((&mutants["survived"], &mutants["not_running"]), (&json!([]), &json!([])));
+    // Faults are counted only where they are tried.
+    assert_eq!(run(&folder, &["test", "--mutants", "3"]).0, 2);
+}

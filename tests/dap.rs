@@ -497,7 +497,16 @@ fn the_console_says_why() {
     assert_eq!(
         plc.console("why D0"),
         "D0 is 0: nothing that drives it has done so yet\n  \
-        MOV K5 D0 is not executed  [motor.il:12]"
+        MOV K5 D0 has no power  [motor.il:12]\n    \
+        M8013 is off: the PLC itself drives it  [motor.il:11]"
     );
+    // A coil at which it stands has not acted.
+    plc.console("set X1=1");
+    plc.go("stepOut");
+    (0..3).for_each(|_| drop(plc.go("stepIn")));
+    assert_eq!(plc.here(), "motor.il · OUT Y0 @4:1, scan 6, 60 ms");
+    assert_eq!(plc.console("why Y0"), on.replacen("is on:", "is on since scan 0 (0 ms):", 1));
+    plc.go("stepIn");
+    assert!(plc.console("why Y0").starts_with("Y0 is off: OUT Y0 has no power"), "{}", plc.console("why Y0"));
     assert!(plc.refusal("evaluate", json!({ "expression": "why Q7", "context": "repl" })).contains("Q7"));
 }

@@ -114,6 +114,46 @@ fn every_line_with_an_instruction_is_stopped_at() {
 }
 
 #[test]
+fn a_line_of_a_parameter_belongs_to_its_call() {
+    let text = "PROGRAM Main\nVAR a, y : BOOL; t : TON; END_VAR\nLD a\nCAL t(\n    IN := a,\n\n    PT := T#1s\n)\nLD t.Q\nST y\nEND_PROGRAM\n";
+    let folder = folder(&[("call.il", text)]);
+    let path = folder.path().canonicalize().unwrap().join("call.il");
+    let mut plc = entered(&path);
+    let asked: Vec<Value> = (4..=10).map(|line| json!({ "line": line })).collect();
+    let placed = plc.breakpoints(&path, json!(asked));
+    let placed: Vec<i64> = placed.iter().map(|one| one["line"].as_i64().unwrap()).collect();
+    assert_eq!(placed, [4, 4, 4, 4, 4, 9, 10]);
+    plc.go("continue");
+    assert_eq!(plc.stack()[0], "Main · CAL t( @4:1");
+}
+
+#[test]
+fn why_within_a_scan_looks_at_the_last_turn_of_what_comes_later() {
+    let text =
+        "PROGRAM Main\nVAR a, y : BOOL; n : INT; END_VAR\nLD a\nST y\nLD n\nMUL 2\nST n\nEND_PROGRAM\n";
+    let folder = folder(&[("late.il", text)]);
+    let path = folder.path().canonicalize().unwrap().join("late.il");
+    let mut plc = entered(&path);
+    let never = "nothing that drives it has done so yet";
+    // In the first scan it has had none.
+    assert_eq!(plc.console("why y"), format!("y is off: {never}\n  ST y is not executed  [late.il:4]"));
+    plc.go("stepOut");
+    plc.go("stepIn");
+    let told = format!(
+        "y is off: {never}\n  ST y has no power  [late.il:4]\n    a is off: nothing drives it  [late.il:3]"
+    );
+    assert_eq!(plc.console("why y"), told);
+    assert!(plc.console("why n").contains("LD n, MUL 2, ST n is executed"), "{}", plc.console("why n"));
+    plc.ask("evaluate", json!({ "expression": "set a=1", "context": "repl" }));
+    plc.go("stepOut");
+    plc.go("stepIn");
+    // It stands at the coil, which has not acted.
+    assert!(plc.console("why y").contains("ST y has no power"), "{}", plc.console("why y"));
+    plc.go("stepIn");
+    assert!(plc.console("why y").starts_with("y is on: ST y has power"), "{}", plc.console("why y"));
+}
+
+#[test]
 fn instances_and_functions_are_frames_with_variables_of_their_own() {
     let (_folder, path) = plant();
     let mut plc = entered(&path);

@@ -227,3 +227,50 @@ steps = [
     let ran = tested.tell("rungwise.test.run", json!({ "uri": tested.uri("motor.test.toml") }));
     assert_eq!((&ran["passed"], &ran["failed"]), (&json!(1), &json!(0)), "{ran:#}");
 }
+
+#[test]
+fn what_is_done_to_one_name_between_two_scans_is_recorded_in_its_order() {
+    let program = "LD X0\nOUT Y0\nLD X1\nDIV D0 D1 D2\nLD M0\nOUT Y1\nEND\n";
+    let mut tested = Tested::start(&[("order.il", program)]);
+    let uri = tested.open("order.il");
+    let mut tell = |verb: &str, more: Value| {
+        let mut argument = json!({ "uri": uri });
+        argument.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        tested.tell(&format!("rungwise.simulate.{verb}"), argument)
+    };
+    let value = |name: &str, value: i64| json!({ "name": name, "value": value });
+    tell("start", json!({ "paused": true }));
+    tell("set", value("X0", 1));
+    tell("force", value("X0", 0));
+    tell("step", json!({ "count": 2 }));
+    tell("release", json!({ "name": "x0" }));
+    tell("force", value("X0", 0));
+    tell("step", json!({ "count": 2 }));
+    tell("force", value("M0", 1));
+    tell("release", json!({ "name": "M0" }));
+    tell("set", value("M0", 0));
+    tell("set", value("X1", 0));
+    tell("set", value("x1", 1));
+    tell("step", json!({ "count": 2 }));
+    let text = tell("record", json!({}))["text"].as_str().unwrap().to_string();
+    let expected = r#"program = "order.il"
+scan-time = "10ms"
+
+[[scenario]]
+name = "order"
+allow-errors = true
+time = "60ms"
+steps = [
+  { at = "0ms", expect = { Y0 = 0, Y1 = 0 } },
+  { at = "10ms", set = { X0 = 1 }, force = { X0 = 0 } },
+  { at = "30ms", release = ["x0"] },
+  { at = "30ms", force = { X0 = 0 } },
+  { at = "50ms", force = { M0 = 1 }, release = ["M0"] },
+  { at = "50ms", set = { M0 = 0, x1 = 1 } },
+]
+"#;
+    assert_eq!(text, expected);
+    std::fs::write(tested.folder.path().join("order.test.toml"), &text).unwrap();
+    let ran = tested.tell("rungwise.test.run", json!({ "uri": tested.uri("order.test.toml") }));
+    assert_eq!((&ran["passed"], &ran["failed"]), (&json!(1), &json!(0)), "{ran:#}");
+}

@@ -130,7 +130,7 @@ impl<W: Write> Adapter<W> {
         let inquiry = Inquiry::new(debuggee.session(), debuggee.code(), &documents, drivers);
         let sights = debuggee.sights();
         // Where a scan begins, the one before it is the answer.
-        let is_inside = sights.len() > 1 || debuggee.scan() == 1;
+        let is_inside = !sights.is_empty() || debuggee.scan() == 1;
         let reason = match is_inside && debuggee.here().is_some() {
             true => inquiry.within(debuggee.machine(), sights).why(name, None),
             false => inquiry.why(name, None),

@@ -95,15 +95,16 @@ impl Debuggee {
         (scan as i64 - 1) * self.scan_ns
     }
 
-    /// What was seen in this scan so far.
+    /// What the instructions saw that were executed in this scan: not the one at which it stands.
     pub(super) fn sights(&self) -> Vec<Sight<u8>> {
         let (mut sights, last) = (Vec::new(), self.seen);
         if last > 0 {
             let mut seen = 0;
             self.at_start().scan_inside(self.now_ns(), &mut |glimpse| {
                 seen += u64::from(glimpse.is_stop);
-                sights.extend(glimpse.sight);
-                seen < last
+                let is_done = seen < last;
+                sights.extend(glimpse.sight.filter(|_| is_done));
+                is_done
             });
         }
         sights

@@ -154,7 +154,7 @@ impl Program {
     }
 
     /// The instruction at which a breakpoint of a line of a file stops: the one at the column, else the first of the
-    /// line, else the first behind it.
+    /// line, else the one of a list that goes on in this line, else the first behind it.
     pub(super) fn stop_at(&self, file: u32, line: u32, column: Option<u32>) -> Option<&Stop> {
         let document = &self.files.get(file as usize)?.document;
         let offset =
@@ -174,7 +174,13 @@ impl Program {
                 return stop;
             }
         }
-        own().find(|stop| stop.place.span.start >= start)
+        if let Some(stop) = own().find(|stop| is_on_line(&stop.place)) {
+            return Some(stop);
+        }
+        // A call in a list has a line for each parameter.
+        let is_list = document.notation() != Notation::Ladder;
+        let goes_on = |stop: &&Stop| is_list && (stop.place.span.start..stop.place.span.end).contains(&start);
+        own().rfind(goes_on).or_else(|| own().find(|stop| stop.place.span.start >= start))
     }
 
     /// Where a routine or program unit is entered that is called `name`.

@@ -27,6 +27,8 @@ pub struct Report {
     pub trace: Trace,
     /// The scans that were run.
     pub scans: u64,
+    /// Whether an instruction failed, also where the scenario allows that.
+    pub has_errors: bool,
 }
 
 impl Report {
@@ -135,7 +137,7 @@ impl Bench {
         let mut plan = self.plan(scenario, golden)?;
         let mut session = Session::new(Arc::clone(&self.code));
         let mut trace = Trace::new(std::mem::take(&mut plan.watched));
-        let mut failures = Vec::new();
+        let (mut failures, mut has_errors) = (Vec::new(), false);
         let mut touches = std::mem::take(&mut plan.touches).into_iter().peekable();
         for scan in 0..=plan.last {
             let now_ns = (scan as i64).saturating_mul(scenario.scan_ns);
@@ -152,6 +154,7 @@ impl Bench {
                 None => session.scan(now_ns),
             };
             trace.note(session.machine());
+            has_errors |= !outcome.errors.is_empty();
             let is_stuck = outcome.errors.iter().any(|error| error.kind == ErrorKind::Watchdog);
             if let Some(error) = outcome.errors.first().filter(|_| is_stuck || !scenario.allows_errors) {
                 let message =
@@ -174,7 +177,7 @@ impl Bench {
         if let (true, Some(golden)) = (failures.is_empty(), golden) {
             failures.extend(golden.compare(&trace, scenario));
         }
-        Ok(Report { failures, trace, scans })
+        Ok(Report { failures, trace, scans, has_errors })
     }
 
     fn plan<'s>(&self, scenario: &'s Scenario, golden: Option<&Golden>) -> Result<Plan<'s>, Vec<Flaw>> {

@@ -91,17 +91,21 @@ impl Recording {
             allows_errors: true,
             inputs: inputs.clone(),
         };
-        let mut steps: BTreeMap<u64, Step> = BTreeMap::new();
+        let mut steps: BTreeMap<u64, Vec<Step>> = BTreeMap::new();
         for input in inputs {
-            let step = steps.entry(input.scan).or_default();
-            match input.kind {
-                InputKind::Set(value) => step.set.push((input.name.name, value)),
-                InputKind::Force(value) => step.force.push((input.name.name, value)),
-                InputKind::Release => step.release.push(input.name.name),
+            let own = steps.entry(input.scan).or_default();
+            match own.last_mut().filter(|step| step.takes(&input)) {
+                Some(step) => step.add(input),
+                None => {
+                    let mut step = Step::default();
+                    step.add(input);
+                    own.push(step);
+                }
             }
         }
-        let mut is_truncated = false;
+        let (mut is_truncated, mut has_errors) = (false, false);
         if let Ok(report) = bench.run(&scenario, None, None) {
+            has_errors = report.has_errors;
             let trace = report.trace;
             let mut before: Option<&[Value]> = None;
             for row in &trace.rows {
@@ -116,7 +120,10 @@ impl Recording {
                         is_truncated = true;
                         continue;
                     }
-                    steps.entry(row.scan).or_default().expect.push((name.clone(), value.clone()));
+                    let own = steps.entry(row.scan).or_default();
+                    let mut last = own.pop().unwrap_or_default();
+                    last.expect.push((name.clone(), value.clone()));
+                    own.push(last);
                 }
                 before = Some(&row.values);
             }
@@ -125,8 +132,11 @@ impl Recording {
         let _ = writeln!(text, "scan-time = \"{}ms\"\n", milliseconds(scan_ns));
         let _ = writeln!(text, "[[scenario]]\nname = {}", quoted(stem));
         let last_ns = (scans.saturating_sub(1) as i64).saturating_mul(scan_ns);
+        if has_errors {
+            text.push_str("allow-errors = true\n");
+        }
         let _ = writeln!(text, "time = \"{}ms\"\nsteps = [", milliseconds(last_ns));
-        for (scan, step) in &steps {
+        for (scan, step) in steps.iter().flat_map(|(scan, own)| own.iter().map(move |step| (scan, step))) {
             let at_ns = (*scan as i64).saturating_mul(scan_ns);
             let _ = writeln!(text, "  {{ at = \"{}ms\"{} }},", milliseconds(at_ns), step.told());
         }
@@ -152,7 +162,7 @@ impl Recording {
     }
 }
 
-/// What is done and expected at one time.
+/// What is done and expected at one time. A scenario sets before it forces, and forces before it lets go.
 #[derive(Default)]
 struct Step {
     set: Vec<(String, Value)>,
@@ -162,6 +172,30 @@ struct Step {
 }
 
 impl Step {
+    /// Whether something may be done in this step behind what is done already: to one name in the order of the step.
+    fn takes(&self, input: &Input) -> bool {
+        let is_own = |name: &String| name.eq_ignore_ascii_case(&input.name.name);
+        let is_in = |all: &[(String, Value)]| all.iter().any(|(name, _)| is_own(name));
+        let is_released = self.release.iter().any(is_own);
+        match input.kind {
+            InputKind::Set(_) => !is_released && !is_in(&self.force),
+            InputKind::Force(_) => !is_released,
+            InputKind::Release => true,
+        }
+    }
+
+    /// Of several values of one name the last one counts.
+    fn add(&mut self, input: Input) {
+        let name = input.name.name;
+        let (all, value) = match input.kind {
+            InputKind::Set(value) => (&mut self.set, value),
+            InputKind::Force(value) => (&mut self.force, value),
+            InputKind::Release => return self.release.push(name),
+        };
+        all.retain(|(known, _)| !known.eq_ignore_ascii_case(&name));
+        all.push((name, value));
+    }
+
     fn told(&self) -> String {
         let mut text = String::new();
         let lists = [("set", &self.set), ("force", &self.force), ("expect", &self.expect)];

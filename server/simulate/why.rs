@@ -399,11 +399,7 @@ impl<'a> Inquiry<'a> {
             Writer::Read(_) => return None,
             Writer::Other(own) => (self.place_of(*own), self.watched.iec.names().scope_at(*own)),
         };
-        let before = moment.scan.checked_sub(1).filter(|scan| *scan > self.session.first_scan());
-        let before = before.and_then(|scan| Some(Moment { scan, before: self.seen(scan)?.len() }));
-        // What comes later in the scan of the question had its last turn in the one before.
-        let moments = [Some(moment), before].into_iter().flatten();
-        moments.into_iter().find_map(|at| {
+        [Some(moment), self.scan_before(moment)].into_iter().flatten().find_map(|at| {
             let because = self.skipped(place, frame, at, asked)?;
             let message = Message::new("why.not-executed").with("instruction", self.words(place));
             Some(self.reason(message, Some(place), at.scan, vec![because]))
@@ -423,6 +419,15 @@ impl<'a> Inquiry<'a> {
         seen.last(self.watched, driver.place, self.frame(driver), before)
     }
 
+    /// The end of the scan before a moment within a scan, in which what comes later in the scan had its last turn.
+    fn scan_before(&self, moment: Moment) -> Option<Moment> {
+        let is_open = self.open.is_some() && moment.scan > self.session.machine().scans();
+        let is_within = is_open || moment.before < self.seen(moment.scan)?.len();
+        let scan =
+            moment.scan.checked_sub(1).filter(|scan| is_within && *scan > self.session.first_scan())?;
+        Some(Moment { scan, before: self.seen(scan)?.len() })
+    }
+
     /// An instruction that might have driven something and did not.
     fn idle(&self, subject: &Subject, writer: &Writer, moment: Moment, asked: &mut Vec<Subject>) -> Reason {
         let driver = match writer {
@@ -438,8 +443,11 @@ impl<'a> Inquiry<'a> {
                 self.reason(message, Some(driver.place), moment.scan, because)
             }
             None => {
-                let because = self
-                    .skipped(driver.place, driver.frame, moment, asked)
+                let skipped = self.skipped(driver.place, driver.frame, moment, asked);
+                if let (None, Some(earlier)) = (&skipped, self.scan_before(moment)) {
+                    return self.idle(subject, writer, earlier, asked);
+                }
+                let because = skipped
                     .or_else(|| driver.rail.and_then(|rail| self.rail_reason(rail, moment, false, asked)));
                 let message = Message::new("why.not-executed").with("instruction", instruction);
                 self.reason(message, Some(driver.place), moment.scan, because.into_iter().collect())

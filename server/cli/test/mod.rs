@@ -30,10 +30,10 @@ pub(super) struct Arguments {
     #[arg(long)]
     mutate: bool,
     /// At most so many faults are tried.
-    #[arg(long, value_name = "N", default_value_t = 1000)]
+    #[arg(long, value_name = "N", default_value_t = 1000, requires = "mutate")]
     mutants: usize,
     /// Which faults are tried where there are more.
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "mutate")]
     seed: u64,
     /// Write golden traces anew.
     #[arg(long)]

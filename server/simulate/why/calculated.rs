@@ -53,9 +53,12 @@ impl Inquiry<'_> {
             }
             None => {
                 let place = self.place_of(instruction);
-                let message = Message::new("why.not-executed").with("instruction", self.words(place));
                 let frame = self.watched.iec.names().scope_at(instruction);
                 let because = frame.and_then(|frame| self.skipped(place, Some(frame), moment, asked));
+                if let (None, Some(earlier)) = (&because, self.scan_before(moment)) {
+                    return self.idly_calculated(subject, instruction, earlier, asked);
+                }
+                let message = Message::new("why.not-executed").with("instruction", self.words(place));
                 self.reason(message, Some(place), moment.scan, because.into_iter().collect())
             }
         }
