@@ -51,6 +51,13 @@ fn a_bad_alarm_is_told_at_its_place_in_both_languages() {
     }
     let cut = "[[alarm]]\nwhen = \"(X0\"\nmessage = \"a\"";
     assert!(Manifest::read(cut).is_err());
+    // Whatever somebody has written there, opening the folder does no harm.
+    for (part, behind) in [("D0 + ", "1"), ("not ", "X0"), ("(", "X0"), ("- ", "D0"), ("X0 or ", "X1")] {
+        let manifest = format!("[[alarm]]\nwhen = \"{}{behind}\"\nmessage = \"a\"", part.repeat(100_000));
+        assert!(Manifest::read(&manifest).is_err(), "{part}");
+    }
+    let usual = format!("[[alarm]]\nwhen = \"{}X0\"\nmessage = \"a\"", "X0 or ".repeat(500));
+    assert!(Manifest::read(&usual).is_ok());
 }
 
 #[test]
@@ -125,6 +132,54 @@ fn monitor_tells_alarms_of_a_plc_with_and_without_devices() {
         .unwrap();
     let (code, _, err) = run(&folder, &["monitor", "--count", "2", "--port", &port]);
     assert!(code == 2 && err.contains("rungwise.toml:2:9"), "{err}");
+}
+
+/// A project that calls some of its devices otherwise.
+const CALLED: &str = "target = \"fx2n\"\ncomments = \"devices.csv\"\n[[alarm]]\n\
+    when = \"Level > 100 and not Lock\"\nmessage = \"Too full\"\n";
+
+#[test]
+fn alarms_know_what_the_project_calls_its_devices() {
+    let table = "device,symbol\nD10,Level\nX3,Lock\n";
+    let folder = folder(&[("rungwise.toml", CALLED), ("devices.csv", table), ("tank.il", TANK)]);
+    let arguments = ["run", "tank.il", "--watch", "D10", "--set", "D10=101", "--set", "X3=1@50ms"];
+    let (code, out, err) = run(&folder, &arguments);
+    assert_eq!(code, 0, "{err}");
+    assert!(out.contains("alarm at 0 ms: Too full") && out.contains("alarm gone at 50 ms"), "{out}");
+    let mut plc = VirtualPlc::start(folder.path(), &["--program", "tank.il"]);
+    let port = plc.port.clone();
+    plc.tell("D10=101");
+    assert_eq!(plc.ask("D10"), "D10 = 101");
+    let (code, out, err) = run(&folder, &["monitor", "--count", "1", "--port", &port]);
+    assert!(code == 0 && out.contains("Too full (Level > 100 and not Lock)"), "{out}{err}");
+    // What nothing is called is told when somebody watches.
+    std::fs::write(folder.path().join("devices.csv"), "device,symbol\nD10,Level\n").unwrap();
+    for arguments in [&["run", "tank.il"][..], &["monitor", "--count", "1", "--port", &port]] {
+        let (code, _, err) = run(&folder, arguments);
+        assert!(code == 2 && err.contains("is not watched") && err.contains("`Lock`"), "{err}");
+    }
+    // Devices that the model does not have are no such names.
+    let wrong = CALLED.replace("Lock", "D9000");
+    assert!(Manifest::read(&wrong).is_err() && Manifest::read(CALLED).is_ok());
+    assert!(Manifest::read(&CALLED.replace("comments", "# ")).is_err());
+}
+
+#[test]
+fn an_editor_is_told_of_alarms_by_the_names_of_the_project() {
+    let mut editor = Connected::open_with(TANK, CALLED, |plc| plc.port.clone());
+    let table = editor.folder.path().canonicalize().unwrap().join("devices.csv");
+    let called = |editor: &mut Connected, text: &str, kind: u32| {
+        std::fs::write(&table, text).unwrap();
+        let changes = json!({ "changes": [{ "uri": format!("file://{}", table.display()), "type": kind }] });
+        editor.client.notify("workspace/didChangeWatchedFiles", changes);
+    };
+    editor.tell("write", json!({ "name": "D10", "value": 101 }));
+    editor.tell("monitor", json!({}));
+    called(&mut editor, "device,symbol\nD10,Level\nX3,Lock\n", 1);
+    assert_eq!(alarm(&mut editor, true)["when"], "Level > 100 and not Lock");
+    // Another device is called so from now on.
+    called(&mut editor, "device,symbol\nD11,Level\nX3,Lock\n", 2);
+    assert_eq!(alarm(&mut editor, false)["ended"], false);
 }
 
 /// The next alarm.

@@ -1,13 +1,12 @@
 //! The verbs of the programming port, through the binary, with a virtual PLC in a process of its own.
 
 use crate::binary::{command, folder, run};
+use crate::loopback::Overheard;
 use crate::virtual_plc::VirtualPlc;
-use rungwise::link::frame::STX;
-use rungwise::link::{Host, Line, Map, Mode, Part, Patience, Plain, Point, Transport, Watch, transport};
+use rungwise::link::{Host, Line, Map, Mode, Part, Patience, Plain, Point, Watch, transport};
 use rungwise::target::{Device, DeviceKind, Target};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -20,33 +19,6 @@ fn check(folder: &TempDir, arguments: &[&str], code: i32) -> (String, String) {
     assert_eq!(ended, code, "{arguments:?}\n{out}\n{err}");
     assert!(!err.contains("panicked"), "{err}");
     (out, err)
-}
-
-/// A line that counts the requests on it: each is a scan of a stepped PLC.
-struct Counted {
-    line: Box<dyn Transport>,
-    requests: Arc<AtomicUsize>,
-}
-
-impl Transport for Counted {
-    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        if bytes.first() == Some(&STX) {
-            self.requests.fetch_add(1, Ordering::Relaxed);
-        }
-        self.line.send(bytes)
-    }
-
-    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
-        self.line.receive(buffer, wait)
-    }
-
-    fn set_baud(&mut self, baud: u32) -> io::Result<()> {
-        self.line.set_baud(baud)
-    }
-
-    fn now(&self) -> Duration {
-        self.line.now()
-    }
 }
 
 /// An example in a folder of its own.
@@ -127,7 +99,10 @@ impl Example {
     /// it shows with the simulator under the same inputs.
     fn does_as_the_simulator(&self, port: &str, scans: usize) {
         let requests = Arc::<AtomicUsize>::default();
-        let line = Counted { line: transport::open(port).unwrap(), requests: Arc::clone(&requests) };
+        // Each request is a scan of a stepped PLC.
+        let counted = Arc::clone(&requests);
+        let hear = move || _ = counted.fetch_add(1, Ordering::Relaxed);
+        let line = Overheard { line: transport::open(port).unwrap(), hear };
         // A machine with much to do may be slow, and a request that is sent anew would be a scan too many.
         let patience = Patience { answer: Duration::from_secs(60), tries: 1 };
         let mut host = Host::connect(Line::new(line, patience, Arc::default())).unwrap();

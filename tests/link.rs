@@ -3,14 +3,16 @@
 use crate::loopback::{Loopback, words};
 use rungwise::link::Logbook;
 use rungwise::link::frame::{ACK, ENQ, NAK, framed};
-use rungwise::link::plc::Plc;
+use rungwise::link::plc::{Faults, Plc, Server};
 use rungwise::link::{
-    Address, BitAddress, Command, Extended, Fate, LinkError, Lying, Map, Mode, Part, Plain, Point, Program,
-    Space, Watch,
+    Address, BitAddress, Command, Extended, Fate, Host, Line, LinkError, Lying, Map, Mode, Part, Patience,
+    Plain, Point, Program, Space, Stage, Watch,
 };
-use rungwise::machine_code::{Image, ParameterBlock};
+use rungwise::machine_code::{END, Image, ParameterBlock};
 use rungwise::simulate::Value;
 use rungwise::target::{Device, DeviceKind, Model, Target};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 const MODELS: [Model; 4] = [Model::Fx1s, Model::Fx1n, Model::Fx2n, Model::Fx3u];
 
@@ -188,6 +190,56 @@ fn only_what_has_changed_is_written() {
     assert_eq!(host.upload(&mut |_| {}).unwrap().program(), after);
 }
 
+#[test]
+fn what_is_read_again_after_a_download_that_did_not_end_is_what_it_may_have_written() {
+    let list = |count: usize, shift: usize| -> Vec<u16> {
+        let rungs = (0..count).map(|n| format!("LD M{}\nOUT M{}\n", n % 500, (n + shift) % 500));
+        words(&format!("{}END\n", rungs.collect::<String>()), Model::Fx2n)
+    };
+    let target = Target::of(Model::Fx2n);
+    // The new program is longer, shorter, or as long.
+    for (before, after) in [(50, 600), (600, 50), (300, 300)] {
+        let (before, after) = (list(before, 1), list(after, 2));
+        for is_elsewhere in [false, true] {
+            let mut plc = Plc::new(target, 10_000_000);
+            plc.load(&before);
+            let line = Loopback::with(Server::new(plc), Faults::default());
+            let cancel = Arc::<AtomicBool>::default();
+            let cut = Host::connect(Line::new(line.clone(), Patience::default(), Arc::clone(&cancel)));
+            let mut cut = cut.unwrap();
+            let plan = cut.plan(&after, target, &mut |_| {}).unwrap();
+            let ended = cut.download(&plan, false, &mut |progress| {
+                let is_half = progress.stage == Stage::Writing && 2 * progress.done > progress.total;
+                cancel.fetch_or(is_half, Ordering::Relaxed);
+            });
+            assert_eq!(ended.unwrap_err().fate, Fate::Partial);
+            let mut host = line.host().unwrap();
+            if is_elsewhere {
+                // Somebody else has written far behind both programs, too.
+                host.line().ask(&bit::<Extended>(DeviceKind::M, 8118).force(true)).unwrap();
+                let address = 0x805C + 2 * 7000;
+                let data = vec![0x12, 0x34];
+                host.line().ask(&Command::Write { space: Space::Program, address, data }).unwrap();
+            }
+            let mut read = |replaced: &[u16]| {
+                let start = line.ends().received.len();
+                let plan = host.plan_behind(Some(replaced), &after, target, &mut |_| {}).unwrap();
+                (plan, line.ends().received.len() - start)
+            };
+            // Whoever knows of something else knows nothing.
+            let (_, all) = read(&[END]);
+            assert!(all > 2 * 2 * 8000, "{all}");
+            let (plan, read) = read(&before);
+            assert!(!plan.is_whole, "it is no program to go back to");
+            // Two digits a byte, frames around them, parameters twice, and some that are blank.
+            let most = 2 * 2 * before.len().max(after.len()) * 11 / 10 + 1_000;
+            assert!(read < most, "{read} {most}");
+            host.download(&plan, false, &mut |_| {}).unwrap();
+            assert_eq!(Image::from_bytes(&memory(&line)).unwrap(), Image::of(&after, Model::Fx2n).unwrap());
+        }
+    }
+}
+
 /// All of the program memory, as a host that reads all of it sees it.
 fn memory(line: &Loopback) -> Vec<u8> {
     let block = ParameterBlock::new(Model::Fx2n).to_words();
@@ -283,11 +335,11 @@ fn a_host_that_is_refused_or_not_answered_says_so() {
     assert_eq!(refused, Err(LinkError::Refused { request: "E01FFF008".into() }));
     let far = Point::named("D100", Target::of(Model::Fx2n)).unwrap();
     assert_eq!(host.read(&[far]).unwrap(), [0], "and goes on");
-    let silent = rungwise::link::plc::Faults { drop: 1.0, ..Default::default() };
+    let silent = Faults { drop: 1.0, ..Default::default() };
     line.reconnect(silent);
     assert_eq!(host.mode(), Err(LinkError::NoAnswer));
     assert!(matches!(line.host().err(), Some(LinkError::NoAnswer)));
-    let dead = rungwise::link::plc::Faults { disconnect: 1.0, ..Default::default() };
+    let dead = Faults { disconnect: 1.0, ..Default::default() };
     line.reconnect(dead);
     assert!(matches!(host.mode(), Err(LinkError::Gone { .. })));
 }

@@ -1,17 +1,14 @@
 //! Downloads over lines with faults: what the host says of the PLC is true, and when the faults stop the job is finished.
 
-use crate::loopback::{Loopback, words};
-use rungwise::link::frame::STX;
+use crate::loopback::{Loopback, Overheard, words};
 use rungwise::link::plc::{Faults, Plc, Server};
-use rungwise::link::{Fate, Host, Line, LinkError, Mode, Patience, Switch, Transport};
+use rungwise::link::{Fate, Host, Line, LinkError, Mode, Patience, Switch};
 use rungwise::machine_code::{BLANK, END};
 use rungwise::simulate::Value;
 use rungwise::target::{Model, Target};
-use std::io;
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
 
 /// Two programs that differ in many places, long enough for several frames.
 fn programs(model: Model) -> [Vec<u16>; 2] {
@@ -139,8 +136,10 @@ impl Case {
         }
         // The faults stop, and the same download finishes the job.
         line.reconnect(Faults::default());
+        // Every other one knows what the first try began to replace.
+        let replaced = (seed / 4).is_multiple_of(2).then_some(&before[..]);
         let again = line.host().and_then(|mut host| {
-            let plan = host.plan(after, self.target, &mut |_| {})?;
+            let plan = host.plan_behind(replaced, after, self.target, &mut |_| {})?;
             host.download(&plan, true, &mut |_| {}).map_err(|failure| failure.cause)
         });
         if !again.as_ref().is_ok_and(|report| report.mode == Mode::Run) || program_in(&line) != *after {
@@ -209,37 +208,6 @@ fn what_an_upload_brings_is_what_is_in_the_plc() {
     assert!((500..2900).contains(&brought), "{brought}");
 }
 
-/// A line whose user ends what is under way when so many requests have been sent.
-struct Ended {
-    line: Loopback,
-    left: usize,
-    cancel: Arc<AtomicBool>,
-}
-
-impl Transport for Ended {
-    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
-        if bytes.first() == Some(&STX) {
-            match self.left.checked_sub(1) {
-                Some(left) => self.left = left,
-                None => self.cancel.store(true, Ordering::Relaxed),
-            }
-        }
-        self.line.send(bytes)
-    }
-
-    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
-        self.line.receive(buffer, wait)
-    }
-
-    fn set_baud(&mut self, baud: u32) -> io::Result<()> {
-        self.line.set_baud(baud)
-    }
-
-    fn now(&self) -> Duration {
-        self.line.now()
-    }
-}
-
 #[test]
 fn a_download_that_is_ended_at_any_request_is_told_truly_and_can_be_finished() {
     for model in [Model::Fx2n, Model::Fx1s] {
@@ -249,7 +217,12 @@ fn a_download_that_is_ended_at_any_request_is_told_truly_and_can_be_finished() {
         for requests in 0.. {
             let line = Loopback::with(Server::new(case.plc(0)), Faults::default());
             let cancel = Arc::<AtomicBool>::default();
-            let ended = Ended { line: line.clone(), left: requests, cancel: Arc::clone(&cancel) };
+            let (ending, mut left) = (Arc::clone(&cancel), requests);
+            let hear = move || match left {
+                0 => ending.store(true, Ordering::Relaxed),
+                _ => left -= 1,
+            };
+            let ended = Overheard { line: line.clone(), hear };
             let is_running = || Case::is_running(&line);
             let planned =
                 Host::connect(Line::new(ended, Patience::default(), cancel)).and_then(|mut host| {

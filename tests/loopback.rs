@@ -1,6 +1,6 @@
 //! A line to a virtual PLC without a computer between: its time is that of its bytes.
 
-use rungwise::link::frame::BITS_PER_BYTE;
+use rungwise::link::frame::{BITS_PER_BYTE, STX};
 use rungwise::link::plc::{Faults, Plc, Server, Wire};
 use rungwise::link::{Host, Line, LinkError, Patience, Transport};
 use rungwise::machine_code::encode;
@@ -144,6 +144,33 @@ impl Transport for Loopback {
 
     fn now(&self) -> Duration {
         Duration::from_nanos(self.ends().now_ns as u64)
+    }
+}
+
+/// A line on which somebody hears when a request is sent.
+pub struct Overheard<T, F> {
+    pub line: T,
+    pub hear: F,
+}
+
+impl<T: Transport, F: FnMut() + Send> Transport for Overheard<T, F> {
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        if bytes.first() == Some(&STX) {
+            (self.hear)();
+        }
+        self.line.send(bytes)
+    }
+
+    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
+        self.line.receive(buffer, wait)
+    }
+
+    fn set_baud(&mut self, baud: u32) -> io::Result<()> {
+        self.line.set_baud(baud)
+    }
+
+    fn now(&self) -> Duration {
+        self.line.now()
     }
 }
 

@@ -1,7 +1,7 @@
 //! `rungwise.plc.…`, `rungwise/plc` and `rungwise/monitor` over the protocol, with a virtual PLC at the other end.
 
 use super::lsp_client::Client;
-use crate::virtual_plc::VirtualPlc;
+use crate::virtual_plc::{Pass, VirtualPlc, proxy};
 use serde_json::{Value, json};
 use std::sync::LazyLock;
 
@@ -139,6 +139,84 @@ fn a_program_is_compared_downloaded_watched_and_driven() {
     assert_eq!(editor.tell("start", json!({ "confirmed": true }))["mode"], "RUN");
     assert_eq!(editor.tell("disconnect", json!({}))["connected"], false);
     assert!(editor.answer("stop", json!({}))["error"]["message"].as_str().unwrap().contains("no PLC"));
+}
+
+/// Two rungs, and the same in the other order, which has the same sum.
+const RUNGS: [&str; 2] = ["LD X0\nOUT Y0\nLD X1\nOUT Y1\n", "LD X1\nOUT Y1\nLD X0\nOUT Y0\n"];
+
+#[test]
+fn no_power_is_shown_in_a_program_that_is_not_known_to_be_in_the_plc() {
+    let mut editor = Connected::open(&format!("{}END\n", RUNGS[0]));
+    editor.tell("download", json!({ "start": true, "confirmed": true }));
+    editor.tell("force", json!({ "name": "X0", "value": true }));
+    let has_power = |picture: &Value| {
+        picture["elements"].as_array().unwrap().iter().any(|element| element["energised"] == true)
+    };
+    let change = |editor: &mut Connected, version, text| {
+        let uri = editor.uri.clone();
+        editor.client.change(&uri, version, (0, 0), (4, 0), text);
+        editor.client.diagnostics(&uri, version);
+    };
+    editor.tell("monitor", json!({ "ranges": WHOLE.clone() }));
+    editor.picture(has_power);
+    change(&mut editor, 2, RUNGS[1]);
+    assert_eq!(editor.tell("state", json!({}))["match"], "different");
+    let dark = |editor: &mut Connected, version: i64| {
+        let first = editor.picture(|picture| picture["version"] == version);
+        let last = first["scan"].as_u64().unwrap() + 10;
+        assert!(!has_power(&first), "{first}");
+        let is_over = |picture: &Value| has_power(picture) || picture["scan"].as_u64().unwrap() >= last;
+        let picture = editor.picture(is_over);
+        assert!(!has_power(&picture), "{picture}");
+    };
+    dark(&mut editor, 2);
+    // Whoever connects anew knows nothing of what is in the PLC.
+    editor.tell("disconnect", json!({}));
+    let port = editor.port.clone();
+    editor.tell("connect", json!({ "port": port }));
+    editor.tell("monitor", json!({ "ranges": WHOLE.clone() }));
+    dark(&mut editor, 2);
+    assert_eq!(editor.tell("state", json!({}))["match"], "unknown");
+    // What is there is read beside the looks; that it is the same is told before its power is shown.
+    let before = editor.client.notified("rungwise/plc").len();
+    change(&mut editor, 3, RUNGS[0]);
+    editor.picture(|picture| picture["version"] == 3 && has_power(picture));
+    let told = editor.client.notified("rungwise/plc").split_off(before);
+    assert!(told.iter().any(|told| told["params"]["match"] == "same"), "{told:?}");
+    assert_eq!(editor.tell("state", json!({}))["match"], "same");
+}
+
+#[test]
+fn of_a_download_that_was_cut_it_is_told_that_what_is_there_is_not_known() {
+    let (reached, is_reached) = std::sync::mpsc::channel();
+    let (go_on, goes_on) = std::sync::mpsc::channel::<()>();
+    let mut writes = 0;
+    let long: String = (0..200).map(|n| format!("LD M{n}\nOUT M{}\n", n + 1)).collect();
+    let mut editor = Connected::open_with(&format!("{long}END\n"), "", |plc| {
+        proxy(plc.address(), move |body| {
+            writes += usize::from(body.starts_with("E11"));
+            if writes == 5 {
+                writes += 1;
+                reached.send(()).unwrap();
+                goes_on.recv().unwrap();
+            }
+            Pass::On
+        })
+    });
+    editor.tell("stop", json!({}));
+    assert_eq!(editor.tell("plan", json!({}))["same"], false);
+    while editor.client.take(|message| message["method"] == "rungwise/plc").is_some() {}
+    let params = json!({ "command": "rungwise.plc.download", "arguments": [{ "uri": editor.uri, "confirmed": true }] });
+    let id = editor.client.ask("workspace/executeCommand", params);
+    is_reached.recv().unwrap();
+    editor.client.notify("$/cancelRequest", json!({ "id": id }));
+    let answer = editor.client.answer(id);
+    assert!(!answer["error"].is_null(), "{answer}");
+    go_on.send(()).unwrap();
+    let unknown = editor.client.wait_for("that nothing is known", |message| {
+        message["method"] == "rungwise/plc" && message["params"]["match"] == "unknown"
+    });
+    assert_eq!(unknown["params"]["mode"], "STOP");
 }
 
 #[test]

@@ -48,10 +48,21 @@ impl VirtualPlc {
         self.port.strip_prefix("tcp://").unwrap()
     }
 
+    /// Its process.
+    #[cfg(unix)]
+    pub fn process(&self) -> &Child {
+        &self.child
+    }
+
+    /// Waits for its end; gives its exit code.
+    pub fn ended(&mut self) -> Option<i32> {
+        self.child.wait().unwrap().code()
+    }
+
     /// It is switched off in good order; gives its exit code.
     pub fn quit(mut self) -> Option<i32> {
         self.tell("quit");
-        self.child.wait().unwrap().code()
+        self.ended()
     }
 }
 

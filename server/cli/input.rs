@@ -151,7 +151,16 @@ pub(super) fn put(text: &str, output: Option<&Path>, language: Language) -> bool
         say(text);
         return true;
     };
-    let written = std::fs::write(path, text);
+    tell_unwritable(path, std::fs::write(path, text), language)
+}
+
+/// Whether a result can be written to `path` later; complains if not. What is there already stays.
+pub(super) fn is_writable(path: &Path, language: Language) -> bool {
+    let opened = std::fs::OpenOptions::new().create(true).append(true).open(path);
+    tell_unwritable(path, opened, language)
+}
+
+fn tell_unwritable<T>(path: &Path, written: std::io::Result<T>, language: Language) -> bool {
     if let Err(reason) = &written {
         let help = Message::new("cli.make-room").render(language);
         complain("unwritable", &format!("{}: {reason}", path.display()), &help, language);

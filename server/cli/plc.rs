@@ -4,6 +4,7 @@ use super::Outcome;
 use super::check::target_named;
 use super::encode::encoded;
 use super::input::{caution, complain, remark, say};
+use super::progress::interruption;
 use super::run::distance;
 use crate::link::Switch;
 use crate::link::plc::{Faults, Listener, Plc, Saved, Server, Service};
@@ -14,6 +15,8 @@ use crate::text::{Language, Message};
 use clap::ValueEnum;
 use std::io::{BufRead, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 #[derive(clap::Args)]
@@ -86,8 +89,14 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
         true => Server::stepped(plc, arguments.scan_time),
         false => Server::new(plc),
     };
-    let mut person =
-        Person { words: words_from_input(), kept_ns: 0, state: arguments.state.clone(), language };
+    let mut person = Person {
+        words: words_from_input(),
+        end: interruption(),
+        kept_ns: 0,
+        state: arguments.state.clone(),
+        is_unkept: false,
+        language,
+    };
     let mut attend = |server: &mut Server, now_ns: i64| person.attend(server, now_ns);
     let service = Service::new(server, faults, arguments.baud, &mut attend);
     let ready = |port: &str| {
@@ -151,10 +160,17 @@ fn plc_of(arguments: &Arguments, language: Language) -> Option<Plc> {
         unusable("target-refused", &reason, "link.help-unknown-type", language);
         return None;
     }
-    // A model that is asked for is another PLC than the one that was left.
-    let is_asked =
-        |plc: &Plc| arguments.model.or(of_program).is_none_or(|target| target.model == plc.target().model);
-    let mut plc = saved.filter(is_asked).unwrap_or_else(|| {
+    // Of a PLC that was left nothing is lost because another model is asked for.
+    let asked = arguments.model.or(of_program);
+    if let (Some(path), Some(plc), Some(asked)) = (&arguments.state, &saved, asked)
+        && asked.model != plc.target().model
+    {
+        let reason = Message::new("link.state-of-other");
+        let reason = reason.with("kept", plc.target().title).with("model", asked.title);
+        bad_state(path, &reason, language);
+        return None;
+    }
+    let mut plc = saved.unwrap_or_else(|| {
         let plc = Plc::new(target, arguments.scan_time);
         match arguments.memory {
             Some(thousands) => plc.with_memory(thousands),
@@ -164,7 +180,22 @@ fn plc_of(arguments: &Arguments, language: Language) -> Option<Plc> {
     if let Some(program) = program {
         plc.load(&program.words());
     }
+    // What cannot be kept is said before somebody relies on it.
+    if let Some(path) = &arguments.state {
+        plc.forget_saving();
+        let kept = plc.save().map_or(Ok(()), |saved| written(path, &saved));
+        if let Err(error) = kept {
+            let reason = format!("{}: {error}", path.display());
+            complain("unwritable", &reason, &Message::new("cli.make-room").render(language), language);
+            return None;
+        }
+    }
     Some(plc)
+}
+
+fn bad_state(path: &Path, reason: &Message, language: Language) {
+    let reason = format!("{}: {}", path.display(), reason.render(language));
+    complain("bad-state", &reason, &Message::new("link.help-state").render(language), language);
 }
 
 fn restored(path: &Path, scan_ns: i64, language: Language) -> Option<Plc> {
@@ -177,8 +208,7 @@ fn restored(path: &Path, scan_ns: i64, language: Language) -> Option<Plc> {
     match read() {
         Ok(plc) => Some(plc),
         Err(reason) => {
-            let reason = format!("{}: {}", path.display(), reason.render(language));
-            complain("bad-state", &reason, &Message::new("link.help-state").render(language), language);
+            bad_state(path, &reason, language);
             None
         }
     }
@@ -187,8 +217,12 @@ fn restored(path: &Path, scan_ns: i64, language: Language) -> Option<Plc> {
 /// The person in front of the PLC: switches inputs, turns its switch, looks at it.
 struct Person {
     words: Receiver<String>,
+    /// Whether the process is told to end.
+    end: Arc<AtomicBool>,
     kept_ns: i64,
     state: Option<PathBuf>,
+    /// Whether the last try to keep it failed, which is told once.
+    is_unkept: bool,
     language: Language,
 }
 
@@ -222,16 +256,18 @@ impl Person {
                 Err(TryRecvError::Empty | TryRecvError::Disconnected) => break,
             }
         }
-        if now_ns - self.kept_ns >= KEEPING_NS {
+        let is_ended = self.end.load(Ordering::Relaxed);
+        // A host that was told that its program is there may rely on it.
+        if is_ended || server.plc().is_taken_over() || now_ns - self.kept_ns >= KEEPING_NS {
             self.kept_ns = now_ns;
             self.keep(server);
         }
-        true
+        !is_ended
     }
 
     /// Does what a line says; gives what is answered.
     fn obey(&self, server: &mut Server, line: &str, now_ns: i64) -> Option<String> {
-        let code = std::sync::Arc::clone(server.plc().machine().code());
+        let code = Arc::clone(server.plc().machine().code());
         match line {
             "" => return None,
             "run" => server.plc_mut().turn(Switch::Run, now_ns),
@@ -250,12 +286,17 @@ impl Person {
         None
     }
 
-    fn keep(&self, server: &mut Server) {
+    fn keep(&mut self, server: &mut Server) {
         let Some(path) = &self.state else { return };
         let Some(saved) = server.plc_mut().save() else { return };
-        if let Err(error) = written(path, &saved) {
-            remark(&format!("{}: {error}", path.display()));
+        let kept = written(path, &saved);
+        if let Err(error) = &kept {
+            server.plc_mut().forget_saving();
+            if !self.is_unkept {
+                remark(&format!("{}: {error}", path.display()));
+            }
         }
+        self.is_unkept = kept.is_err();
     }
 }
 

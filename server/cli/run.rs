@@ -9,7 +9,7 @@ use crate::document::Document;
 use crate::scenario::picture;
 use crate::simulate::{
     self, AlarmChange, Alarms, Code, NamesOfCode, Place, Reason, Session, Setting, Touch, Trace, TraceRow,
-    Variable, compile,
+    Variable, WithSymbols, compile,
 };
 use crate::text::{Diagnostic, Encoding, Language, Message, Severity, Span};
 use clap::ValueEnum;
@@ -199,7 +199,11 @@ fn named(
 /// The alarms of the project; nothing after a complaint about one that names what there is not.
 fn alarms_of(programs: &[Program], code: &Code, language: Language) -> Option<Alarms> {
     let wanted = programs.first().map(|program| program.manifest.alarms()).unwrap_or_default();
-    let (alarms, refused) = Alarms::new(&wanted, &NamesOfCode { code, instruction: None });
+    let comments =
+        programs.first().map(|program| Arc::clone(program.document.comments())).unwrap_or_default();
+    let names = NamesOfCode { code, instruction: None };
+    let names = WithSymbols { names: &names, symbols: comments.symbols() };
+    let (alarms, refused) = Alarms::new(&wanted, &names);
     let Some((alarm, reason)) = refused.into_iter().next() else { return Some(alarms) };
     let reason =
         Message::new("simulate.alarm-refused").with("when", alarm.when).with_messages("reason", vec![reason]);

@@ -21,6 +21,9 @@ pub use status::{Status, StatusError};
 
 mod program;
 
+mod comparison;
+pub use comparison::Comparison;
+
 mod download;
 pub use download::{DownloadFailure, Fate, Plan, Progress, Report, Stage};
 

@@ -173,8 +173,13 @@ impl<T: Transport> Line<T> {
         self.transport.now()
     }
 
+    /// Whether what goes on is to end.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancel.load(Ordering::Relaxed)
+    }
+
     fn check_cancelled(&self) -> Result<(), LinkError> {
-        if self.cancel.load(Ordering::Relaxed) { Err(LinkError::Cancelled) } else { Ok(()) }
+        if self.is_cancelled() { Err(LinkError::Cancelled) } else { Ok(()) }
     }
 
     /// Reads with lengths of their own until the answer to the last one has come.

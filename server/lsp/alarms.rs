@@ -8,10 +8,12 @@
 //! ```
 
 use super::workspace::Workspace;
-use crate::simulate::{Alarm, AlarmChange, Alarms, Names, Value};
+use crate::simulate::{Alarm, AlarmChange, Alarms, Names, Value, WithSymbols};
+use crate::target::Symbols;
 use crate::text::{Message, Severity};
 use rustc_hash::FxHashMap;
 use serde_json::{Value as Json, json};
+use std::sync::Arc;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use tower_lsp::ls_types::notification::Notification;
 use tower_lsp::ls_types::{MessageType, Uri};
@@ -31,8 +33,9 @@ const AGAIN: Duration = Duration::from_secs(5);
 pub(super) struct Watchman<V> {
     source: &'static str,
     alarms: Alarms<V>,
-    /// What the alarms are made of.
+    /// What the alarms are made of, and what the project calls the devices in them.
     wanted: Vec<Alarm>,
+    symbols: Arc<Symbols>,
     /// What was not told yet.
     changes: Vec<AlarmChange>,
     refused: Vec<(Alarm, Message)>,
@@ -48,6 +51,7 @@ impl<V: Copy> Watchman<V> {
             source,
             alarms: Alarms::default(),
             wanted: Vec::new(),
+            symbols: Arc::default(),
             changes: Vec::new(),
             refused: Vec::new(),
             is_over: false,
@@ -55,24 +59,30 @@ impl<V: Copy> Watchman<V> {
         }
     }
 
-    /// Whether the manifest of the project wants other alarms than these.
+    /// Whether the project wants other alarms than these, or calls devices otherwise.
     pub(super) fn is_outdated(&self, workspace: &Workspace, uri: &Uri) -> bool {
         let snapshot = workspace.snapshot();
         snapshot.open(uri).is_some_and(|open| {
             let wanted = &open.manifest.alarms;
-            wanted.len() != self.wanted.len() || open.manifest.alarms() != self.wanted
+            wanted.len() != self.wanted.len()
+                || open.manifest.alarms() != self.wanted
+                || *open.document.comments().symbols() != self.symbols
         })
     }
 
     /// Watches the alarms of the project around `uri`, with the names as they are now; what is raised stays so.
     pub(super) fn follow(&mut self, workspace: &Workspace, uri: &Uri, names: &impl Names<Variable = V>) {
-        let wanted = workspace.snapshot().open(uri).map(|open| open.manifest.alarms()).unwrap_or_default();
-        let (mut alarms, refused) = Alarms::new(&wanted, names);
+        let snapshot = workspace.snapshot();
+        let of_project = snapshot
+            .open(uri)
+            .map(|open| (open.manifest.alarms(), open.document.comments().symbols().clone()));
+        let (wanted, symbols) = of_project.unwrap_or_default();
+        let (mut alarms, refused) = Alarms::new(&wanted, &WithSymbols { names, symbols: &symbols });
         alarms.take_over(&self.alarms);
-        if wanted != self.wanted {
+        if wanted != self.wanted || symbols != self.symbols {
             self.refused = refused;
         }
-        (self.alarms, self.wanted) = (alarms, wanted);
+        (self.alarms, self.wanted, self.symbols) = (alarms, wanted, symbols);
     }
 
     /// What is to be looked at.

@@ -96,6 +96,12 @@ impl Image {
     }
 }
 
+/// Of the words of a program those that a PLC executes: up to END, or all of them where there is none.
+pub fn executed(words: &[u16]) -> &[u16] {
+    let end = words.iter().position(|word| *word == END);
+    end.and_then(|end| words.get(..=end)).unwrap_or(words)
+}
+
 /// The program at the beginning of memory: up to END, or without the blank words behind it where there is no END.
 pub(super) fn program_in(memory: &[u16]) -> &[u16] {
     let end = memory.iter().position(|word| *word == END);
@@ -109,7 +115,7 @@ pub fn sum(memory: &[u16]) -> u16 {
 }
 
 /// Words in memory order; nothing if one is cut in half.
-fn words_of(bytes: &[u8]) -> Option<Vec<u16>> {
+pub fn words_of(bytes: &[u8]) -> Option<Vec<u16>> {
     let (pairs, rest) = bytes.as_chunks::<2>();
     rest.is_empty().then(|| pairs.iter().map(|pair| u16::from_le_bytes(*pair)).collect())
 }

@@ -33,7 +33,7 @@ mod parameters;
 pub use parameters::{Latch, ParameterBlock};
 
 mod image;
-pub use image::{Chunk, Image, sum};
+pub use image::{Chunk, Image, executed, sum, words_of};
 
 /// Where the parameter block begins in the memory of the PLC, in bytes.
 pub const PARAMETER_ADDRESS: u32 = 0x8000;

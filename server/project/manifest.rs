@@ -277,7 +277,7 @@ impl Manifest {
             if let Some(time) = alarm.hold.as_ref().filter(|time| duration(time.get_ref()).is_none()) {
                 return fail(Message::new("debug.time").with("text", time.get_ref()), time.span());
             }
-            if let Err(reason) = alarm.alarm().check(self.target()) {
+            if let Err(reason) = alarm.alarm().check(self.target(), self.comments.is_some()) {
                 return fail(reason, alarm.when.span());
             }
         }

@@ -3,8 +3,8 @@
 
 use super::expression::{Expression, Names};
 use super::{Layout, Value, Variable};
-use crate::target::Target;
 use crate::target::iec::is_identifier;
+use crate::target::{Symbols, Target};
 use crate::text::{Message, Severity};
 use serde_json::{Value as Json, json};
 
@@ -22,14 +22,15 @@ pub struct Alarm {
 }
 
 impl Alarm {
-    /// Sees whether its condition can be read; on a target of the FX family also whether there are such devices.
+    /// Sees whether its condition can be read; on a target of the FX family also whether there are such devices. Where
+    /// the project `has_symbols`, what may be one counts as such.
     ///
     /// # Errors
     /// A sentence that says what is wrong.
-    pub fn check(&self, target: Option<&Target>) -> Result<(), Message> {
+    pub fn check(&self, target: Option<&Target>, has_symbols: bool) -> Result<(), Message> {
         match target.filter(|target| target.is_fx()) {
             Some(target) => {
-                let names = NamesOfTarget { target, layout: Layout::new(target) };
+                let names = NamesOfTarget { target, layout: Layout::new(target), has_symbols };
                 Expression::read(&self.when, &names).map(|_| ())
             }
             None => Expression::read(&self.when, &AnyNames).map(|_| ()),
@@ -41,16 +42,18 @@ impl Alarm {
 struct NamesOfTarget<'a> {
     target: &'a Target,
     layout: Layout,
+    has_symbols: bool,
 }
 
 impl Names for NamesOfTarget<'_> {
-    type Variable = Variable;
+    type Variable = ();
 
-    fn variable(&self, name: &str) -> Option<Variable> {
-        self.layout.variable(name, self.target)
+    fn variable(&self, name: &str) -> Option<()> {
+        let may_be_symbol = || self.has_symbols && Symbols::problem(name, self.target).is_none();
+        (self.layout.variable(name, self.target).is_some() || may_be_symbol()).then_some(())
     }
 
-    fn meant(&self, _: Variable, value: &Value) -> Option<Value> {
+    fn meant(&self, (): (), value: &Value) -> Option<Value> {
         value.of_device()
     }
 }

@@ -6,6 +6,7 @@
 //! where it is not 0.
 
 use super::{Code, Value, Variable};
+use crate::target::Symbols;
 use crate::target::iec::is_identifier;
 use crate::text::Message;
 use std::cmp::Ordering;
@@ -43,6 +44,28 @@ impl Names for NamesOfCode<'_> {
 
     fn meant(&self, variable: Variable, value: &Value) -> Option<Value> {
         variable.meant(self.code, value)
+    }
+}
+
+/// Names, and what a project calls the devices among them.
+#[derive(Clone, Copy)]
+pub struct WithSymbols<'a, N> {
+    /// Those of devices and variables, which come first.
+    pub names: &'a N,
+    /// Those that the project gives to devices.
+    pub symbols: &'a Symbols,
+}
+
+impl<N: Names> Names for WithSymbols<'_, N> {
+    type Variable = N::Variable;
+
+    fn variable(&self, name: &str) -> Option<N::Variable> {
+        let device = || self.symbols.device(name).map(|device| device.to_string());
+        self.names.variable(name).or_else(|| self.names.variable(&device()?))
+    }
+
+    fn meant(&self, variable: N::Variable, value: &Value) -> Option<Value> {
+        self.names.meant(variable, value)
     }
 }
 
@@ -98,6 +121,8 @@ const LEVELS: &[&[(&str, Operator)]] = &[
 const NOT_AT: usize = 3;
 /// Parentheses do not nest deeper.
 const MOST_DEPTH: usize = 64;
+/// Operators in a row nest too: each has what stands before it as its left side.
+const MOST_OPERATORS: usize = 500;
 
 impl<V: Copy> Expression<V> {
     /// Reads an expression.
@@ -105,7 +130,7 @@ impl<V: Copy> Expression<V> {
     /// # Errors
     /// A sentence that says what is wrong.
     pub fn read(text: &str, names: &impl Names<Variable = V>) -> Result<Expression<V>, Message> {
-        let mut reader = Reader { words: words(text), at: 0, names, text, depth: 0 };
+        let mut reader = Reader { words: words(text), at: 0, names, text, depth: 0, operators: 0 };
         let node = reader.level(0)?;
         match reader.peek() {
             None => node.meant(names).map(Expression),
@@ -310,6 +335,7 @@ struct Reader<'a, N> {
     names: &'a N,
     text: &'a str,
     depth: usize,
+    operators: usize,
 }
 
 impl<'a, N: Names> Reader<'a, N> {
@@ -335,6 +361,10 @@ impl<'a, N: Names> Reader<'a, N> {
                 operators.iter().find(|(word, _)| here.is_some_and(|here| here.eq_ignore_ascii_case(word)));
             let Some((_, operator)) = operator else { return Ok(left) };
             self.at += 1;
+            self.operators += 1;
+            if self.operators > MOST_OPERATORS {
+                return Err(self.wrong());
+            }
             let right = self.level(level + 1)?;
             left = Node::Both(*operator, Box::new(left), Box::new(right));
         }

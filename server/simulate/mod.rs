@@ -91,7 +91,7 @@ mod duration;
 pub use duration::duration;
 
 mod expression;
-pub use expression::{Expression, Names, NamesOfCode};
+pub use expression::{Expression, Names, NamesOfCode, WithSymbols};
 
 mod alarm;
 pub use alarm::{Alarm, AlarmChange, Alarms};

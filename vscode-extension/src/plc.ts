@@ -8,6 +8,14 @@ export const PLC_STATE = 'rungwise/plc';
 /** The command of the server with this verb. */
 export const plc = (verb: string): string => `rungwise.plc.${verb}`;
 
+/** Documents of this scheme show both sides of a difference between PLC and editor. */
+export const PLC_SCHEME = 'rungwise-plc';
+
+/** Whether a document may be the program of a PLC. The list that was read from one is none to compare with it. */
+export function isProgram(document: { readonly languageId: string; readonly uri: { readonly scheme: string } }): boolean {
+  return ['ladder', 'plc-il'].includes(document.languageId) && document.uri.scheme !== PLC_SCHEME;
+}
+
 /** What the server knows of the PLC. */
 export interface PlcState {
   readonly connected: boolean;

@@ -1,15 +1,13 @@
 /** The view "PLC", and the commands for a PLC on a line. Nothing is said to a PLC but what a command asks for. */
 
 import * as vscode from 'vscode';
-import { ALARM, alarmRows, NO_PLC, noteAlarm, parseState, plc, PLC_STATE, raised, rowsOf, statusText, type Alarm, type PlcRow, type PlcState } from './plc';
+import { ALARM, alarmRows, isProgram, NO_PLC, noteAlarm, parseState, plc, PLC_SCHEME, PLC_STATE, raised, rowsOf, statusText, type Alarm, type PlcRow, type PlcState } from './plc';
 import type { ServerController } from './server';
 import type { SimulationView } from './simulationView';
 import type { PlainRange } from './structuralEdits';
 import { t } from './words';
 
 const VIEW = 'rungwise.plc';
-const LANGUAGES = ['ladder', 'plc-il'];
-const SCHEME = 'rungwise-plc';
 /** The port of the last connection, for the next one. */
 const LAST_PORT = 'rungwise.plc.port';
 /** What differs from the PLC is asked for once in each pause of typing. */
@@ -59,7 +57,7 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
       this.status,
       this.drifted,
       this.view,
-      vscode.workspace.registerTextDocumentContentProvider(SCHEME, this),
+      vscode.workspace.registerTextDocumentContentProvider(PLC_SCHEME, this),
       register('rungwise.controller.connect', () => this.connect()),
       register('rungwise.controller.disconnect', () => this.tell('disconnect')),
       register('rungwise.controller.download', () => this.download()),
@@ -74,7 +72,7 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
       server.onNotification(PLC_STATE, (params) => this.take(params)),
       server.onNotification(ALARM, (params) => this.showAlarms(noteAlarm(this.alarms, params))),
       server.onDidStart(() => this.forget()),
-      vscode.workspace.onDidChangeTextDocument(({ document }) => LANGUAGES.includes(document.languageId) && this.compareSoon()),
+      vscode.workspace.onDidChangeTextDocument(({ document }) => isProgram(document) && this.compareSoon()),
       vscode.window.onDidChangeActiveTextEditor(() => this.compareSoon()),
     ];
     this.show();
@@ -102,7 +100,7 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
   /** The program in the editor. */
   private program(): vscode.Uri {
     const document = vscode.window.activeTextEditor?.document ?? vscode.window.visibleTextEditors[0]?.document;
-    if (document === undefined || !LANGUAGES.includes(document.languageId)) {
+    if (document === undefined || !isProgram(document)) {
       throw new Error(t('open the program (.lad or .il) first'));
     }
     return document.uri;
@@ -265,7 +263,7 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
   private compareSoon(): void {
     clearTimeout(this.timer);
     const document = vscode.window.activeTextEditor?.document;
-    if (!this.state.connected || document === undefined || !LANGUAGES.includes(document.languageId)) {
+    if (!this.state.connected || document === undefined || !isProgram(document)) {
       return;
     }
     this.timer = setTimeout(() => {
@@ -284,7 +282,7 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
     } else {
       this.status.hide();
     }
-    for (const editor of vscode.window.visibleTextEditors.filter(({ document }) => LANGUAGES.includes(document.languageId))) {
+    for (const editor of vscode.window.visibleTextEditors.filter(({ document }) => isProgram(document))) {
       const drift = editor === vscode.window.activeTextEditor ? this.state.drift : [];
       const hoverMessage = t('This is not so in the PLC.');
       editor.setDecorations(this.drifted, drift.map((range) => ({ range: toRange(range), hoverMessage })));
@@ -293,7 +291,7 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
 }
 
 function listOf(side: string): vscode.Uri {
-  return vscode.Uri.from({ scheme: SCHEME, path: `/${side}.il` });
+  return vscode.Uri.from({ scheme: PLC_SCHEME, path: `/${side}.il` });
 }
 
 function toRange({ start, end }: PlainRange): vscode.Range {

@@ -3,19 +3,20 @@
 use crate::cli::Outcome;
 use crate::cli::encode::encoded;
 use crate::cli::input::complain;
+use crate::machine_code::executed;
 use crate::project::Backup;
 use crate::target::Target;
 use crate::text::{Language, Message};
 use std::path::Path;
 
-/// The words of the program, or the backup, at `path`, and the model that they are for.
+/// The words of the program, or the backup, at `path` up to END, and the model that they are for.
 ///
 /// # Errors
 /// With the outcome, after complaints.
 pub(super) fn words_at(path: &Path, language: Language) -> Result<(Vec<u16>, &'static Target), Outcome> {
     if !Backup::is_named_so(path) {
         let encoded = encoded(path, None, language)?;
-        return Ok((encoded.words(), encoded.target));
+        return Ok((executed(&encoded.words()).to_vec(), encoded.target));
     }
     let backup = Backup::read(path).and_then(|backup| Some((backup.words, Target::named(&backup.model)?)));
     backup.ok_or_else(|| {

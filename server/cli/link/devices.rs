@@ -55,7 +55,7 @@ fn read(words: &[String], language: Language) -> Result<Vec<Setting>, Outcome> {
 /// Which points get which numbers, of words such as `D0=5`.
 ///
 /// # Errors
-/// With the outcome, after a complaint about the first that this PLC cannot have.
+/// With the outcome, after a complaint about the first that this PLC cannot have, or that nobody may write.
 pub(super) fn settings_of(
     words: &[String],
     is_forced: bool,
@@ -63,8 +63,13 @@ pub(super) fn settings_of(
     language: Language,
 ) -> Result<Vec<(Point, i64)>, Outcome> {
     let settings = read(words, language)?;
-    let written = settings.iter().map(|setting| written(setting, is_forced, target));
-    written.collect::<Result<_, _>>().map_err(|reason| refused(&reason, language))
+    let written = settings.iter().map(|setting| {
+        let (point, value) =
+            written(setting, is_forced, target).map_err(|reason| refused(&reason, language))?;
+        point.check_written(target).map_err(|error| failed(&error, language))?;
+        Ok((point, value))
+    });
+    written.collect()
 }
 
 /// Which point gets which number.
@@ -74,6 +79,9 @@ fn written(setting: &Setting, is_forced: bool, target: &Target) -> Result<(Point
     let point = Point::named(name, target).ok_or_else(unknown)?;
     if is_forced && !point.is_bit() {
         return Err(Message::new("link.no-relay").with("device", name));
+    }
+    if setting.from_ns > 0 {
+        return Err(Message::new("link.no-moment").with("device", name));
     }
     let wrong = || Message::new("link.no-value").with("device", name).with("value", &setting.value);
     point.number(&setting.value).map(|value| (point, value)).ok_or_else(wrong)

@@ -40,8 +40,9 @@ pub(in crate::cli) fn run(arguments: &Arguments, colour: Colour, language: Langu
 fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Result<Outcome, Outcome> {
     let here = PathBuf::from(".");
     let beside = arguments.file.as_deref().unwrap_or(&here);
-    let backup = if arguments.rollback { Backup::latest(beside) } else { None };
-    if let Some((path, backup)) = &backup {
+    let last = Backup::latest(beside);
+    let backup = last.as_ref().filter(|_| arguments.rollback);
+    if let Some((path, backup)) = backup {
         let told = Message::new("link.rolls-back").with("path", path.display());
         let told = told.with("time", &backup.time).with("port", &backup.port).with("model", &backup.model);
         remark(&told.render(language));
@@ -51,13 +52,14 @@ fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Resul
         complain("no-backup", &reason, &Message::new("link.help-backup").render(language), language);
         return Err(Outcome::Unusable);
     }
-    let (words, target) = words_at(backup.as_ref().map_or(beside, |(path, _)| path), language)?;
+    let (words, target) = words_at(backup.map_or(beside, |(path, _)| path), language)?;
     let mut host = arguments.connection.open(beside, language)?;
     let mut bar = Bar::new(language);
-    let plan = host.plan(&words, target, &mut |progress| bar.show(progress));
+    let replaced = last.as_ref().map(|(_, backup)| &backup.words[..]);
+    let plan = host.plan_behind(replaced, &words, target, &mut |progress| bar.show(progress));
     bar.clear();
     let plan = plan.map_err(|error| failed(&error, language))?;
-    if let Some((_, backup)) = &backup {
+    if let Some((_, backup)) = backup {
         caution_other_plc(backup, &host.identity().version(), plan.found, language);
     }
     say(&changes(&plan, colour, language));

@@ -1,18 +1,19 @@
 //! `rungwise monitor`
 
 use super::Connection;
-use super::connection::failed;
+use super::connection::{AnyHost, failed};
 use super::devices::settings_of;
 use super::status::StatusFormat;
 use crate::cli::Outcome;
-use crate::cli::input::{complain, put, remark, say, usable_manifest};
+use crate::cli::comments;
+use crate::cli::input::{complain, is_writable, put, remark, say, usable_manifest};
 use crate::cli::run::duration;
 use crate::link::{Holds, NamesOfPlc, Point, Watch};
-use crate::simulate::{AlarmChange, Alarms, Trace, TraceRow, Value, milliseconds};
+use crate::simulate::{AlarmChange, Alarms, Trace, TraceRow, Value, WithSymbols, milliseconds};
 use crate::text::{Language, Message};
 use serde_json::{Map, Value as Json, json};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 #[derive(clap::Args)]
 pub(in crate::cli) struct Arguments {
@@ -44,12 +45,17 @@ pub(in crate::cli) struct Arguments {
     format: StatusFormat,
 }
 
+/// Whether the user has ended it is looked at so often.
+const ATTENTION: Duration = Duration::from_millis(50);
+
 pub(in crate::cli) fn run(arguments: &Arguments, language: Language) -> Outcome {
     carry_out(arguments, language).unwrap_or_else(|outcome| outcome)
 }
 
 fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outcome> {
-    let wanted = usable_manifest(Path::new("."), language).ok_or(Outcome::Unusable)?.alarms();
+    let here = Path::new(".");
+    let manifest = usable_manifest(here, language).ok_or(Outcome::Unusable)?;
+    let wanted = manifest.alarms();
     if arguments.devices.is_empty() && wanted.is_empty() {
         let reason = Message::new("link.nothing-to-watch").render(language);
         complain(
@@ -60,7 +66,7 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
         );
         return Err(Outcome::Unusable);
     }
-    let mut host = arguments.connection.open(Path::new("."), language)?;
+    let mut host = arguments.connection.open(here, language)?;
     let target = host.identity().target;
     let point = |name: &String| {
         Point::named(name, target).ok_or_else(|| {
@@ -71,13 +77,19 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
     };
     let settings = settings_of(&arguments.holds, false, target, language)?;
     let named = arguments.devices.iter().map(point).collect::<Result<Vec<_>, _>>()?;
-    let (mut alarms, refused) = Alarms::new(&wanted, &NamesOfPlc(target));
+    let comments = comments::of(here, &manifest);
+    let names = WithSymbols { names: &NamesOfPlc(target), symbols: comments.symbols() };
+    let (mut alarms, refused) = Alarms::new(&wanted, &names);
     if let Some((alarm, reason)) = refused.into_iter().next() {
         let reason = Message::new("simulate.alarm-refused")
             .with("when", alarm.when)
             .with_messages("reason", vec![reason]);
         let help = Message::new("cli.mend-manifest").render(language);
         complain("manifest", &reason.render(language), &help, language);
+        return Err(Outcome::Unusable);
+    }
+    // Said before hours of looking are lost.
+    if arguments.trace.as_ref().is_some_and(|path| !is_writable(path, language)) {
         return Err(Outcome::Unusable);
     }
     // All in one list, so that alarms are about the values that are shown.
@@ -116,7 +128,7 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
         if is_over || arguments.count.is_some_and(|count| look >= count) {
             break Ok(());
         }
-        std::thread::sleep(Duration::from_nanos(arguments.interval.max(0) as u64));
+        rest(&mut host, Duration::from_nanos(arguments.interval.max(0) as u64));
     };
     let held = holds.release_all();
     if !held.is_empty() {
@@ -140,6 +152,18 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
         // Whoever watches ends it this way.
         Ok(()) | Err(crate::link::LinkError::Cancelled) => Ok(Outcome::Clean),
         Err(error) => Err(failed(&error, language)),
+    }
+}
+
+/// Waits, until the user ends it.
+fn rest(host: &mut AnyHost, time: Duration) {
+    let end = Instant::now() + time;
+    loop {
+        let left = end.saturating_duration_since(Instant::now());
+        if left.is_zero() || host.line().is_cancelled() {
+            return;
+        }
+        std::thread::sleep(left.min(ATTENTION));
     }
 }
 

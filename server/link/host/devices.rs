@@ -4,7 +4,7 @@ use super::{Dialect, Host, Point};
 use crate::link::address::{Address, Extended, Map, Part, Plain};
 use crate::link::frame::MOST_DATA;
 use crate::link::{LinkError, Transport};
-use crate::target::{Device, DeviceKind};
+use crate::target::{Device, DeviceKind, Target};
 
 /// Bytes that it costs to ask once more, frames and digits included: what lies between two devices is read too, as long
 /// as that is cheaper.
@@ -47,6 +47,22 @@ impl Place {
             (None, [low, high]) => i64::from(i16::from_le_bytes([*low, *high])),
             (None, [a, b, c, d]) => i64::from(i32::from_le_bytes([*a, *b, *c, *d])),
             _ => 0,
+        }
+    }
+}
+
+impl Point {
+    /// Sees whether somebody may write it in a PLC of this model.
+    ///
+    /// # Errors
+    /// If the port does not reach it, or it is an order to the CPU.
+    pub fn check_written(self, target: &Target) -> Result<(), LinkError> {
+        match self {
+            _ if !self.is_reached(target) => Err(LinkError::NoDevice { device: self.to_string() }),
+            Point::Bit(relay, _) if relay.kind == DeviceKind::M && ORDERS.contains(&relay.number) => {
+                Err(LinkError::IsOrder { device: relay.to_string() })
+            }
+            _ => Ok(()),
         }
     }
 }
@@ -98,14 +114,10 @@ impl<T: Transport> Host<T> {
     /// Writes a register or a current value, or switches a relay once; the program may write it again.
     ///
     /// # Errors
-    /// If there is no such device, if it is an order to the CPU, or if the line fails.
+    /// See [`Point::check_written`], or if the line fails.
     pub fn write(&mut self, point: Point, value: i64) -> Result<(), LinkError> {
-        match point {
-            Point::Bit(relay, _) if relay.kind == DeviceKind::M && ORDERS.contains(&relay.number) => {
-                Err(LinkError::IsOrder { device: relay.to_string() })
-            }
-            _ => self.put(point, value),
-        }
+        point.check_written(self.identity.target)?;
+        self.put(point, value)
     }
 
     fn put(&mut self, point: Point, value: i64) -> Result<(), LinkError> {

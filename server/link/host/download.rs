@@ -1,10 +1,10 @@
 //! Downloading: the PLC stops, gets what has changed, and is read back word for word before it may run.
 
-use super::program::Teller;
+use super::program::{Cut, Teller};
 use super::{Dialect, Host};
 use crate::link::frame::MOST_DATA;
 use crate::link::{Command, LinkError, Mode, Transport};
-use crate::machine_code::{Chunk, END, Image, PARAMETER_ADDRESS, PROGRAM_ADDRESS, ParameterBlock};
+use crate::machine_code::{Chunk, END, Image, PARAMETER_ADDRESS, PROGRAM_ADDRESS, ParameterBlock, executed};
 use crate::target::{Model, Target};
 use crate::text::Message;
 use std::sync::Arc;
@@ -144,13 +144,29 @@ impl<T: Transport> Host<T> {
         target: &'static Target,
         tell: &mut dyn FnMut(Progress),
     ) -> Result<Plan, LinkError> {
+        self.plan_behind(None, program, target, tell)
+    }
+
+    /// The same, where somebody knows the program that the last download began to replace: if that one did not end,
+    /// less is read.
+    ///
+    /// # Errors
+    /// See [`Host::plan`].
+    pub fn plan_behind(
+        &mut self,
+        replaced: Option<&[u16]>,
+        program: &[u16],
+        target: &'static Target,
+        tell: &mut dyn FnMut(Progress),
+    ) -> Result<Plan, LinkError> {
         let found = self.identity.target;
         if found.model != target.model {
             return Err(LinkError::WrongModel { wanted: target.title, found: found.title });
         }
-        let Some(end) = program.iter().position(|word| *word == END) else { return Err(LinkError::NoEnd) };
-        // Nobody executes what is behind END.
-        let program = &program[..=end];
+        let program = executed(program);
+        if program.last() != Some(&END) {
+            return Err(LinkError::NoEnd);
+        }
         let raw = self.raw_parameters()?;
         if raw.has_keyword() {
             return Err(LinkError::Keyword);
@@ -158,7 +174,8 @@ impl<T: Transport> Host<T> {
         if raw.file_register_blocks() > 0 || raw.comment_blocks() > 0 {
             return Err(LinkError::FileRegisters);
         }
-        let (before, is_whole) = self.read_memory(tell)?;
+        let cut = replaced.map(|replaced| Cut { replaced, steps: replaced.len().max(program.len()) });
+        let (before, is_whole) = self.read_memory(cut, tell)?;
         let parameters = *before.parameters();
         let capacity = parameters.program_steps() as usize;
         let wanted = Image::new(parameters, program).filter(|_| program.len() <= capacity);
@@ -326,7 +343,7 @@ impl<T: Transport> Host<T> {
     }
 
     /// The sum that the PLC has computed.
-    fn sum(&mut self) -> Result<u16, LinkError> {
+    pub(super) fn sum(&mut self) -> Result<u16, LinkError> {
         match self.read_program(PARAMETER_ADDRESS + 2, 2, &mut |_, _| {})?[..] {
             [low, high] => Ok(u16::from_le_bytes([low, high])),
             _ => Err(LinkError::Noise),

@@ -4,13 +4,31 @@ use super::{Dialect, Host, Progress, Stage};
 use crate::link::address::{Address, Plain, Program};
 use crate::link::frame::MOST_DATA;
 use crate::link::{Command, LinkError, Reply, Transport};
-use crate::machine_code::{END, Image, PARAMETER_ADDRESS, PROGRAM_ADDRESS, ParameterBlock};
+use crate::machine_code::{BLANK, END, Image, PARAMETER_ADDRESS, PROGRAM_ADDRESS, ParameterBlock, words_of};
 use std::time::Duration;
 
 /// Readings of a program before the line is given up.
 const MOST_READINGS: usize = 3;
 /// The most steps that addresses of 16 bits reach, in whole thousands.
 const MOST_STEPS: u32 = 16_000;
+
+/// A download that may not have ended.
+#[derive(Clone, Copy)]
+pub(super) struct Cut<'a> {
+    /// The program that it began to replace. It was cut if the PLC still has the sum of that one, and other words.
+    pub(super) replaced: &'a [u16],
+    /// Steps that it may have written.
+    pub(super) steps: usize,
+}
+
+/// What was read once.
+struct Reading {
+    image: Image,
+    /// As the PLC has computed it.
+    sum: u16,
+    /// Whether that is what a download left that did not end.
+    is_cut: bool,
+}
 
 /// Tells how far something long is, at most once for each request.
 pub(super) struct Teller<'a> {
@@ -46,29 +64,35 @@ impl<T: Transport> Host<T> {
     /// # Errors
     /// See [`Host::read_memory`].
     pub fn upload(&mut self, tell: &mut dyn FnMut(Progress)) -> Result<Image, LinkError> {
-        self.read_memory(tell).map(|(image, _)| image)
+        self.read_memory(None, tell).map(|(image, _)| image)
     }
 
     /// Parameters and program of the PLC, and whether they are whole: their sum is the one that the PLC has computed.
     ///
-    /// What is behind END is read only if the sum is another. That of a download that did not end is; so is that of
-    /// memory with something behind END.
+    /// What is behind END is read only if the sum is another: that of memory with something behind END, or of a
+    /// download that did not end. Where `cut` knows what the latter had begun to replace, only what it may have
+    /// written is read.
     ///
     /// # Errors
     /// If the line fails, or does not say the same twice; if no PLC of this model can have such parameters.
-    pub(super) fn read_memory(&mut self, tell: &mut dyn FnMut(Progress)) -> Result<(Image, bool), LinkError> {
+    pub(super) fn read_memory(
+        &mut self,
+        cut: Option<Cut<'_>>,
+        tell: &mut dyn FnMut(Progress),
+    ) -> Result<(Image, bool), LinkError> {
         let mut last: Option<Image> = None;
         let mut is_all = false;
         for _ in 0..MOST_READINGS {
             let troubles = self.line().troubles();
-            let (image, sum) = self.read_image(is_all, tell)?;
-            let is_summed = image.parameters().sum() == sum;
+            let reading = self.read_image(is_all, cut, tell)?;
+            let is_summed = reading.image.parameters().sum() == reading.sum;
             let is_quiet = self.line().troubles() == troubles;
-            if (is_quiet && (is_summed || is_all)) || last.as_ref() == Some(&image) {
-                return Ok((image, is_summed));
+            let is_enough = is_summed || is_all || reading.is_cut;
+            if (is_quiet && is_enough) || last.as_ref() == Some(&reading.image) {
+                return Ok((reading.image, is_summed));
             }
-            is_all |= !is_summed;
-            last = Some(image);
+            is_all |= !is_enough;
+            last = Some(reading.image);
         }
         Err(LinkError::Noise)
     }
@@ -77,33 +101,49 @@ impl<T: Transport> Host<T> {
     fn read_image(
         &mut self,
         is_all: bool,
+        cut: Option<Cut<'_>>,
         tell: &mut dyn FnMut(Progress),
-    ) -> Result<(Image, u16), LinkError> {
+    ) -> Result<Reading, LinkError> {
         let since = self.line().now();
         let parameters = self.parameters()?;
+        let sum = parameters.sum();
+        let sum_of = |words: &[u16]| Image::new(parameters, words).map(|image| image.parameters().sum());
+        let mut cut = cut.filter(|cut| !is_all && sum_of(cut.replaced) == Some(sum));
         let capacity = 2 * parameters.capacity() as usize;
         // Where END is tells only how long it will take: a firmware is known that answers something else.
         let hint = match self.end()?.filter(|_| !is_all) {
             Some(end) => (end as usize + 2).saturating_sub(PROGRAM_ADDRESS as usize).min(capacity),
-            None => capacity,
+            None => cut.map_or(capacity, |cut| (2 * cut.steps).min(capacity)),
         };
         let mut teller = Teller::new(Stage::Reading, hint, since, tell);
-        let mut bytes: Vec<u8> = Vec::with_capacity(hint);
-        let mut has_end = false;
-        while bytes.len() < capacity && (is_all || !has_end) {
-            let piece = piece(bytes.len(), if bytes.len() < hint { hint } else { capacity });
-            let at = PROGRAM_ADDRESS + bytes.len() as u32;
-            let read = self.read_program(at, piece, &mut |_, _| {})?;
-            has_end |= words_of(&read).contains(&END);
-            bytes.extend(read);
+        let mut words: Vec<u16> = Vec::with_capacity(hint / 2);
+        let mut end = None;
+        while 2 * words.len() < capacity {
+            let done = 2 * words.len();
+            let piece = piece(done, if done < hint { hint } else { capacity });
+            let bytes = self.read_program(PROGRAM_ADDRESS + done as u32, piece, &mut |_, _| {})?;
+            let read = words_of(&bytes).ok_or(LinkError::Noise)?;
+            let is_blank = read.iter().all(|word| *word == BLANK);
+            words.extend(read);
             teller.add(piece, self.line.now());
+            if end.is_none() {
+                end = words.iter().position(|word| *word == END).map(|end| end + 1);
+                // What is as it was is no download that did not end.
+                cut = cut.filter(|_| end.is_none_or(|end| sum_of(&words[..end]) != Some(sum)));
+            }
+            let is_enough = match cut {
+                Some(cut) => is_blank && words.len() >= cut.steps,
+                None => end.is_some() && !is_all,
+            };
+            if is_enough {
+                break;
+            }
         }
-        let mut words = words_of(&bytes);
-        if let Some(end) = words.iter().position(|word| *word == END).filter(|_| !is_all) {
-            words.truncate(end + 1);
+        if let Some(end) = end.filter(|_| !is_all && cut.is_none()) {
+            words.truncate(end);
         }
         let image = Image::new(parameters, &words).ok_or(LinkError::Noise)?;
-        Ok((image, parameters.sum()))
+        Ok(Reading { image, sum, is_cut: cut.is_some() })
     }
 
     /// The parameters.
@@ -122,7 +162,7 @@ impl<T: Transport> Host<T> {
     /// The parameters, whatever they are.
     pub(super) fn raw_parameters(&mut self) -> Result<ParameterBlock, LinkError> {
         let block = self.read_program(PARAMETER_ADDRESS, 2 * ParameterBlock::WORDS, &mut |_, _| {})?;
-        Ok(ParameterBlock::from_words(&words_of(&block)))
+        Ok(ParameterBlock::from_words(&words_of(&block).ok_or(LinkError::Noise)?))
     }
 
     /// The address of END, where the PLC can look for it.
@@ -171,12 +211,8 @@ impl<T: Transport> Host<T> {
 
 /// The length of the next piece: a full frame, and every other time two bytes less, so that the answer to the piece
 /// before, should it come twice, is not taken for this one.
-fn piece(done: usize, total: usize) -> usize {
+pub(super) fn piece(done: usize, total: usize) -> usize {
     let pair = 2 * MOST_DATA - 2;
     let most = if done.is_multiple_of(pair) { MOST_DATA } else { MOST_DATA - 2 };
     most.min(total - done)
-}
-
-fn words_of(bytes: &[u8]) -> Vec<u16> {
-    bytes.as_chunks::<2>().0.iter().map(|word| u16::from_le_bytes(*word)).collect()
 }

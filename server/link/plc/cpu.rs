@@ -27,6 +27,8 @@ pub struct Plc {
     started_ns: i64,
     /// Whether something has changed that is to be kept without power.
     pub(super) is_changed: bool,
+    /// Whether a program was taken over meanwhile.
+    pub(super) is_taken_over: bool,
 }
 
 /// The special relays with which a host gives orders, and what they are for.
@@ -67,6 +69,7 @@ impl Plc {
             next_ns: 0,
             started_ns: 0,
             is_changed: false,
+            is_taken_over: false,
         };
         plc.machine.identify();
         plc.machine.set_word(Device::new(DeviceKind::D, 8003), 0x10);
@@ -206,6 +209,7 @@ impl Plc {
     pub(super) fn take_over(&mut self) {
         self.is_open = false;
         self.is_changed = true;
+        self.is_taken_over = true;
         self.add_up();
     }
 

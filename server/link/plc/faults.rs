@@ -109,9 +109,10 @@ impl Wire {
         if self.happens(self.faults.flip) {
             byte ^= 1 << self.random.u32(0..7);
         }
-        let late = if self.happens(self.faults.delay) { self.faults.delay_ms as i64 * 1_000_000 } else { 0 };
+        let delay_ns = i64::try_from(self.faults.delay_ms).unwrap_or(i64::MAX).saturating_mul(1_000_000);
+        let late = if self.happens(self.faults.delay) { delay_ns } else { 0 };
         let before = self.on_the_way.back().map_or(i64::MIN, |(due, _)| *due);
-        let due_ns = (due_ns + late).max(before);
+        let due_ns = due_ns.saturating_add(late).max(before);
         self.on_the_way.push_back((due_ns, byte));
         if self.happens(self.faults.duplicate) {
             self.on_the_way.push_back((due_ns, byte));

@@ -28,7 +28,18 @@ impl Plc {
     /// What it keeps without power, if that has changed since it was asked last. While it runs, that is assumed.
     pub fn save(&mut self) -> Option<Saved> {
         let is_running = self.mode() == Mode::Run;
+        self.is_taken_over = false;
         (std::mem::take(&mut self.is_changed) || is_running).then(|| self.saved())
+    }
+
+    /// What it gave to be kept last could not be.
+    pub fn forget_saving(&mut self) {
+        self.is_changed = true;
+    }
+
+    /// Whether a program was taken over since it was asked for what it keeps.
+    pub fn is_taken_over(&self) -> bool {
+        self.is_taken_over
     }
 
     fn saved(&self) -> Saved {

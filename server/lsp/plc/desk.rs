@@ -222,10 +222,15 @@ impl Thread {
                         mark.0.store(false, Ordering::Release);
                     }
                     // Whoever has gone is still told what has become of the PLC.
+                    let is_failed = answer.is_err();
                     if let Err(Err(reason)) = reply.send(answer) {
                         self.show(&reason);
                     }
                     self.serve(Arc::default());
+                    if is_failed {
+                        self.ask_status();
+                        self.tell(None);
+                    }
                     if is_end {
                         return;
                     }
@@ -271,39 +276,79 @@ impl Thread {
     /// Looks at what is watched, and now and then at the PLC as a whole.
     fn look(&mut self, asked: &mut Instant) -> Result<(), LinkError> {
         let Some(workspace) = self.workspace.upgrade() else { return Ok(()) };
-        let is_closed = |watching: &Watching| !watching.is_open(&workspace);
-        if self.plc.as_ref().and_then(|plc| plc.watching.as_ref()).is_some_and(is_closed) {
-            // Nobody sees any more what a program does whose document is closed.
-            self.unwatch();
-            self.tell(None);
-        }
-        let Some(plc) = &mut self.plc else { return Ok(()) };
-        if let Some(watching) = &mut plc.watching
-            && watching.look(&mut plc.host, &workspace, &plc.status)?
-        {
-            watching.tell_alarms(&self.tokio, &workspace);
-            if let Some(picture) = watching.picture(&workspace, &plc.status) {
-                let client = workspace.client.clone();
-                self.tokio.spawn(async move { client.send_notification::<MonitorMethod>(picture).await });
-            }
-        }
+        self.keep_up(&workspace);
+        self.look_at_program(&workspace)?;
         if asked.elapsed() >= STATUS {
             *asked = Instant::now();
-            let before = (plc.status.mode, plc.status.errors.clone(), plc.status.parameters.sum());
-            plc.status = plc.host.status()?;
-            if before != (plc.status.mode, plc.status.errors.clone(), plc.status.parameters.sum()) {
-                // Somebody else has been at it.
-                if plc
-                    .image
-                    .as_ref()
-                    .is_some_and(|image| image.parameters().sum() != plc.status.parameters.sum())
-                {
-                    plc.image = None;
-                }
-                self.tell(None);
-            }
+            self.look_at_plc()?;
         }
         Ok(())
+    }
+
+    /// Takes over what has changed in the editor. Nobody sees any more what a program does whose document is closed, or
+    /// no longer a program for a PLC; so nothing of it is held either.
+    fn keep_up(&mut self, workspace: &Workspace) {
+        let Some(plc) = &mut self.plc else { return };
+        let target = plc.host.identity().target;
+        let Some(watching) = &mut plc.watching else { return };
+        if !watching.is_open(workspace) {
+            self.unwatch();
+            self.tell(None);
+        } else if let Err(reason) = watching.keep_up(workspace, target, &plc.status) {
+            self.unwatch();
+            self.show(&reason);
+            self.tell(None);
+        }
+    }
+
+    fn look_at_program(&mut self, workspace: &Workspace) -> Result<(), LinkError> {
+        let Some(plc) = &mut self.plc else { return Ok(()) };
+        let Some(watching) = &mut plc.watching else { return Ok(()) };
+        if !watching.look(&mut plc.host, workspace)? {
+            return Ok(());
+        }
+        watching.tell_alarms(&self.tokio, workspace);
+        let was_unknown = plc.image.is_none();
+        if was_unknown {
+            plc.image = watching.compare(&mut plc.host, &plc.status)?;
+        }
+        let uri = (was_unknown && plc.image.is_some()).then(|| watching.uri().clone());
+        let picture = watching.picture(workspace, &plc.status, plc.image.as_ref());
+        // That the program is compared is told before its power is shown.
+        if uri.is_some() {
+            self.tell(uri.as_ref());
+        }
+        if let Some(picture) = picture {
+            self.tokio.block_on(workspace.client.send_notification::<MonitorMethod>(picture));
+        }
+        Ok(())
+    }
+
+    fn look_at_plc(&mut self) -> Result<(), LinkError> {
+        let Some(plc) = &mut self.plc else { return Ok(()) };
+        let status = plc.host.status()?;
+        let before = std::mem::replace(&mut plc.status, status);
+        let known = |status: &Status| (status.mode, status.errors.clone(), status.parameters.sum());
+        let is_stopped = (before.mode, plc.status.mode) == (Mode::Run, Mode::Stop);
+        if known(&before) != known(&plc.status) {
+            // Somebody else has been at it.
+            let sum = plc.status.parameters.sum();
+            plc.image.take_if(|image| image.parameters().sum() != sum);
+            if is_stopped {
+                self.release_all();
+            }
+            self.tell(None);
+        }
+        Ok(())
+    }
+
+    /// Asks how the PLC is; a line that has failed is found out soon.
+    fn ask_status(&mut self) {
+        if let Some(plc) = &mut self.plc
+            && let Ok(status) = plc.host.status()
+        {
+            plc.status = status;
+        }
     }
 
     /// Shows no more of the program that is watched, if any.
@@ -343,8 +388,8 @@ impl Thread {
 
     fn send(&self, state: Json) {
         let Some(workspace) = self.workspace.upgrade() else { return };
-        let client = workspace.client.clone();
-        self.tokio.spawn(async move { client.send_notification::<StateMethod>(state).await });
+        // One after the other: the last one counts.
+        self.tokio.block_on(workspace.client.send_notification::<StateMethod>(state));
     }
 
     fn tell(&self, uri: Option<&Uri>) {
@@ -456,12 +501,8 @@ impl Thread {
                 return watching.panel(&workspace, plc.host.identity().target, &more);
             }
         }
-        // What was done is done; a line that has failed meanwhile is found out soon.
-        if let Some(plc) = &mut self.plc
-            && let Ok(status) = plc.host.status()
-        {
-            plc.status = status;
-        }
+        // What was done is done.
+        self.ask_status();
         self.tell(about.as_ref());
         Ok(answer.unwrap_or_else(|| self.state(None)))
     }
@@ -503,7 +544,10 @@ impl Thread {
 impl Connected {
     fn plan(&mut self, workspace: &Workspace, uri: &Uri, bar: &Bar) -> Result<(Encoded, Plan), Message> {
         let encoded = encoded(workspace, uri)?;
-        let plan = self.host.plan(&encoded.words, encoded.target, &mut |progress| report(bar, progress));
+        let last = file_path(uri).and_then(|path| Backup::latest(&path));
+        let replaced = last.as_ref().map(|(_, backup)| &backup.words[..]);
+        let (words, target) = (&encoded.words, encoded.target);
+        let plan = self.host.plan_behind(replaced, words, target, &mut |progress| report(bar, progress));
         let plan = plan.map_err(|error| told(&error))?;
         self.image = Some(plan.before.clone());
         Ok((encoded, plan))

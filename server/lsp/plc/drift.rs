@@ -4,7 +4,7 @@ use super::super::simulation::files_around;
 use super::super::to_proto::Place;
 use super::super::workspace::Workspace;
 use crate::document::Document;
-use crate::machine_code::{Image, Program};
+use crate::machine_code::{Image, Program, executed};
 use crate::target::{Model, Target};
 use crate::text::Message;
 use crate::translate::to_machine_code;
@@ -13,7 +13,7 @@ use tower_lsp::ls_types::{Range, Uri};
 
 /// A program in words.
 pub(super) struct Encoded {
-    /// All of them, as they lie in memory.
+    /// Those that are executed, as they lie in memory.
     pub(super) words: Vec<u16>,
     /// What they are for.
     pub(super) target: &'static Target,
@@ -44,6 +44,8 @@ pub(super) fn encoded(workspace: &Workspace, uri: &Uri) -> Result<Encoded, Messa
         encoded.words.extend_from_slice(&program.words);
         encoded.files.push((uri, document, program));
     }
+    let executed = executed(&encoded.words).len();
+    encoded.words.truncate(executed);
     Ok(encoded)
 }
 

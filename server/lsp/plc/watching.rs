@@ -7,7 +7,9 @@ use super::super::workspace::Workspace;
 use super::drift::encoded;
 use super::recording::SharedRecording;
 use crate::document::Document;
-use crate::link::{Holds, Host, LinkError, Mode, NamesOfPlc, Part, Point, Status, Transport, Watch};
+use crate::link::{
+    Comparison, Holds, Host, LinkError, Mode, NamesOfPlc, Part, Point, Status, Transport, Watch,
+};
 use crate::machine_code::Image;
 use crate::simulate::{Code, Machine, Names, Value, Variable};
 use crate::target::{Device, Flow, Operand, Target};
@@ -41,8 +43,12 @@ pub(super) struct Watching {
     /// The program in a PLC that has what was read, for what contacts of edges saw before.
     machine: Option<Machine<u8>>,
     looks: u64,
-    /// The sum of the text in a PLC with these parameters.
-    sum: Option<u16>,
+    /// The text in the memory of this PLC.
+    image: Option<Image>,
+    /// How far it is compared with what is there.
+    comparison: Option<Comparison>,
+    /// Whether something else is there, although its sum is the same.
+    is_other: bool,
     /// Bytes of rungs that depend on something that is not read.
     unknown: Vec<std::ops::Range<usize>>,
     edition: u64,
@@ -73,7 +79,9 @@ impl Watching {
             values: FxHashMap::default(),
             machine: None,
             looks: 0,
-            sum: None,
+            image: None,
+            comparison: None,
+            is_other: false,
             unknown: Vec::new(),
             edition: 0,
             started_ns: None,
@@ -105,18 +113,25 @@ impl Watching {
         status: &Status,
     ) -> Result<(), Message> {
         let gone = || Message::new("request.no-document").with("command", super::PREFIX);
-        self.files = files_around(workspace, &self.uri).ok_or_else(gone)?;
+        let files = files_around(workspace, &self.uri).ok_or_else(gone)?;
+        let is_known = |(uri, _, document): &(Uri, i32, Document)| {
+            self.files.iter().any(|(known, _, before)| known == uri && is_same(document, before))
+        };
+        let is_another = files.len() != self.files.len() || !files.iter().all(is_known);
+        self.edition += u64::from(is_another);
+        self.files = files;
         let number = self.number().ok_or_else(gone)?;
         let document = &self.files[number].2;
         if !document.target().is_fx() {
             return Err(Message::new("link.no-monitor-iec"));
         }
-        self.edition += 1;
         self.monitor.place(number as u32, Place::new(document, workspace.snapshot().manner));
         // A text that cannot be run, or is not what the PLC runs, shows values, and no power.
         let encoded = encoded(workspace, &self.uri).ok();
         let image = encoded.and_then(|encoded| Image::new(status.parameters, &encoded.words));
-        self.sum = image.map(|image| image.parameters().sum());
+        if image != self.image {
+            (self.image, self.comparison, self.is_other) = (image, None, false);
+        }
         self.code = compiled(&self.files).ok().map(|(_, watched)| watched);
         self.unknown.clear();
         let names = NamesOfPlc(target);
@@ -190,17 +205,66 @@ impl Watching {
 
     /// Whether what is read is what is to be read.
     fn is_up_to_date(&self, workspace: &Workspace) -> bool {
-        let is_same = |(uri, version, document): &(Uri, i32, Document)| {
+        let is_as_read = |(uri, version, document): &(Uri, i32, Document)| {
             let snapshot = workspace.snapshot();
             snapshot
                 .open(uri)
-                .is_none_or(|open| open.version == *version && open.document.is_instance(document))
+                .is_none_or(|open| open.version == *version && is_same(&open.document, document))
         };
         let is_read = |(point, _): &(Point, i64)| self.watch.points().contains(point);
-        self.files.iter().all(is_same)
+        self.files.iter().all(is_as_read)
             && !self.alarms.is_outdated(workspace, &self.uri)
             && self.recorded == self.recording.wanted()
             && self.holds.held().iter().all(is_read)
+    }
+
+    /// Takes over what has changed in the editor.
+    ///
+    /// # Errors
+    /// See [`Watching::follow`].
+    pub(super) fn keep_up(
+        &mut self,
+        workspace: &Workspace,
+        target: &'static Target,
+        status: &Status,
+    ) -> Result<(), Message> {
+        if self.is_up_to_date(workspace) { Ok(()) } else { self.follow(workspace, target, status) }
+    }
+
+    /// Compares the text with what is in the PLC, a piece in each look, where their sums are the same; gives what is
+    /// there once that is known to be the text.
+    ///
+    /// # Errors
+    /// If the line fails.
+    pub(super) fn compare<T: Transport>(
+        &mut self,
+        host: &mut Host<T>,
+        status: &Status,
+    ) -> Result<Option<Image>, LinkError> {
+        let sum = status.parameters.sum();
+        let Some(own) = self.image.as_ref().filter(|own| own.parameters().sum() == sum) else {
+            (self.comparison, self.is_other) = (None, false);
+            return Ok(None);
+        };
+        if self.is_other {
+            return Ok(None);
+        }
+        let compared = match host.compare(self.comparison.get_or_insert_with(|| Comparison::new(own))) {
+            // What nobody may read is not known to be the same.
+            Err(LinkError::Refused { .. }) => Some(false),
+            compared => compared?,
+        };
+        let Some(is_same) = compared else { return Ok(None) };
+        (self.comparison, self.is_other) = (None, !is_same);
+        Ok(is_same.then(|| own.clone()))
+    }
+
+    /// Whether the PLC executes the text, where `held` is known to be in its memory.
+    fn is_executed(&self, status: &Status, held: Option<&Image>) -> bool {
+        let is_text = |held: &&Image| self.image.as_ref().is_some_and(|own| own.program() == held.program());
+        let held = held.filter(is_text);
+        status.mode == Mode::Run
+            && held.is_some_and(|held| held.parameters().sum() == status.parameters.sum())
     }
 
     /// Reads what is watched, if somebody has a use for it, and writes again what is held; whether that was so.
@@ -211,12 +275,8 @@ impl Watching {
         &mut self,
         host: &mut Host<T>,
         workspace: &Workspace,
-        status: &Status,
     ) -> Result<bool, LinkError> {
         let target = host.identity().target;
-        if !self.is_up_to_date(workspace) && self.follow(workspace, target, status).is_err() {
-            return Ok(false);
-        }
         let is_unwatched = self.monitor.is_empty() && self.alarms.is_empty();
         if is_unwatched && self.recorded.is_empty() && self.holds.held().is_empty() {
             return Ok(false);
@@ -276,8 +336,14 @@ impl Watching {
         Ok(json!({ "rows": rows }))
     }
 
-    /// What the client is to show of the last look.
-    pub(super) fn picture(&mut self, workspace: &Workspace, status: &Status) -> Option<Picture> {
+    /// What the client is to show of the last look; `held` is what is known to be in the PLC.
+    pub(super) fn picture(
+        &mut self,
+        workspace: &Workspace,
+        status: &Status,
+        held: Option<&Image>,
+    ) -> Option<Picture> {
+        let is_executed = self.is_executed(status, held);
         let mode = status.mode;
         let (_, version, document) = &self.files[self.number()?];
         let place = Place::new(document, workspace.snapshot().manner);
@@ -290,8 +356,8 @@ impl Watching {
             machine.hold_only(read);
             let shown = self.monitor.instructions(code);
             let mut sights = Vec::new();
-            // No power flows in a program that is not executed.
-            if mode == Mode::Run && self.sum == Some(status.parameters.sum()) {
+            // No power flows in a program that is not executed, as far as anybody knows.
+            if is_executed {
                 let time_ns = self.started_ns.map_or(0, |started| self.now_ns - started);
                 machine.scan_watched(time_ns, &mut |sight| {
                     if shown.contains(&sight.instruction) {
@@ -339,6 +405,11 @@ impl Watching {
             errors: Vec::new(),
         })
     }
+}
+
+/// Whether nothing has changed between two versions of a document: neither the text nor what devices are called.
+fn is_same(one: &Document, other: &Document) -> bool {
+    one.is_instance(other) && one.comments().symbols() == other.comments().symbols()
 }
 
 /// The devices that operands name.
