@@ -413,7 +413,8 @@ fn a_value_at_first_is_given_in_the_first_scan_of_an_fx_list() {
         assert_eq!(written, format!("LD M8002\n{first}\n{}END\n", lines(other)));
         let (without, with) = (list(other), fx(written.trim_end_matches("END\n")));
         for [left, right] in [[&declared, &with], [&with, &declared]] {
-            assert!(matches!(prove(left, right), Proof::Equal { .. }), "{written}");
+            let proof = prove(left, right);
+            assert!(matches!(proof, Proof::Equal { .. }), "{proof:?} {written}");
         }
         for [left, right] in [[&declared, &without], [&without, &declared]] {
             assert!(!matches!(prove(left, right), Proof::Equal { .. }), "{written}");

@@ -71,7 +71,7 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
             dialect::convert(document, (To::Iec, Target::of(Model::Iec)), &mut program, Purpose::Proof);
             dialect::part_calculations(&mut program);
         }
-        parted::parted(program.rungs)
+        program.rungs
     });
     if ![left, right].iter().all(|document| document.target().is_fx()) {
         labels::named_alike(&mut sources);
@@ -86,6 +86,7 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
     for (document, sources) in [left, right].into_iter().zip(&mut sources).filter(|_| is_mixed) {
         dialect::refuse_others(document, family, sources);
     }
+    let sources = sources.map(parted::parted);
     let stretches = [0, 1].map(|side| stretches(&sources[side]));
     if let Some((reason, at)) = units::unlike([left, right], [&sources[0], &sources[1]]) {
         return Proof::undecided(reason, at);

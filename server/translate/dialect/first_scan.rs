@@ -80,10 +80,14 @@ impl Initials {
         if self.outputs.is_empty() {
             return;
         }
-        let path = in_first_scan(self.outputs.into_iter().map(Drive::Action).collect());
-        if let Some(first) = sources.iter().position(|source| source.pou == self.unit) {
-            insert(sources, first, path);
-        }
+        let Some(first) = sources.iter().position(|source| source.pou == self.unit) else { return };
+        // They stand nowhere, but one behind the other.
+        let places = sources[first].rung.span.start as usize + 1..;
+        let outputs = self.outputs.into_iter().zip(places);
+        let outputs =
+            outputs.map(|(action, place)| Drive::Action(Action { span: Span::at(place), ..action }));
+        let path = in_first_scan(outputs.collect());
+        insert(sources, first, path);
     }
 }
 
