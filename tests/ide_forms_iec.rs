@@ -112,6 +112,58 @@ proptest! {
     }
 }
 
+/// Rungs of an FX list that tell what becomes of timers and counters, and some that do not.
+const COUNTED: &[&str] = &[
+    "LD X0\nOUT T0 K5\n",
+    "LD X1\nOUT T0 K7\n",
+    "LD X1\nOUT T1 D0\n",
+    "LD T0\nANI T1\nOUT Y0\n",
+    "LD X0\nOUT C0 K3\n",
+    "LD X0\nOUT C0 K0\n",
+    "LD X2\nRST C0\n",
+    "LD C0\nAND= C0 K3\nOUT Y1\n",
+    "LD>= C0 K5\nOUT Y2\n",
+    "LD X3\nOUT C100 K2\n",
+    "LD X3\nCJ P0\n",
+    "LD X2\nCJ P63\n",
+    "LD X3\nMC N0 M10\n",
+    "MCR N0\n",
+    "FOR K3\n",
+    "NEXT\n",
+    "LD X5\nOUT Y5\n",
+    "LD X5\nFROB Y5\n",
+    "END\n",
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_rung_with_a_timer_is_what_it_is_in_the_whole_fx_list(
+        rungs in prop::collection::vec(prop::sample::select(COUNTED), 2..12),
+        label in any::<prop::sample::Index>(),
+    ) {
+        let mut rungs = rungs;
+        rungs.insert(label.index(rungs.len()), "P0\n");
+        let document = fx(&(rungs.concat() + "LD X7\nOUT Y7\nEND\n"));
+        let options = Options { is_whole: false, ..Options::default() };
+        let whole = translate(&document, Some(Span::new(0, document.len())), To::Iec, &options);
+        for rung in &whole.rungs {
+            let Some(part) = ide::part_at(&document, Span::at(rung.span.start as usize)) else { continue };
+            let own = translate(&document, Some(part.span()), To::Iec, &options);
+            let notes = |translation: &Translation| {
+                said(translation, Some(rung.span)).into_iter().map(|(span, _, note)| (span, note.map(str::to_string)))
+                    .collect::<Vec<_>>()
+            };
+            let in_whole = notes(&whole);
+            if in_whole.iter().any(|(_, note)| note.as_deref() == Some("translate.guarded")) {
+                continue;
+            }
+            prop_assert_eq!(notes(&own), in_whole, "{}\n--\n{}", document.slice(rung.span), document.text());
+        }
+    }
+}
+
 /// A unit of rungs with branches that one helper keeps.
 fn long(rungs: usize) -> Document {
     let mut text = "PROGRAM Main\nVAR\n    a, b, c, Held1 : BOOL;\nEND_VAR\n".to_string();

@@ -142,6 +142,22 @@ fn what_a_label_is_called_makes_no_difference() {
 }
 
 #[test]
+fn a_jump_behind_a_block_is_one_in_its_own_rung() {
+    let list = |load: &str| {
+        let text = format!(
+            "PROGRAM p\nVAR X0 AT %IX0.0 : BOOL; Y0 AT %QX0.0 : BOOL; C1 : CTU; END_VAR\n\
+             LD X0\nST C1.CU\nCAL C1(PV := 3)\n{load} C1.Q\nJMPC Over\nLD X0\nST Y0\nOver:\nLD X0\nST Y0\nEND_PROGRAM\n"
+        );
+        Document::new(&text, Notation::IecIl, Target::of(Model::Iec))
+    };
+    let fx = "LD X0\nOUT C1 K3\nLD C1\nCJ P0\nLD X0\nOUT Y0\nP0\nLD X0\nOUT Y0\nEND\n";
+    let fx = Document::new(fx, Notation::FxIl, Target::of(Model::Fx2n));
+    assert_eq!(word(&prove(&fx, &list("LD"))), "equal");
+    assert_eq!(word(&prove(&list("LD"), &fx)), "equal");
+    assert_ne!(word(&prove(&fx, &list("LDN"))), "equal");
+}
+
+#[test]
 fn what_an_edge_of_a_relay_with_one_memory_tells_of_the_relay() {
     check(
         &[

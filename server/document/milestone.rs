@@ -61,7 +61,7 @@ impl Milestone {
 
 impl MilestoneKind {
     /// Whether it has no part in the structure, so that of a run of such only the ends are of interest.
-    fn is_plain(self) -> bool {
+    pub fn is_plain(self) -> bool {
         matches!(self, MilestoneKind::Unknown | MilestoneKind::Instruction(Flow::Straight | Flow::Nothing))
     }
 }

@@ -76,6 +76,9 @@ pub(super) fn difference(
 
 /// The words of the configurations in a document.
 pub(super) fn configurations(document: &Document) -> Vec<SmolStr> {
+    if !document.scopes().has_configuration {
+        return Vec::new();
+    }
     let configured = document.chunks().filter_map(|at| {
         let reading = at.chunk.reading();
         let Tree::Iec(tree) = reading.tree() else { return None };

@@ -181,8 +181,10 @@ pub(super) fn convert(
         first_scan::take_relay(document, &mut program.rungs);
     }
     // What timers and counters do depends on all that is done with them.
-    let whole =
-        (!is_whole && program.rungs.iter().any(counts)).then(|| source::program(document, None).rungs);
+    let whole = (!is_whole && program.rungs.iter().any(counts)).then(|| match document.target().is_fx() {
+        true => source::deciding(document, &counted(&program.rungs)),
+        false => source::program(document, None).rungs,
+    });
     let all = whole.as_deref().unwrap_or(&program.rungs);
     let coils = Coils::of(all);
     let instances = Instances::of(document, all);
@@ -282,6 +284,16 @@ fn end(sources: &mut [Source]) {
         let leaves = |span| Path::of_action(Action { deed: Deed::Return, terms: Vec::new(), span });
         source.rung.path = Ok((number < last).then(|| leaves(source.rung.span)));
     }
+}
+
+/// The timers and counters that rungs name.
+fn counted(sources: &[Source]) -> Vec<Device> {
+    let terms = sources.iter().filter_map(Source::path).flat_map(Path::terms);
+    let mut devices: Vec<Device> = terms.filter_map(|term| term.operand.device()).collect();
+    devices.retain(|device| device.kind.has_preset());
+    devices.sort_unstable();
+    devices.dedup();
+    devices
 }
 
 /// Whether a rung has a timer, a counter or the instance of a block.

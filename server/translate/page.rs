@@ -83,6 +83,10 @@ pub(super) fn write(
     while page.text.ends_with("\n\n") {
         page.text.pop();
     }
+    let length = page.text.len();
+    for rung in &mut rungs {
+        rung.result = rung.result.start.min(length)..rung.result.end.min(length);
+    }
     if to == To::Fx && options.is_whole && !sources.iter().any(ends_program) {
         page.text.push_str("END\n");
     }

@@ -1,12 +1,14 @@
 //! The rungs of a document that are to be translated.
 
-use crate::document::{Chunk, ChunkRef, Document, Notation, Scopes, Tree, both};
+use crate::document::{Chunk, ChunkRef, Document, Milestone, Notation, Scopes, Symbol, Tree, both};
 use crate::il::iec::{IecTree, ItemKind, words_of_body};
 use crate::ladder;
 use crate::logic::{self, Declared, Elsewhere, Path, Rung};
+use crate::target::Device;
 use crate::text::{Message, Span};
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// A rung with its chunk.
@@ -149,6 +151,35 @@ pub(super) fn rungs_within(document: &Document, scopes: &Scopes, pou: Option<usi
 /// `document` in rungs and declarations; with `part` only the rungs that touch these bytes.
 pub(super) fn program(document: &Document, part: Option<Span>) -> Program {
     read((document, document.scopes()), part, 0)
+}
+
+/// The rungs of a program of the FX family that name one of `devices`, and those that decide whether others are done,
+/// in their order. The pages of the document know where they stand, so no others are read.
+pub(super) fn deciding(document: &Document, devices: &[Device]) -> Vec<Source> {
+    let symbols: Vec<Symbol> = devices.iter().copied().map(Symbol::Device).collect();
+    let elsewhere = Elsewhere::default();
+    let program = Program::default();
+    let (scopes, part, pous) = (document.scopes(), None, 0);
+    let mut reader = Reader { document, scopes, part, pous, elsewhere: &elsewhere, program };
+    let mut page_start = 0;
+    for page in document.pages() {
+        let structure = page.milestones().iter().filter(|milestone| !milestone.kind.is_plain());
+        let mut wanted: BTreeSet<usize> = structure.map(Milestone::chunk).collect();
+        if symbols.iter().any(|symbol| page.names().contains(symbol)) {
+            let names_one = |chunk: &Chunk| chunk.mentions().iter().any(|own| symbols.contains(&own.symbol));
+            let chunks = page.chunks().iter().enumerate().filter(|(_, chunk)| names_one(chunk));
+            wanted.extend(chunks.map(|(number, _)| number));
+        }
+        let mut start = page_start;
+        for (number, chunk) in page.chunks().iter().enumerate() {
+            if wanted.contains(&number) || chunk.is_iec() {
+                reader.chunk(start, chunk);
+            }
+            start += chunk.len();
+        }
+        page_start += page.bytes();
+    }
+    reader.program.rungs
 }
 
 /// The same where `scopes` holds, and so many program units have started before.

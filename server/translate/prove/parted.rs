@@ -2,14 +2,41 @@
 //! rung of the jump or in one of its own.
 
 use super::may_overlap;
-use crate::logic::{Action, Deed, Drive, Gate, Path, Term, touches_bits};
+use crate::ladder::ContactKind;
+use crate::logic::{Action, Contact, Deed, Drive, Expression, Gate, Path, Term, Test, touches_bits};
 use crate::target::{Device, DeviceKind, Flow, Operand};
 use crate::translate::source::Source;
 
-/// The rungs, those with a jump or the like among other drives cut before it and behind it. A part stands where its
-/// first drive does.
+/// The rungs, those with a jump or the like cut behind the blocks that power goes through, before the jump and behind
+/// it. A part stands where its first drive does.
 pub(super) fn parted(rungs: Vec<Source>) -> Vec<Source> {
-    rungs.into_iter().flat_map(parts).collect()
+    rungs.into_iter().flat_map(behind_blocks).flat_map(parts).collect()
+}
+
+/// What power drives behind a block goes on from the output of that, which may be asked in a rung of its own.
+fn behind_blocks(source: Source) -> Vec<Source> {
+    let touches = |path: &Path| path.actions().into_iter().any(touches_bits);
+    let cut = source.path().filter(|path| touches(path)).and_then(|path| {
+        let through = |gate: &Gate| matches!(gate, Gate::Through(_));
+        let at = path.gates.iter().rposition(through)?;
+        let Gate::Through(block) = &path.gates[at] else { return None };
+        let (output, start) = (block.power_out()?, start_of(path.drives.first()?));
+        let is_behind = source.rung.span.start < start;
+        let asked =
+            Contact { test: Test::Bit(ContactKind::NormallyOpen), terms: vec![output], span: block.span };
+        let asked = Gate::Pass(Expression::Contact(asked));
+        let gates = std::iter::once(asked).chain(path.gates[at + 1..].iter().cloned()).collect();
+        let call = Path { gates: path.gates[..at].to_vec(), drives: vec![Drive::Action(block.clone())] };
+        is_behind.then(|| (call, Path { gates, drives: path.drives.clone() }, start))
+    });
+    let Some((call, rest, start)) = cut else { return vec![source] };
+    let mut behind = source.clone();
+    behind.rung.span.start = start;
+    behind.rung.labels.clear();
+    behind.rung.path = Ok(Some(rest));
+    let mut before = source;
+    before.rung.path = Ok(Some(call));
+    behind_blocks(before).into_iter().chain([behind]).collect()
 }
 
 fn parts(source: Source) -> Vec<Source> {
@@ -23,7 +50,7 @@ fn parts(source: Source) -> Vec<Source> {
     for drive in &path.drives {
         let actions = actions(drive);
         let touches = actions.iter().any(|action| touches_bits(action));
-        let start = actions.iter().map(|action| action.span.start).min().unwrap_or_default();
+        let start = start_of(drive);
         let is_behind = starts.last().is_some_and(|last| *last < start) && source.rung.span.start < start;
         match groups.last_mut() {
             Some(group) if !(is_steady && is_behind && (touches || was_steering)) => {
@@ -71,6 +98,10 @@ fn actions(drive: &Drive) -> Vec<&Action> {
         Drive::Action(action) => vec![action],
         Drive::Path(path) => path.actions(),
     }
+}
+
+fn start_of(drive: &Drive) -> u32 {
+    actions(drive).iter().map(|action| action.span.start).min().unwrap_or_default()
 }
 
 fn device_of(term: &Term) -> Option<Device> {
