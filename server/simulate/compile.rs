@@ -203,7 +203,7 @@ impl Compiler {
             self.builder.op(Op::Clear { power, device });
             return Ok(());
         }
-        let cell = self.builder.layout.cell(device).ok_or(Obstacle::NoDevice(device))?;
+        let cell = self.builder.cell(device)?;
         if device.kind.has_preset() {
             let power = self.output();
             let op = self.counting(device, power, &terms[1..])?;
