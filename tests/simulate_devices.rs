@@ -494,7 +494,7 @@ fn two_phases_count_up_where_the_first_one_leads() {
     let mut plc = Plc::list(text);
     plc.scans(1);
     let turns =
-        |plc: &mut Plc, settings: &[&str]| settings.iter().for_each(|phase| drop(plc.set(phase).scans(1)));
+        |plc: &mut Plc, settings: &[&str]| settings.iter().for_each(|phase| _ = plc.set(phase).scans(1));
     let up = ["X0 X3", "X1 X4", "X0=0 X3=0", "X1=0 X4=0"];
     turns(&mut plc, &up[..1]);
     plc.check("C251=0");
