@@ -140,8 +140,8 @@ impl<L: Lanes> Machine<L> {
     }
 
     /// What two phases count. While A is on, B going on counts up and B going off counts down, as the FX programming
-    /// manuals say; every edge counts where a relay wants that. Of two phases that change in one scan nobody knows which
-    /// was first: they count nothing.
+    /// manuals say; every edge counts where a relay wants that. Of two phases that change in one scan nobody knows
+    /// which was first: they count nothing.
     fn turned(&self, number: u32, wiring: &Wiring, before: [L; 8], lane: usize) -> i64 {
         let (Some(b), true) = (wiring.down, number > TWO_INPUTS) else { return 0 };
         let was = [wiring.pulses, b].map(|x| before[usize::from(x)].lane(lane));
