@@ -168,6 +168,7 @@ fn tolerances_are_in_scans_and_in_numbers() {
     }
     passes("{ set = { D0 = 50 }, expect = { D0 = 48 }, deviation = 2 }");
     fails("{ set = { D0 = 50 }, expect = { D0 = 48 }, deviation = 1.5 }", "D0 is 50 where 48");
+    fails("{ set = { D0 = 50 }, expect = { D0 = 48.5 } }", "D0 is 50 where 48.5 was expected");
 }
 
 #[test]
@@ -624,4 +625,18 @@ fn faults_that_cannot_be_written_are_named_and_are_no_success() {
     assert_eq!((&mutants["survived"], &mutants["not_running"]), (&json!([]), &json!([])));
     // Faults are counted only where they are tried.
     assert_eq!(run(&folder, &["test", "--mutants", "3"]).0, 2);
+}
+
+#[test]
+fn a_golden_trace_is_read_in_any_encoding_and_one_that_is_no_table_is_not_called_missing() {
+    let suite = "[[scenario]]\nname = \"a\"\ntime = \"20ms\"\ngolden = \"a.csv\"\n";
+    let folder = tested(MOTOR, suite);
+    let mut units: Vec<u16> = vec![0xfeff];
+    units.extend("scan,time_ms,Y0\r\n0,0,0\r\n2,20,0\r\n".encode_utf16());
+    let bytes: Vec<u8> = units.into_iter().flat_map(u16::to_le_bytes).collect();
+    std::fs::write(folder.path().join("a.csv"), bytes).unwrap();
+    assert_eq!(run(&folder, &["test"]).0, 0);
+    std::fs::write(folder.path().join("a.csv"), [0xc3, 0x28, 0x00, 0xff]).unwrap();
+    let (code, _, err) = run(&folder, &["test"]);
+    assert!(code == 2 && err.contains("the golden trace is no table"), "{err}");
 }

@@ -489,6 +489,38 @@ fn inputs_of_high_speed_counters_count_start_and_reset() {
 }
 
 #[test]
+fn two_phases_count_up_where_the_first_one_leads() {
+    let text = "LD M8000\nOUT C251 K2\nOUT C253 K9\nOUT C254 K9\nLD X20\nOUT M8198\nLD C251\nOUT Y0\nEND\n";
+    let mut plc = Plc::list(text);
+    plc.scans(1);
+    let turns =
+        |plc: &mut Plc, settings: &[&str]| settings.iter().for_each(|phase| _ = plc.set(phase).scans(1));
+    let up = ["X0 X3", "X1 X4", "X0=0 X3=0", "X1=0 X4=0"];
+    turns(&mut plc, &up[..1]);
+    plc.check("C251=0");
+    turns(&mut plc, &up[1..2]);
+    plc.check("C251=1 C253=1 C254=0 ~M8251 ~Y0");
+    turns(&mut plc, &up[2..]);
+    plc.check("C251=1");
+    // C254 counts while X6 is on.
+    plc.set("X6");
+    turns(&mut plc, &up);
+    plc.check("C251=2 C254=1 Y0");
+    let down = ["X1", "X0", "X1=0", "X0=0"];
+    turns(&mut plc, &down);
+    plc.check("C251=1 C254=0 C253=2 M8251 ~Y0");
+    plc.set("X20").scans(1);
+    turns(&mut plc, &up);
+    plc.check("C251=5 C254=4 C253=3");
+    turns(&mut plc, &down);
+    plc.check("C251=1 C254=0 C253=3");
+    // Nobody knows which was first.
+    plc.set("X0 X1").scans(1).set("X0=0 X1=0").scans(1).check("C251=1");
+    // Held at 0 while its reset input is on.
+    plc.set("X5").scans(1).check("C253=0");
+}
+
+#[test]
 fn speed_is_pulses_in_a_window() {
     let text = "LD X10\nSPD X0 K20 D0\nEND\n";
     let mut plc = Plc::list(text);

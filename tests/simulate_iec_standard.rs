@@ -185,6 +185,11 @@ fn what_follows_from_a_refusal_is_not_told() {
         PROGRAM Main\nVAR go : BOOL; r : REF_TO INT; s AT %MW0 : P; u : Unknown; i : INT; END_VAR\n\
         LD r\nST i\nLD go\nAND u\nST go\nLD s.x\nADD g\nST i\nLD h.x\nJMPC Over\nLD go\nST r\nOver:\nEND_PROGRAM\n";
     assert_eq!(refused(text), ["2:16", "2:28", "4:20", "4:32", "4:51"]);
+    // A register has no contact and no coil, and yet the PLC has it.
+    let text = "LD D0\nOUT Y0\nLD X0\nOUT D1\nLD M3071\nEND\n";
+    let (_, _, err) = run(&folder(&[("main.il", text)]), &["run", "main.il"]);
+    let count = |words: &str| err.matches(words).count();
+    assert_eq!((count("cannot be read"), count("this PLC has no ")), (2, 0), "{err}");
     // What is wrong besides is told.
     let text =
         "PROGRAM Main\nVAR r : REF_TO INT; i : INT; END_VAR\nST i\nLD r\nST i\nLD other\nST i\nEND_PROGRAM\n";

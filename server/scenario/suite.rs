@@ -212,6 +212,7 @@ impl fmt::Display for Expected {
                     Comparison::SIGNS.iter().find(|(_, other)| other == how).map_or("", |(sign, _)| sign);
                 write!(f, "{sign} {number}")
             }
+            Expected::Between(least, most) if least == most => write!(f, "{least}"),
             Expected::Between(least, most) => write!(f, "{least}..{most}"),
         }
     }

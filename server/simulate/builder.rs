@@ -372,11 +372,21 @@ impl Builder {
         }
     }
 
+    /// The cell of a relay of the PLC.
+    pub(super) fn cell(&self, device: Device) -> Result<Cell, Obstacle> {
+        let missing = || match self.layout.has(device) {
+            // A register has no contact.
+            true => Obstacle::Unreadable,
+            false => Obstacle::NoDevice(device),
+        };
+        self.layout.cell(device).ok_or_else(missing)
+    }
+
     /// The cell of the relay that a contact reads; of a bit of a word and an indexed one a copy.
     fn relay(&mut self, terms: &[Term]) -> Result<Cell, Obstacle> {
         let operand = terms.first().ok_or(Obstacle::Unreadable)?.operand;
         match operand {
-            Operand::Device(device) => self.layout.cell(device).ok_or(Obstacle::NoDevice(device)),
+            Operand::Device(device) => self.cell(device),
             Operand::WordBit { .. } | Operand::Indexed { .. } => {
                 let form = Form::named("LD").ok_or(Obstacle::Unreadable)?;
                 let call = self.call(form, terms, CallCode::Test(|execution| execution.bit(0, 0)))?;

@@ -47,8 +47,8 @@ const FINER: u32 = 8028;
 /// Special relays with which a program tells the CPU something that the simulator does not do: running and stopping
 /// from outside, parameters of communication, checks of the bus, the parallel link, sampling traces, the ring counter,
 /// caught pulses.
-const IGNORED: [RangeInclusive<u32>; 8] =
-    [8035..=8036, 8038..=8038, 8069..=8071, 8075..=8076, 8099..=8099, 8162..=8162, 8170..=8177, 8198..=8199];
+const IGNORED: [RangeInclusive<u32>; 7] =
+    [8035..=8036, 8038..=8038, 8069..=8071, 8075..=8076, 8099..=8099, 8162..=8162, 8170..=8177];
 
 /// A program that is being compiled.
 pub(super) struct Compiler {
@@ -203,7 +203,7 @@ impl Compiler {
             self.builder.op(Op::Clear { power, device });
             return Ok(());
         }
-        let cell = self.builder.layout.cell(device).ok_or(Obstacle::NoDevice(device))?;
+        let cell = self.builder.cell(device)?;
         if device.kind.has_preset() {
             let power = self.output();
             let op = self.counting(device, power, &terms[1..])?;

@@ -284,7 +284,7 @@ impl<L: Lanes> Machine<L> {
         self.interrupts.ask_for_edges(code, before.map(|x| x.lane(0)), inputs.map(|x| x.lane(0)));
         self.interrupts.ask_for_time(code, self.now_ns - self.scan_ns, self.now_ns);
         if code.counts_pulses {
-            self.count_pulses();
+            self.count_pulses(before);
             self.hold();
         }
     }

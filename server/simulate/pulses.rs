@@ -10,9 +10,9 @@ use crate::target::{Device, DeviceKind};
 
 /// The inputs of a high-speed counter.
 struct Wiring {
-    /// Where pulses arrive that count in the direction of its relay, or up where there is a second input.
+    /// Where pulses arrive that count in the direction of its relay, or up where there is a second input; phase A.
     pulses: u8,
-    /// Where pulses arrive that count down.
+    /// Where pulses arrive that count down; phase B.
     down: Option<u8>,
     /// Resets it while it is on.
     reset: Option<u8>,
@@ -24,7 +24,7 @@ const fn wired(pulses: u8, down: Option<u8>, reset: Option<u8>, start: Option<u8
     Wiring { pulses, down, reset, start }
 }
 
-/// From C235 on. The last five have two phases, which pulses at single inputs do not tell.
+/// From C235 on. The last five have two phases, of which the levels tell, and not pulses at single inputs.
 const WIRING: [Wiring; 21] = [
     wired(0, None, None, None),
     wired(1, None, None, None),
@@ -53,6 +53,8 @@ const WIRING: [Wiring; 21] = [
 const ONE_PHASE: u32 = 245;
 /// Counters with an input for each direction: up to C250.
 const TWO_INPUTS: u32 = 250;
+/// The relay that makes C251, C252 and C254 count every edge; the next one is that of C253 and C255.
+const EVERY_EDGE: u32 = 8198;
 
 /// Pulses for one counter in a scan; more are lost.
 const MOST_PULSES: i64 = 1_000_000;
@@ -80,8 +82,8 @@ impl<L: Lanes> Machine<L> {
         }
     }
 
-    /// Counts the pulses that arrived before this scan.
-    pub(super) fn count_pulses(&mut self) {
+    /// Counts the pulses that arrived before this scan; `before` are the inputs from X0 on in the scan before it.
+    pub(super) fn count_pulses(&mut self, before: [L; 8]) {
         for lane in 0..L::COUNT {
             let watches = self.outside[lane].take_watches();
             for (wiring, number) in WIRING.iter().zip(FIRST_HIGH_SPEED..) {
@@ -97,12 +99,12 @@ impl<L: Lanes> Machine<L> {
                     continue;
                 }
                 let preset = self.memory.word(slot + PRESET, lane) as i32;
-                self.count(HighSpeed { number, slot, preset, lane }, wiring, fed, &watches);
+                self.count(HighSpeed { number, slot, preset, lane }, wiring, fed, before, &watches);
             }
         }
     }
 
-    fn count(&mut self, counter: HighSpeed, wiring: &Wiring, fed: i32, watches: &[Watch]) {
+    fn count(&mut self, counter: HighSpeed, wiring: &Wiring, fed: i32, before: [L; 8], watches: &[Watch]) {
         let HighSpeed { number, slot, lane, .. } = counter;
         if wiring.reset.is_some_and(|x| self.is_input_on(x, lane)) {
             // It acts as RST does.
@@ -119,7 +121,8 @@ impl<L: Lanes> Machine<L> {
         };
         let (up, down) = (arrived(wiring.pulses), wiring.down.map_or(0, arrived));
         let relay = self.code.layout.cell(Device::new(DeviceKind::M, 8000 + number));
-        let fed = i64::from(fed);
+        let turned = if is_started { self.turned(number, wiring, before, lane) } else { 0 };
+        let fed = i64::from(fed) + turned;
         let pulses = if number <= ONE_PHASE {
             let is_down = relay.is_some_and(|relay| self.memory.bit(relay, lane));
             let pulses = up + fed.abs();
@@ -134,6 +137,50 @@ impl<L: Lanes> Machine<L> {
             self.memory.set_bit(relay, lane, pulses < 0);
         }
         self.advance(counter, pulses.clamp(-MOST_PULSES, MOST_PULSES), watches);
+    }
+
+    /// What two phases count. While A is on, B going on counts up and B going off counts down, as the FX programming
+    /// manuals say; every edge counts where a relay wants that. Of two phases that change in one scan nobody knows
+    /// which was first: they count nothing.
+    fn turned(&self, number: u32, wiring: &Wiring, before: [L; 8], lane: usize) -> i64 {
+        let (Some(b), true) = (wiring.down, number > TWO_INPUTS) else { return 0 };
+        let was = [wiring.pulses, b].map(|x| before[usize::from(x)].lane(lane));
+        let is = [wiring.pulses, b].map(|x| self.is_input_on(x, lane));
+        let relay = Device::new(DeviceKind::M, EVERY_EDGE + u32::from(matches!(number, 253 | 255)));
+        let counts_edges = self.code.layout.cell(relay).is_some_and(|relay| self.memory.bit(relay, lane));
+        match (was, is) {
+            ([true, was], [true, is]) if was != is => {
+                if is {
+                    1
+                } else {
+                    -1
+                }
+            }
+            _ if !counts_edges => 0,
+            // A leads upwards.
+            ([false, was], [false, is]) if was != is => {
+                if is {
+                    -1
+                } else {
+                    1
+                }
+            }
+            ([was, false], [is, false]) if was != is => {
+                if is {
+                    1
+                } else {
+                    -1
+                }
+            }
+            ([was, true], [is, true]) if was != is => {
+                if is {
+                    -1
+                } else {
+                    1
+                }
+            }
+            _ => 0,
+        }
     }
 
     fn is_input_on(&self, x: u8, lane: usize) -> bool {

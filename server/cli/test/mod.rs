@@ -7,6 +7,7 @@ mod text;
 
 use super::input::{complain, put, say};
 use super::{Outcome, paths_or_here};
+use crate::project::read_text;
 use crate::scenario::{Counts, Fate, Flaw, Golden, Mutants, Report, Scenario, lcov};
 use crate::text::{Encoding, Language, Message, Span, position_of};
 use clap::ValueEnum;
@@ -304,9 +305,9 @@ impl SuiteFile {
             let needs_end = scenario.last.is_none().then(|| Message::new("scenario.golden-time"));
             return needs_end.map_or(Ok(None), |message| Err(Flaw { message, span: named.span }));
         }
-        let read = match std::fs::read_to_string(&path) {
-            Ok(text) => Golden::read(&text),
-            Err(_) => Err(Message::new("scenario.golden-missing").with("path", &named.name)),
+        let read = match read_text(&path) {
+            Some(text) => Golden::read(&text),
+            None => Err(Message::new("scenario.golden-missing").with("path", &named.name)),
         };
         read.map(Some).map_err(|message| Flaw { message, span: named.span })
     }
