@@ -251,7 +251,7 @@ fn memory(line: &Loopback) -> Vec<u8> {
 fn what_does_not_belong_into_a_plc_is_refused_before_anything_is_changed() {
     let line = Loopback::new(Model::Fx1s);
     let mut host = line.host().unwrap();
-    let plan = |host: &mut rungwise::link::Host<Loopback>, list: &str, model| {
+    let plan = |host: &mut Host<Loopback>, list: &str, model| {
         host.plan(&words(list, model), Target::of(model), &mut |_| {}).map(|_| ())
     };
     let wrong = LinkError::WrongModel { wanted: "FX2N", found: "FX1S" };
