@@ -109,10 +109,10 @@ impl Transport for Loopback {
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
         let mut ends = self.ends();
         let end = ends.now_ns + wait.as_nanos() as i64;
+        let mut count = 0;
         loop {
             ends.settle();
             let now = ends.now_ns;
-            let mut count = 0;
             while let Some(place) = buffer.get_mut(count)
                 && let Some(byte) = ends.to_host.receive(now)
             {
@@ -120,8 +120,15 @@ impl Transport for Loopback {
                 ends.received.push(byte);
                 count += 1;
             }
-            if count > 0 {
-                return Ok(count);
+            // Bytes that follow each other at once are one piece, as a serial port delivers them.
+            let is_next = |next: i64| next <= end && next <= now + ends.byte_ns;
+            match ends.to_host.next_ns().filter(|next| count < buffer.len() && is_next(*next)) {
+                Some(next) if count > 0 => {
+                    ends.now_ns = next.max(now);
+                    continue;
+                }
+                _ if count > 0 => return Ok(count),
+                _ => {}
             }
             if ends.is_dead() {
                 return Err(io::ErrorKind::BrokenPipe.into());

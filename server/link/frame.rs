@@ -4,8 +4,6 @@
 //! to and with ETX, in two hexadecimal digits. Sources: recordings of the maker's tools with FX1S, FX1N and FX2N, and
 //! four independent clients and firmwares that agree.
 
-use std::fmt::Write;
-
 /// Start of a frame.
 pub const STX: u8 = 0x02;
 /// End of a frame's body.
@@ -59,12 +57,12 @@ pub fn sum(bytes: &[u8]) -> u8 {
 
 /// Two upper-case digits for each byte.
 pub fn hex(bytes: &[u8]) -> Vec<u8> {
-    let mut text = String::with_capacity(bytes.len() * 2);
+    const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
+    let mut text = Vec::with_capacity(bytes.len() * 2);
     for byte in bytes {
-        // Writing into a string cannot fail.
-        let _ = write!(text, "{byte:02X}");
+        text.extend([DIGITS[usize::from(byte >> 4)], DIGITS[usize::from(byte & 0xF)]]);
     }
-    text.into_bytes()
+    text
 }
 
 /// The bytes that upper-case digits stand for; nothing where they are none, or one is left over.
@@ -75,8 +73,11 @@ pub fn unhex(digits: &[u8]) -> Option<Vec<u8>> {
         _ => None,
     };
     let (pairs, rest) = digits.as_chunks::<2>();
-    let bytes = pairs.iter().map(|[high, low]| Some(value(*high)? << 4 | value(*low)?));
-    if rest.is_empty() { bytes.collect() } else { None }
+    let mut bytes = Vec::with_capacity(pairs.len());
+    for [high, low] in pairs {
+        bytes.push(value(*high)? << 4 | value(*low)?);
+    }
+    rest.is_empty().then_some(bytes)
 }
 
 /// Puts the bytes of a line together.

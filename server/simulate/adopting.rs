@@ -160,7 +160,6 @@ impl<L: Lanes> Machine<L> {
             return new;
         }
         let layout = &code.layout;
-        let registers = layout.devices().filter(|device| device.kind == DeviceKind::D && device.is_special());
         for (kind, cells, slots) in layout.latched_runs() {
             new.memory.keep(&self.memory, cells, slots.clone());
             if kind == DeviceKind::T {
@@ -171,7 +170,7 @@ impl<L: Lanes> Machine<L> {
                 }
             }
         }
-        for register in registers {
+        for register in layout.special_registers() {
             let (cells, slots) = layout.whole(register);
             new.memory.keep(&self.memory, cells, slots);
         }

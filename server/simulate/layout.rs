@@ -217,6 +217,15 @@ impl Layout {
         self.all(|_| true)
     }
 
+    /// The registers of the system. They are asked for at each start of a PLC, so others are not looked at.
+    pub(super) fn special_registers(&self) -> impl Iterator<Item = Device> {
+        let register = |number| Device::new(DeviceKind::D, number);
+        let runs = self.kinds[DeviceKind::D as usize].iter();
+        let runs = runs.filter(move |run| register(run.last).is_special());
+        runs.flat_map(move |run| (run.first..=run.last).map(register))
+            .filter(|register| register.is_special())
+    }
+
     fn all(&self, wanted: impl Fn(&Run) -> bool) -> impl Iterator<Item = Device> {
         DeviceKind::ALL.into_iter().flat_map(move |kind| {
             let runs: Vec<Run> =

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { alarmRows, NO_PLC, noteAlarm, parseState, raised, rowsOf, statusText } from '../src/plc';
+import { alarmRows, isProgram, NO_PLC, noteAlarm, parseState, raised, rowsOf, statusText } from '../src/plc';
 
 const CONNECTED = {
   connected: true,
@@ -37,9 +37,28 @@ test('rows tell model, port, mode, program, memory, scan time and errors', () =>
   );
 });
 
+test('a row says whether the program is that of the editor, as far as that is known, and icons say the mode', () => {
+  const shown = (more: object, id: string) => {
+    const row = rowsOf(parseState({ ...CONNECTED, ...more })).find((row) => row.id === id);
+    return `${row?.icon} ${row?.description}`;
+  };
+  assert.equal(shown({ match: 'same' }, 'match'), 'check as in the editor');
+  assert.equal(shown({ match: 'different' }, 'match'), 'diff not as in the editor');
+  assert.equal(shown({ match: 'unknown' }, 'match'), 'question not compared yet');
+  assert.equal(shown({}, 'match'), 'question not compared yet');
+  assert.equal(shown({}, 'mode'), 'play-circle RUN');
+  assert.equal(shown({ mode: 'STOP' }, 'mode'), 'stop-circle STOP');
+});
+
 test('the status bar shows the mode, and a sign where the programs differ', () => {
   assert.equal(statusText(parseState({ ...CONNECTED, match: 'same' })), '$(play-circle) FX2N RUN');
   assert.equal(statusText(parseState({ ...CONNECTED, mode: 'STOP', match: 'different' })), '$(stop-circle) FX2N STOP $(diff)');
+});
+
+test('the two sides of a difference are no programs to compare with the PLC', () => {
+  const document = (languageId: string, scheme: string) => ({ languageId, uri: { scheme } });
+  assert.ok(isProgram(document('plc-il', 'file')) && isProgram(document('ladder', 'untitled')));
+  assert.ok(!isProgram(document('plc-il', 'rungwise-plc')) && !isProgram(document('toml', 'file')));
 });
 
 test('an alarm is a row with the times when it was raised and gone', () => {
@@ -58,6 +77,10 @@ test('an alarm is a row with the times when it was raised and gone', () => {
   assert.equal(rows(again)[0], 'error Too full: since 4 s');
   assert.equal(again.length, 3);
   assert.equal(noteAlarm(again, { raised: true }), again);
+  // Raised twice without a word between, it is one row.
+  const twice = noteAlarm(again, { ...told, at_ms: 5000 });
+  assert.equal(rows(twice)[0], 'error Too full: since 5 s');
+  assert.equal(twice.length, 3);
 });
 
 test('of many alarms the newest are kept', () => {

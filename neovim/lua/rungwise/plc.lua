@@ -2,9 +2,8 @@
 local client = require('rungwise.client')
 local simulation = require('rungwise.simulation')
 local t = require('rungwise.words').t
+local verbs = require('rungwise.verbs')
 local M = {}
-
-local PREFIX = 'rungwise.plc.'
 
 --- What the server told of the PLC last.
 M.state = { connected = false }
@@ -14,21 +13,7 @@ M.alarms = {}
 local MOST_ALARMS = 50
 
 --- Has something done about the program of a buffer; `done` gets the answer.
-local function tell(buffer, verb, more, done)
-  local server = client.expect(buffer)
-  if not server then
-    return
-  end
-  local argument = vim.tbl_extend('force', { uri = vim.uri_from_bufnr(buffer) }, more or {})
-  client.request(server, 'workspace/executeCommand', { command = PREFIX .. verb, arguments = { argument } },
-    function(err, result)
-      if err then
-        client.notify(err.message or vim.inspect(err), vim.log.levels.ERROR)
-      elseif done then
-        done(result)
-      end
-    end, buffer)
-end
+local tell = verbs.teller('rungwise.plc.')
 
 M.tell = tell
 
@@ -240,20 +225,12 @@ M.verbs = {
 
 --- The verbs, sorted.
 function M.names()
-  local names = vim.tbl_keys(M.verbs)
-  table.sort(names)
-  return names
+  return verbs.names(M.verbs)
 end
 
 --- Runs `:Rungwise plc VERB WORD…`; without a verb it tells the state.
 function M.run(words)
-  local verb = M.verbs[words[1] or 'status']
-  if not verb then
-    client.notify(t('there is no ":Rungwise plc %s"; there are %s', words[1], table.concat(M.names(), ', ')),
-      vim.log.levels.ERROR)
-    return
-  end
-  verb(vim.api.nvim_get_current_buf(), vim.list_slice(words, 2))
+  verbs.run('plc', M.verbs, 'status', words)
 end
 
 return M

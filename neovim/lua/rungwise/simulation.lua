@@ -2,9 +2,9 @@
 local client = require('rungwise.client')
 local panel = require('rungwise.panel')
 local t = require('rungwise.words').t
+local verbs = require('rungwise.verbs')
 local M = {}
 
-local PREFIX = 'rungwise.simulate.'
 local SPACE = vim.api.nvim_create_namespace('rungwise_simulation')
 --- The window is told when it stands still.
 local SCROLL_MS = 50
@@ -20,21 +20,7 @@ vim.api.nvim_set_hl(0, 'RungwiseForcedName', { default = true, bold = true, unde
 vim.api.nvim_set_hl(0, 'RungwiseForcedSign', { default = true, link = 'WarningMsg' })
 
 --- Tells the server something about the program of a buffer; `done` gets the answer.
-function M.tell(buffer, verb, more, done)
-  local running = client.expect(buffer)
-  if not running then
-    return
-  end
-  local argument = vim.tbl_extend('error', { uri = vim.uri_from_bufnr(buffer) }, more or {})
-  client.request(running, 'workspace/executeCommand', { command = PREFIX .. verb, arguments = { argument } },
-    function(err, result)
-      if err then
-        client.notify(err.message or vim.inspect(err), vim.log.levels.ERROR)
-      elseif done then
-        done(result)
-      end
-    end, buffer)
-end
+M.tell = verbs.teller('rungwise.simulate.')
 
 --- The lines that windows show of a buffer.
 local function ranges_of(buffer)
@@ -284,20 +270,12 @@ M.verbs = {
 
 --- The verbs, sorted.
 function M.names()
-  local names = vim.tbl_keys(M.verbs)
-  table.sort(names)
-  return names
+  return verbs.names(M.verbs)
 end
 
 --- Runs `:Rungwise simulate VERB WORD…`; without a verb it starts.
 function M.run(words)
-  local verb = M.verbs[words[1] or 'start']
-  if not verb then
-    client.notify(t('there is no ":Rungwise simulate %s"; there are %s', words[1], table.concat(M.names(), ', ')),
-      vim.log.levels.ERROR)
-    return
-  end
-  verb(vim.api.nvim_get_current_buf(), vim.list_slice(words, 2))
+  verbs.run('simulate', M.verbs, 'start', words)
 end
 
 return M

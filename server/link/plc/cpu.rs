@@ -16,6 +16,8 @@ pub struct Plc {
     /// Whether something has been written into the program since it was last taken over.
     pub(super) is_open: bool,
     pub(super) machine: Machine<u8>,
+    /// The words of a program that ran, and what runs them.
+    coded: Option<(Vec<u16>, Arc<Code>)>,
     /// What a host wants to watch, as it wrote it.
     pub(super) watch_list: Vec<u8>,
     pub(super) mode: Mode,
@@ -62,6 +64,7 @@ impl Plc {
             program: blank(target, (steps / 1000) as u16),
             is_open: false,
             machine: Machine::new(Arc::new(nothing(target))),
+            coded: None,
             watch_list: Vec::new(),
             mode: Mode::Stop,
             switch: Switch::Run,
@@ -175,7 +178,7 @@ impl Plc {
             return;
         };
         let orders = [FORCED_MODE, FORCED_RUN].map(|number| (number, self.machine.bit(relay(number))));
-        self.machine = self.machine.restarted(Arc::new(code));
+        self.machine = self.machine.restarted(code);
         for (number, on) in orders {
             self.machine.set(relay(number), on);
         }
@@ -227,12 +230,18 @@ impl Plc {
     }
 
     /// The code of the program up to END, if it has one and can be run.
-    fn code(&self) -> Option<Code> {
-        let words = self.words();
-        let end = words.iter().position(|word| *word == END)?;
-        let list = decode(&words[..=end], self.target.model).text;
+    fn code(&mut self) -> Option<Arc<Code>> {
+        let (memory, _) = self.program[PARAMETER_BYTES..].as_chunks::<2>();
+        let end = memory.iter().position(|word| u16::from_le_bytes(*word) == END)?;
+        let words: Vec<u16> = memory[..=end].iter().map(|word| u16::from_le_bytes(*word)).collect();
+        if let Some((_, code)) = self.coded.as_ref().filter(|(known, _)| *known == words) {
+            return Some(Arc::clone(code));
+        }
+        let list = decode(&words, self.target.model).text;
         let document = Document::new(&list, Notation::FxIl, self.target);
-        compile(&[&document], false).ok()
+        let code = Arc::new(compile(&[&document], false).ok()?);
+        self.coded = Some((words, Arc::clone(&code)));
+        Some(code)
     }
 }
 
