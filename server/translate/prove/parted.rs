@@ -82,7 +82,7 @@ fn is_cut_anywhere(path: &Path) -> bool {
         |term: &&Term| matches!(term.operand, Operand::Device(device) if device.has_single_edge());
     let is_passed = |gate: &Gate| !matches!(gate, Gate::Through(_)) && !terms(gate).iter().any(is_single);
     path.gates.iter().all(is_passed)
-        && path.drives.iter().flat_map(actions).any(|action| touches_bits(action))
+        && path.drives.iter().flat_map(actions).any(touches_bits)
 }
 
 fn terms(gate: &Gate) -> Vec<&Term> {
