@@ -4,7 +4,7 @@
 use rungwise::document::{Document, Notation};
 use rungwise::scenario::shown;
 use rungwise::target::{Model, Target};
-use rungwise::translate::{Proof, Shown, prove};
+use rungwise::translate::{Options, Proof, Shown, To, prove, translate};
 
 /// The verdict on two FX lists; instructions are separated by semicolons, END is left out.
 fn verdict(left: &str, right: &str) -> &'static str {
@@ -155,6 +155,14 @@ fn a_jump_behind_a_block_is_one_in_its_own_rung() {
     assert_eq!(word(&prove(&fx, &list("LD"))), "equal");
     assert_eq!(word(&prove(&list("LD"), &fx)), "equal");
     assert_ne!(word(&prove(&fx, &list("LDN"))), "equal");
+    for pulsed in
+        ["LD X2\nINCP D0\nEND\n", "LD X1\nADD D0 K1 D1\nLD X2\nSET M2\nLD X2\nAND X3\nINCP D0\nEND\n"]
+    {
+        let list = Document::new(pulsed, Notation::FxIl, Target::of(Model::Fx2n));
+        let text = translate(&list, None, To::Iec, &Options::default()).text;
+        let written = Document::new(&text, Notation::IecIl, Target::of(Model::Iec));
+        assert_eq!(word(&prove(&list, &written)), "equal", "{text}");
+    }
 }
 
 #[test]

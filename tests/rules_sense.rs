@@ -228,6 +228,7 @@ fn a_relay_of_the_latched_range_gets_a_general_one() {
             ("LD X0; OR M600; OUT M600; LD M600; OUT Y0", &[]),
             ("LD X0; SET M600; LD X1; RST M600", &[]),
             ("STL S0; OUT M600; RET; LD M600; OUT Y0", &[]),
+            ("LD X0; OUT M2800; LDP M2800; OUT Y0", &[]),
         ],
     );
 }

@@ -50,7 +50,7 @@ pub fn shown(proof: Proof, documents: [&Document; 2], names: &[String; 2]) -> Pr
         })),
         Proof::Undecided { ref suspect, at, .. } => {
             // Programs of two families have timers and memory of different kinds.
-            let is_mixed = documents[0].target().is_fx() != documents[1].target().is_fx();
+            let is_mixed = !documents[0].target().is_kin_of(documents[1].target());
             let nothing = Counterexample::unknown(at);
             let found = suspect.as_deref().or((!is_mixed).then_some(&nothing));
             found.and_then(|found| seen(found).ok()).map_or(proof, |told| Proof::Different(Box::new(told)))
@@ -133,7 +133,7 @@ impl Trial {
         };
         let codes = [code(0)?, code(1)?];
         let finder = [0, 1].map(|side| Finder::new(&codes[side], documents[side], found, side));
-        let is_mixed = codes[0].target.is_fx() != codes[1].target.is_fx();
+        let is_mixed = !codes[0].target.is_kin_of(codes[1].target);
         let mut handles: BTreeMap<String, (Variable, Option<Variable>)> = BTreeMap::new();
         let shared = [0, 1].map(|side| {
             let names = codes[side].named().into_iter().flat_map(|name| parts_of(&name));

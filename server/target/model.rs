@@ -88,6 +88,11 @@ impl Target {
         self.model != Model::Iec
     }
 
+    /// Whether both are of the FX family, or both of IEC 61131-3, so that programs have the same words.
+    pub fn is_kin_of(&self, other: &Target) -> bool {
+        self.is_fx() == other.is_fx()
+    }
+
     /// The ranges of `kind` on this target; empty if it has no such device.
     pub fn ranges(&self, kind: DeviceKind) -> impl Iterator<Item = &'static DeviceRange> {
         let first = usize::from(self.first_ranges[kind as usize]);

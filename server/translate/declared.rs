@@ -183,12 +183,12 @@ fn place(document: &Document, unit: Option<usize>, name: &str) -> Option<Span> {
 
 /// The first word that both programs calculate with or compare, and that is a number of another type in each.
 pub(super) fn other_type(documents: [&Document; 2], sources: [&[Source]; 2]) -> Option<Difference> {
-    let is_fx = documents.map(|document| document.target().is_fx());
-    if is_fx == [true; 2] {
+    let [left, right] = documents.map(Document::target);
+    if left.is_fx() && right.is_fx() {
         return None;
     }
     // The FX family has one type for each size, and some of what it does is the same for all of that size.
-    let is_mixed = is_fx[0] != is_fx[1];
+    let is_mixed = !left.is_kin_of(right);
     let [left, right] = [0, 1].map(|side| words(documents[side], sources[side], is_mixed));
     let (name, types) = left.into_iter().find_map(|(key, left)| {
         let right = right.get(&key)?;

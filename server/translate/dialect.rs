@@ -173,7 +173,7 @@ pub(super) fn convert(
     if to == To::Iec {
         end(&mut program.rungs);
     }
-    if document.target().is_fx() == target.is_fx() {
+    if document.target().is_kin_of(target) {
         return;
     }
     let is_whole = purpose != Purpose::Text { is_whole: false };

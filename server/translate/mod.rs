@@ -253,7 +253,7 @@ fn written(
     };
     let (mut translation, mut helpers) = write(&program)?;
     // A drawing has a box for what it has no symbols for; elsewhere that is but a comment.
-    let is_mixed = document.target().is_fx() != target.is_fx();
+    let is_mixed = !document.target().is_kin_of(target);
     if (to != To::Ladder || is_mixed) && dialect::keep_guarded(&mut program.rungs, &translation.rungs) {
         (translation, helpers) = write(&program)?;
     }

@@ -3,11 +3,14 @@
 //! Rungs are compared in step as far as they drive the same things in the same order. Where one program does so in
 //! another way, stretches between jumps, labels and the like are compared by what comes of them.
 
+mod ground;
 mod labels;
 mod parted;
+mod straight;
 mod telling;
 
-use super::counterexample::{self, Counterexample, Inputs, Shown, Value};
+use self::ground::Ground;
+use super::counterexample::{self, Counterexample};
 use super::paired::Paired;
 use super::source::{self, Source};
 use super::{Purpose, To, declared, dialect, helpers, reached, types, units};
@@ -18,7 +21,7 @@ use crate::logic::{
     compare_outcome, may_drive, shown, touches_bits,
 };
 use crate::target::iec::ElementaryType;
-use crate::target::{Device, DeviceKind, Flow, Model, Target};
+use crate::target::{DeviceKind, Flow, Model, Target};
 use crate::text::{Message, Span, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
@@ -64,7 +67,7 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
     let placed: Vec<Option<Document>> = placed.collect();
     let [left, right] =
         [(left, 0), (right, 1)].map(|(own, side)| placed.get(side).and_then(Option::as_ref).unwrap_or(own));
-    let is_mixed = left.target().is_fx() != right.target().is_fx();
+    let is_mixed = !left.target().is_kin_of(right.target());
     let mut sources = [left, right].map(|document| {
         let mut program = source::program(document, None);
         if is_mixed && document.target().is_fx() {
@@ -94,7 +97,7 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
     let may_be_off = sources.iter().flatten().any(leaves_out);
     let mut effort = Effort::of_program();
     effort.know(types::compared([left, right], [&sources[0], &sources[1]]));
-    if sources.iter().flatten().all(is_straight) {
+    if sources.iter().flatten().all(straight::is_straight) {
         effort.know_straight();
     }
     let mut prover = Prover {
@@ -138,24 +141,6 @@ fn leaves_out(source: &Source) -> bool {
         return words.any(|word| ["MC", "STL"].iter().any(|own| own.eq_ignore_ascii_case(word)));
     }
     reached::has_flow(source, |flow| matches!(flow, Flow::SectionBegin | Flow::Step))
-}
-
-/// Whether a rung is executed once in each scan if all rungs are such, and leaves to the CPU what tells of the scan.
-fn is_straight(source: &Source) -> bool {
-    let is_plain = |action: &Action| match &action.deed {
-        Deed::Jump | Deed::Return => false,
-        Deed::Instruction(form) => {
-            matches!(form.instruction.flow(), Flow::Straight | Flow::Nothing | Flow::ProgramEnd)
-        }
-        _ => !action.runs_unit(),
-    };
-    let is_of_scans = |device: Device| {
-        device.kind == DeviceKind::M && (Device::ALWAYS_ON.number..=8003).contains(&device.number)
-    };
-    let drives =
-        |action: &Action| action.changes().iter().any(|term| term.operand.device().is_some_and(is_of_scans));
-    let is_such = |path: &Path| path.actions().into_iter().all(|action| is_plain(action) && !drives(action));
-    source.rung.labels.is_empty() && source.rung.path.as_ref().is_ok_and(|path| path.iter().all(is_such))
 }
 
 /// Rungs that are executed one after the other, and what ends them: a label, a jump, another program unit, or an
@@ -464,9 +449,7 @@ impl Prover<'_> {
         paths: [&[&Path]; 2],
         sides: [Rungs<'_, '_>; 2],
     ) -> Option<Counterexample> {
-        let types = self.types(sides);
-        let type_of = |key: &str| types.get(key).copied();
-        let state = state.filter(|state| counterexample::is_possible(state, &type_of))?;
+        let (state, ground) = self.ground(state, sides)?;
         if matches!(place, Place::Event(_)) && !self.lasts(&what) {
             return None;
         }
@@ -475,44 +458,30 @@ impl Prover<'_> {
         if matches!(place, Place::Event(_)) && sides.iter().any(|side| side.iter().any(jumps)) {
             return None;
         }
-        let units = [0, 1].map(|side| self.unit_around(side, sides[side]));
-        self.is_plain(&units).then_some(())?;
         let (state, values) = counterexample::confirmed_near(state, paths, &place)?;
-        let state = reached::reached(&units, &state, &place)?;
+        let state = reached::reached(&ground.units, &state, &place)?;
         let key = match &place {
             Place::Bit(key) => key.clone(),
             Place::Event(_) => folded(&what),
         };
-        let at = sides.map(|side| rung_of(side, &what));
-        Some(self.found((what, key, values), &state, at, &units, &type_of))
+        Some(ground.found((what, key, values), &state, sides))
     }
 
-    /// The difference in `what`, as people are told it.
-    fn found(
-        &self,
-        (what, key, values): (String, SmolStr, [bool; 2]),
-        state: &State,
-        at: [Option<Span>; 2],
-        units: &[reached::Unit<'_>; 2],
-        type_of: &dyn Fn(&str) -> Option<ElementaryType>,
-    ) -> Counterexample {
-        let own = units.each_ref().map(|unit| unit.paths());
-        let Inputs { inputs, before, mut keys } = counterexample::inputs(state, [&own[0], &own[1]], type_of);
-        keys.insert(what.clone(), key);
-        let sides = values.map(Value::Bit);
-        let shown = Shown::Untried;
-        Counterexample { inputs, before, what, sides, at, keys, shown }
+    /// `state`, if one can be in it, and what is needed to run the rungs around `sides` from there, if running these
+    /// with plain values is what a PLC does.
+    fn ground(&self, state: Option<State>, sides: [Rungs<'_, '_>; 2]) -> Option<(State, Ground<'_>)> {
+        let units = [0, 1].map(|side| self.unit_around(side, sides[side]));
+        let ground = Ground { types: self.types(sides), units };
+        let state = state.filter(|state| counterexample::is_possible(state, &|key| ground.type_of(key)))?;
+        self.is_plain(&ground.units).then_some((state, ground))
     }
 
     /// The difference that is there at the end of a scan when both programs are run from a state in which something
     /// else differs on the way.
     fn by_running(&self, state: Option<State>, sides: [Rungs<'_, '_>; 2]) -> Option<Counterexample> {
-        let types = self.types(sides);
-        let type_of = |key: &str| types.get(key).copied();
-        let state = state.filter(|state| counterexample::is_possible(state, &type_of))?;
-        let units = [0, 1].map(|side| self.unit_around(side, sides[side]));
-        self.is_plain(&units).then_some(())?;
-        let (bit, state, values) = reached::found(&units, &state)?;
+        let (state, ground) = self.ground(state, sides)?;
+        let units = &ground.units;
+        let (bit, state, values) = reached::found(units, &state)?;
         let key = bit.key();
         let is_again = (0..2).any(|side| {
             let (all, own) = (self.all[side], &units[side].numbers);
@@ -522,9 +491,7 @@ impl Prover<'_> {
         if is_again {
             return None;
         }
-        let what = bit.text.to_string();
-        let at = sides.map(|side| rung_of(side, &what));
-        Some(self.found((what, key, values), &state, at, &units, &type_of))
+        Some(ground.found((bit.text.to_string(), key, values), &state, sides))
     }
 
     /// Whether running what is executed in one scan with plain values is what a PLC does.

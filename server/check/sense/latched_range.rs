@@ -5,7 +5,8 @@
 //! rungs above the coil see what was on when it went, perhaps days ago.
 //!
 //! Use a general relay and leave the latched ones to what the machine must remember. A relay that holds itself, or
-//! that `SET` and `RST` switch, is such a memory and not reported.
+//! that `SET` and `RST` switch, is such a memory and not reported. Nor is one of M2800 to M3071 of which a contact asks
+//! for the edge: these share one memory of it, as general relays do not.
 //!
 //! ```fx
 //! LD X0
@@ -70,6 +71,10 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
             continue;
         }
         if uses.acts(number).writes_but(&[Act::Coil, Act::Pulse]) {
+            continue;
+        }
+        // Whoever asks for its edge may want it for the one memory that contacts for it share.
+        if device.shares_edges(target) && uses.acts(number).has(&[Act::ReadEdge]) {
             continue;
         }
         let mut writes = uses.of_name(number).filter(|one| one.access.act.writes());

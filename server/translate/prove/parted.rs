@@ -10,11 +10,14 @@ use crate::translate::source::Source;
 /// The rungs, those with a jump or the like cut behind the blocks that power goes through, before the jump and behind
 /// it. A part stands where its first drive does.
 pub(super) fn parted(rungs: Vec<Source>) -> Vec<Source> {
-    rungs.into_iter().flat_map(behind_blocks).flat_map(parts).collect()
+    rungs.into_iter().flat_map(behind_blocks).flat_map(parts).flat_map(behind_blocks).collect()
 }
 
 /// What power drives behind a block goes on from the output of that, which may be asked in a rung of its own.
-fn behind_blocks(source: Source) -> Vec<Source> {
+fn behind_blocks(mut source: Source) -> Vec<Source> {
+    if let Ok(Some(path)) = &mut source.rung.path {
+        join_gates(path);
+    }
     let touches = |path: &Path| path.actions().into_iter().any(touches_bits);
     let cut = source.path().filter(|path| touches(path)).and_then(|path| {
         let through = |gate: &Gate| matches!(gate, Gate::Through(_));
@@ -74,6 +77,15 @@ fn parts(source: Source) -> Vec<Source> {
         part
     };
     groups.into_iter().zip(starts).enumerate().map(part).collect()
+}
+
+/// Makes one path of a path that drives nothing but another one.
+fn join_gates(path: &mut Path) {
+    while let [Drive::Path(inner)] = &mut path.drives[..] {
+        let inner = std::mem::take(inner);
+        path.gates.extend(inner.gates);
+        path.drives = inner.drives;
+    }
 }
 
 /// Whether a drive of it looks at more than its condition, and its condition is the same however often it is asked.
