@@ -460,6 +460,18 @@ fn a_high_speed_counter_can_reset_itself_and_ask_for_an_interrupt() {
 }
 
 #[test]
+fn a_count_that_was_written_beyond_its_preset_comes_back_to_it() {
+    let mut plc = Plc::list("LD X0\nOUT C0 D0\nLD X1\nOUT C200 K5\nEND\n");
+    plc.set("D0=5 C0=9 C200=9").scans(1).check("C0=9 ~C0 C200=9 ~C200");
+    // One with 32 bits is a ring and goes on.
+    plc.set("X0 X1").scans(1).check("C0=5 C0 C200=10 ~C200");
+    plc.set("X0=0").scans(1).set("X0").scans(1).check("C0=5 C0");
+    let mut plc = Plc::list("LD X0\nOUT C0 D0\nEND\n");
+    // The preset that falls below the count.
+    plc.set("D0=5 C0=3").scans(1).set("D0=2").scans(2).check("C0=3 ~C0").set("X0").scans(1).check("C0=2 C0");
+}
+
+#[test]
 fn zones_are_compared_when_pulses_come() {
     let text = "LD M8000\nOUT C235 K9999\nDHSZ K10 K20 C235 M10\nEND\n";
     let mut plc = Plc::list(text);

@@ -416,3 +416,23 @@ Y0 is off: nothing that drives it has done so yet
       X0 is on: an input, since scan 0 (0 ms)  [3]",
     );
 }
+
+#[test]
+fn an_input_is_known_by_when_it_was_switched() {
+    let mut plc = Plc::list("LD X0\nAND X1\nOUT Y0\nEND\n");
+    let on = |since: u64| format!("X0 is on: an input, since scan {since} ({}0 ms)\n", since);
+    // Switched to what it was it has not changed.
+    plc.run("X0", 2).run("X0=0", 3).run("X1", 2).run("X0", 2).run("X0", 4).run("X1=0", 3).check("X0", &on(7));
+    let code = plc.session.machine().code();
+    let variable = code.variable("X0").unwrap();
+    let held = variable.force(code, &Held::Bit(false)).unwrap();
+    plc.session.touch(held);
+    plc.run("", 2);
+    plc.session.touch(variable.release());
+    plc.run("", 3).check("X0", &on(18));
+    plc.run("X0=0", 1).check("X0", "X0 is off: an input, since scan 21 (210 ms)\n");
+    // Nobody has touched it.
+    plc.check("X7", "X7 is off: an input\n");
+    assert!(plc.session.back_to(10));
+    plc.check("X0", &on(7));
+}

@@ -148,37 +148,14 @@ impl<L: Lanes> Machine<L> {
         let is = [wiring.pulses, b].map(|x| self.is_input_on(x, lane));
         let relay = Device::new(DeviceKind::M, EVERY_EDGE + u32::from(matches!(number, 253 | 255)));
         let counts_edges = self.code.layout.cell(relay).is_some_and(|relay| self.memory.bit(relay, lane));
+        let way = |is_up: bool| if is_up { 1 } else { -1 };
         match (was, is) {
-            ([true, was], [true, is]) if was != is => {
-                if is {
-                    1
-                } else {
-                    -1
-                }
-            }
+            ([true, was], [true, is]) if was != is => way(is),
             _ if !counts_edges => 0,
             // A leads upwards.
-            ([false, was], [false, is]) if was != is => {
-                if is {
-                    -1
-                } else {
-                    1
-                }
-            }
-            ([was, false], [is, false]) if was != is => {
-                if is {
-                    1
-                } else {
-                    -1
-                }
-            }
-            ([was, true], [is, true]) if was != is => {
-                if is {
-                    -1
-                } else {
-                    1
-                }
-            }
+            ([false, was], [false, is]) if was != is => way(!is),
+            ([was, false], [is, false]) if was != is => way(is),
+            ([was, true], [is, true]) if was != is => way(!is),
             _ => 0,
         }
     }

@@ -170,6 +170,29 @@ impl Session {
         None
     }
 
+    /// The same for a variable that nothing but people change: only scans before which something was done are looked at,
+    /// so that a switch that nobody has touched in a long history is soon known.
+    pub(super) fn last_switching(&self, scan: u64, variable: Variable) -> Option<u64> {
+        let of = |machine: &Machine<u8>| machine.value_inside(variable, 0);
+        if self.touches.iter().any(|(_, touch)| matches!(touch, Touch::Around(_))) {
+            // Keypads feed inputs from outputs.
+            return self.last_change(scan, of);
+        }
+        let last = scan.min(self.machine.scans());
+        let switches = self.touches.iter().rev().filter(|(_, touch)| match *touch {
+            Touch::Write(own, _) | Touch::Hold(own, _) | Touch::LetGo(own) => own == variable,
+            Touch::LetAllGo => true,
+            _ => false,
+        });
+        let mut scans: Vec<u64> = switches.map(|(before, _)| *before).collect();
+        scans.dedup();
+        let mut known = scans.into_iter().filter(|scan| (self.first_scan() + 1..=last).contains(scan));
+        known.find(|scan| {
+            let (before, after) = (self.at(scan - 1), self.at(*scan));
+            before.zip(after).is_some_and(|(before, after)| of(&before) != of(&after))
+        })
+    }
+
     /// Goes back to the PLC as it was after a scan; what came later is forgotten. Gives whether that was known.
     pub fn back_to(&mut self, scan: u64) -> bool {
         if scan == self.machine.scans() {

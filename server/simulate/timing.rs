@@ -129,7 +129,8 @@ pub(super) fn counter<L: Lanes>(memory: &mut Memory<L>, counter: Counter, power:
             }
             None if contact.lane(lane) => continue,
             None => {
-                let next = (current + 1).min(i64::from(i16::MAX));
+                // A count that was written beyond the preset comes back to it.
+                let next = (current + 1).min(preset.max(1));
                 (next, (next >= preset.max(1)).then_some(true))
             }
         };

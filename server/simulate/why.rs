@@ -310,7 +310,7 @@ impl<'a> Inquiry<'a> {
             return self.reason(told(Message::new("why.special")), None, moment.scan, Vec::new());
         }
         let last = moment.scan.min(self.session.machine().scans());
-        let changed = self.session.last_change(last, |machine| machine.value_inside(subject.variable, 0));
+        let changed = self.session.last_switching(last, subject.variable);
         let how = match changed.filter(|_| since.is_none()) {
             Some(scan) => Message::new("why.input-since")
                 .with("scan", scan.saturating_sub(1))
