@@ -112,6 +112,29 @@ fn another_plc_than_the_program_is_for() {
 }
 
 #[test]
+fn a_backup_of_a_plc_with_another_memory() {
+    let folder = programs();
+    let large = VirtualPlc::start(folder.path(), &["--program", "large.il", "--memory", "16"]);
+    check(&folder, &["download", "motor.il", "--yes", "--port", &large.port], 0);
+    let capacity = |port: &str| {
+        let (_, out, _) = run(&folder, &["status", "--port", port, "--format", "json"]);
+        serde_json::from_str::<serde_json::Value>(&out).unwrap()["capacity"].as_u64().unwrap()
+    };
+    // What it held does not fit elsewhere: nothing has begun then.
+    let small = VirtualPlc::start(folder.path(), &["--program", "motor.il", "--memory", "4"]);
+    let err = refused(&folder, &["download", "--rollback", "--yes", "--port", &small.port], 3, "too-large");
+    assert!(err.contains("9001") && err.contains("4000"), "{err}");
+    check(&folder, &["verify", "motor.il", "--port", &small.port], 0);
+    assert!(run(&folder, &["status", "--port", &small.port]).1.contains("RUN"));
+    // Back in its PLC it goes. What fits goes anywhere, and the memory stays what it is.
+    check(&folder, &["download", "--rollback", "--yes", "--port", &large.port], 0);
+    check(&folder, &["verify", "large.il", "--port", &large.port], 0);
+    check(&folder, &["download", "--rollback", "--yes", "--port", &small.port], 0);
+    check(&folder, &["verify", "motor.il", "--port", &small.port], 0);
+    assert_eq!([capacity(&large.port), capacity(&small.port)], [16_000, 4_000]);
+}
+
+#[test]
 fn a_keyword() {
     let folder = programs();
     let plc = VirtualPlc::start(folder.path(), &["--switch", "stop"]);
