@@ -100,6 +100,17 @@ fn a_second_host() {
 }
 
 #[test]
+fn whoever_connects_again_at_once_is_served() {
+    let folder = programs();
+    let plc =
+        VirtualPlc::start(folder.path(), &["--program", "large.il", "--memory", "16", "--scan-time", "1ms"]);
+    for number in 0..300 {
+        let mut host = TcpStream::connect(plc.address()).unwrap();
+        assert_eq!(asked(&mut host, &[ENQ]), ACK, "{number}");
+    }
+}
+
+#[test]
 fn another_plc_than_the_program_is_for() {
     let folder = programs();
     let plc = VirtualPlc::start(folder.path(), &[]);
