@@ -250,6 +250,9 @@ fn a_plc_that_dies_under_a_download() {
     let err = refused(&folder, &["download", "long.il", "--yes", "--port", &port], 3, "line-gone");
     assert!(err.contains("written in part"), "{err}");
     check(&folder, &["start", "--yes", "--port", &plc.port], 1);
+    // The way back leads to the same PLC, whatever of its program is there.
+    let err = check(&folder, &["download", "--rollback", "--dry-run", "--port", &plc.port], 1);
+    assert!(err.contains("back to") && !err.contains("other-plc"), "{err}");
     let err = check(&folder, &["download", "long.il", "--yes", "--start", "--port", &plc.port], 0);
     assert!(err.contains("the PLC runs"), "{err}");
     check(&folder, &["verify", "long.il", "--port", &plc.port], 0);
