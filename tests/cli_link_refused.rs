@@ -100,6 +100,17 @@ fn a_second_host() {
 }
 
 #[test]
+fn whoever_connects_again_at_once_is_served() {
+    let folder = programs();
+    let plc =
+        VirtualPlc::start(folder.path(), &["--program", "large.il", "--memory", "16", "--scan-time", "1ms"]);
+    for number in 0..300 {
+        let mut host = TcpStream::connect(plc.address()).unwrap();
+        assert_eq!(asked(&mut host, &[ENQ]), ACK, "{number}");
+    }
+}
+
+#[test]
 fn another_plc_than_the_program_is_for() {
     let folder = programs();
     let plc = VirtualPlc::start(folder.path(), &[]);
@@ -109,6 +120,29 @@ fn another_plc_than_the_program_is_for() {
     let err = refused(&folder, &["download", "large.il", "--yes", "--port", &plc.port], 3, "too-large");
     assert!(err.contains("9001") && err.contains("8000"), "{err}");
     assert!(!folder.path().join(".rungwise").exists(), "nothing has begun");
+}
+
+#[test]
+fn a_backup_of_a_plc_with_another_memory() {
+    let folder = programs();
+    let large = VirtualPlc::start(folder.path(), &["--program", "large.il", "--memory", "16"]);
+    check(&folder, &["download", "motor.il", "--yes", "--port", &large.port], 0);
+    let capacity = |port: &str| {
+        let (_, out, _) = run(&folder, &["status", "--port", port, "--format", "json"]);
+        serde_json::from_str::<serde_json::Value>(&out).unwrap()["capacity"].as_u64().unwrap()
+    };
+    // What it held does not fit elsewhere: nothing has begun then.
+    let small = VirtualPlc::start(folder.path(), &["--program", "motor.il", "--memory", "4"]);
+    let err = refused(&folder, &["download", "--rollback", "--yes", "--port", &small.port], 3, "too-large");
+    assert!(err.contains("9001") && err.contains("4000"), "{err}");
+    check(&folder, &["verify", "motor.il", "--port", &small.port], 0);
+    assert!(run(&folder, &["status", "--port", &small.port]).1.contains("RUN"));
+    // Back in its PLC it goes. What fits goes anywhere, and the memory stays what it is.
+    check(&folder, &["download", "--rollback", "--yes", "--port", &large.port], 0);
+    check(&folder, &["verify", "large.il", "--port", &large.port], 0);
+    check(&folder, &["download", "--rollback", "--yes", "--port", &small.port], 0);
+    check(&folder, &["verify", "motor.il", "--port", &small.port], 0);
+    assert_eq!([capacity(&large.port), capacity(&small.port)], [16_000, 4_000]);
 }
 
 #[test]
@@ -216,6 +250,9 @@ fn a_plc_that_dies_under_a_download() {
     let err = refused(&folder, &["download", "long.il", "--yes", "--port", &port], 3, "line-gone");
     assert!(err.contains("written in part"), "{err}");
     check(&folder, &["start", "--yes", "--port", &plc.port], 1);
+    // The way back leads to the same PLC, whatever of its program is there.
+    let err = check(&folder, &["download", "--rollback", "--dry-run", "--port", &plc.port], 1);
+    assert!(err.contains("back to") && !err.contains("other-plc"), "{err}");
     let err = check(&folder, &["download", "long.il", "--yes", "--start", "--port", &plc.port], 0);
     assert!(err.contains("the PLC runs"), "{err}");
     check(&folder, &["verify", "long.il", "--port", &plc.port], 0);

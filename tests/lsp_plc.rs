@@ -114,7 +114,11 @@ fn a_program_is_compared_downloaded_watched_and_driven() {
     assert_eq!(energised(&on, 0, "line"), Some(true), "{on}");
     // Nothing is held in the PLC, whatever the values of the picture come from.
     assert!(on["elements"].as_array().unwrap().iter().all(|element| element["kind"] != "forced"), "{on}");
-    let moved = editor.picture(|picture| picture["values"][1]["value"] == -7);
+    // Other lines and names are no other program.
+    editor.tell("monitor", json!({ "ranges": all, "names": ["Y0", "D1"] }));
+    let is_of_two = |picture: &Value| picture["values"].as_array().unwrap().len() == 2;
+    let moved = editor.picture(|picture| is_of_two(picture) && picture["values"][1]["value"] == -7);
+    assert_eq!(moved["edition"], off["edition"]);
     assert_eq!(moved["values"][0]["value"], true);
     let shown = moved["elements"].as_array().unwrap();
     assert!(shown.iter().any(|element| element["kind"] == "value" && element["value"] == -7), "{moved}");
@@ -128,6 +132,8 @@ fn a_program_is_compared_downloaded_watched_and_driven() {
     );
     let uploaded = editor.tell("upload", json!({}));
     assert_eq!((&uploaded["text"], &uploaded["unread"]), (&json!(LIST), &json!(0)));
+    let edition = off["edition"].as_u64().unwrap();
+    editor.picture(|picture| picture["edition"].as_u64().unwrap() > edition);
     let state = editor.tell("stop", json!({}));
     assert_eq!(state["mode"], "STOP");
     // X0 is still on, and no power flows.
@@ -303,6 +309,31 @@ fn what_is_held_is_written_again_until_it_is_released() {
         });
         assert!(told["params"]["message"].as_str().unwrap().contains(&format!("{device}=1")), "{told}");
     }
+}
+
+#[test]
+fn what_is_held_is_let_go_when_somebody_turns_the_switch_or_the_text_is_no_program_of_a_plc() {
+    let mut editor = Connected::open(LIST);
+    let held = |editor: &mut Connected, device: &str| {
+        editor.tell("monitor", json!({ "names": ["D0"], "ranges": WHOLE.clone() }));
+        editor.tell("hold", json!({ "name": device, "value": 1 }));
+    };
+    let told = |editor: &mut Connected, device: &str| {
+        editor.client.wait_for("what is no longer held", |message| {
+            message["method"] == "window/showMessage"
+                && message["params"]["message"].as_str().unwrap().contains(&format!("{device}=1"))
+        });
+    };
+    editor.tell("start", json!({ "confirmed": true }));
+    held(&mut editor, "M5");
+    editor.plc.as_mut().unwrap().tell("stop");
+    told(&mut editor, "M5");
+    assert_eq!(editor.tell("state", json!({}))["held"], json!([]));
+    held(&mut editor, "D5");
+    let uri = editor.uri.clone();
+    editor.client.change(&uri, 2, (0, 0), (0, 0), "(* dialect: iec *)\n");
+    told(&mut editor, "D5");
+    assert!(editor.tell("state", json!({}))["monitoring"].is_null());
 }
 
 #[test]

@@ -60,7 +60,7 @@ fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Resul
     bar.clear();
     let plan = plan.map_err(|error| failed(&error, language))?;
     if let Some((_, backup)) = backup {
-        caution_other_plc(backup, &host.identity().version(), plan.found, language);
+        caution_other_plc(backup, &host.identity().version(), &plan, language);
     }
     say(&changes(&plan, colour, language));
     if plan.bytes() == 0 {
@@ -108,14 +108,17 @@ fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Resul
 }
 
 /// Says if the PLC does not look like the one that a backup was read from.
-fn caution_other_plc(backup: &Backup, version: &str, sum: u16, language: Language) {
+fn caution_other_plc(backup: &Backup, version: &str, plan: &Plan, language: Language) {
     let differs = |key| Message::new(key);
     let mut reasons = Vec::new();
     if !backup.version.is_empty() && backup.version != version {
         let told = differs("link.differs-version").with("found", version);
         reasons.push(told.with("kept", &backup.version));
     }
-    if let Some(kept) = backup.replaced_by.filter(|kept| *kept != sum) {
+    let sum = plan.found;
+    // A download that was cut leaves the sum of what it began to replace.
+    let is_cut = sum == plan.wanted.parameters().sum();
+    if let Some(kept) = backup.replaced_by.filter(|kept| *kept != sum && !is_cut) {
         let told = differs("link.differs-sum").with("found", format!("{sum:04X}"));
         reasons.push(told.with("kept", format!("{kept:04X}")));
     }

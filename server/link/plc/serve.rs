@@ -61,7 +61,8 @@ impl Listener {
 
 /// Why a connection is over.
 enum End {
-    Gone,
+    /// The host has gone; perhaps the next one is there.
+    Gone(Option<TcpStream>),
     Quit,
 }
 
@@ -97,14 +98,20 @@ impl<'a> Service<'a> {
     /// # Errors
     /// If the system takes the listener away.
     pub fn on_tcp(mut self, listener: &Listener) -> io::Result<()> {
+        let mut next = None;
         loop {
-            if let Some(stream) = listener.accepted()? {
-                stream.set_nonblocking(false)?;
-                let mut transport = TcpTransport::over(stream)?;
-                match self.host(&mut transport, &mut |service| service.refuse_others(listener)) {
-                    End::Gone => continue,
+            let stream = if next.is_some() { next.take() } else { listener.accepted()? };
+            // One that cannot be served has gone meanwhile.
+            let transport = stream.and_then(|stream| {
+                stream.set_nonblocking(false).ok()?;
+                TcpTransport::over(stream).ok()
+            });
+            if let Some(mut transport) = transport {
+                match self.host(&mut transport, &mut || listener.accepted().ok().flatten()) {
+                    End::Gone(another) => next = another,
                     End::Quit => return Ok(()),
                 }
+                continue;
             }
             match self.between() {
                 Some(wait) => std::thread::sleep(wait.min(Duration::from_millis(5))),
@@ -115,7 +122,7 @@ impl<'a> Service<'a> {
 
     /// Serves whoever opens the other end, until it is told to stop.
     pub fn on_line(mut self, transport: &mut dyn Transport) {
-        while let End::Gone = self.host(transport, &mut |_| {}) {
+        while let End::Gone(_) = self.host(transport, &mut || None) {
             // A pseudo terminal whose other end nobody has says so at once.
             match self.between() {
                 Some(wait) => std::thread::sleep(wait.min(ATTENTION)),
@@ -136,16 +143,21 @@ impl<'a> Service<'a> {
         Some(Duration::from_nanos(wait_ns as u64).min(ATTENTION))
     }
 
-    /// Serves a host until it goes.
-    fn host(&mut self, transport: &mut dyn Transport, others: &mut dyn FnMut(&Service<'_>)) -> End {
+    /// Serves a host until it goes; `others` gives who comes meanwhile, and is refused.
+    fn host(&mut self, transport: &mut dyn Transport, others: &mut dyn FnMut() -> Option<TcpStream>) -> End {
         self.server.greet();
         self.to_plc.reconnect();
         self.to_host.reconnect();
         let mut buffer = [0; 512];
         loop {
             let Some(wait) = self.between() else { return End::Quit };
-            others(self);
-            let Ok(count) = transport.receive(&mut buffer, wait) else { return End::Gone };
+            let other = others();
+            // The other one may be who has just ended this connection: then it is served.
+            let wait = if other.is_some() { Duration::ZERO } else { wait };
+            let Ok(count) = transport.receive(&mut buffer, wait) else { return End::Gone(other) };
+            if let Some(other) = other {
+                self.refuse_other(other);
+            }
             for byte in buffer.iter().take(count) {
                 let due_ns = self.arrival(0);
                 self.to_plc.send(*byte, due_ns);
@@ -153,11 +165,9 @@ impl<'a> Service<'a> {
             self.answer();
             let now_ns = self.now_ns();
             let ready: Vec<u8> = std::iter::from_fn(|| self.to_host.receive(now_ns)).collect();
-            if !ready.is_empty() && transport.send(&ready).is_err() {
-                return End::Gone;
-            }
-            if self.to_plc.is_dead() || self.to_host.is_dead() {
-                return End::Gone;
+            let is_sent = ready.is_empty() || transport.send(&ready).is_ok();
+            if !is_sent || self.to_plc.is_dead() || self.to_host.is_dead() {
+                return End::Gone(None);
             }
         }
     }
@@ -184,8 +194,7 @@ impl<'a> Service<'a> {
         self.busy_ns[direction]
     }
 
-    fn refuse_others(&self, listener: &Listener) {
-        let Ok(Some(stream)) = listener.accepted() else { return };
+    fn refuse_other(&self, stream: TcpStream) {
         if self.refused.load(Ordering::Relaxed) >= MOST_REFUSED {
             return;
         }
