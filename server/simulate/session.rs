@@ -170,8 +170,8 @@ impl Session {
         None
     }
 
-    /// The same for a variable that nothing but people change: only scans before which something was done are looked at,
-    /// so that a switch that nobody has touched in a long history is soon known.
+    /// The same for a variable that nothing but people change: only scans before which something was done are looked
+    /// at, so that a switch that nobody has touched in a long history is soon known.
     pub(super) fn last_switching(&self, scan: u64, variable: Variable) -> Option<u64> {
         let of = |machine: &Machine<u8>| machine.value_inside(variable, 0);
         if self.touches.iter().any(|(_, touch)| matches!(touch, Touch::Around(_))) {
