@@ -325,6 +325,7 @@ fn a_dry_run_changes_nothing() {
     let port = plc.port.as_str();
     let (out, _) = check(&folder, &["download", "other.il", "--dry-run", "--port", port], 1);
     assert!(out.contains("-OUT Y0\n") && out.contains("+OUT Y1\n"), "{out}");
+    assert!(out.starts_with("--- program in the PLC\n+++ program of the file\n"), "{out}");
     assert!(!folder.path().join(".rungwise").exists(), "nothing is kept");
     check(&folder, &["verify", "motor.il", "--port", port], 0);
     let (out, _) = check(&folder, &["download", "motor.il", "--dry-run", "--port", port], 0);

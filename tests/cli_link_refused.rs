@@ -174,6 +174,21 @@ fn nobody_has_said_yes() {
 }
 
 #[test]
+fn a_plc_that_runs_is_not_cleared() {
+    let folder = programs();
+    let plc = VirtualPlc::start(folder.path(), &["--program", "motor.il"]);
+    let port = plc.port.as_str();
+    for devices in [&[][..], &["--devices"]] {
+        let asked = [&["clear", "--yes", "--port", port], devices].concat();
+        let err = refused(&folder, &asked, 1, "running");
+        assert!(err.contains("`rungwise stop`"), "{err}");
+    }
+    check(&folder, &["verify", "motor.il", "--port", port], 0);
+    check(&folder, &["stop", "--port", port], 0);
+    check(&folder, &["clear", "--yes", "--port", port], 0);
+}
+
+#[test]
 fn wrong_usage() {
     let folder = programs();
     let plc = VirtualPlc::start(folder.path(), &["--program", "motor.il"]);

@@ -2,13 +2,16 @@
 //! them means was found by reading it; three of them say themselves what their outputs do scan by scan.
 
 use crate::ladder_read::dump;
+use rungwise::document::{Document, Notation};
 use rungwise::ladder::{
     CoilKind, ContactKind, Element, ElementKind, Graph, LadderTree, Rung, VertexId, VertexKind, parse, split,
 };
+use rungwise::simulate::{Machine, Value, compile};
 use rungwise::target::{Model, Target};
 use std::collections::HashMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Says that a test had nothing to read. It writes past the runner, which hides what passing tests print.
 pub fn say_skipped(reason: &str) {
@@ -193,11 +196,13 @@ fn name(element: &Element, chunk: &str) -> String {
     element.operand_text(0, chunk).into_owned()
 }
 
+/// How many scans with which inputs.
+type Steps = &'static [(usize, &'static [(&'static str, bool)])];
+
 /// The test vectors that stand in the files: how many scans with which inputs, and what is watched after each scan.
 #[test]
 fn programs_do_what_their_authors_expected() {
     let Some(folder) = folder() else { return };
-    type Steps = &'static [(usize, &'static [(&'static str, bool)])];
     let vectors: [(&str, Steps, &str, &[u8]); 3] = [
         (
             "vdorr-test01.txt",
@@ -232,5 +237,27 @@ fn programs_do_what_their_authors_expected() {
             }
         }
         assert_eq!(seen, expected, "{file}");
+        assert_eq!(simulated(&text, steps, watched), expected, "{file}, simulated");
     }
+}
+
+/// What is watched of a program after each scan of the simulated PLC. The vectors themselves stand in braces above the
+/// drawing.
+fn simulated(text: &str, steps: Steps, watched: &str) -> Vec<u8> {
+    let (_, drawn) = text.split_once("\n}\n").expect("vectors before the drawing");
+    let document = Document::new(drawn, Notation::Ladder, Target::of(Model::Iec));
+    let code = Arc::new(compile(&[&document], false).unwrap_or_else(|problems| panic!("{problems:?}")));
+    let variable = |name: &str| code.variable(name).unwrap_or_else(|| panic!("no {name}"));
+    let mut machine = Machine::<u8>::new(Arc::clone(&code));
+    let mut seen = Vec::new();
+    for (scans, inputs) in steps {
+        for (name, on) in *inputs {
+            machine.write(variable(name), &Value::Bit(*on));
+        }
+        for _ in 0..*scans {
+            machine.scan(seen.len() as i64 * 10_000_000);
+            seen.push(u8::from(machine.value(variable(watched), 0) == Value::Bit(true)));
+        }
+    }
+    seen
 }

@@ -3,7 +3,7 @@
 
 use crate::simulate::device;
 use crate::stack_machine::{self, Bits};
-use crate::translate::{all_small_rungs, certain, drawing, list, made_up, truth_of_list};
+use crate::translate::{WORKED, all_small_rungs, certain, drawing, list, made_up, truth_of_list};
 use proptest::prelude::*;
 use rungwise::document::Document;
 use rungwise::simulate::{Code, Lanes, Machine, compile};
@@ -25,6 +25,37 @@ fn truths(document: &Document, rungs: usize, is_watched: bool) -> Vec<u32> {
     }
     machine.scan(0);
     (0..rungs as u32).map(|rung| machine.bit(Device::new(DeviceKind::M, rung)) as u32).collect()
+}
+
+/// The three programs that the design papers walk through, by what their equations say.
+#[test]
+fn worked_examples_do_what_their_equations_say() {
+    type Bits<'a> = &'a dyn Fn(&str) -> bool;
+    /// The output, the inputs, and what the first is by the others.
+    type Answer<'a> = (&'a str, &'a [&'a str], &'a dyn Fn(Bits<'_>) -> bool);
+    let answers: [Answer<'_>; 3] = [
+        ("Y5", &["X4", "X6", "M102"], &|on| on("X4") || on("X6") || !on("M102")),
+        ("M103", &["Y5", "X7", "M108", "X10", "M110"], &|on| {
+            (!on("Y5") && on("X7") || on("M108")) && !on("X10") || !on("M110")
+        }),
+        ("Y6", &["X0", "X1", "X2", "X3", "X4", "X5", "X6", "X7"], &|on| {
+            (on("X0") || on("X1")) && (on("X2") && on("X3") || !on("X4") && !on("X5") || on("X6")) || on("X7")
+        }),
+    ];
+    for ((text, _), (output, inputs, answer)) in WORKED.into_iter().zip(answers) {
+        for document in [list(text), drawing(&certain(&list(text), To::Ladder))] {
+            let mut machine: Machine<u8> = Machine::new(code(&document, false));
+            for state in 0..1_u32 << inputs.len() {
+                let is_on = |number: usize| state >> number & 1 == 1;
+                for (number, input) in inputs.iter().enumerate() {
+                    machine.set(device(input), u8::all(is_on(number)));
+                }
+                machine.scan(i64::from(state) * 10_000_000);
+                let on = |name: &str| is_on(inputs.iter().position(|own| *own == name).expect("an input"));
+                assert_eq!(machine.bit(device(output)) != 0, answer(&on), "{text} {state:b}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -337,7 +337,7 @@ fn words(letters: &str, length: usize) -> Vec<String> {
 }
 
 /// The programs of the papers, as list and as equations.
-const WORKED: [(&str, &str); 3] = [
+pub const WORKED: [(&str, &str); 3] = [
     ("LD X4\nOR X6\nORI M102\nOUT Y5\nEND\n", "Y5 = X4 + X6 + [M102]\nEND\n"),
     (
         "LDI Y5\nAND X7\nOR M108\nANI X10\nORI M110\nOUT M103\nEND\n",

@@ -880,6 +880,19 @@ fn there_and_back(name: &str, document: &Document) -> Vec<String> {
             }
         }
     }
+    // What is certified is proved of the programs as well.
+    if said.is_empty() {
+        let [there, again] = match other {
+            To::Ladder => [drawing(&first.text), list(&back.text)],
+            _ => [list(&first.text), drawing(&back.text)],
+        };
+        for (direction, made) in [("there", there), ("back", again)] {
+            let proof = prove(document, &made);
+            if !matches!(proof, Proof::Equal { .. }) {
+                said.push(format!("{name}: {direction} {proof:?}"));
+            }
+        }
+    }
     said
 }
 

@@ -7,14 +7,14 @@ use std::fmt::Write;
 /// What stands behind a line without a line feed, in every language.
 const NO_LINE_FEED: &str = "\\ No newline at end of file\n";
 
-/// The diff from `old` to `new`, which `patch` understands, with three lines of context. A line that ends without a
-/// line feed is followed by the remark that says so.
-pub(super) fn unified(path: &str, old: &str, new: &str, colour: Colour) -> String {
+/// The diff from `old` to `new`, both named, which `patch` understands, with three lines of context. A line that ends
+/// without a line feed is followed by the remark that says so.
+pub(super) fn unified([from, to]: [&str; 2], old: &str, new: &str, colour: Colour) -> String {
     let paint = |code: &'static str| if colour.on() { code } else { "" };
     let (bold, cyan, red, green, off) =
         (paint("\x1b[1m"), paint("\x1b[36m"), paint("\x1b[31m"), paint("\x1b[32m"), paint("\x1b[0m"));
     let diff = TextDiff::from_lines(old, new);
-    let mut text = format!("{bold}--- {path}{off}\n{bold}+++ {path}{off}\n");
+    let mut text = format!("{bold}--- {from}{off}\n{bold}+++ {to}{off}\n");
     for hunk in diff.unified_diff().context_radius(3).iter_hunks() {
         let _ = writeln!(text, "{cyan}{}{off}", hunk.header());
         for change in hunk.iter_changes() {

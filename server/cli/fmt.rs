@@ -85,7 +85,7 @@ fn format_file(programs: &[Program], arguments: &Arguments, colour: Colour, lang
         return Outcome::Clean;
     }
     if arguments.check {
-        say(&diff::unified(&path.to_string(), &text, &formatted, colour));
+        say(&diff::unified([&path.to_string(); 2], &text, &formatted, colour));
         return Outcome::Findings;
     }
     // Renaming would replace a file that its owner locked.

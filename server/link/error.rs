@@ -69,6 +69,8 @@ pub enum LinkError {
     Keyword,
     /// The PLC does not stop.
     StillRunning,
+    /// The PLC runs, and is not stopped for what is asked.
+    Running,
     /// What was written reads otherwise.
     Mismatch {
         /// The first step that differs; parameters are before step 0.
@@ -132,6 +134,7 @@ impl LinkError {
                 | LinkError::IsOrder { .. }
                 | LinkError::NoDevice { .. }
                 | LinkError::StillRunning
+                | LinkError::Running
         )
     }
 
@@ -153,6 +156,7 @@ impl LinkError {
             LinkError::TooLarge { .. } => "too-large",
             LinkError::Keyword => "keyword",
             LinkError::StillRunning => "still-running",
+            LinkError::Running => "running",
             LinkError::Mismatch { .. } => "mismatch",
             LinkError::Sum { .. } => "sum",
             LinkError::NotOnThisModel => "not-on-this-model",
@@ -191,6 +195,7 @@ impl LinkError {
             }
             LinkError::Keyword => Message::new("link.keyword"),
             LinkError::StillRunning => Message::new("link.still-running"),
+            LinkError::Running => Message::new("link.running"),
             LinkError::Mismatch { step: Some(step) } => Message::new("link.mismatch").with("step", step),
             LinkError::Mismatch { step: None } => Message::new("link.mismatch-parameters"),
             LinkError::Sum { wanted, found } => Message::new("link.sum")
@@ -226,6 +231,7 @@ impl LinkError {
             LinkError::TooLarge { .. } => "link.help-too-large",
             LinkError::Keyword => "link.help-keyword",
             LinkError::StillRunning => "link.help-still-running",
+            LinkError::Running => "link.help-running",
             LinkError::Mismatch { .. } | LinkError::Sum { .. } => "link.help-mismatch",
             LinkError::NotOnThisModel => "link.help-not-on-this-model",
             LinkError::NoEnd => "link.help-no-end",

@@ -222,7 +222,7 @@ fn words(document: &Document, sources: &[Source], is_mixed: bool) -> Words {
         for term in numbers(path, is_mixed).into_iter().filter(is_named) {
             let new = || Word { name: term.text.clone(), types: BTreeSet::new(), at: source.span() };
             let word = found.entry(term.key()).or_insert_with(new);
-            word.types.insert(type_name(document, source.pou, term));
+            word.types.insert(type_name(document, source.pou, term, is_mixed));
         }
     }
     found
@@ -252,7 +252,7 @@ fn numbers(path: &Path, sign_counts: bool) -> Vec<&Term> {
 }
 
 /// The type of a word, with the limits of a subrange.
-fn type_name(document: &Document, unit: Option<usize>, term: &Term) -> SmolStr {
+fn type_name(document: &Document, unit: Option<usize>, term: &Term, is_mixed: bool) -> SmolStr {
     let scopes = document.scopes();
     if document.target().is_fx() {
         let is_wide = term.address().is_some_and(|address| address.width == Width::Double);
@@ -264,6 +264,8 @@ fn type_name(document: &Document, unit: Option<usize>, term: &Term) -> SmolStr {
             Some((least, greatest)) => format_smolstr!("{kind}({least}..{greatest})"),
         },
         Some(DeclaredType::Named(name)) => name.to_uppercase().into(),
+        // What lies at an address is the same wherever nothing is declared of it.
+        None if !is_mixed && matches!(term.operand, Operand::Direct(_)) => "%".into(),
         // Rungs without declarations mean plain numbers.
         None if scopes.own_pous().is_empty() && scopes.globals.is_empty() => "INT".into(),
         _ => "?".into(),

@@ -135,7 +135,9 @@ pub(super) fn changes(plan: &Plan, colour: Colour, language: Language) -> String
     if before == after {
         return String::new();
     }
-    unified(&Message::new("link.program-in-plc").render(language), &before, &after, colour)
+    let [own, new] =
+        ["link.program-in-plc", "link.program-of-file"].map(|name| Message::new(name).render(language));
+    unified([&own, &new], &before, &after, colour)
 }
 
 fn back_up(beside: &Path, from: &Origin<'_>, plan: &Plan, language: Language) -> Result<(), Outcome> {

@@ -77,7 +77,7 @@ impl<T: Transport> Host<T> {
     /// If it runs, if it is an FX1S, of which nobody knows how it is done, or if the line fails.
     pub fn clear(&mut self, is_program: bool) -> Result<(), LinkError> {
         if self.mode()? == Mode::Run {
-            return Err(LinkError::StillRunning);
+            return Err(LinkError::Running);
         }
         if self.dialect() == Dialect::Plain {
             return Err(LinkError::NotOnThisModel);
