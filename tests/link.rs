@@ -83,15 +83,65 @@ fn each_device_is_found_where_it_lies() {
     assert_eq!(check::<Extended>(Target::of(Model::Fx2n)), 1000 + 512 + 512 + 3072 + 512 + 256 + words);
 }
 
+/// The addresses of published tables, firmware and recordings, in hexadecimal: `None` for what a map has not.
+#[test]
+fn devices_lie_where_published_tables_say() {
+    use DeviceKind::{C, D, M, S, T, X, Y};
+    use Part::{Coil, Contact};
+    let bits = [
+        (S, 0, Contact, Some(0x0000), Some(0x1400)),
+        (S, 999, Contact, Some(0x03E7), Some(0x17E7)),
+        (X, 0, Contact, Some(0x0400), Some(0x1200)),
+        (X, 0o377, Contact, Some(0x04FF), Some(0x12FF)),
+        (Y, 0, Contact, Some(0x0500), Some(0x0C00)),
+        (Y, 0o12, Contact, Some(0x050A), Some(0x0C0A)),
+        (T, 0, Contact, Some(0x0600), Some(0x1000)),
+        (M, 0, Contact, Some(0x0800), Some(0x0000)),
+        (M, 1535, Contact, Some(0x0DFF), Some(0x05FF)),
+        (M, 1536, Contact, None, Some(0x0600)),
+        (M, 3071, Contact, None, Some(0x0BFF)),
+        (C, 0, Contact, Some(0x0E00), Some(0x0F00)),
+        (M, 8000, Contact, Some(0x0F00), Some(0x0E00)),
+        // E7 760E, as it was recorded before a program is written.
+        (M, 8118, Contact, Some(0x0F76), Some(0x0E76)),
+        (T, 0, Coil, Some(0x1600), Some(0x2800)),
+        (C, 0, Coil, Some(0x1E00), Some(0x2700)),
+    ];
+    for (kind, number, part, plain, extended) in bits {
+        let own = device(kind, number);
+        assert_eq!(Plain::bit(own, part).map(BitAddress::bit), plain, "{own} {part:?}");
+        assert_eq!(Extended::bit(own, part).map(BitAddress::bit), extended, "{own} {part:?}");
+    }
+    let words = [
+        (T, 5, (0x080A, 2), (0x100A, 2)),
+        (C, 3, (0x0A06, 2), (0x0A06, 2)),
+        (C, 201, (0x0C04, 4), (0x0C04, 4)),
+        (D, 8001, (0x0E02, 2), (0x0E02, 2)),
+        (D, 0, (0x1000, 2), (0x4000, 2)),
+        (D, 123, (0x10F6, 2), (0x40F6, 2)),
+        (D, 7999, (0x4E7E, 2), (0x7E7E, 2)),
+    ];
+    for (kind, number, plain, extended) in words {
+        let own = device(kind, number);
+        assert_eq!(Plain::word(own).map(|(at, width)| (at.byte(), width)), Some(plain), "{own}");
+        assert_eq!(Extended::word(own).map(|(at, width)| (at.byte(), width)), Some(extended), "{own}");
+    }
+    assert_eq!([Extended::WATCH_LIST.byte(), Extended::WATCH_RESULT.byte()], [0x1400, 0x1790]);
+}
+
 #[test]
 fn a_plc_says_who_it_is() {
-    for model in MODELS {
+    // D8001 as it was read from real ones, the low byte first: FX1S 2.10, FX1N 2.10, FX2N 3.10; an FX3U says 24232 here
+    // and 16232 in D8101.
+    for (model, word) in MODELS.into_iter().zip(["C256", "6266", "F65E", "A85E"]) {
         let line = Loopback::new(model);
         let mut host = line.host().unwrap();
         assert_eq!(host.identity().target.model, model);
         assert_eq!(host.mode().unwrap(), Mode::Stop);
         assert_eq!(line.ends().sent[0], ENQ, "the host greets first");
+        assert_eq!(answers(&line, &framed(b"00E0202")), framed(word.as_bytes()), "{model:?}");
     }
+    assert_eq!(answers(&Loopback::new(Model::Fx3u), &framed(b"00ECA02")), framed(b"683F"));
 }
 
 /// What a PLC answers to bytes.
