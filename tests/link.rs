@@ -144,6 +144,28 @@ fn a_plc_says_who_it_is() {
     assert_eq!(answers(&Loopback::new(Model::Fx3u), &framed(b"00ECA02")), framed(b"683F"));
 }
 
+/// What a host sends to clear and to change the speed, as the maker's tools were recorded to do it: the program by these
+/// four orders, and the speed by a digit. For devices and the faster speeds there is one source only.
+#[test]
+fn orders_to_clear_and_to_go_faster_are_those_that_were_recorded() {
+    let line = Loopback::new(Model::Fx2n);
+    let mut host = line.host().unwrap();
+    let sent = |host: &mut Host<Loopback>, order: &dyn Fn(&mut Host<Loopback>) -> Result<(), LinkError>| {
+        line.ends().sent.clear();
+        order(host).unwrap();
+        line.ends().sent.clone()
+    };
+    let all = |orders: &[&str]| orders.iter().flat_map(|body| framed(body.as_bytes())).collect::<Vec<u8>>();
+    let program = sent(&mut host, &|host| host.clear(true));
+    assert!(program.ends_with(&all(&["E61", "E60", "E63", "E62"])), "{}", program.escape_ascii());
+    let devices = sent(&mut host, &|host| host.clear(false));
+    assert!(devices.ends_with(&all(&["E64", "E63"])), "{}", devices.escape_ascii());
+    for (baud, body) in [(19_200, "A1"), (38_400, "A2"), (57_600, "A3"), (115_200, "A5")] {
+        let faster = sent(&mut host, &|host| host.set_speed(baud));
+        assert!(faster.starts_with(&all(&[body])), "{baud}: {}", faster.escape_ascii());
+    }
+}
+
 /// What a PLC answers to bytes.
 fn answers(line: &Loopback, bytes: &[u8]) -> Vec<u8> {
     let mut ends = line.ends();
