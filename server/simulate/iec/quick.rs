@@ -11,7 +11,7 @@ pub(super) struct Quick {
     kernel: Kernel,
     left: Operand,
     right: Operand,
-    to: To,
+    to: Near,
     /// What the type of the result holds.
     least: i64,
     greatest: i64,
@@ -20,12 +20,12 @@ pub(super) struct Quick {
 #[derive(Clone, Copy, Debug)]
 enum Operand {
     Constant(i64),
-    Cell(Cell),
-    Word(Slot),
+    At(Near),
 }
 
+/// A place that is known.
 #[derive(Clone, Copy, Debug)]
-enum To {
+enum Near {
     Cell(Cell),
     Word(Slot),
 }
@@ -46,14 +46,7 @@ impl Quick {
             [left, right] => (Operand::of(left)?, Operand::of(right)?),
             _ => return None,
         };
-        let to = match is_plain(to) && to.range == 0 && to.kind == result {
-            true => match to.lies {
-                Lies::Cell(cell) => To::Cell(cell),
-                Lies::Word(slot) => To::Word(slot),
-                _ => return None,
-            },
-            false => return None,
-        };
+        let to = Near::of(to).filter(|_| to.range == 0 && to.kind == result)?;
         let range = range_of(result);
         let [least, greatest] = [range.start(), range.end()].map(|end| i64::try_from(*end).ok());
         Some(Quick { kernel: formula.kernel?, left, right, to, least: least?, greatest: greatest? })
@@ -64,16 +57,16 @@ impl Quick {
     pub fn run<L: Lanes>(&self, memory: &mut Memory<L>, lane: usize) -> bool {
         let [left, right] = [self.left, self.right].map(|operand| match operand {
             Operand::Constant(number) => number,
-            Operand::Cell(cell) => i64::from(memory.bit(cell, lane)),
-            Operand::Word(slot) => memory.word(slot, lane),
+            Operand::At(Near::Cell(cell)) => i64::from(memory.bit(cell, lane)),
+            Operand::At(Near::Word(slot)) => memory.word(slot, lane),
         });
         let result = (self.kernel)(left, right);
         let Some(result) = result.filter(|number| (self.least..=self.greatest).contains(number)) else {
             return false;
         };
         match self.to {
-            To::Cell(cell) => memory.set_bit(cell, lane, result != 0),
-            To::Word(slot) => memory.set_word(slot, lane, result),
+            Near::Cell(cell) => memory.set_bit(cell, lane, result != 0),
+            Near::Word(slot) => memory.set_word(slot, lane, result),
         }
         true
     }
@@ -83,19 +76,22 @@ impl Operand {
     fn of(input: &Input) -> Option<Operand> {
         match input {
             Input::Constant(Datum::Whole(number)) => i64::try_from(*number).ok().map(Operand::Constant),
-            Input::At(spot) if is_plain(*spot) => match spot.lies {
-                Lies::Cell(cell) => Some(Operand::Cell(cell)),
-                Lies::Word(slot) => Some(Operand::Word(slot)),
-                _ => None,
-            },
-            _ => None,
+            Input::At(spot) => Near::of(*spot).map(Operand::At),
+            Input::Constant(_) => None,
         }
     }
 }
 
-/// Whether a word has the number itself, and subscripts lead nowhere else.
-fn is_plain(spot: Spot) -> bool {
-    spot.index == 0 && is_number(spot.kind)
+impl Near {
+    /// Where a word or a cell has the number itself, and subscripts lead nowhere else.
+    fn of(spot: Spot) -> Option<Near> {
+        match spot.lies {
+            _ if spot.index != 0 || !is_number(spot.kind) => None,
+            Lies::Cell(cell) => Some(Near::Cell(cell)),
+            Lies::Word(slot) => Some(Near::Word(slot)),
+            _ => None,
+        }
+    }
 }
 
 /// Whether values of the type are whole numbers of 64 bits with a sign, or durations, which are their nanoseconds.
