@@ -114,6 +114,57 @@ fn a_rung_that_cannot_be_read_is_told_at_its_place() {
 }
 
 #[test]
+fn a_register_is_what_was_written_to_it() {
+    // A comparison before the write, and the same one behind it.
+    let again = |write: &str, compare: &str| {
+        let pair = [format!("{compare};{write};OUT Y0"), format!("{compare};{write};{compare};OUT Y0")];
+        verdict(&pair[0], &pair[1])
+    };
+    let elsewhere = [
+        ("MOV D1 D10", "LD= D0 K5"),
+        ("MOV D1 D1", "LD= D0 K5"),
+        ("DMOV D10 D2", "LD= D1 K5"),
+        ("DMOV D10 D2", "LDD= D4 K5"),
+        ("MUL D10 D11 D2", "LD= D4 K5"),
+        ("FMOV K0 D1 K4", "LD= D5 K5"),
+        ("BMOV D20 D1 K4", "LD= D5 K5"),
+        ("ZRST D1 D4", "LD= D5 K5"),
+        ("RST D1", "LD= D0 K5"),
+        ("SET D1.0", "LD= D0 K5"),
+        ("MOV K1 T0", "LD= D0 K5"),
+        ("MOV K1 R0", "LD= D0 K5"),
+    ];
+    for (write, compare) in elsewhere {
+        assert_eq!(again(write, compare), "equal", "{write}; {compare}");
+    }
+    let there = [
+        ("MOV D1 D0", "LD= D0 K5"),
+        ("DMOV D10 D4", "LD= D5 K5"),
+        ("MOV D10 D5", "LDD= D4 K5"),
+        ("MOV D10 T1", "LDD= T0 K5"),
+        ("MUL D10 D11 D4", "LD= D5 K5"),
+        ("DMUL D10 D12 D2", "LD= D5 K5"),
+        ("FMOV K0 D1 K4", "LD= D4 K5"),
+        ("DFMOV K0 D1 K4", "LD= D8 K5"),
+        ("FMOV K0 D1 D9", "LD= D40 K5"),
+        ("BMOV D20 D1 K4", "LD= D4 K5"),
+        // M8024 may be on.
+        ("BMOV D20 D1 K4", "LD= D23 K5"),
+        ("FMOV K0 D0 K500", "LD= D499 K5"),
+        ("ZRST D1 D4", "LD= D4 K5"),
+        ("RST D5", "LD= D5 K5"),
+        ("SET D5.0", "LD= D5 K5"),
+        ("MOV K4M0 D5", "LD D5.3"),
+        ("MOV K1 D0Z0", "LD= D5 K5"),
+        ("MOV K5 D5", "LD= D0Z0 K5"),
+        ("DMOV D0 Z0", "LD= V0 K5"),
+    ];
+    for (write, compare) in there {
+        assert_ne!(again(write, compare), "equal", "{write}; {compare}");
+    }
+}
+
+#[test]
 fn what_a_label_is_called_makes_no_difference() {
     let list = |labels: [&str; 2], jump: &str| {
         let text = format!(

@@ -2,16 +2,46 @@
 
 use rungwise::document::{Document, Notation};
 use rungwise::simulate::{Machine, Outcome, Session, Touch, Value, compile};
-use rungwise::target::{Device, Model, Operand, Target};
+use rungwise::target::{Access, Device, DeviceKind, Extent, Form, Model, Operand, Target};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 const MS: i64 = 1_000_000;
+/// So many data registers are watched, from D0 on.
+const REGISTERS: u32 = 1_000;
 
 /// A PLC with this program, and time that goes on by 10 ms from scan to scan.
+///
+/// No scan may write to a register that the instruction table does not say to be written: proofs rely on that.
 pub(crate) struct Plc {
     pub(crate) machine: Machine<u8>,
     pub(crate) scan_ms: i64,
     now_ms: i64,
+    /// The numbers of the data registers that the instructions may write; nothing if these may be any.
+    written: Option<BTreeSet<u32>>,
+}
+
+/// The data registers that an FX list writes by what the table says of its operands.
+fn written(text: &str) -> Option<BTreeSet<u32>> {
+    let mut written = BTreeSet::new();
+    for line in text.lines() {
+        let mut words = line.split(';').next().unwrap_or_default().split_whitespace();
+        let Some(form) = words.next().and_then(Form::named) else { continue };
+        let operands: Vec<Operand> = words.map(|word| Operand::read(word, Model::Fx3u)).collect();
+        for (place, spec) in form.instruction.operands.iter().enumerate().take(operands.len()) {
+            let is_written = spec.access != Access::Read || spec.extent != Extent::Fixed;
+            match operands[place] {
+                _ if !is_written => {}
+                Operand::Device(Device { kind: DeviceKind::D, number })
+                | Operand::WordBit { word: Device { kind: DeviceKind::D, number }, .. } => {
+                    written.extend(number..number + u32::from(form.covered(place, &operands)?));
+                }
+                Operand::Indexed { device, .. } if device.kind == DeviceKind::D => return None,
+                _ => {}
+            }
+        }
+    }
+    Some(written)
 }
 
 pub(crate) fn device(name: &str) -> Device {
@@ -38,7 +68,8 @@ impl Plc {
     pub(crate) fn of(text: &str, notation: Notation, model: Model) -> Plc {
         let document = Document::new(text, notation, Target::of(model));
         let code = compile(&[&document], false).unwrap_or_else(|problems| panic!("{problems:?}\n{text}"));
-        Plc { machine: Machine::new(Arc::new(code)), scan_ms: 10, now_ms: 0 }
+        let written = if notation == Notation::FxIl { written(text) } else { None };
+        Plc { machine: Machine::new(Arc::new(code)), scan_ms: 10, now_ms: 0, written }
     }
 
     /// A list for the FX3U.
@@ -60,8 +91,18 @@ impl Plc {
     }
 
     pub(crate) fn scan(&mut self) -> Outcome {
+        let registers = |machine: &Machine<u8>| -> Vec<i64> {
+            (0..REGISTERS).map(|number| machine.word(Device::new(DeviceKind::D, number), 0)).collect()
+        };
+        let before = registers(&self.machine);
         let outcome = self.machine.scan(self.now_ms * MS);
         self.now_ms += self.scan_ms;
+        if let Some(written) = &self.written {
+            let after = registers(&self.machine);
+            for number in (0..REGISTERS).filter(|number| !written.contains(number)) {
+                assert_eq!(after[number as usize], before[number as usize], "D{number} was written");
+            }
+        }
         outcome
     }
 

@@ -7,9 +7,7 @@ use super::{Chunk, Operation, Symbol, Tree};
 use crate::il::iec::{Direction, IecTree, Item, ItemKind, MentionRole, OperandId, ParameterValue, Run};
 use crate::ladder::{Element, ElementKind, PinWire};
 use crate::target::iec::OperatorRole;
-use crate::target::{
-    Access as Written, Constant, Device, DeviceKind, Drive, Extent, Flow, Operand, OperandSpec, Wide,
-};
+use crate::target::{Access as Written, Device, DeviceKind, Drive, Flow, Operand, OperandSpec, Wide};
 use crate::text::{Span, Spanned, folded};
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
@@ -301,6 +299,7 @@ impl Collector<'_> {
 
     fn operation(&mut self, operation: &Operation<'_>, rung: u16) {
         let specs = operation.form.map_or(&[][..], |form| form.instruction.operands);
+        let values: Vec<Operand> = operation.operands.iter().map(|operand| operand.value).collect();
         for (place, operand) in operation.operands.iter().enumerate() {
             let Some(spec) = specs.get(place) else {
                 self.operand(operand, operation.element, Act::Pass, 1, rung);
@@ -318,7 +317,8 @@ impl Collector<'_> {
                 // The relay of a master control is there to be read by what it gates.
                 self.operand(operand, None, Act::Read, 1, rung);
             }
-            let count = count(operation, spec, operand.value);
+            let covered = operation.form.and_then(|form| form.covered(place, &values));
+            let count = covered.unwrap_or(Access::OPEN);
             self.operand(operand, operation.element.filter(|_| place == 0), act, count, rung);
             let pair = operation.form.is_some_and(|form| match form.instruction.wide {
                 Wide::Only => spec.count == 2,
@@ -494,33 +494,4 @@ fn act_of(spec: &OperandSpec) -> Act {
 
 fn is_register(device: Device) -> bool {
     matches!(device.kind, DeviceKind::D | DeviceKind::R)
-}
-
-/// How many devices, or groups of bits, from its own on an operand covers.
-fn count(operation: &Operation<'_>, spec: &OperandSpec, operand: Operand) -> u16 {
-    let doubled = operation.form.is_some_and(|form| form.wide && form.instruction.wide == Wide::Yes);
-    let is_plain_register = matches!(operand, Operand::Device(device) if is_register(device));
-    let words = if doubled && is_plain_register { 2 } else { 1 };
-    let one = u16::from(spec.count).saturating_mul(words);
-    let at = |place: u8| operation.operands.get(usize::from(place)).map(|operand| operand.value);
-    match spec.extent {
-        Extent::Fixed => one,
-        Extent::Onwards => Access::OPEN,
-        Extent::Counted(place) => match at(place) {
-            Some(Operand::Constant { value: Constant::Decimal(times), index: None }) => {
-                one.saturating_mul(u16::try_from(times.max(1)).unwrap_or(Access::OPEN))
-            }
-            Some(Operand::Constant { value: Constant::Hexadecimal(times), index: None }) => {
-                one.saturating_mul(u16::try_from(times.max(1)).unwrap_or(Access::OPEN))
-            }
-            _ => Access::OPEN,
-        },
-        Extent::Through(place) => match (operand, at(place)) {
-            (Operand::Device(first), Some(Operand::Device(last))) if first.kind == last.kind => {
-                let behind = last.number.saturating_sub(first.number);
-                u16::try_from(behind).map_or(Access::OPEN, |behind| behind.saturating_add(1))
-            }
-            _ => Access::OPEN,
-        },
-    }
 }

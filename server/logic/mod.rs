@@ -56,6 +56,8 @@ pub use bounds::Bounds;
 /// What the names of words of 32 bits begin with in a [`Moment`].
 pub const WIDE: &str = "D ";
 
+mod changes;
+
 mod run;
 pub use run::{Effect, Run};
 

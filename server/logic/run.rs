@@ -1,16 +1,14 @@
 //! Runs paths with formulas in place of bits: what is done, under which conditions, in which order.
 
+use super::changes::Changes;
 use super::formula::{Atom, Moment, Step};
 use super::number::{is_real, number, range};
-use super::{
-    Action, Contact, Deed, Drive, Expression, Formula, Formulas, Gate, Path, Storage, Term, Test, WIDE,
-    wholes,
-};
+use super::{Action, Contact, Deed, Drive, Expression, Formula, Formulas, Gate, Path, Term, Test, WIDE};
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::target::iec::LiteralValue;
-use crate::target::{Access, Constant, Device, DeviceKind, Flow, Form, Location, Operand};
+use crate::target::{Constant, Device, DeviceKind, Operand};
 use crate::text::folded;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 use smol_str::{SmolStr, format_smolstr};
 
 /// Something that is done, and the condition.
@@ -64,30 +62,16 @@ impl Effect<'_> {
 pub struct Run<'p> {
     /// What was done, in order.
     pub effects: Vec<Effect<'p>>,
-    /// How many of the effects are events.
-    events: u32,
+    /// Which of them may have changed what.
+    changes: Changes,
     /// Bits that were driven.
     driven: FxHashMap<SmolStr, Driven<'p>>,
-    /// What has parts that were driven.
-    parted: FxHashSet<SmolStr>,
-    /// The last event, counted from 1, that may have changed this device.
-    changed: FxHashMap<SmolStr, u32>,
-    /// The last event that may have changed any device of a kind; the last place is for variables.
-    kinds: [u32; KINDS],
-    /// The last step that changed anything of a kind: what words made of such bits depend on.
-    touched: [u32; KINDS],
     /// Whether what is compared is the outcome, not each effect in turn: steps then have their values.
     by_outcome: bool,
     /// The power at the left rail.
     rail: Formula,
-    /// The last event that may have set special relays: flags of arithmetic and of completion.
-    flags: u32,
-    /// The last event that may have changed whatever is no plain variable of the own program unit.
-    known: u32,
     /// The last contact for an edge of each relay that has one memory for all of them.
     asked: FxHashMap<SmolStr, u32>,
-    /// Whether states are relays like others, as in a program without steps.
-    has_plain_states: bool,
 }
 
 /// A bit that was driven.
@@ -99,35 +83,22 @@ struct Driven<'p> {
     since: u32,
 }
 
-/// One for each kind of device, one for variables, one for each area of addresses, and one for variables that may lie
-/// anywhere.
-const KINDS: usize = DeviceKind::ALL.len() + 5;
-const VARIABLES: usize = DeviceKind::ALL.len();
-const ANYWHERE: usize = KINDS - 1;
-
 impl<'p> Run<'p> {
     /// A run in which nothing was done.
     pub fn new() -> Run<'p> {
         Run {
             effects: Vec::new(),
-            events: 0,
+            changes: Changes::default(),
             driven: FxHashMap::default(),
-            parted: FxHashSet::default(),
-            changed: FxHashMap::default(),
-            kinds: [0; KINDS],
-            touched: [0; KINDS],
             by_outcome: false,
             rail: Formulas::TRUE,
-            flags: 0,
-            known: 0,
             asked: FxHashMap::default(),
-            has_plain_states: false,
         }
     }
 
     /// The same for a program without steps, in which states are relays like others.
     pub fn without_steps() -> Run<'p> {
-        Run { has_plain_states: true, ..Run::new() }
+        Run { changes: Changes::without_steps(), ..Run::new() }
     }
 
     /// The same for a comparison of outcomes, where effects need not pair. `rail` is the power at the left rail, which
@@ -144,26 +115,24 @@ impl<'p> Run<'p> {
     /// Passes a rung that may be executed or not: nothing is known afterwards of what it drives.
     pub fn maybe(&mut self, path: &'p Path, formulas: &mut Formulas) {
         for action in path.actions() {
-            let guard = formulas.atom(Atom::Behind(self.events + 1));
+            let guard = formulas.atom(Atom::Behind(self.events() + 1));
             self.event(action, guard, formulas);
         }
     }
 
     /// Passes something that nobody can read, and that may change anything.
     pub fn unread(&mut self, formulas: &mut Formulas) {
-        self.events += 1;
-        self.change_all(formulas);
+        self.changes.unread(formulas);
     }
 
     /// Lets time pass, in which the CPU may change the special relays that it owns.
     pub fn pause(&mut self) {
-        self.events += 1;
-        self.flags = self.events;
+        self.changes.pause();
     }
 
     /// How many events there were.
     pub fn events(&self) -> u32 {
-        self.events
+        self.changes.events()
     }
 
     /// A relay whose edges contacts of the two runs took in different ways, so that those of later scans differ.
@@ -174,7 +143,7 @@ impl<'p> Run<'p> {
 
     /// Whether only bits were driven.
     pub fn is_boolean(&self) -> bool {
-        self.events == 0
+        self.events() == 0
     }
 
     /// The bits that were driven.
@@ -214,7 +183,7 @@ impl<'p> Run<'p> {
                     self.act(action, power, formulas);
                     match action.power_out() {
                         Some(output) => self.bit(&output, formulas),
-                        None => formulas.atom(Atom::Behind(self.events)),
+                        None => formulas.atom(Atom::Behind(self.events())),
                     }
                 }
             };
@@ -303,39 +272,14 @@ impl<'p> Run<'p> {
 
     /// The value that the run gave to `term`, whose key is `name`, or that it always has.
     fn value(&self, term: &Term, name: &SmolStr) -> Option<Formula> {
-        let driven = self.driven.get(name).filter(|driven| driven.since >= self.last_event(term, name));
+        let driven = self.driven.get(name).filter(|driven| driven.since >= self.changes.last(term, name));
         driven.map(|driven| driven.value).or_else(|| term.always().map(Formulas::constant))
     }
 
     /// The moment at which `term`, whose key is `name`, is read as a bit.
     fn moment(&self, term: &Term, name: SmolStr, formulas: &mut Formulas) -> Moment {
-        // Words are made of bits, bits of words: whatever wrote to the kind counts.
-        let is_apart = self.is_apart(term) || term.is_own_part();
-        let since = match is_apart && !self.parted.contains(&name) {
-            true => self.after(self.last_event(term, &name), formulas),
-            false if leads_anywhere(term) => self.touched[ANYWHERE],
-            false => self.touched[slot(term)],
-        };
+        let since = self.changes.since(term, &name, formulas);
         Moment { name, since }
-    }
-
-    /// The step that an event is; 0 for none.
-    fn after(&self, event: u32, formulas: &mut Formulas) -> u32 {
-        if event == 0 { 0 } else { formulas.step(Step::Event { number: event, before: 0 }) }
-    }
-
-    /// The last event that may have changed `term`.
-    fn last_event(&self, term: &Term, name: &SmolStr) -> u32 {
-        let own = self.changed.get(name).copied().unwrap_or(0);
-        let around = wholes(name).filter_map(|whole| self.changed.get(whole).copied()).max().unwrap_or(0);
-        own.max(around).max(self.bulk(term))
-    }
-
-    /// The last event that may have changed `term` together with others.
-    fn bulk(&self, term: &Term) -> u32 {
-        let is_flag = matches!(term.operand, Operand::Device(device) if device.is_special());
-        let known = if term.storage == Storage::Local { 0 } else { self.known };
-        self.kinds[slot(term)].max(known).max(if is_flag { self.flags } else { 0 })
     }
 
     /// All comparisons in terms of "at least".
@@ -431,8 +375,9 @@ impl<'p> Run<'p> {
         let since = match term.operand {
             Operand::Literal(_) | Operand::Constant { index: None, .. } => 0,
             // A variable whose type nobody knows was driven as a bit.
-            Operand::Variable if self.driven.contains_key(&key) => self.touched[ANYWHERE],
-            _ => self.moment(term, key, formulas).since,
+            Operand::Variable if self.driven.contains_key(&key) => self.changes.since_any(),
+            _ if wide => self.changes.since_pair(term, &key, formulas),
+            _ => self.changes.since(term, &key, formulas),
         };
         Moment { name, since }
     }
@@ -448,15 +393,8 @@ impl<'p> Run<'p> {
             self.effects.push(Effect { action, guard, event: None, reads: Vec::new() });
             let key = term.key();
             let known = self.by_outcome.then_some(value);
-            let place = slot(term);
-            self.parted.extend(wholes(&key).map(SmolStr::from));
-            // A variable in a place of its own is part of no word. An element may be read by a subscript that varies.
-            let is_element = term.is_element();
-            for slot in [place, ANYWHERE].into_iter().filter(|slot| *slot != VARIABLES || is_element) {
-                let before = self.touched[slot];
-                self.touched[slot] = formulas.step(Step::Driven { before, key: key.clone(), value: known });
-            }
-            self.driven.insert(key, Driven { term, value, since: self.events });
+            self.changes.drive(term, known, formulas);
+            self.driven.insert(key, Driven { term, value, since: self.events() });
             return;
         }
         let own = action.terms.first().filter(|_| matches!(action.deed, Deed::Coil(_)));
@@ -465,13 +403,12 @@ impl<'p> Run<'p> {
         let (Some(term), Some(before)) = (own, before) else { return };
         let after = self.bit(term, formulas);
         if let Some(value) = known_after(action, guard, [before, after], formulas) {
-            self.driven.insert(term.key(), Driven { term, value, since: self.events });
+            self.driven.insert(term.key(), Driven { term, value, since: self.events() });
         }
     }
 
     /// Does something of which nothing is known afterwards.
     fn event(&mut self, action: &'p Action, guard: Formula, formulas: &mut Formulas) {
-        self.events += 1;
         let reads = match &action.deed {
             Deed::Call(call) => {
                 let kept = call.kept_inputs(&action.terms);
@@ -480,82 +417,8 @@ impl<'p> Run<'p> {
             Deed::Compute(_) => action.terms.iter().map(|term| self.bit(term, formulas)).collect(),
             _ => Vec::new(),
         };
-        self.effects.push(Effect { action, guard, event: Some(self.events), reads });
-        self.change(action, formulas);
-    }
-
-    /// Notes what the event that just happened may have changed.
-    fn change(&mut self, action: &Action, formulas: &mut Formulas) {
-        match &action.deed {
-            Deed::Instruction(form) if writes_operands(*form) => {
-                action.changes().iter().for_each(|term| self.change_kind(slot(term), formulas));
-                self.flags = self.events;
-                self.touch(ANYWHERE, formulas);
-            }
-            // What is done meanwhile elsewhere, nobody knows here.
-            Deed::Instruction(_) => self.change_all(formulas),
-            Deed::Call(call) if call.keeps_in_out() => self.change_all(formulas),
-            deed => {
-                if action.runs_unit() {
-                    self.change_known(formulas);
-                }
-                if matches!(deed, Deed::Call(_)) {
-                    self.touch(VARIABLES, formulas);
-                }
-                action.changes().iter().for_each(|term| self.change_term(term, formulas));
-            }
-        }
-    }
-
-    fn change_all(&mut self, formulas: &mut Formulas) {
-        self.kinds = [self.events; KINDS];
-        self.touched = [self.after(self.events, formulas); KINDS];
-        self.flags = self.events;
-    }
-
-    /// Anything may have changed but the plain variables that only their program unit knows.
-    fn change_known(&mut self, formulas: &mut Formulas) {
-        let variables = self.kinds[VARIABLES];
-        self.change_all(formulas);
-        self.kinds[VARIABLES] = variables;
-        self.known = self.events;
-    }
-
-    fn change_term(&mut self, term: &Term, formulas: &mut Formulas) {
-        self.changed.insert(term.key(), self.events);
-        match self.is_apart(term) {
-            true => self.touch(slot(term), formulas),
-            // Setting one state resets others; a word has its bits and those beside it.
-            false => self.change_kind(slot(term), formulas),
-        }
-    }
-
-    /// Anything of a kind may have changed. What may lie anywhere may be any variable.
-    fn change_kind(&mut self, slot: usize, formulas: &mut Formulas) {
-        let slots = if slot == ANYWHERE { VARIABLES..KINDS } else { slot..slot + 1 };
-        for slot in slots {
-            self.kinds[slot] = self.events;
-            self.touch(slot, formulas);
-        }
-    }
-
-    /// The last event changed something of a kind.
-    fn touch(&mut self, slot: usize, formulas: &mut Formulas) {
-        for slot in [slot, ANYWHERE] {
-            let step = Step::Event { number: self.events, before: self.touched[slot] };
-            self.touched[slot] = formulas.step(step);
-        }
-    }
-
-    /// Whether it is a bit by itself, so that a coil that writes to it does nothing else.
-    fn is_lone(&self, term: &Term) -> bool {
-        let is_state = matches!(term.operand, Operand::Device(device) if device.kind == DeviceKind::S);
-        term.is_lone() || (self.has_plain_states && is_state)
-    }
-
-    /// Whether nothing but writing to it changes it: a bit by itself, a timer or a counter.
-    fn is_apart(&self, term: &Term) -> bool {
-        self.is_lone(term) || matches!(term.operand, Operand::Device(device) if device.kind.has_preset())
+        self.changes.event(action, formulas);
+        self.effects.push(Effect { action, guard, event: Some(self.events()), reads });
     }
 
     /// The bit that a coil drives and its value then; nothing if more happens than that.
@@ -566,7 +429,7 @@ impl<'p> Run<'p> {
         formulas: &mut Formulas,
     ) -> Option<(&'p Term, Formula)> {
         let [term] = &action.terms[..] else { return None };
-        if !self.is_lone(term) {
+        if !self.changes.is_lone(term) {
             return None;
         }
         let value = match &action.deed {
@@ -589,24 +452,6 @@ impl<'p> Run<'p> {
 impl Default for Run<'_> {
     fn default() -> Self {
         Run::new()
-    }
-}
-
-/// Whether an instruction changes what it names and flags, and nothing else. One that names nothing to change refreshes
-/// inputs, resets annunciators, or steers the program.
-fn writes_operands(form: Form) -> bool {
-    let is_written = form.instruction.operands.iter().any(|spec| spec.access != Access::Read);
-    is_written && form.instruction.flow() == Flow::Straight
-}
-
-/// Whether it depends on more than devices of its kind: on an index register, or on flags that instructions set.
-fn leads_anywhere(term: &Term) -> bool {
-    match term.operand {
-        Operand::Indexed { .. }
-        | Operand::Nibbles { index: Some(_), .. }
-        | Operand::Constant { index: Some(_), .. } => true,
-        Operand::Nibbles { first, .. } => first.is_special(),
-        _ => false,
     }
 }
 
@@ -634,15 +479,4 @@ fn known_after(
         Deed::Coil(CoilKind::Reset) => formulas.and([idle, before]),
         _ => return None,
     })
-}
-
-/// The place of a term's kind.
-fn slot(term: &Term) -> usize {
-    let area = |location: Location| VARIABLES + 1 + location as usize;
-    match (term.operand, term.storage) {
-        (Operand::Direct(address), _) => area(address.location),
-        (Operand::Variable, Storage::At(address)) => area(address.location),
-        (Operand::Variable, Storage::Anywhere) => ANYWHERE,
-        _ => term.operand.device().map_or(VARIABLES, |device| device.kind as usize),
-    }
 }

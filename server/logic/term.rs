@@ -151,6 +151,18 @@ impl Term {
             || !is_apart && area(self).is_some() && area(self) == area(other)
     }
 
+    /// The register that it is, or is a bit of: a word that nothing changes but who writes to it, or to a row of
+    /// registers that it stands in.
+    pub fn register(&self) -> Option<Device> {
+        let is_register = |device: &Device| matches!(device.kind, DeviceKind::D | DeviceKind::R);
+        match self.operand {
+            Operand::Device(device) | Operand::WordBit { word: device, .. } => {
+                Some(device).filter(is_register)
+            }
+            _ => None,
+        }
+    }
+
     /// Its value in every scan, if it is a device that has only one.
     pub fn always(&self) -> Option<bool> {
         match self.operand {

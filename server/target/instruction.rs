@@ -1,6 +1,6 @@
 //! The shape of a row of the FX instruction table, and the forms in which an instruction is written.
 
-use super::{Accepts, Constant, DeviceKind, Model, Operand, Semantics, instructions};
+use super::{Accepts, Constant, Device, DeviceKind, Model, Operand, Semantics, instructions};
 use crate::text::{self, Book, Language};
 use std::borrow::Cow;
 use std::fmt;
@@ -296,6 +296,37 @@ impl Form {
             Constant::Real(_) => return true,
         };
         (least..=greatest).contains(&value)
+    }
+
+    /// How many devices, or groups of bits, operand number `place` covers from its own on, where `operands` are those
+    /// of the instruction; nothing where nobody counts them, or where there is no such operand.
+    pub fn covered(self, place: usize, operands: &[Operand]) -> Option<u16> {
+        let spec = self.instruction.operands.get(place)?;
+        let operand = operands.get(place)?;
+        let doubled = self.wide && self.instruction.wide == Wide::Yes;
+        let is_register =
+            matches!(operand, Operand::Device(Device { kind: DeviceKind::D | DeviceKind::R, .. }));
+        let one = u16::from(spec.count).saturating_mul(if doubled && is_register { 2 } else { 1 });
+        let at = |place: u8| operands.get(usize::from(place));
+        match spec.extent {
+            Extent::Fixed => Some(one),
+            Extent::Onwards => None,
+            Extent::Counted(place) => match at(place)? {
+                Operand::Constant { value: Constant::Decimal(times), index: None } => {
+                    one.checked_mul(u16::try_from((*times).max(1)).ok()?)
+                }
+                Operand::Constant { value: Constant::Hexadecimal(times), index: None } => {
+                    one.checked_mul(u16::try_from((*times).max(1)).ok()?)
+                }
+                _ => None,
+            },
+            Extent::Through(place) => match (operand, at(place)?) {
+                (Operand::Device(first), Operand::Device(last)) if first.kind == last.kind => {
+                    u16::try_from(last.number.saturating_sub(first.number)).ok()?.checked_add(1)
+                }
+                _ => None,
+            },
+        }
     }
 
     /// Whether `model` has it.

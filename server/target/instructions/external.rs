@@ -7,7 +7,7 @@ mod displays;
 mod modules;
 
 use super::specs::{FX1N_UP, FX2N_UP, applied, bits, bits_out, changed, count, destination, operand, source};
-use crate::target::{Accepts, Access, Instruction};
+use crate::target::{Accepts, Access, Extent, Instruction};
 
 const STORED: Accepts = Accepts::T.or(Accepts::C).or(Accepts::D).or(Accepts::R);
 const STORED_OR_INDEX: Accepts = STORED.or(Accepts::V).or(Accepts::Z);
@@ -175,7 +175,7 @@ pub const ROWS: &[Instruction] = &[
         "characters to ASCII",
         &[
             operand("S", "eight characters", Access::Read, Accepts::TEXT),
-            operand("D", "first of 4 words", Access::Write, STORED).covering(4),
+            operand("D", "first of 4 words, or of 8", Access::Write, STORED).reaching(Extent::Onwards),
         ],
         "Stores a text of eight characters as ASCII codes in four words, two in each: the first character \
          in the low byte, the second in the high byte. With `M8161` on each takes a word of its own, \
