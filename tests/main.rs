@@ -83,6 +83,7 @@ mod plain_instructions;
 mod proof_declarations;
 mod proof_families;
 mod proof_memory;
+mod proof_mutants;
 mod proof_numbers;
 mod proof_shown;
 mod proof_values;

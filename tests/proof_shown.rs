@@ -23,7 +23,7 @@ impl Dice {
     }
 }
 
-fn fx(body: &str) -> Document {
+pub(crate) fn fx(body: &str) -> Document {
     Document::new(&format!("{body}END\n"), Notation::FxIl, Target::of(Model::Fx3u))
 }
 
@@ -87,7 +87,7 @@ fn fx_rung(dice: &mut Dice) -> String {
     ])
 }
 
-fn fx_body(dice: &mut Dice) -> Vec<String> {
+pub(crate) fn fx_body(dice: &mut Dice) -> Vec<String> {
     let mut rungs: Vec<String> = (0..1 + dice.roll(4)).map(|_| fx_rung(dice)).collect();
     if rungs.iter().any(|rung| rung.contains("CJ")) {
         let first = rungs.iter().position(|rung| rung.contains("CJ")).unwrap_or(0);
@@ -101,7 +101,7 @@ const IEC_HEAD: &str = "PROGRAM Main\nVAR\na AT %IX0.0 : BOOL; b AT %IX0.1 : BOO
     y AT %QX0.0 : BOOL; z : BOOL; n : INT; k : INT := 3; u : UINT; w : WORD; t : TON; o : TOF; p : CTU; s : SR; r : RS;\n\
     e : R_TRIG; f : F_TRIG; m : (Idle, Busy, Done); g : ARRAY[0..2] OF BOOL; h : ARRAY[1..2] OF INT; q : INT(0..2); dur : TIME;\nEND_VAR\n";
 
-fn iec(body: &str) -> Document {
+pub(crate) fn iec(body: &str) -> Document {
     Document::new(&format!("{IEC_HEAD}{body}END_PROGRAM\n"), Notation::IecIl, Target::of(Model::Iec))
 }
 
@@ -168,7 +168,7 @@ fn iec_rung(dice: &mut Dice) -> String {
     }
 }
 
-fn iec_body(dice: &mut Dice) -> Vec<String> {
+pub(crate) fn iec_body(dice: &mut Dice) -> Vec<String> {
     let mut rungs: Vec<String> = (0..1 + dice.roll(4)).map(|_| iec_rung(dice)).collect();
     if let Some(first) = rungs.iter().position(|rung| rung.contains("JMP")) {
         let behind = first + 1 + dice.roll(rungs.len() - first);
@@ -286,14 +286,22 @@ fn wrong(sides: [&Document; 2], found: &Counterexample, again: impl Fn(&str) -> 
     None
 }
 
-/// What differs in some scans of two programs with random values, as far as both have it.
-fn seen_apart(sides: [&Document; 2]) -> Option<String> {
+/// Whether the scenario of a difference is passed by the first program and failed by the second.
+pub(crate) fn is_shown(sides: [&Document; 2], found: &Counterexample) -> bool {
+    let names = ["one.il".to_string(), "two.il".to_string()];
+    let text = of_counterexample(found, &names, Language::English).unwrap();
+    let scenario = scenario(&text);
+    tells_apart(sides, [&scenario, &scenario], &text)
+}
+
+/// What differs in some scans of two programs with random values, as far as both have it, in so many `runs`.
+pub(crate) fn seen_apart(sides: [&Document; 2], runs: u64) -> Option<String> {
     let codes = sides.map(|side| compile(&[side], false).ok().map(Arc::new));
     let [Some(left), Some(right)] = codes else { return None };
     let codes = [left, right];
     let names: Vec<String> =
         codes[0].named().into_iter().filter(|name| codes[1].variable(name).is_some()).collect();
-    for seed in 0..12 {
+    for seed in 0..runs {
         let mut dice = Dice(seed * 31 + 11);
         let mut machines = codes.each_ref().map(|code| Machine::<u8>::new(Arc::clone(code)));
         for scan in 0..5 {
@@ -343,7 +351,7 @@ impl Count {
                 self.equal += 1;
                 // What a detector of edges says in the first scan, IEC 61131-3 and the FX family see otherwise.
                 let is_mixed = left.target().is_fx() != right.target().is_fx();
-                if let Some(seen) = seen_apart([left, right]).filter(|_| !is_mixed) {
+                if let Some(seen) = seen_apart([left, right], 12).filter(|_| !is_mixed) {
                     self.wrong.push(format!("equal, and {seen}\n{}", told()));
                 }
             }

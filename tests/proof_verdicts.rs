@@ -490,6 +490,18 @@ fn declarations_count() {
 }
 
 #[test]
+fn comments_before_a_unit_are_no_part_of_another() {
+    let unit = "FUNCTION_BLOCK Lamp\nVAR_INPUT\na : BOOL;\nEND_VAR\nVAR_OUTPUT\nx : BOOL;\nEND_VAR\n";
+    let list = format!("(* above *)\n\n{unit}LD a\nST x\nEND_FUNCTION_BLOCK\n");
+    let list = Document::new(&list, Notation::IecIl, Target::of(Model::Iec));
+    let drawn = translate(&list, None, To::Ladder, &Options::default()).text;
+    assert!(drawn.starts_with("(* above *)\n\n"), "{drawn}");
+    let drawn = Document::new(&drawn, Notation::Ladder, Target::of(Model::Iec));
+    assert_eq!(word(&prove(&list, &drawn)), "equal");
+    assert_eq!(word(&prove(&drawn, &list)), "equal");
+}
+
+#[test]
 fn an_fx_program_is_compared_with_one_of_iec_61131_3() {
     let list = "LD X0\nOR Y0\nANI X1\nOUT Y0\nLD Y0\nOUT T0 K50\nLD T0\nOUT Y1\nEND\n";
     let list = Document::new(list, Notation::FxIl, Target::of(Model::Fx2n));

@@ -458,7 +458,7 @@ fn bits_of(found: &rungwise::translate::Counterexample) -> (Bits, Bits) {
 }
 
 /// The proof finds that two lists differ, and the scan that it names does tell them apart.
-fn found_different(left: &str, right: &str) {
+pub(crate) fn found_different(left: &str, right: &str) {
     let Proof::Different(found) = prove(&list(left), &list(right)) else {
         panic!("no difference is found between\n{left}\nand\n{right}");
     };

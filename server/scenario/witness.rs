@@ -6,7 +6,7 @@
 //! on work that no clock gives. What is shown in the end has been seen.
 
 use super::mutant::lot;
-use crate::document::{Document, Scopes};
+use crate::document::{DeclaredType, Document, Scopes};
 use crate::il::iec::PouKind;
 use crate::logic::is_helper_name;
 use crate::simulate::{Code, Machine, Outcome, Value, Variable, compile};
@@ -158,7 +158,8 @@ impl Trial {
         let handles = handles.into_iter().map(|(name, (own, other))| {
             let is_relay = matches!(own, Variable::Relay(_));
             // Without a state from a proof to begin with, only those are set that any values go together of.
-            let is_loose = || !name.contains('.') && parts_of(&name).get(1).is_none_or(|own| *own == name);
+            let is_lone = || !name.contains('.') && parts_of(&name).get(1).is_none_or(|own| *own == name);
+            let is_loose = || is_lone() || finder[0].is_count(&name);
             let last = name.rsplit('.').next().unwrap_or(&name);
             let is_free = !documents[0].scopes().is_constant(last) && (!found.what.is_empty() || is_loose());
             let is_settable = is_free && (!is_relay || own.set(&codes[0], &Value::Bit(false)).is_some());
@@ -322,11 +323,15 @@ impl Trial {
 
     /// A value for a variable, by a random number.
     fn value(&self, handle: usize, draw: u64) -> Value {
-        match self.handles[handle].own {
-            Variable::Relay(_) => Value::Bit(draw % 2 == 1),
-            _ if draw.is_multiple_of(7) => Value::Number(RUN_OUT),
-            _ => Value::Number(self.numbers[(draw / 8 % self.numbers.len() as u64) as usize]),
-        }
+        let own = self.handles[handle].own;
+        let number = match own {
+            Variable::Relay(_) => return Value::Bit(draw % 2 == 1),
+            _ if draw.is_multiple_of(7) => RUN_OUT,
+            _ => self.numbers[(draw / 8 % self.numbers.len() as u64) as usize],
+        };
+        // A value that it cannot have would spoil the scan for all others.
+        let range = own.range(&self.codes[0]);
+        Value::Number(range.map_or(number, |range| number.clamp(*range.start(), *range.end())))
     }
 
     /// The first difference of what is wanted, from the scan that begins with the inputs on. Scans in which something
@@ -540,6 +545,13 @@ impl<'c> Finder<'c> {
             None if self.code.target.is_fx() => name.into(),
             None => folded(name),
         }
+    }
+
+    /// Whether a name is that of the current value of a counter. It may be any: the counter compares it at each call.
+    fn is_count(&self, name: &str) -> bool {
+        let Some((counter, "CV")) = name.rsplit_once('.') else { return false };
+        let declared = self.scopes.type_of(self.unit, counter);
+        matches!(declared, Some(DeclaredType::Named(block)) if ["ctu", "ctd", "ctud"].contains(&block.as_str()))
     }
 
     /// The variable that a proof calls `name`, or in the words of the other family `key`, with what it is called here.

@@ -89,7 +89,10 @@ pub fn prove(left: &Document, right: &Document) -> Proof {
     for (document, sources) in [left, right].into_iter().zip(&mut sources).filter(|_| is_mixed) {
         dialect::refuse_others(document, family, sources);
     }
-    let sources = sources.map(parted::parted);
+    let mut sources = sources.map(parted::parted);
+    // Comments before a unit are no part of another one.
+    let says_something = |source: &Source| source.rung.path != Ok(None) || !source.rung.labels.is_empty();
+    sources.iter_mut().for_each(|sources| sources.retain(says_something));
     let stretches = [0, 1].map(|side| stretches(&sources[side]));
     if let Some((reason, at)) = units::unlike([left, right], [&sources[0], &sources[1]]) {
         return Proof::undecided(reason, at);
