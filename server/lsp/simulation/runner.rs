@@ -12,7 +12,8 @@ use super::monitor::{Monitor, MonitorMethod};
 use crate::document::Document;
 use crate::scenario::{InputKind, Recording};
 use crate::simulate::{
-    ChangeSearch, Code, Drivers, Error, NamesOfCode, Recorder, Session, Sight, Touch, Value, Variable,
+    ChangeSearch, Code, Drivers, Error, HistoryLimit, NamesOfCode, Recorder, Session, Sight, Touch, Value,
+    Variable,
 };
 use crate::text::Message;
 use program::{around, files};
@@ -298,7 +299,7 @@ impl Running {
         let files = files(&around);
         let (code, watched) = compiled(&files)?;
         Ok(Running {
-            session: Session::new(code),
+            session: Session::new(code).with_limit(history_limit(workspace, uri)),
             watched,
             files,
             is_outdated: false,
@@ -467,7 +468,8 @@ impl Running {
             }
             Deed::StepBack { count, change_of } => self.step_back(count, change_of)?,
             Deed::Reset => {
-                let mut session = Session::new(Arc::clone(self.session.machine().code()));
+                let code = Arc::clone(self.session.machine().code());
+                let mut session = Session::new(code).with_limit(self.session.limit());
                 session.take_over(self.session.machine());
                 self.session = session;
                 self.errors.clear();
@@ -492,7 +494,14 @@ impl Running {
 
     fn step_back(&mut self, count: u64, change_of: Option<String>) -> Result<(), Message> {
         match change_of {
-            None => self.go_back(self.session.machine().scans().saturating_sub(count)),
+            None => {
+                let scans = self.session.machine().scans();
+                if self.session.is_cut() && scans == self.session.first_scan() {
+                    let begins = Message::new("simulate.history-begins");
+                    return Err(begins.with("limit", self.session.limit()));
+                }
+                self.go_back(scans.saturating_sub(count));
+            }
             Some(name) => {
                 let search = ChangeSearch::new(&self.session, self.variable(&name)?);
                 self.task = Some(Task::BackTo(Box::new(search)));
@@ -542,6 +551,7 @@ impl Running {
         if self.is_open && workspace.snapshot().open(uri).is_none() {
             (self.is_over, self.is_news) = (true, true);
         }
+        self.session.set_limit(history_limit(workspace, uri));
         let Some(around) = around(workspace, uri) else { return };
         let is_same = |(uri, version, document): &(Uri, i32, Document)| {
             around.files().iter().any(|open| {
@@ -585,6 +595,11 @@ impl Running {
         let Some(number) = self.files.iter().position(|(file, ..)| file == uri) else { return };
         self.monitor.place(number as u32, Place::new(&self.files[number].2, workspace.snapshot().manner));
     }
+}
+
+/// What the project around `uri` allows the history of a simulation to take.
+fn history_limit(workspace: &Workspace, uri: &Uri) -> HistoryLimit {
+    workspace.snapshot().program(uri).map(|open| open.manifest.history()).unwrap_or_default()
 }
 
 /// Times from one scan to the next, in milliseconds.

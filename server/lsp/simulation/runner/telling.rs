@@ -144,6 +144,10 @@ impl Running {
                 name.ok_or_else(|| Message::new("why.no-name"))?
             }
         };
+        let begin = self.session.first_scan();
+        if scan.is_some_and(|scan| scan < begin) {
+            return Err(Message::new("why.forgotten").with("scan", begin));
+        }
         let documents: Vec<&Document> = self.files.iter().map(|(_, _, document)| document).collect();
         let drivers = self.drivers.get_or_insert_with(|| Drivers::of(&documents));
         let reason = Inquiry::new(&self.session, &self.watched, &documents, drivers).why(&name, scan);
