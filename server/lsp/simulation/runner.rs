@@ -163,7 +163,8 @@ struct Running {
     sights: Vec<Sight<u8>>,
     /// What drives what, once somebody has asked why.
     drivers: Option<Drivers>,
-    shown: Instant,
+    /// When the client was told last.
+    shown: Option<Instant>,
     is_news: bool,
 }
 
@@ -319,14 +320,19 @@ impl Running {
             errors: Vec::new(),
             sights: Vec::new(),
             drivers: None,
-            shown: Instant::now(),
+            shown: None,
             is_news: true,
         })
     }
 
+    /// How long ago the client was told something.
+    fn since_picture(&self) -> Duration {
+        self.shown.map_or(Duration::MAX, |shown| shown.elapsed())
+    }
+
     /// How long there is nothing to do.
     fn wait(&self) -> Duration {
-        let until_picture = PICTURE.saturating_sub(self.shown.elapsed());
+        let until_picture = PICTURE.saturating_sub(self.since_picture());
         if self.task.is_some() {
             return Duration::ZERO;
         }
@@ -417,7 +423,7 @@ impl Running {
 
     fn scan(&mut self) {
         let next = self.next_ns();
-        let is_picture = !self.is_outdated && self.monitor.has_text() && self.shown.elapsed() >= PICTURE;
+        let is_picture = !self.is_outdated && self.monitor.has_text() && self.since_picture() >= PICTURE;
         let outcome = match is_picture {
             true => {
                 let (sights, watched) = (&mut self.sights, &self.watched);
@@ -452,8 +458,7 @@ impl Running {
 
     /// Does what it is told.
     fn obey(&mut self, deed: Deed) -> Result<(), Message> {
-        // What was seen was of another scan.
-        self.sights.clear();
+        // What was seen in the last scan stays true until another one is run, or taken back.
         self.is_news = true;
         match deed {
             Deed::Stop => self.is_over = true,
