@@ -202,3 +202,28 @@ fn a_long_run_shows_no_bar_in_a_pipe() {
     let (code, _, err) = run(&folder, &["run", "clock.il", "--scans", "300000", "--watch", "X0"]);
     assert_eq!((code, err.as_str()), (0, ""));
 }
+
+#[test]
+fn a_small_history_forgets_the_oldest_scans_and_says_so() {
+    let folder = folder(&[("motor.il", MOTOR), ("rungwise.toml", "[simulate]\nhistory = \"2 MiB\"\n")]);
+    let asked = |more: &[&str]| {
+        let arguments = ["run", "motor.il", "--scans", "200000", "--set", "X0=1", "--watch", "Y0"];
+        run(&folder, &[&arguments[..], more].concat())
+    };
+    let (code, out, err) = asked(&["--history", "1MiB", "--why", "Y0@20ms"]);
+    assert_eq!(code, 2, "{out}{err}");
+    assert!(err.contains("the history begins at scan 1") && err.contains("now it has 1 MiB"), "{err}");
+    let (_, _, err) = asked(&["--why", "Y0@20ms"]);
+    assert!(err.contains("now it has 2 MiB"), "the project's: {err}");
+    let (code, out, err) = asked(&["--history", "64 MiB", "--why", "Y0@20ms"]);
+    assert_eq!((code, err.as_str()), (0, ""));
+    assert!(out.contains("Y0 is on"), "{out}");
+    let (code, _, err) = asked(&["--history", "3 pages"]);
+    assert!(code == 2 && err.contains("3 pages") && err.contains("--history"), "{err}");
+    let settings = "target = \"fx2n\"\n[simulate]\nhistory = \"3 pages\"\n";
+    std::fs::write(folder.path().join("rungwise.toml"), settings).unwrap();
+    let (code, _, err) = run(&folder, &["run", "motor.il"]);
+    assert!(code == 2 && err.contains("rungwise.toml:3:12: ") && err.contains("64 MiB"), "{err}");
+    let (_, _, err) = run(&folder, &["--lang", "zh-CN", "run", "motor.il"]);
+    assert!(err.contains("rungwise.toml:3:12: ") && err.contains("不是历史的大小"), "{err}");
+}

@@ -510,3 +510,24 @@ fn the_console_says_why() {
     assert!(plc.console("why Y0").starts_with("Y0 is off: OUT Y0 has no power"), "{}", plc.console("why Y0"));
     assert!(plc.refusal("evaluate", json!({ "expression": "why Q7", "context": "repl" })).contains("Q7"));
 }
+
+#[test]
+fn the_way_back_ends_where_a_small_history_begins_and_it_is_said() {
+    let motor = program("motor.il", MOTOR);
+    std::fs::write(motor.folder.path().join("rungwise.toml"), "[simulate]\nhistory = \"1 MiB\"\n").unwrap();
+    let mut plc = entered(&motor);
+    plc.console("scan 120000");
+    plc.event("stopped");
+    plc.said();
+    assert_eq!(plc.go("reverseContinue")["reason"], "entry");
+    let begin = plc.here();
+    let scan = begin.split("scan ").nth(1).and_then(|rest| rest.split(',').next()?.parse::<u64>().ok());
+    assert!(scan.is_some_and(|scan| scan > 50_000), "{begin}");
+    let said = plc.said().join("\n");
+    assert!(said.starts_with("the history begins here: 1 MiB hold no more"), "{said}");
+    // In the first scan that is known there is no instruction before the first.
+    while plc.go("stepBack")["reason"] == "step" {
+        plc.said();
+    }
+    assert!(plc.said().join("\n").starts_with("the history begins here"));
+}

@@ -298,3 +298,30 @@ fn why_is_answered_for_names_and_places_and_scans_and_in_the_hover() {
         assert!(refused["error"]["message"].is_string(), "{refused}");
     }
 }
+
+#[test]
+fn a_history_that_is_full_begins_later_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().canonicalize().unwrap().join(name);
+    std::fs::write(at("rungwise.toml"), "[simulate]\nhistory = \"1 MiB\"\n").unwrap();
+    std::fs::write(at("motor.il"), LIST).unwrap();
+    let mut plc = Simulated::open(&format!("file://{}", at("motor.il").display()), "plc-il", LIST);
+    plc.tell("start", json!({ "paused": true }));
+    let known = plc.tell("stepBack", json!({}))["scan"].clone();
+    assert_eq!(known, json!(0), "nothing is forgotten yet, so nothing is said");
+    let first = plc.tell("step", json!({ "count": 120_000 }))["first_scan"].as_u64().unwrap();
+    assert!(first > 50_000, "{first}");
+    let said = |answer: Value| answer["error"]["message"].as_str().unwrap_or_default().to_string();
+    let why = said(plc.answer("why", json!({ "name": "Y0", "scan": 7 })));
+    assert_eq!(
+        why,
+        format!("the history begins at scan {}; what was before is not known any more", first + 1)
+    );
+    assert_eq!(plc.tell("stepBack", json!({ "count": 120_000 }))["scan"], json!(first));
+    let refused = said(plc.answer("stepBack", json!({})));
+    assert!(refused.starts_with("the history begins here: 1 MiB hold no more"), "{refused}");
+    // What is reset has the same room.
+    plc.tell("reset", json!({}));
+    let first = plc.tell("step", json!({ "count": 120_000 }))["first_scan"].as_u64().unwrap();
+    assert!(first > 50_000, "{first}");
+}

@@ -39,7 +39,7 @@ fn every_table_has_the_keys_that_are_read() {
     let schema = schema();
     assert_eq!(keys(&schema), keys_read("zzz = 1"));
     assert_eq!(keys(&schema["properties"]["format"]), keys_read("[format]\nzzz = 1"));
-    for table in ["check", "monitor", "translate"] {
+    for table in ["check", "monitor", "simulate", "translate"] {
         assert_eq!(keys(&schema["properties"][table]), keys_read(&format!("[{table}]\nzzz = 1")));
         assert_eq!(schema["properties"][table]["additionalProperties"], Value::Bool(false));
     }
@@ -127,6 +127,26 @@ fn every_word_of_the_schema_is_read_and_others_are_not() {
     let kept = &schema["properties"]["monitor"]["properties"]["record"];
     let [least, most] = ["minimum", "maximum"].map(|end| kept[end].as_u64().unwrap());
     assert!(record(least) && record(most) && !record(least - 1) && !record(most + 1));
+}
+
+#[test]
+fn the_size_of_a_history_is_read_as_the_schema_says_it() {
+    let schema = schema();
+    let history = &schema["properties"]["simulate"]["properties"]["history"];
+    let read = |word: &str| Manifest::read(&format!("[simulate]\nhistory = \"{word}\""));
+    let own = |word: &str| read(word).unwrap().history().to_string();
+    assert_eq!(own(history["default"].as_str().unwrap()), Manifest::default().history().to_string());
+    words(&history["examples"]).into_iter().for_each(|word| assert_eq!(own(word), word));
+    assert_eq!(own(" 2048kib "), "2 MiB");
+    assert_eq!(own("1MiB"), "1 MiB");
+    for word in
+        ["", "64", "64 MB", "MiB", "-1 MiB", "1.5 MiB", "1023 KiB", "17 GiB", "99999999999999999999 GiB"]
+    {
+        let error = read(word).unwrap_err();
+        let said = error.message.render(Language::English);
+        assert!(said.starts_with(&format!("`{word}` is no size of a history; write 64 MiB")), "{said}");
+        assert_eq!(error.span.start, 22, "behind the quote: {error:?}");
+    }
 }
 
 /// With the environment variable `UPDATE_EXPECT` set, the rules of the schema are written anew.

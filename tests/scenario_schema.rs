@@ -65,7 +65,11 @@ fn the_examples_of_the_schema_are_read() {
                 };
                 let told: Vec<String> =
                     Suite::read(&text).1.iter().map(|flaw| flaw.message.render(Language::English)).collect();
-                let wrong = told.iter().find(|told| !told.contains("there is no scenario here"));
+                // One key alone is not a whole file.
+                let is_about_key = |told: &&String| {
+                    !told.contains("there is no scenario here") && !told.contains("expects nothing, so it")
+                };
+                let wrong = told.iter().find(is_about_key);
                 assert!(wrong.is_none(), "{text}: {told:?}");
                 count += 1;
             }

@@ -3,7 +3,7 @@
 use crate::simulate::{device, switch};
 use proptest::prelude::*;
 use rungwise::document::{Document, Notation};
-use rungwise::simulate::{EnergisedKind, Machine, Session, compile, power_flow};
+use rungwise::simulate::{EnergisedKind, HistoryLimit, Machine, Session, compile, power_flow};
 use rungwise::target::{Model, Target};
 use std::sync::Arc;
 
@@ -87,6 +87,52 @@ fn a_million_scans_stay_in_bounded_memory_and_are_all_known() {
         assert_eq!(machine.bit(device("Y0")) != 0, scan > 50, "{scan}");
     }
     assert_eq!(session.last_change(1_000_000, |machine| machine.bit(device("Y1"))), Some(54));
+}
+
+/// A history of one MiB, of a PLC that is switched before each scan.
+fn busy(scans: u64) -> Session {
+    let limit = HistoryLimit::read("1 MiB").expect("a size");
+    let mut session = session(PROGRAM).with_limit(limit);
+    for scan in 0..scans {
+        switch(&mut session, "X0", scan % 3 == 0);
+        switch(&mut session, "X1", scan % 7 == 0);
+        session.scan(scan as i64 * 10 * MS);
+    }
+    session
+}
+
+#[test]
+fn what_was_done_is_forgotten_oldest_first_when_a_small_history_is_full() {
+    let long = busy(20_000);
+    assert!(long.is_cut() && long.first_scan() > 10_000, "{}", long.first_scan());
+    // With room for two states it is forgotten in halves: one of them, some 4,600 things that were done, is there.
+    assert!(long.first_scan() < 17_800, "{}", long.first_scan());
+    let all = session(PROGRAM);
+    assert!(!all.is_cut());
+    let first = long.first_scan();
+    assert!(long.at(first - 1).is_none());
+    assert_eq!(long.last_change(first, |machine| machine.bit(device("X1"))), None);
+    // What is known is what was.
+    for scan in [first, first + 1, first + 777, 19_999] {
+        let was = busy(scan);
+        assert_eq!(long.at(scan).as_ref().map(state), Some(state(was.machine())), "{scan}");
+    }
+    let mut back = long;
+    assert!(!back.back_to(first - 1) && back.back_to(first + 1));
+    assert_eq!(back.machine().scans(), first + 1);
+}
+
+#[test]
+fn a_history_with_room_for_few_states_is_shorter_and_one_with_more_room_reaches_back_to_the_start() {
+    let run = |limit: &str| {
+        let mut session = session("LD X0\nOUT Y0\nEND\n");
+        session.set_limit(HistoryLimit::read(limit).expect("a size"));
+        (0..120_000).for_each(|scan| _ = session.scan(scan * MS));
+        (session.is_cut(), session.first_scan(), session.moments())
+    };
+    let (is_cut, first, moments) = run("1 MiB");
+    assert!(is_cut && first >= 60_000 && moments == 2, "{first} {moments}");
+    assert_eq!(run("64 MiB"), (false, 0, 8));
 }
 
 /// The text with what is energised marked below each line: `=` for wires, `#` for contacts and outputs.

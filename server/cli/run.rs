@@ -8,8 +8,8 @@ use super::why;
 use crate::document::Document;
 use crate::scenario::picture;
 use crate::simulate::{
-    self, AlarmChange, Alarms, Code, NamesOfCode, Place, Reason, Session, Setting, Touch, Trace, TraceRow,
-    Variable, WithSymbols, compile,
+    self, AlarmChange, Alarms, Code, HistoryLimit, NamesOfCode, Place, Reason, Session, Setting, Touch,
+    Trace, TraceRow, Variable, WithSymbols, compile,
 };
 use crate::text::{Diagnostic, Encoding, Language, Message, Severity, Span};
 use clap::ValueEnum;
@@ -45,6 +45,9 @@ pub(super) struct Arguments {
     /// Says which contacts held a device on or off in the last scan, or at a time: Y0, Y0@500ms.
     #[arg(long = "why", value_name = "NAME[@TIME]", value_parser = why::question)]
     questions: Vec<why::Question>,
+    /// The memory that the history may take which --why looks back into: 64MiB; that of the project if left out.
+    #[arg(long, value_name = "SIZE", value_parser = history)]
+    history: Option<HistoryLimit>,
     /// Writes the values over time to a file, as a value change dump (.vcd) or a table (.csv).
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
@@ -88,6 +91,11 @@ pub(super) fn distance(word: &str) -> Result<i64, String> {
     duration(word).and_then(|time_ns| if time_ns > 0 { Ok(time_ns) } else { Err(word.to_string()) })
 }
 
+/// A size of a history.
+fn history(word: &str) -> Result<HistoryLimit, String> {
+    HistoryLimit::read(word).ok_or_else(|| word.to_string())
+}
+
 pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     if let Some(path) = arguments.trace.as_ref().filter(|path| TraceFormat::of(path).is_none()) {
         let reason = Message::new("cli.run-trace").with("path", path.display()).render(language);
@@ -111,8 +119,10 @@ pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
     let Some((touches, watched)) = named(arguments, &code, language) else { return Outcome::Unusable };
     let programs = cautioned(programs, language);
     let Some(alarms) = alarms_of(&programs, &code, language) else { return Outcome::Unusable };
+    let of_project = || programs.first().map(|program| program.manifest.history());
+    let limit = arguments.history.or_else(of_project).unwrap_or_default();
     let mut simulation = Simulation {
-        session: Session::new(code),
+        session: Session::new(code).with_limit(limit),
         trace: Trace::new(watched),
         touches,
         alarms,

@@ -45,6 +45,12 @@ pub(super) fn answers(
     let last = session.machine().scans().saturating_sub(1);
     let answer = |question: &Question| {
         let scan = question.at_ns.map_or(last, |at_ns| ((at_ns / scan_ns.max(1)) as u64).min(last));
+        if scan < session.first_scan() {
+            let message = Message::new("why.forgotten").with("scan", session.first_scan());
+            let help = Message::new("cli.run-history").with("limit", session.limit()).render(language);
+            complain("history", &message.render(language), &help, language);
+            return None;
+        }
         let reason = inquiry.why(&question.name, Some(scan));
         if reason.is_none() {
             let message = Message::new("cli.run-unknown").with("name", &question.name);

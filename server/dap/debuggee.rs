@@ -6,7 +6,7 @@
 //! done.
 
 use crate::simulate::{
-    Caller, Code, Error, Glimpse, Machine, Outcome, Place, Session, Sight, Touch, Variable,
+    Caller, Code, Error, Glimpse, HistoryLimit, Machine, Outcome, Place, Session, Sight, Touch, Variable,
 };
 use std::sync::Arc;
 
@@ -53,8 +53,13 @@ pub(super) enum Ended<T> {
 
 impl Debuggee {
     /// A PLC that has not run yet; `settings` are done before the scans with these numbers.
-    pub(super) fn new(code: Arc<Code>, scan_ns: i64, settings: Vec<(u64, Touch)>) -> Debuggee {
-        let session = Session::new(code);
+    pub(super) fn new(
+        code: Arc<Code>,
+        history: HistoryLimit,
+        scan_ns: i64,
+        settings: Vec<(u64, Touch)>,
+    ) -> Debuggee {
+        let session = Session::new(code).with_limit(history);
         let machine = session.machine().clone();
         let mut new =
             Debuggee { session, scan: 1, seen: 0, machine, here: None, settings, done: Vec::new(), scan_ns };

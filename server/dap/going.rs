@@ -240,6 +240,16 @@ impl<W: Write> Adapter<W> {
         }
     }
 
+    /// Says that there is no way back from here, where scans were forgotten.
+    pub(super) fn tell_cut(&mut self) {
+        let session = self.debugged.as_ref().map(|debugged| debugged.debuggee.session());
+        if let Some(session) = session.filter(|session| session.is_cut()) {
+            let words = Message::new("simulate.history-begins").with("limit", session.limit());
+            let words = words.render(self.language);
+            self.say("important", &words, None);
+        }
+    }
+
     /// Begins to go back to the last breakpoint before this instruction.
     pub(super) fn reverse(&mut self) -> Result<(), Message> {
         self.stopped()?;
@@ -264,6 +274,7 @@ impl<W: Write> Adapter<W> {
             None => {
                 let first = debugged.debuggee.session().first_scan() + 1;
                 debugged.debuggee.back_to(first);
+                self.tell_cut();
                 self.stop("entry", None);
             }
         }

@@ -60,7 +60,7 @@ impl Launch {
         Ok(Debugged {
             launch: self.clone(),
             variables: Variables::of(&program),
-            debuggee: Debuggee::new(program.code.clone(), scan_ns, settings),
+            debuggee: Debuggee::new(program.code.clone(), program.history, scan_ns, settings),
             program,
             going: None,
             search: None,

@@ -5,7 +5,7 @@ use crate::document::{Document, Notation, Tree};
 use crate::project::{
     CommentsFile, MANIFEST_NAME, Stamp, Surroundings, is_program_file, open_document, read_text,
 };
-use crate::simulate::{Code, Drivers, Place, Problem, Variable, compile, instruction_words};
+use crate::simulate::{Code, Drivers, HistoryLimit, Place, Problem, Variable, compile, instruction_words};
 use crate::target::{Model, Target};
 use crate::text::{Encoding, LineColumn, Message, Span};
 use rustc_hash::FxHashMap;
@@ -18,6 +18,8 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub(super) struct Program {
     pub(super) files: Vec<File>,
+    /// What its project allows the way back to take.
+    pub(super) history: HistoryLimit,
     /// Code that says what it sees. The same code runs without breakpoints, so that a scan that the watchdog ends is
     /// ended at the same instruction.
     pub(super) code: Arc<Code>,
@@ -69,7 +71,7 @@ impl Program {
             Some(name) if name == MANIFEST_NAME => path.parent().unwrap_or(&path).to_path_buf(),
             _ => path,
         };
-        let files = files_of(&path)?;
+        let (files, history) = files_of(&path)?;
         let documents: Vec<&Document> = files.iter().map(|file| &file.document).collect();
         let code = compile(&documents, true).map_err(|problems| refusal(&files, &problems))?;
         let mut rungs: Vec<Place> =
@@ -88,7 +90,7 @@ impl Program {
         stops.sort_unstable_by_key(|Stop { place, .. }| {
             (place.document, place.span.start, std::cmp::Reverse(place.span.end))
         });
-        Ok(Program { files, code: Arc::new(code), drivers: OnceCell::new(), stops, rungs })
+        Ok(Program { files, history, code: Arc::new(code), drivers: OnceCell::new(), stops, rungs })
     }
 
     /// The number of the file at `path`.
@@ -228,7 +230,7 @@ fn no_file(path: &Path) -> Message {
 }
 
 /// The files of the program at a path, in the order of execution.
-fn files_of(path: &Path) -> Result<Vec<File>, Message> {
+fn files_of(path: &Path) -> Result<(Vec<File>, HistoryLimit), Message> {
     let unread = |path: &Path| Message::new("debug.unreadable").with("path", path.display());
     if path.is_file() && !is_program_file(path) {
         return Err(Message::new("cli.no-program-file").with("path", path.display()));
@@ -260,7 +262,8 @@ fn files_of(path: &Path) -> Result<Vec<File>, Message> {
         _ => return Err(Message::new("debug.many-programs").with("path", path.display())),
     };
     let mut files: Vec<Option<File>> = files.into_iter().map(Some).collect();
-    Ok(numbers.into_iter().filter_map(|number| files.get_mut(number)?.take()).collect())
+    let files = numbers.into_iter().filter_map(|number| files.get_mut(number)?.take()).collect();
+    Ok((files, manifest.history()))
 }
 
 /// Where the rungs of a document begin.

@@ -320,6 +320,9 @@ impl<W: Write> Adapter<W> {
         let debugged = self.stopped()?;
         let is_back = debugged.debuggee.step_back();
         debugged.failing = None;
+        if !is_back {
+            self.tell_cut();
+        }
         self.stop(if is_back { "step" } else { "entry" }, None);
         Ok(Json::Null)
     }

@@ -2,7 +2,7 @@
 
 use crate::check::Severities;
 use crate::document::{Notation, exclusive_names};
-use crate::simulate::{Alarm, duration};
+use crate::simulate::{Alarm, HistoryLimit, duration};
 use crate::target::Target;
 use crate::text::{Message, Severity, Span};
 use serde::Deserialize;
@@ -40,6 +40,8 @@ pub struct Manifest {
     pub port: Option<String>,
     /// What is kept while a program is watched in a PLC.
     pub monitor: MonitorSettings,
+    /// How programs are simulated.
+    pub simulate: SimulateSettings,
     /// What people are told of while the program is watched in a PLC, or runs in the simulator.
     #[serde(rename = "alarm")]
     pub alarms: Vec<AlarmSettings>,
@@ -51,6 +53,14 @@ pub struct Manifest {
 pub struct MonitorSettings {
     /// So many changes of values, the latest.
     pub record: Option<usize>,
+}
+
+/// How programs are simulated.
+#[derive(Clone, PartialEq, Eq, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SimulateSettings {
+    /// The memory that the way back may take: `64 MiB`.
+    pub history: Option<String>,
 }
 
 /// An alarm.
@@ -234,6 +244,11 @@ impl Manifest {
         self.alarms.iter().map(AlarmSettings::alarm).collect()
     }
 
+    /// The memory that the way back of a simulation may take.
+    pub fn history(&self) -> HistoryLimit {
+        self.simulate.history.as_deref().and_then(HistoryLimit::read).unwrap_or_default()
+    }
+
     /// The rules' severities.
     pub fn severities(&self) -> Severities {
         let pairs = self.rules.iter().filter_map(|(code, word)| Some((code.clone(), severity_named(word)?)));
@@ -262,6 +277,10 @@ impl Manifest {
         }
         if let Some(record) = self.monitor.record.filter(|record| !RECORD.contains(record)) {
             return fail("manifest.record", &record.to_string(), Part::Value, &["monitor", "record"]);
+        }
+        let history = self.simulate.history.as_deref();
+        if let Some(word) = history.filter(|word| HistoryLimit::read(word).is_none()) {
+            return fail("manifest.history", word, Part::Value, &["simulate", "history"]);
         }
         if let Some(word) = self.dialect.as_deref().filter(|word| dialect_named(word).is_none()) {
             return fail("manifest.dialect", word, Part::Value, &["dialect"]);

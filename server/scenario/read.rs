@@ -117,6 +117,9 @@ fn scenario<'a>(
             Some(plan.last)
         }
     };
+    if plan.checks.is_empty() && golden.is_none() && reading.flaws.is_empty() {
+        reading.flaw(name.span, Message::new("scenario.expects-nothing").with("name", &name.name));
+    }
     plan.inputs.sort_by_key(|input| input.scan);
     Scenario {
         name: name.name,

@@ -186,6 +186,11 @@ impl<L: Lanes> Machine<L> {
         &mut self.outside
     }
 
+    /// The memory of the computer that a copy of it takes, but for what is seldom used.
+    pub(super) fn bytes(&self) -> usize {
+        size_of::<Self>() + self.memory.bytes()
+    }
+
     /// Where an instruction that was seen stands.
     pub fn place(&self, instruction: u32) -> Option<Place> {
         self.code.places.get(instruction as usize).copied()

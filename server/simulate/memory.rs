@@ -24,6 +24,13 @@ impl<L: Lanes> Memory<L> {
         Memory { cells, words: vec![0; slots * L::COUNT], texts: vec![SmolStr::default(); texts * L::COUNT] }
     }
 
+    /// The memory of the computer that it takes.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(self.cells.as_slice())
+            + size_of_val(self.words.as_slice())
+            + size_of_val(self.texts.as_slice())
+    }
+
     /// Takes relays and words over from a memory of the same layout.
     pub(super) fn keep(&mut self, from: &Memory<L>, cells: Range<usize>, slots: Range<usize>) {
         self.cells[cells.clone()].copy_from_slice(&from.cells[cells]);

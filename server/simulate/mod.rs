@@ -69,6 +69,9 @@ pub use iec::{HandedOver, Member, UnitVariables, joined};
 mod glimpse;
 pub use glimpse::{Caller, Glimpse};
 
+mod history;
+pub use history::HistoryLimit;
+
 mod session;
 pub use session::{Session, Touch};
 

@@ -5,6 +5,7 @@
 //! bounded, and any scan is reached by running on from the moment before it.
 
 use super::code::Code;
+use super::history::{HistoryLimit, Log};
 use super::machine::{Machine, Outcome, Sight};
 use super::writes::{Tracer, Write};
 use super::{Spot, Value, Variable};
@@ -49,32 +50,56 @@ impl Touch {
 #[derive(Debug)]
 pub struct Session {
     machine: Machine<u8>,
-    /// What was done before which scan, in order.
-    touches: Vec<(u64, Touch)>,
-    /// When scans began.
-    times: Times,
+    log: Log,
     /// States after scans, in order; the first one is where history begins.
     moments: Vec<Machine<u8>>,
     /// Scans from one moment to the next while they are recent.
     stride: u64,
+    /// What the log may grow to before there is another moment.
+    log_due: usize,
+    limit: HistoryLimit,
+    /// Whether scans were forgotten because of it.
+    is_cut: bool,
 }
 
-/// More moments are thinned out.
-const MOST_MOMENTS: usize = 96;
-/// The latest moments, which are not.
-const RECENT_MOMENTS: usize = 48;
+/// With room for fewer moments than that, history becomes shorter; with more of it, its old moments lie further apart.
+const THINNED: usize = 16;
 /// Rows and ops that are run again at most to reach a recent scan; some milliseconds.
 const STRIDE_OPS: usize = 2_000_000;
-/// What was done is forgotten, oldest first, beyond so many touches.
-const MOST_TOUCHES: usize = 1 << 20;
+/// The log is forgotten in so many portions at most, each of which ends with a moment.
+const PORTIONS: usize = 8;
 
 impl Session {
-    /// A PLC with this program that has not run yet.
+    /// A PLC with this program that has not run yet, and a history of the usual length.
     pub fn new(code: Arc<Code>) -> Session {
         let stride = stride(&code);
         let machine = Machine::new(code);
         let moments = vec![machine.clone()];
-        Session { machine, touches: Vec::new(), times: Times::default(), moments, stride }
+        let limit = HistoryLimit::default();
+        let mut session =
+            Session { machine, log: Log::default(), moments, stride, log_due: 0, limit, is_cut: false };
+        session.log_due = session.portion();
+        session
+    }
+
+    /// The same with another limit of its history, which counts from the next scan on.
+    pub fn with_limit(mut self, limit: HistoryLimit) -> Session {
+        self.set_limit(limit);
+        self
+    }
+
+    /// Sets the limit of its history, which counts from the next scan on.
+    pub fn set_limit(&mut self, limit: HistoryLimit) {
+        if limit == self.limit {
+            return;
+        }
+        self.limit = limit;
+        self.log_due = self.log.bytes() + self.portion();
+    }
+
+    /// What its history may take.
+    pub fn limit(&self) -> HistoryLimit {
+        self.limit
     }
 
     /// The PLC as it is now.
@@ -87,6 +112,11 @@ impl Session {
         self.moments.first().map_or(0, Machine::scans)
     }
 
+    /// Whether what was before that is no longer known because of the limit.
+    pub fn is_cut(&self) -> bool {
+        self.is_cut
+    }
+
     /// How many states it keeps.
     pub fn moments(&self) -> usize {
         self.moments.len()
@@ -95,10 +125,7 @@ impl Session {
     /// Does something to the PLC before its next scan.
     pub fn touch(&mut self, touch: Touch) {
         touch.apply(&mut self.machine);
-        self.touches.push((self.machine.scans() + 1, touch));
-        if self.touches.len() > MOST_TOUCHES {
-            self.forget();
-        }
+        self.log.touches.push((self.machine.scans() + 1, touch));
     }
 
     /// Runs a scan that begins at `now_ns`, which is not before the last one began.
@@ -123,18 +150,17 @@ impl Session {
 
     fn done(&mut self, now_ns: i64) {
         let scans = self.machine.scans();
-        self.times.push(scans, now_ns);
-        if scans.is_multiple_of(self.stride) {
+        self.log.times.push(scans, now_ns);
+        if scans.is_multiple_of(self.stride) || self.log.bytes() > self.log_due {
             self.moments.push(self.machine.clone());
-            if self.moments.len() > MOST_MOMENTS {
-                self.thin();
-            }
+            self.keep_to_limit();
+            self.log_due = self.log.bytes() + self.portion();
         }
     }
 
     /// When a scan began, in nanoseconds.
     pub fn time_of(&self, scan: u64) -> Option<i64> {
-        self.times.of(scan)
+        self.log.times.of(scan)
     }
 
     /// The PLC as it was after a scan, if that is known.
@@ -174,12 +200,12 @@ impl Session {
     /// at, so that a switch that nobody has touched in a long history is soon known.
     pub(super) fn last_switching(&self, scan: u64, variable: Variable) -> Option<u64> {
         let of = |machine: &Machine<u8>| machine.value_inside(variable, 0);
-        if self.touches.iter().any(|(_, touch)| matches!(touch, Touch::Around(_))) {
+        if self.log.touches.iter().any(|(_, touch)| matches!(touch, Touch::Around(_))) {
             // Keypads feed inputs from outputs.
             return self.last_change(scan, of);
         }
         let last = scan.min(self.machine.scans());
-        let switches = self.touches.iter().rev().filter(|(_, touch)| match *touch {
+        let switches = self.log.touches.iter().rev().filter(|(_, touch)| match *touch {
             Touch::Write(own, _) | Touch::Hold(own, _) | Touch::LetGo(own) => own == variable,
             Touch::LetAllGo => true,
             _ => false,
@@ -202,8 +228,7 @@ impl Session {
         let Some(machine) = self.at(scan) else { return false };
         self.machine = machine;
         self.moments.retain(|moment| moment.scans() <= scan);
-        self.touches.retain(|(before, _)| *before <= scan);
-        self.times.cut(scan);
+        self.log.cut(scan);
         true
     }
 
@@ -213,8 +238,8 @@ impl Session {
         let mut machine = self.at(scan.checked_sub(1)?)?;
         machine.set_code(Arc::clone(watched));
         let mut sights = Vec::new();
-        self.touches_before(scan).for_each(|touch| touch.apply(&mut machine));
-        machine.scan_watched(self.times.of(scan)?, &mut |sight| {
+        self.log.touches_before(scan).for_each(|touch| touch.apply(&mut machine));
+        machine.scan_watched(self.log.times.of(scan)?, &mut |sight| {
             sights.push(sight);
             true
         });
@@ -233,7 +258,7 @@ impl Session {
     ) -> Option<T> {
         let mut machine = self.at(scan.checked_sub(1)?)?;
         machine.set_code(Arc::clone(watched));
-        self.touches_before(scan).for_each(|touch| touch.apply(&mut machine));
+        self.log.touches_before(scan).for_each(|touch| touch.apply(&mut machine));
         let (mut left, mut see, mut seen) = (number, Some(see), None);
         machine.scan_inside(now_ns, &mut |glimpse| {
             // Where nothing is to be seen a debugger stops, and no sight is counted.
@@ -255,7 +280,7 @@ impl Session {
     pub(super) fn writes(&self, scan: u64, now_ns: i64, watched: &Arc<Code>, to: Spot) -> Option<Vec<Write>> {
         let mut machine = self.at(scan.checked_sub(1)?)?;
         machine.set_code(Arc::clone(watched));
-        self.touches_before(scan).for_each(|touch| touch.apply(&mut machine));
+        self.log.touches_before(scan).for_each(|touch| touch.apply(&mut machine));
         let mut tracer = Tracer::of(to);
         machine.scan_with(now_ns, &mut tracer);
         Some(tracer.found)
@@ -270,15 +295,15 @@ impl Session {
             return true;
         }
         if !self.machine.code().has_layout_of(&code) {
-            *self = Session::new(code);
+            *self = Session::new(code).with_limit(self.limit);
             return false;
         }
         self.stride = stride(&code);
         self.machine.adopt(code);
         self.moments = vec![self.machine.clone()];
-        let begin = self.machine.scans();
-        self.touches.clear();
-        self.times.forget(begin);
+        self.is_cut = false;
+        self.log.touches.clear();
+        self.log.times.forget(self.machine.scans());
         false
     }
 
@@ -309,16 +334,10 @@ impl Session {
 
     /// Whether a variable was set or forced before a scan.
     pub fn is_touched(&self, scan: u64, variable: Variable) -> bool {
-        self.touches_before(scan).any(|touch| match *touch {
+        self.log.touches_before(scan).any(|touch| match *touch {
             Touch::Write(own, _) | Touch::Hold(own, _) | Touch::LetGo(own) => own == variable,
             _ => false,
         })
-    }
-
-    fn touches_before(&self, scan: u64) -> impl Iterator<Item = &Touch> {
-        let first = self.touches.partition_point(|(before, _)| *before < scan);
-        let touches = self.touches.get(first..).unwrap_or_default().iter();
-        touches.take_while(move |(before, _)| *before == scan).map(|(_, touch)| touch)
     }
 
     pub(super) fn moment_before(&self, scan: u64) -> Option<&Machine<u8>> {
@@ -335,8 +354,8 @@ impl Session {
     ) {
         while machine.scans() < last {
             let scan = machine.scans() + 1;
-            let Some(time) = self.times.of(scan) else { return };
-            self.touches_before(scan).for_each(|touch| touch.apply(machine));
+            let Some(time) = self.log.times.of(scan) else { return };
+            self.log.touches_before(scan).for_each(|touch| touch.apply(machine));
             machine.scan(time);
             if !see(machine) {
                 return;
@@ -344,79 +363,45 @@ impl Session {
         }
     }
 
-    /// Leaves out every other one of the old moments, but for the first.
-    fn thin(&mut self) {
-        let old = self.moments.len() - RECENT_MOMENTS;
+    /// The log grows by so many bytes before there is another moment.
+    fn portion(&self) -> usize {
+        self.limit.log() / self.limit.states(self.machine.bytes()).min(PORTIONS)
+    }
+
+    /// Makes room for what comes.
+    fn keep_to_limit(&mut self) {
+        let most = self.limit.states(self.machine.bytes());
+        while self.moments.len() > most && most >= THINNED {
+            self.thin(most / 2);
+        }
+        let beyond = self.moments.len().saturating_sub(most);
+        let half = self.log.middle();
+        let first = match self.log.bytes() > self.limit.log() {
+            // At least one portion, and never the state that was just kept.
+            true => {
+                let behind = self.moments.partition_point(|moment| moment.scans() <= half);
+                behind.saturating_sub(1).clamp(1, self.moments.len() - 1)
+            }
+            false => 0,
+        };
+        let forgotten = first.max(beyond);
+        self.is_cut |= forgotten > 0;
+        self.moments.drain(..forgotten);
+        self.log.forget(self.first_scan());
+    }
+
+    /// Leaves out every other one of the moments but for the first, and so many latest.
+    fn thin(&mut self, recent: usize) {
+        let old = self.moments.len().saturating_sub(recent);
         let mut number = 0;
         self.moments.retain(|_| {
             number += 1;
             number > old || number % 2 == 1
         });
     }
-
-    /// Lets history begin later, with half of what was done.
-    fn forget(&mut self) {
-        let half = self.touches[self.touches.len() / 2].0;
-        let first = self.moments.partition_point(|moment| moment.scans() < half);
-        let first = first.min(self.moments.len() - 1);
-        self.moments.drain(..first);
-        let begin = self.first_scan();
-        self.touches.retain(|(before, _)| *before > begin);
-        self.times.forget(begin);
-    }
 }
 
 /// Scans between moments of a program.
 fn stride(code: &Code) -> u64 {
     (STRIDE_OPS / code.instructions().max(1)).clamp(16, 16_384) as u64
-}
-
-/// When scans began: runs of scans that followed each other at one distance.
-#[derive(Debug, Default)]
-struct Times {
-    runs: Vec<Run>,
-    last: u64,
-}
-
-/// A run of scans.
-#[derive(Clone, Copy, Debug)]
-struct Run {
-    first: u64,
-    time_ns: i64,
-    step_ns: i64,
-}
-
-impl Times {
-    fn push(&mut self, scan: u64, time_ns: i64) {
-        self.last = scan;
-        match self.runs.last_mut() {
-            Some(run) if scan == run.first + 1 => {
-                run.step_ns = time_ns - run.time_ns;
-            }
-            Some(run) if run.at(scan) == time_ns => {}
-            _ => self.runs.push(Run { first: scan, time_ns, step_ns: 0 }),
-        }
-    }
-
-    fn of(&self, scan: u64) -> Option<i64> {
-        let after = self.runs.partition_point(|run| run.first <= scan);
-        let run = self.runs.get(after.checked_sub(1)?)?;
-        (scan <= self.last).then(|| run.at(scan))
-    }
-
-    fn cut(&mut self, last: u64) {
-        self.runs.retain(|run| run.first <= last);
-        self.last = self.last.min(last);
-    }
-
-    fn forget(&mut self, first: u64) {
-        let keep = self.runs.partition_point(|run| run.first <= first).saturating_sub(1);
-        self.runs.drain(..keep);
-    }
-}
-
-impl Run {
-    fn at(&self, scan: u64) -> i64 {
-        self.time_ns + (scan - self.first) as i64 * self.step_ns
-    }
 }

@@ -41,6 +41,7 @@ mod machine_code;
 mod cursor;
 
 mod simulation;
+mod simulation_wire;
 
 mod link;
 mod simulation_iec;
@@ -80,6 +81,7 @@ fn main() {
     cursor::measure(&table);
     simulation::measure(&table);
     simulation_iec::measure(&table);
+    simulation_wire::measure(&table);
     link::measure(&table);
     command_line::measure(&table);
     println!("| (calibration again) | {} | | | | |", milliseconds(calibrate()));

@@ -12,7 +12,8 @@ use super::monitor::{Monitor, MonitorMethod};
 use crate::document::Document;
 use crate::scenario::{InputKind, Recording};
 use crate::simulate::{
-    ChangeSearch, Code, Drivers, Error, NamesOfCode, Recorder, Session, Sight, Touch, Value, Variable,
+    ChangeSearch, Code, Drivers, Error, HistoryLimit, NamesOfCode, Recorder, Session, Sight, Touch, Value,
+    Variable,
 };
 use crate::text::Message;
 use program::{around, files};
@@ -162,7 +163,8 @@ struct Running {
     sights: Vec<Sight<u8>>,
     /// What drives what, once somebody has asked why.
     drivers: Option<Drivers>,
-    shown: Instant,
+    /// When the client was told last.
+    shown: Option<Instant>,
     is_news: bool,
 }
 
@@ -298,7 +300,7 @@ impl Running {
         let files = files(&around);
         let (code, watched) = compiled(&files)?;
         Ok(Running {
-            session: Session::new(code),
+            session: Session::new(code).with_limit(history_limit(workspace, uri)),
             watched,
             files,
             is_outdated: false,
@@ -318,14 +320,19 @@ impl Running {
             errors: Vec::new(),
             sights: Vec::new(),
             drivers: None,
-            shown: Instant::now(),
+            shown: None,
             is_news: true,
         })
     }
 
+    /// How long ago the client was told something.
+    fn since_picture(&self) -> Duration {
+        self.shown.map_or(Duration::MAX, |shown| shown.elapsed())
+    }
+
     /// How long there is nothing to do.
     fn wait(&self) -> Duration {
-        let until_picture = PICTURE.saturating_sub(self.shown.elapsed());
+        let until_picture = PICTURE.saturating_sub(self.since_picture());
         if self.task.is_some() {
             return Duration::ZERO;
         }
@@ -416,7 +423,7 @@ impl Running {
 
     fn scan(&mut self) {
         let next = self.next_ns();
-        let is_picture = !self.is_outdated && self.monitor.has_text() && self.shown.elapsed() >= PICTURE;
+        let is_picture = !self.is_outdated && self.monitor.has_text() && self.since_picture() >= PICTURE;
         let outcome = match is_picture {
             true => {
                 let (sights, watched) = (&mut self.sights, &self.watched);
@@ -451,8 +458,7 @@ impl Running {
 
     /// Does what it is told.
     fn obey(&mut self, deed: Deed) -> Result<(), Message> {
-        // What was seen was of another scan.
-        self.sights.clear();
+        // What was seen in the last scan stays true until another one is run, or taken back.
         self.is_news = true;
         match deed {
             Deed::Stop => self.is_over = true,
@@ -467,7 +473,8 @@ impl Running {
             }
             Deed::StepBack { count, change_of } => self.step_back(count, change_of)?,
             Deed::Reset => {
-                let mut session = Session::new(Arc::clone(self.session.machine().code()));
+                let code = Arc::clone(self.session.machine().code());
+                let mut session = Session::new(code).with_limit(self.session.limit());
                 session.take_over(self.session.machine());
                 self.session = session;
                 self.errors.clear();
@@ -492,7 +499,14 @@ impl Running {
 
     fn step_back(&mut self, count: u64, change_of: Option<String>) -> Result<(), Message> {
         match change_of {
-            None => self.go_back(self.session.machine().scans().saturating_sub(count)),
+            None => {
+                let scans = self.session.machine().scans();
+                if self.session.is_cut() && scans == self.session.first_scan() {
+                    let begins = Message::new("simulate.history-begins");
+                    return Err(begins.with("limit", self.session.limit()));
+                }
+                self.go_back(scans.saturating_sub(count));
+            }
             Some(name) => {
                 let search = ChangeSearch::new(&self.session, self.variable(&name)?);
                 self.task = Some(Task::BackTo(Box::new(search)));
@@ -542,6 +556,7 @@ impl Running {
         if self.is_open && workspace.snapshot().open(uri).is_none() {
             (self.is_over, self.is_news) = (true, true);
         }
+        self.session.set_limit(history_limit(workspace, uri));
         let Some(around) = around(workspace, uri) else { return };
         let is_same = |(uri, version, document): &(Uri, i32, Document)| {
             around.files().iter().any(|open| {
@@ -585,6 +600,11 @@ impl Running {
         let Some(number) = self.files.iter().position(|(file, ..)| file == uri) else { return };
         self.monitor.place(number as u32, Place::new(&self.files[number].2, workspace.snapshot().manner));
     }
+}
+
+/// What the project around `uri` allows the history of a simulation to take.
+fn history_limit(workspace: &Workspace, uri: &Uri) -> HistoryLimit {
+    workspace.snapshot().program(uri).map(|open| open.manifest.history()).unwrap_or_default()
 }
 
 /// Times from one scan to the next, in milliseconds.

@@ -39,7 +39,12 @@ pub(in crate::lsp) fn compiled(files: &[(Uri, i32, Document)]) -> Result<(Arc<Co
                 .with_messages("reason", reason.into_iter().collect())
         })
     };
-    Ok((make(false)?, make(true)?))
+    // Most of the work is reading the program, which each does for itself.
+    let (plain, watched) = std::thread::scope(|threads| {
+        let watched = threads.spawn(|| make(true));
+        (make(false), watched.join())
+    });
+    Ok((plain?, watched.unwrap_or_else(|_| make(true))?))
 }
 
 /// The files of the program that the document at `uri` is a part of, as the editor has them now.

@@ -82,11 +82,11 @@ impl Running {
 
     /// What the client is to show, if it is time for that.
     pub(super) fn picture(&mut self, workspace: &Workspace, uri: &Uri) -> Option<Picture> {
-        let is_time = self.is_over || self.shown.elapsed() >= PICTURE;
+        let is_time = self.is_over || self.since_picture() >= PICTURE;
         if !self.is_news || !is_time || self.monitor.is_empty() {
             return None;
         }
-        (self.is_news, self.shown) = (false, Instant::now());
+        (self.is_news, self.shown) = (false, Some(Instant::now()));
         let scans = self.session.machine().scans();
         if !self.is_outdated && self.sights.is_empty() && self.monitor.has_text() {
             let watched = Arc::clone(&self.watched);
@@ -144,6 +144,10 @@ impl Running {
                 name.ok_or_else(|| Message::new("why.no-name"))?
             }
         };
+        let begin = self.session.first_scan();
+        if scan.is_some_and(|scan| scan < begin) {
+            return Err(Message::new("why.forgotten").with("scan", begin));
+        }
         let documents: Vec<&Document> = self.files.iter().map(|(_, _, document)| document).collect();
         let drivers = self.drivers.get_or_insert_with(|| Drivers::of(&documents));
         let reason = Inquiry::new(&self.session, &self.watched, &documents, drivers).why(&name, scan);
