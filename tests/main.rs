@@ -52,6 +52,7 @@ mod ladder_read;
 mod ldmicro;
 mod line_time;
 mod link;
+mod link_captured;
 mod link_faults;
 mod link_hostile;
 mod link_speed;
