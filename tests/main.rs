@@ -65,6 +65,7 @@ mod lsp_client;
 mod lsp_edit;
 mod lsp_panel;
 mod lsp_plc;
+mod lsp_plc_told;
 mod lsp_project;
 mod lsp_prove;
 mod lsp_refactor;
