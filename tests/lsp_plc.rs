@@ -17,7 +17,7 @@ pub struct Connected {
     pub client: Client,
     pub uri: String,
     pub plc: Option<VirtualPlc>,
-    port: String,
+    pub port: String,
     pub folder: tempfile::TempDir,
 }
 

@@ -60,6 +60,8 @@ mod drift;
 
 mod recording;
 
+mod shown;
+
 mod watching;
 
 use super::answering::{refused, snapshot, wrong_argument};

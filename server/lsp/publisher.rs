@@ -466,9 +466,10 @@ impl Task {
     }
 
     async fn tell_status(&mut self, status: Option<StatusNotification>) {
-        if let Some(status) = status
-            && self.status.as_ref() != Some(&status)
-        {
+        let (Some(status), Some(workspace)) = (status, self.workspace.upgrade()) else { return };
+        let line = workspace.line.lock().await;
+        let status = status.on(&line);
+        if self.status.as_ref() != Some(&status) {
             self.client.send_notification::<super::status::StatusMethod>(status.clone()).await;
             self.status = Some(status);
         }

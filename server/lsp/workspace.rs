@@ -9,6 +9,7 @@ use super::projects::{Projects, canonical, file_path};
 use super::publisher::{Closing, Publisher};
 use super::settings::{Settings, Speech};
 use super::sheets::Sheets;
+use super::status::ToldLine;
 use super::to_proto::Manner;
 use super::tokens::SentTokens;
 use crate::check::Severities;
@@ -80,6 +81,8 @@ pub(super) struct Open {
 pub(super) struct Workspace {
     pub client: Client,
     pub tokens: SentTokens,
+    /// The PLC that is connected, as it was told with the status of programs.
+    pub line: ToldLine,
     state: Mutex<State>,
     initialised: AtomicBool,
     shut_down: AtomicBool,
@@ -144,6 +147,7 @@ impl Workspace {
         Arc::new(Workspace {
             client,
             tokens: SentTokens::default(),
+            line: ToldLine::default(),
             state: Mutex::new(State { speech, ..State::default() }),
             initialised: AtomicBool::new(false),
             shut_down: AtomicBool::new(false),

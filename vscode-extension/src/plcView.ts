@@ -121,14 +121,13 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
     }
   }
 
-  private async tell(verb: string, more: object = {}, token?: vscode.CancellationToken): Promise<unknown> {
-    return this.server.executeCommand(plc(verb), [more], token);
+  private async tell(verb: string, more: object = {}): Promise<unknown> {
+    return this.server.executeCommand(plc(verb), [more]);
   }
 
-  /** The same for what is about the program in the editor, with a notification that can cancel it. */
+  /** The same for what takes long, with a notification that can cancel it. */
   private async long(verb: string, title: string, more: object = {}): Promise<unknown> {
-    const location = vscode.ProgressLocation.Notification;
-    return vscode.window.withProgress({ location, title, cancellable: true }, (_, token) => this.tell(verb, more, token));
+    return this.server.executeShown(title, plc(verb), [more]);
   }
 
   private async connect(): Promise<void> {

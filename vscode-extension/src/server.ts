@@ -10,6 +10,7 @@ import {
   LanguageClient,
   RevealOutputChannelOn,
   TransportKind,
+  WorkDoneProgress,
   type CloseHandlerResult,
   type Executable,
   type LanguageClientOptions,
@@ -54,6 +55,8 @@ export class ServerController implements vscode.Disposable {
   readonly onDidStart = this.started.event;
   private readonly watcher = vscode.workspace.createFileSystemWatcher('**/{rungwise.toml,*.lad,*.il}');
   private readonly crashes = new CrashPolicy();
+  /** How many notifications have shown how far something is. */
+  private shown = 0;
   private readonly handlers = new Map<string, Set<(params: unknown) => void>>();
   /** Starts and stops run one after another; two restarts in a row must not leave two servers. */
   private queue: Promise<void> = Promise.resolve();
@@ -112,6 +115,32 @@ export class ServerController implements vscode.Disposable {
       throw new Error(vscode.l10n.t('the language server is not running'));
     }
     return this.client.sendRequest(ExecuteCommandRequest.type, { command, arguments: [...args] }, token);
+  }
+
+  /** The same with a notification that shows how far it is, as the server says, and can cancel it. */
+  async executeShown(title: string, command: string, args: readonly unknown[]): Promise<unknown> {
+    const { client } = this;
+    if (client === undefined || !client.isRunning()) {
+      throw new Error(vscode.l10n.t('the language server is not running'));
+    }
+    this.shown += 1;
+    const workDoneToken = `rungwise-shown-${this.shown}`;
+    const options = { location: vscode.ProgressLocation.Notification, title, cancellable: true };
+    return vscode.window.withProgress(options, async (bar, cancelled) => {
+      let before = 0;
+      const heard = client.onProgress(WorkDoneProgress.type, workDoneToken, (told) => {
+        if (told.kind === 'report') {
+          const percentage = told.percentage ?? before;
+          bar.report({ increment: percentage - before, ...(told.message !== undefined && { message: told.message }) });
+          before = percentage;
+        }
+      });
+      try {
+        return await client.sendRequest(ExecuteCommandRequest.type, { command, arguments: [...args], workDoneToken }, cancelled);
+      } finally {
+        heard.dispose();
+      }
+    });
   }
 
   /** Hears notifications of the server's own kind, of this server and of those that follow it. */

@@ -11,7 +11,7 @@ M.option_names = {
   'on_type',
 }
 
---- Last `rungwise/status` of each program, by URI: { uri, target, dialect, steps, capacity }.
+--- Last `rungwise/status` of each program, by URI: { uri, target, dialect, steps, capacity, connection, mode }.
 M.status = {}
 
 --- What the user set in `vim.g.rungwise`, see |rungwise-options|.

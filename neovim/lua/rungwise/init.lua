@@ -1,7 +1,8 @@
 --- What users call from their configuration.
 local M = {}
 
---- Text for the status line: target, dialect and program steps of the buffer; blank when nothing is known.
+--- Text for the status line: target, dialect and program steps of the buffer, and the mode of the PLC that is connected,
+--- with `≠` where another program is in it; blank when nothing is known.
 function M.statusline()
   local status = require('rungwise.client').status[vim.uri_from_bufnr(0)]
   if not status then
@@ -14,6 +15,10 @@ function M.statusline()
   if type(status.steps) == 'number' then
     local capacity = type(status.capacity) == 'number' and '/' .. status.capacity or ''
     table.insert(parts, require('rungwise.words').t('%d%s steps', status.steps, capacity))
+  end
+  if type(status.mode) == 'string' then
+    local is_other = require('rungwise.drift').matches[status.uri] == 'different'
+    table.insert(parts, 'PLC ' .. status.mode .. (is_other and ' ≠' or ''))
   end
   return table.concat(parts, ' · ')
 end

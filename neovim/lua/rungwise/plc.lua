@@ -1,5 +1,6 @@
 --- A PLC on a line: `:Rungwise plc VERB …`. Nothing is said to a PLC but what these ask for.
 local client = require('rungwise.client')
+local drift = require('rungwise.drift')
 local simulation = require('rungwise.simulation')
 local t = require('rungwise.words').t
 local verbs = require('rungwise.verbs')
@@ -16,6 +17,35 @@ local MOST_ALARMS = 50
 local tell = verbs.teller('rungwise.plc.')
 
 M.tell = tell
+
+--- Ends what takes long, while something does.
+local cancel
+
+--- Has something done that takes long: until it is over, `:Rungwise plc cancel` and <C-c> in the buffer end it.
+local function tell_long(buffer, verb, more, done)
+  if cancel then
+    client.notify(t('something else goes on with the PLC; :Rungwise plc cancel ends it'), vim.log.levels.ERROR)
+    return
+  end
+  local before = vim.api.nvim_buf_call(buffer, function()
+    return vim.fn.maparg('<C-c>', 'n', false, true)
+  end)
+  cancel = tell(buffer, verb, more, done, function()
+    cancel = nil
+    if not vim.api.nvim_buf_is_valid(buffer) then
+      return
+    end
+    vim.keymap.del('n', '<C-c>', { buffer = buffer })
+    if before.buffer == 1 then
+      vim.api.nvim_buf_call(buffer, function()
+        vim.fn.mapset('n', false, before)
+      end)
+    end
+  end)
+  if cancel then
+    vim.keymap.set('n', '<C-c>', M.verbs.cancel, { buffer = buffer, desc = t('End what goes on with the PLC') })
+  end
+end
 
 --- What the PLC is and does, in a line.
 local function line_of(state)
@@ -47,6 +77,7 @@ function M.on_state(_, state)
   if before.monitoring and not state.monitoring then
     simulation.unfollow_plc()
   end
+  drift.on_state(state)
   vim.cmd.redrawstatus()
 end
 
@@ -122,6 +153,14 @@ M.verbs = {
       client.notify(#lines > 0 and table.concat(lines, '\n') or t('this computer has no serial port'))
     end)
   end,
+  --- Ends what takes long. The server tells what has become of the PLC.
+  cancel = function()
+    if cancel then
+      cancel()
+    else
+      client.notify(t('nothing goes on with the PLC'))
+    end
+  end,
   --- The alarms, the newest first.
   alarms = function()
     local lines = vim.iter(M.alarms):rev():map(line_of_alarm):totable()
@@ -134,7 +173,7 @@ M.verbs = {
   end,
   --- Whether the program in the PLC is that of the buffer.
   verify = function(buffer)
-    tell(buffer, 'verify', {}, function(plan)
+    tell_long(buffer, 'verify', {}, function(plan)
       if plan.same then
         client.notify(t('the program in the PLC is the same'))
       else
@@ -145,7 +184,7 @@ M.verbs = {
   --- Shows what changes, asks, and writes; `start` as its word starts the PLC afterwards.
   download = function(buffer, words)
     local is_start = words[1] == 'start'
-    tell(buffer, 'plan', {}, function(plan)
+    tell_long(buffer, 'plan', {}, function(plan)
       if not plan.same then
         show_difference(plan)
       end
@@ -154,7 +193,7 @@ M.verbs = {
         question = t('Stop the PLC, write %d bytes into it and start it? The machine may move.', plan.bytes)
       end
       if is_confirmed(question) then
-        tell(buffer, 'download', { confirmed = true, start = is_start, sum = plan.sum }, function(done)
+        tell_long(buffer, 'download', { confirmed = true, start = is_start, sum = plan.sum }, function(done)
           client.notify(t('%d bytes written, %d read back and compared; the PLC is in %s',
             done.written, done.compared, done.mode))
         end)
@@ -163,7 +202,7 @@ M.verbs = {
   end,
   --- The program of the PLC in a new buffer.
   upload = function(buffer)
-    tell(buffer, 'upload', {}, function(found)
+    tell_long(buffer, 'upload', {}, function(found)
       vim.cmd.new()
       vim.bo.filetype = 'plc-il'
       vim.api.nvim_buf_set_lines(0, 0, -1, false, vim.split(vim.trim(found.text), '\n'))

@@ -4,22 +4,34 @@ local t = require('rungwise.words').t
 local M = {}
 
 --- A function that has the server carry out the command `prefix .. verb` about the program of a buffer; its `done` gets
---- the answer.
+--- the answer. It gives a function that ends what goes on, and `over` is called when it is over, however that comes.
 function M.teller(prefix)
-  return function(buffer, verb, more, done)
+  return function(buffer, verb, more, done, over)
     local server = client.expect(buffer)
     if not server then
       return
     end
     local argument = vim.tbl_extend('error', { uri = vim.uri_from_bufnr(buffer) }, more or {})
-    client.request(server, 'workspace/executeCommand', { command = prefix .. verb, arguments = { argument } },
+    local id = client.request(server, 'workspace/executeCommand', { command = prefix .. verb, arguments = { argument } },
       function(err, result)
+        if over then
+          over()
+          over = nil
+        end
         if err then
           client.notify(err.message or vim.inspect(err), vim.log.levels.ERROR)
         elseif done then
           done(result)
         end
       end, buffer)
+    return function()
+      client.cancel(server, id)
+      -- Neovim drops the answer to a request that was cancelled.
+      if over then
+        over()
+        over = nil
+      end
+    end
   end
 end
 

@@ -45,6 +45,17 @@ pub struct Progress {
     pub remaining: Duration,
 }
 
+impl Progress {
+    /// How far it is in words: what goes on, the bytes of this stage, and the seconds that it will take.
+    pub fn message(&self) -> Message {
+        Message::new("link.progress")
+            .with_messages("stage", vec![self.stage.message()])
+            .with("done", self.done)
+            .with("total", self.total)
+            .with("seconds", self.remaining.as_secs_f64().ceil())
+    }
+}
+
 /// A download that has not begun: what is in the PLC, and what shall be.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Plan {

@@ -2,7 +2,7 @@
 
 use super::{BAUD, Transport};
 use crate::link::LinkError;
-use serialport::{DataBits, ErrorKind, Parity, SerialPort, SerialPortType, StopBits};
+use serialport::{DataBits, ErrorKind, Parity, SerialPort, SerialPortBuilder, SerialPortType, StopBits};
 use std::io::{self, Read, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -52,16 +52,20 @@ impl SerialTransport {
     /// # Errors
     /// If there is none of this name, if it may not be opened, or if somebody has it.
     pub fn open(name: &str) -> Result<SerialTransport, LinkError> {
-        let port = serialport::new(name, BAUD)
+        match SerialTransport::settings(name).open() {
+            Ok(port) => Ok(SerialTransport { port, since: Instant::now() }),
+            Err(error) => Err(refusal(name, &error)),
+        }
+    }
+
+    /// What is asked of the system for a programming port: 9600 bit/s, seven bits, even parity, one stop bit. A pseudo
+    /// terminal does as if.
+    pub fn settings(name: &str) -> SerialPortBuilder {
+        serialport::new(name, BAUD)
             .data_bits(DataBits::Seven)
             .parity(Parity::Even)
             .stop_bits(StopBits::One)
             .timeout(Duration::from_secs(1))
-            .open();
-        match port {
-            Ok(port) => Ok(SerialTransport { port, since: Instant::now() }),
-            Err(error) => Err(refusal(name, &error)),
-        }
     }
 }
 

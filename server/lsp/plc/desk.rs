@@ -4,12 +4,14 @@
 use super::super::progress::Progress as Bar;
 use super::super::projects::file_path;
 use super::super::simulation::MonitorMethod;
+use super::super::status::LineStatus;
 use super::super::workspace::Workspace;
 use super::drift::{Encoded, drift, encoded};
 use super::recording::SharedRecording;
+use super::shown::Shown;
 use super::watching::Watching;
 use crate::link::transport;
-use crate::link::{Host, Line, LinkError, Mode, Patience, Plan, Point, Progress, Stage, Status, Transport};
+use crate::link::{Host, Line, LinkError, Mode, Patience, Plan, Point, Stage, Status, Transport};
 use crate::machine_code::{Image, decode};
 use crate::project::{Backup, Origin};
 use crate::simulate::Value;
@@ -388,8 +390,13 @@ impl Thread {
 
     fn send(&self, state: Json) {
         let Some(workspace) = self.workspace.upgrade() else { return };
+        let word = |member: &str| state[member].as_str().map(str::to_string);
+        let line = LineStatus { connection: word("port"), mode: word("mode") };
         // One after the other: the last one counts.
-        self.tokio.block_on(workspace.client.send_notification::<StateMethod>(state));
+        self.tokio.block_on(async {
+            workspace.client.send_notification::<StateMethod>(state).await;
+            workspace.tell_line(line).await;
+        });
     }
 
     fn tell(&self, uri: Option<&Uri>) {
@@ -453,13 +460,15 @@ impl Thread {
         }
         let workspace = self.workspace.upgrade().ok_or_else(gone)?;
         let plc = self.plc.as_mut().ok_or_else(gone)?;
+        let language = workspace.snapshot().manner.language;
+        let shown = |last| Shown { bar, last, language };
         let mut answer = None;
         let mut about = None;
         match order {
             Order::Connect { .. } | Order::Disconnect => {}
             Order::State { uri } => return Ok(self.state(uri.as_ref())),
             Order::Plan { uri } => {
-                let (encoded, plan) = plc.plan(&workspace, &uri, bar)?;
+                let (encoded, plan) = plc.plan(&workspace, &uri, &shown(Stage::Reading))?;
                 answer = Some(planned(&encoded, &plan));
                 about = Some(uri);
             }
@@ -467,10 +476,16 @@ impl Thread {
                 // What was held was meant for the program that is replaced.
                 self.release_all();
                 let plc = self.plc.as_mut().ok_or_else(gone)?;
-                answer = Some(plc.download(&workspace, &uri, is_started, sum.as_deref(), bar)?);
+                answer = Some(plc.download(
+                    &workspace,
+                    &uri,
+                    is_started,
+                    sum.as_deref(),
+                    &shown(Stage::Comparing),
+                )?);
                 about = Some(uri);
             }
-            Order::Upload => answer = Some(plc.upload(bar)?),
+            Order::Upload => answer = Some(plc.upload(&shown(Stage::Reading))?),
             Order::Start => {
                 if !plc.host.start().map_err(|error| told(&error))? {
                     return Err(Message::new("link.does-not-run"));
@@ -542,12 +557,17 @@ impl Thread {
 }
 
 impl Connected {
-    fn plan(&mut self, workspace: &Workspace, uri: &Uri, bar: &Bar) -> Result<(Encoded, Plan), Message> {
+    fn plan(
+        &mut self,
+        workspace: &Workspace,
+        uri: &Uri,
+        shown: &Shown<'_>,
+    ) -> Result<(Encoded, Plan), Message> {
         let encoded = encoded(workspace, uri)?;
         let last = file_path(uri).and_then(|path| Backup::latest(&path));
         let replaced = last.as_ref().map(|(_, backup)| &backup.words[..]);
         let (words, target) = (&encoded.words, encoded.target);
-        let plan = self.host.plan_behind(replaced, words, target, &mut |progress| report(bar, progress));
+        let plan = self.host.plan_behind(replaced, words, target, &mut |progress| shown.report(progress));
         let plan = plan.map_err(|error| told(&error))?;
         self.image = Some(plan.before.clone());
         Ok((encoded, plan))
@@ -559,9 +579,9 @@ impl Connected {
         uri: &Uri,
         is_started: bool,
         sum: Option<&str>,
-        bar: &Bar,
+        shown: &Shown<'_>,
     ) -> Reply {
-        let (encoded, plan) = self.plan(workspace, uri, bar)?;
+        let (encoded, plan) = self.plan(workspace, uri, shown)?;
         if sum.is_some_and(|sum| sum != format!("{:04X}", plan.found)) {
             return Err(told(&LinkError::Changed));
         }
@@ -581,7 +601,7 @@ impl Connected {
                 Some(kept.map_err(|error| Message::new("link.cannot-back-up").with("reason", error))?)
             }
         };
-        let report = self.host.download(&plan, is_started, &mut |progress| report(bar, progress));
+        let report = self.host.download(&plan, is_started, &mut |progress| shown.report(progress));
         match report {
             Ok(report) => {
                 self.image = Some(plan.wanted);
@@ -601,8 +621,8 @@ impl Connected {
         }
     }
 
-    fn upload(&mut self, bar: &Bar) -> Reply {
-        let image = self.host.upload(&mut |progress| report(bar, progress)).map_err(|error| told(&error))?;
+    fn upload(&mut self, shown: &Shown<'_>) -> Reply {
+        let image = self.host.upload(&mut |progress| shown.report(progress)).map_err(|error| told(&error))?;
         let target = self.host.identity().target;
         let listing = decode(image.program(), target.model);
         let unread = listing.lines.iter().filter(|line| !line.is_read).count();
@@ -668,15 +688,4 @@ fn word_of(mode: Mode) -> &'static str {
         Mode::Run => "RUN",
         Mode::Stop => "STOP",
     }
-}
-
-/// The three stages of a download, one behind the other, in percent.
-fn report(bar: &Bar, progress: Progress) {
-    let stage = match progress.stage {
-        Stage::Reading => 0,
-        Stage::Writing => 1,
-        Stage::Comparing => 2,
-    };
-    let done = progress.done * 100 / progress.total.max(1);
-    bar.report(stage * 100 + done, 300);
 }

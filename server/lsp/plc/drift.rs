@@ -21,13 +21,17 @@ pub(super) struct Encoded {
     files: Vec<(Uri, Document, Program)>,
 }
 
+/// The document is none that the editor has open.
+pub(super) fn not_open(uri: &Uri) -> Message {
+    Message::new("link.not-open").with("uri", uri.as_str())
+}
+
 /// The words of the program that the document at `uri` is a part of.
 ///
 /// # Errors
 /// With the first thing that has no words, and its line.
 pub(super) fn encoded(workspace: &Workspace, uri: &Uri) -> Result<Encoded, Message> {
-    let unknown = || Message::new("request.no-document").with("command", super::PREFIX);
-    let files = files_around(workspace, uri).ok_or_else(unknown)?;
+    let files = files_around(workspace, uri).ok_or_else(|| not_open(uri))?;
     let own = files.first().map(|(_, _, document)| document.target());
     let of_project = workspace.snapshot().open(uri).and_then(|open| open.manifest.fx_target());
     let model = own.filter(|target| target.is_fx()).or(of_project).map_or(Model::Fx2n, |target| target.model);

@@ -4,7 +4,7 @@ use super::super::alarms::Watchman;
 use super::super::simulation::{Monitor, Picture, compiled, files_around, panel_rows};
 use super::super::to_proto::Place;
 use super::super::workspace::Workspace;
-use super::drift::encoded;
+use super::drift::{encoded, not_open};
 use super::recording::SharedRecording;
 use crate::document::Document;
 use crate::link::{
@@ -112,7 +112,7 @@ impl Watching {
         target: &'static Target,
         status: &Status,
     ) -> Result<(), Message> {
-        let gone = || Message::new("request.no-document").with("command", super::PREFIX);
+        let gone = || not_open(&self.uri);
         let files = files_around(workspace, &self.uri).ok_or_else(gone)?;
         let is_known = |(uri, _, document): &(Uri, i32, Document)| {
             self.files.iter().any(|(known, _, before)| known == uri && is_same(document, before))
@@ -326,7 +326,7 @@ impl Watching {
         target: &'static Target,
         more: &[String],
     ) -> Result<Json, Message> {
-        let gone = || Message::new("request.no-document").with("command", super::PREFIX);
+        let gone = || not_open(&self.uri);
         let (code, _) = compiled(&self.files)?;
         let snapshot = workspace.snapshot();
         let around = snapshot.around(snapshot.open(&self.uri).ok_or_else(gone)?);

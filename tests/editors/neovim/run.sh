@@ -39,6 +39,7 @@ neovim() {
 neovim main tests.lua "$SERVER"
 neovim drawing drawing_tests.lua "$SERVER"
 neovim panel panel_tests.lua "$SERVER"
+neovim plc plc_tests.lua "$SERVER"
 # Neovim 0.10 has neither function; without them the plugin takes the same way as there.
 neovim without_enable fallback_tests.lua "$SERVER" --cmd 'lua vim.lsp.enable = nil; vim.lsp.config = nil'
 neovim without_server fallback_tests.lua /nowhere/rungwise

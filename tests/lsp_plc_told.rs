@@ -1,0 +1,80 @@
+//! What an editor is told beside the answers about a PLC: the status of programs, and how far something is.
+
+use super::lsp_plc::Connected;
+use serde_json::{Value, json};
+
+const LIST: &str = "LD X0\nOUT Y0\nEND\n";
+
+#[test]
+fn the_status_of_a_program_has_the_connection_and_the_mode() {
+    let mut editor = Connected::open(LIST);
+    let port = json!(editor.port.clone());
+    let told = |editor: &mut Connected, connection: &Value, mode: Value| {
+        let status = editor.client.wait_for("a status", |message| {
+            let status = &message["params"];
+            message["method"] == "rungwise/status"
+                && (&status["connection"], &status["mode"]) == (connection, &mode)
+        });
+        assert_eq!(
+            (&status["params"]["target"], &status["params"]["steps"]),
+            (&json!("fx2n"), &json!(3)),
+            "{status}"
+        );
+    };
+    told(&mut editor, &port, json!("RUN"));
+    // A program that is opened later is told the same.
+    let uri = format!("{}.il", editor.uri);
+    editor.client.open(&uri, "plc-il", LIST);
+    let other = editor.client.wait_for("the status of the other", |message| {
+        message["method"] == "rungwise/status" && message["params"]["uri"] == json!(uri)
+    });
+    assert_eq!((&other["params"]["connection"], &other["params"]["mode"]), (&port, &json!("RUN")), "{other}");
+    editor.tell("stop", json!({}));
+    told(&mut editor, &port, json!("STOP"));
+    editor.tell("disconnect", json!({}));
+    told(&mut editor, &Value::Null, Value::Null);
+}
+
+#[test]
+fn a_document_that_is_not_open_is_named() {
+    let mut editor = Connected::open(LIST);
+    for verb in ["plan", "verify", "download", "monitor"] {
+        let answer = editor.answer(verb, json!({ "uri": "file:///elsewhere.il", "confirmed": true }));
+        let message = answer["error"]["message"].as_str().unwrap();
+        assert_eq!(message, "file:///elsewhere.il is not open in the editor", "{verb}");
+    }
+}
+
+#[test]
+fn how_far_a_download_is_is_told_in_percent_bytes_and_time() {
+    let long: String = (0..200).map(|n| format!("LD M{n}\nOUT M{}\n", n + 1)).collect();
+    let mut editor = Connected::open(&format!("{long}END\n"));
+    for (verb, words) in [("plan", &["reading"][..]), ("download", &["reading", "writing", "comparing"])] {
+        let argument = json!({ "uri": editor.uri, "confirmed": true });
+        let params = json!({ "command": format!("rungwise.plc.{verb}"), "arguments": [argument], "workDoneToken": verb });
+        let answer = editor.client.request("workspace/executeCommand", params);
+        assert!(answer["error"].is_null(), "{answer}");
+        editor.client.wait_for("the end of the bar", |message| {
+            message["params"]["token"] == verb && message["params"]["value"]["kind"] == "end"
+        });
+        let told = editor.client.notified("$/progress");
+        let told =
+            told.iter().filter(|told| told["params"]["token"] == verb).map(|told| &told["params"]["value"]);
+        let told: Vec<&Value> = told.filter(|value| value["kind"] == "report").collect();
+        let percent: Vec<u64> = told.iter().map(|value| value["percentage"].as_u64().unwrap()).collect();
+        assert!(percent.is_sorted() && percent.last() == Some(&100), "{verb}: {percent:?}");
+        let said: Vec<&str> = told.iter().map(|value| value["message"].as_str().unwrap()).collect();
+        for word in words {
+            let own: Vec<_> = said.iter().filter(|said| said.starts_with(&format!("{word}: "))).collect();
+            assert!(own.iter().all(|said| said.ends_with(" s left") && said.contains(" bytes, ")), "{own:?}");
+            assert!(!own.is_empty(), "{word}: {said:?}");
+        }
+        // LD M, OUT M: two bytes each, and END.
+        let last = if verb == "plan" {
+            "reading: 2 of 2 bytes, 0 s left"
+        } else {
+            "comparing: 802 of 802 bytes, 0 s left"
+        };
+        assert_eq!(said.last(), Some(&last), "{said:?}");
+    }
+}
