@@ -312,7 +312,7 @@ pub fn rung(size: u32) -> impl Strategy<Value = Part> {
     })
 }
 
-/// A random rung of some dozens to 200 elements: several conditions side by side, then several in a row, then outputs.
+/// A random rung of some eighty to 120 elements: several conditions side by side, then several in a row, then outputs.
 pub fn large_rung() -> impl Strategy<Value = Part> {
     let some = || prop::collection::vec(condition(24), 4..12);
     (some(), some(), rung(24)).prop_map(|(beside, row, rest)| {

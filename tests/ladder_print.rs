@@ -27,7 +27,7 @@ fn style(kind: StyleKind) -> Style {
     Style { kind, ..Style::default() }
 }
 
-fn drawn(made: &Generated, style: &Style) -> String {
+pub(crate) fn drawn(made: &Generated, style: &Style) -> String {
     let shape = reduce(&made.graph).unwrap_or_else(|why| panic!("{why:?} for {made:?}"));
     print(&shape, &made.graph, &made.words, style).unwrap_or_else(|| panic!("no drawing of {shape:?}"))
 }

@@ -97,7 +97,7 @@ const UNCODED: &[&str] = &[
 ];
 
 /// A line for every operand of every kind at every place of every form that `model` has.
-fn lines(model: Model) -> Vec<(Form, String)> {
+pub(crate) fn lines(model: Model) -> Vec<(Form, String)> {
     let target = Target::of(model);
     let plain = |instruction| Form { instruction, wide: false, pulse: false };
     let labels = WORDS.iter().filter(|word| {

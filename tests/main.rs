@@ -92,6 +92,7 @@ mod proof_numbers;
 mod proof_shown;
 mod proof_values;
 mod proof_verdicts;
+mod round_trips;
 mod rules;
 mod rules_across;
 mod rules_boxes;

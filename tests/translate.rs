@@ -624,7 +624,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(150))]
 
     #[test]
-    fn large_rungs_go_there_and_back(rung in made_up(200), states in any::<[u64; 8]>()) {
+    fn made_up_rungs_go_there_and_back(rung in made_up(200), states in any::<[u64; 8]>()) {
         let text = rung.list() + "END\n";
         let (again, drawn) = there_and_back(&text);
         // The shortest list is written the same again; the drawing of it may have its inverters elsewhere.
@@ -698,7 +698,7 @@ fn lists_beyond_all_measure_are_refused_and_carried_along() {
 }
 
 #[test]
-fn a_question_too_large_is_not_decided() {
+fn a_question_that_is_hard_to_decide_gets_no_guess() {
     // The middle bit of a product has no small diagram in any order; sums of products over pairs far apart have none
     // in the order of the text.
     let pairs = 40;
