@@ -55,7 +55,7 @@ fn words_that_are_no_instructions_go_through() {
     let folder = folder(&[("odd.hex", "2400 01ff\n01CA 2400 C500 000F\n")]);
     let (code, list, err) = run(&folder, &["decode", "odd.hex"]);
     assert_eq!((code, list.as_str()), (0, "LD X0\nNOP? H01FF\nNOP? H01CA\nLD X0\nOUT Y0\nEND\n"));
-    assert_eq!(err, "odd.hex: 2 words are no known instructions of FX2N; they are the lines `NOP?`\n");
+    assert_eq!(err, "odd.hex: words that are no known instructions of FX2N, in the lines `NOP?`: 2\n");
     std::fs::write(folder.path().join("odd.il"), &list).unwrap();
     assert_eq!(run(&folder, &["encode", "odd.il"]).1, "2400\n01FF\n01CA\n2400\nC500\n000F\n");
     assert_eq!(run(&folder, &["fmt", "--check", "odd.il"]).0, 0);

@@ -78,3 +78,38 @@ fn how_far_a_download_is_is_told_in_percent_bytes_and_time() {
         assert_eq!(said.last(), Some(&last), "{said:?}");
     }
 }
+
+#[test]
+fn a_picture_says_of_how_many_moments_it_is() {
+    let mut editor = Connected::open(LIST);
+    let names = |count: usize| (0..count).map(|number| format!("D{number}")).collect::<Vec<_>>();
+    for (count, exchanges) in [(32, 1), (33, 2), (100, 4)] {
+        editor.tell("monitor", json!({ "ranges": [], "names": names(count) }));
+        let picture = editor.picture(|picture| picture["values"].as_array().unwrap().len() == count);
+        assert_eq!(picture["exchanges"], exchanges, "{count}: {picture}");
+    }
+}
+
+#[test]
+fn the_port_of_the_project_is_among_the_ports() {
+    let manifest = "port = \"tcp://127.0.0.1:5551\"\n";
+    let mut editor = Connected::open_with(LIST, manifest, |plc| plc.port.clone());
+    assert_eq!(editor.tell("ports", json!({}))["project"], "tcp://127.0.0.1:5551");
+    let nameless = editor.answer("write", json!({ "name": "", "value": 1 }));
+    assert!(nameless["error"]["message"].as_str().unwrap().contains("no device is named"), "{nameless}");
+}
+
+#[test]
+fn a_drawing_is_compared_as_a_drawing() {
+    let mut editor = Connected::open(LIST);
+    editor.tell("download", json!({ "confirmed": true }));
+    let drawn = "     X0          Y0\n|----|/|---------( )---|\n\n|--------------[END]---|\n";
+    let uri = editor.uri.replace("motor.il", "motor.lad");
+    editor.client.open(&uri, "ladder", drawn);
+    editor.client.diagnostics(&uri, 1);
+    let plan = editor.tell("plan", json!({ "uri": uri }));
+    let [before, after] = ["before", "after"].map(|side| plan[side].as_str().unwrap().to_string());
+    assert_eq!((&plan["form"], &plan["same"]), (&json!("ladder"), &json!(false)), "{plan}");
+    assert!(before.contains("| |") && after.contains("|/|"), "{plan}");
+    assert_eq!(editor.tell("plan", json!({}))["form"], "fx");
+}

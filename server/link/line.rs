@@ -45,6 +45,7 @@ pub struct Line<T> {
     /// The number of the next read that makes sure.
     barrier: usize,
     troubles: u32,
+    exchanges: u64,
     cancel: Arc<AtomicBool>,
 }
 
@@ -67,7 +68,17 @@ impl<T: Transport> Line<T> {
     /// A line that nobody has spoken on; `cancel` ends what goes on at the next request.
     pub fn new(transport: T, patience: Patience, cancel: Arc<AtomicBool>) -> Line<T> {
         let pending = VecDeque::new();
-        Line { transport, patience, baud: BAUD, pending, is_sure: false, barrier: 0, troubles: 0, cancel }
+        Line {
+            transport,
+            patience,
+            baud: BAUD,
+            pending,
+            is_sure: false,
+            barrier: 0,
+            troubles: 0,
+            exchanges: 0,
+            cancel,
+        }
     }
 
     /// Asks whether somebody is there.
@@ -107,7 +118,10 @@ impl<T: Transport> Line<T> {
             }
             self.send(&frame)?;
             match self.answer(command.expected())? {
-                Ok(reply) => return Ok(reply),
+                Ok(reply) => {
+                    self.exchanges += 1;
+                    return Ok(reply);
+                }
                 Err(Nothing::Refusal) => refusals += 1,
                 Err(nothing) => {
                     is_silent &= matches!(nothing, Nothing::Silence);
@@ -166,6 +180,11 @@ impl<T: Transport> Line<T> {
     /// How often something was not as it should be.
     pub fn troubles(&self) -> u32 {
         self.troubles
+    }
+
+    /// How many requests were answered.
+    pub fn exchanges(&self) -> u64 {
+        self.exchanges
     }
 
     /// The time on this line.

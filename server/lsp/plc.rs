@@ -4,11 +4,11 @@
 //! out where no member is needed:
 //!
 //! ```text
-//! rungwise.plc.ports        { }                          → { ports: { name, description }[] }
+//! rungwise.plc.ports        { uri? }                     → { ports: { name, description }[], project?: port }
 //! rungwise.plc.connect      { uri?, port?: string, timeout?: ms = 1000 }   // the port of the project of `uri`
 //! rungwise.plc.disconnect   { }
 //! rungwise.plc.state        { uri? }                     // with what of `uri` is not in the PLC as it stands there
-//! rungwise.plc.plan         { uri }                      → { same, bytes, steps, sum, before, after }
+//! rungwise.plc.plan         { uri }                      → { same, bytes, steps, sum, form: "ladder" | "fx", before, after }
 //! rungwise.plc.verify       { uri }                      // the same
 //! rungwise.plc.download     { uri, start?: boolean, confirmed?: boolean, sum? }
 //!                                                        → { written, compared, steps, mode, backup? }
@@ -29,7 +29,8 @@
 //!
 //! `sum` is that of the program in the PLC; a download that is told one is refused if another program is there
 //! meanwhile.
-//! `before` and `after` are the instruction lists of what is in the PLC and of what shall be. Whoever does not send
+//! `before` and `after` are what is in the PLC and what shall be, as drawings where `uri` is one, else as instruction
+//! lists. Whoever does not send
 //! `confirmed` is asked by the server before a PLC is written or started. A request that is cancelled ends at the next
 //! exchange on the line; what has become of the PLC is then told in a message. The others answer the state, which is
 //! also the notification `rungwise/plc` when it changes:
@@ -129,7 +130,8 @@ impl Plcs {
             let ports = tokio::task::spawn_blocking(ports).await.unwrap_or_default();
             let ports =
                 ports.iter().map(|port| json!({ "name": port.name, "description": port.description }));
-            return Ok(Some(json!({ "ports": ports.collect::<Vec<_>>() })));
+            let project = port_of(asked.uri.as_ref());
+            return Ok(Some(json!({ "ports": ports.collect::<Vec<_>>(), "project": project })));
         }
         // The thread that has the line is not asked for what it has seen.
         match verb {

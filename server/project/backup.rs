@@ -85,6 +85,15 @@ impl Backup {
         Ok(path)
     }
 
+    /// The newest file among the backups of the project of `beside` that is newer than `known` and cannot be read.
+    pub fn unreadable_behind(beside: &Path, known: Option<&Path>) -> Option<PathBuf> {
+        let files = std::fs::read_dir(folder(beside)).ok()?.flatten().map(|entry| entry.path());
+        // Their names begin with the time.
+        let newer = files
+            .filter(|path| Backup::is_named_so(path) && path.file_name() > known.and_then(Path::file_name));
+        newer.filter(|path| Backup::read(path).is_none()).max()
+    }
+
     /// The latest whole one of the project of `beside`. What a download left that did not end is none to go back to.
     pub fn latest(beside: &Path) -> Option<(PathBuf, Backup)> {
         let files = std::fs::read_dir(folder(beside)).ok()?.flatten().map(|entry| entry.path());

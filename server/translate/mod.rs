@@ -51,6 +51,8 @@ pub mod to_machine_code;
 
 pub mod from_boolean;
 
+pub mod from_machine_code;
+
 use crate::document::{Document, Notation};
 use crate::ladder::Style;
 use crate::logic::{Path, Rung};

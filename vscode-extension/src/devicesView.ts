@@ -104,6 +104,8 @@ export class DevicesView implements vscode.TreeDataProvider<DeviceNode>, vscode.
     const program = shown !== undefined && isProgram(shown) ? shown : isOpen ? this.program : undefined;
     if (program !== this.program) {
       this.program = program;
+      // Nothing is known of it before its list is there.
+      void vscode.commands.executeCommand('setContext', 'rungwise.devices.listed', false);
       this.schedule(0);
     }
   }
@@ -134,6 +136,7 @@ export class DevicesView implements vscode.TreeDataProvider<DeviceNode>, vscode.
     }
     if (!asking.token.isCancellationRequested) {
       void vscode.commands.executeCommand('setContext', 'rungwise.devices.program', program !== undefined);
+      void vscode.commands.executeCommand('setContext', 'rungwise.devices.listed', this.list !== undefined);
       this.changes.fire();
     }
   }

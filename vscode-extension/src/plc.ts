@@ -81,6 +81,11 @@ export function noteAlarm(alarms: readonly Alarm[], params: unknown): readonly A
   return alarms.map((alarm) => (isSame(alarm) ? { ...alarm, goneAt: at } : alarm));
 }
 
+/** Of the alarms in PLCs those of the program that is monitored now: what of others was there is over. */
+export function alarmsOf(alarms: readonly Alarm[], monitored: string | undefined): readonly Alarm[] {
+  return monitored === undefined ? alarms : alarms.filter(({ source, uri }) => source !== 'plc' || uri === monitored);
+}
+
 /** Those that are raised now. */
 export function raised(alarms: readonly Alarm[]): readonly Alarm[] {
   return alarms.filter(({ goneAt }) => goneAt === undefined);

@@ -1,7 +1,7 @@
 /** The view "PLC", and the commands for a PLC on a line. Nothing is said to a PLC but what a command asks for. */
 
 import * as vscode from 'vscode';
-import { ALARM, alarmRows, isProgram, NO_PLC, noteAlarm, parseState, plc, PLC_SCHEME, PLC_STATE, raised, rowsOf, statusText, type Alarm, type PlcRow, type PlcState } from './plc';
+import { ALARM, alarmRows, alarmsOf, isProgram, NO_PLC, noteAlarm, parseState, plc, PLC_SCHEME, PLC_STATE, raised, rowsOf, statusText, type Alarm, type PlcRow, type PlcState } from './plc';
 import type { ServerController } from './server';
 import type { SimulationView } from './simulationView';
 import type { PlainRange } from './structuralEdits';
@@ -21,6 +21,8 @@ interface Plan {
   readonly sum: string;
   readonly before: string;
   readonly after: string;
+  /** What both sides are: drawings, or instruction lists. */
+  readonly form?: 'ladder' | 'fx';
 }
 
 export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocumentContentProvider, vscode.Disposable {
@@ -41,6 +43,8 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
   private state: PlcState = NO_PLC;
   private alarms: readonly Alarm[] = [];
   private lists = { before: '', after: '' };
+  /** What the names of both sides end with. */
+  private extension = 'il';
   private timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(
@@ -131,11 +135,17 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
   }
 
   private async connect(): Promise<void> {
-    const { ports } = (await this.tell('ports')) as { ports: { name: string; description: string }[] };
+    const shown = vscode.window.activeTextEditor?.document;
+    const about = shown !== undefined && isProgram(shown) ? { uri: this.server.protocolUri(shown.uri) } : {};
+    const found = (await this.tell('ports', about)) as { ports: { name: string; description: string }[]; project?: string | null };
+    const project = found.project ?? undefined;
+    const ports = found.ports.filter(({ name }) => name !== project);
     const last = this.memory.get<string>(LAST_PORT);
     const other = { label: t('Another port…'), description: 'tcp://HOST:PORT, /dev/ttyUSB0, COM3' };
-    const known = last === undefined || ports.some(({ name }) => name === last) ? [] : [{ label: last, description: t('as before') }];
-    const items = [...known, ...ports.map(({ name, description }) => ({ label: name, description })), other];
+    const named = project === undefined ? [] : [{ label: project, description: 'rungwise.toml' }];
+    const isListed = last === undefined || last === project || ports.some(({ name }) => name === last);
+    const known = isListed ? [] : [{ label: last, description: t('as before') }];
+    const items = [...named, ...known, ...ports.map(({ name, description }) => ({ label: name, description })), other];
     const chosen = await vscode.window.showQuickPick(items, { title: t('Port of the PLC') });
     const typed = () => vscode.window.showInputBox({ title: t('Port of the PLC'), value: last ?? 'tcp://127.0.0.1:5551' });
     const port = chosen === other ? await typed() : chosen?.label;
@@ -150,14 +160,19 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
     const uri = this.server.protocolUri(this.program());
     const plan = (await this.long(verb, t('Reading the program of the PLC'), { uri })) as Plan;
     this.lists = { before: plan.before, after: plan.after };
+    this.extension = plan.form === 'ladder' ? 'lad' : 'il';
     for (const side of ['before', 'after']) {
-      this.documents.fire(listOf(side));
+      this.documents.fire(this.sideOf(side));
     }
     return { plan, uri };
   }
 
+  private sideOf(side: string): vscode.Uri {
+    return vscode.Uri.from({ scheme: PLC_SCHEME, path: `/${side}.${this.extension}` });
+  }
+
   private async showDifference(): Promise<void> {
-    await vscode.commands.executeCommand('vscode.diff', listOf('before'), listOf('after'), t('PLC ↔ editor'), { preview: true });
+    await vscode.commands.executeCommand('vscode.diff', this.sideOf('before'), this.sideOf('after'), t('PLC ↔ editor'), { preview: true });
   }
 
   private async verify(): Promise<void> {
@@ -178,8 +193,9 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
     const start = t('Download and Start');
     const detail = t('The PLC stops. What is in it now is kept in .rungwise/backup. After a start the machine may move.');
     const question = t('Write {0} bytes ({1} steps) into the {2} at {3}?', plan.bytes, plan.steps, this.state.title ?? 'PLC', this.state.port ?? '');
-    const chosen = await vscode.window.showWarningMessage(question, { modal: true, detail }, write, start);
-    if (chosen === undefined) {
+    // What Enter chooses is what does nothing.
+    const chosen = await vscode.window.showWarningMessage(question, { modal: true, detail }, t('Only Look'), write, start);
+    if (chosen !== write && chosen !== start) {
       return;
     }
     const more = { uri, confirmed: true, start: chosen === start, sum: plan.sum };
@@ -195,7 +211,7 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
 
   private async start(): Promise<void> {
     const start = t('Start');
-    const chosen = await vscode.window.showWarningMessage(t('Start the PLC?'), { modal: true, detail: t('The machine may move.') }, start);
+    const chosen = await vscode.window.showWarningMessage(t('Start the PLC?'), { modal: true, detail: t('The machine may move.') }, t('Leave It Stopped'), start);
     if (chosen === start) {
       await this.tell('start', { confirmed: true });
     }
@@ -255,6 +271,9 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
     if (before.monitoring !== undefined && state.monitoring === undefined) {
       this.simulation.unfollowAll();
     }
+    if (state.connected) {
+      this.showAlarms(alarmsOf(this.alarms, state.monitoring));
+    }
     this.show();
   }
 
@@ -287,10 +306,6 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
       editor.setDecorations(this.drifted, drift.map((range) => ({ range: toRange(range), hoverMessage })));
     }
   }
-}
-
-function listOf(side: string): vscode.Uri {
-  return vscode.Uri.from({ scheme: PLC_SCHEME, path: `/${side}.il` });
 }
 
 function toRange({ start, end }: PlainRange): vscode.Range {

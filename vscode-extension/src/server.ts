@@ -137,6 +137,9 @@ export class ServerController implements vscode.Disposable {
       });
       try {
         return await client.sendRequest(ExecuteCommandRequest.type, { command, arguments: [...args], workDoneToken }, cancelled);
+      } catch (error) {
+        // Who has ended it knows; what has become of it is told by the server.
+        throw cancelled.isCancellationRequested ? new vscode.CancellationError() : error;
       } finally {
         heard.dispose();
       }

@@ -1,6 +1,7 @@
 /** What a simulation shows in the text: the server's pictures, sorted by how they are painted. Pure. */
 
 import type { PlainRange } from './structuralEdits';
+import { t } from './words';
 
 /** The notification of the server that has a {@link Picture}. */
 export const MONITOR = 'rungwise/monitor';
@@ -20,6 +21,8 @@ export interface Picture {
   readonly mode: Mode;
   readonly scan: number;
   readonly timeMs: number;
+  /** How many moments the values are of: exchanges on the line to a PLC. */
+  readonly exchanges: number;
   /** Wires and contacts that power comes through, outputs that have it, lines behind which the result is on. */
   readonly energised: readonly PlainRange[];
   /** Contacts that conduct without power. */
@@ -55,12 +58,19 @@ export function parsePicture(params: unknown): Picture | undefined {
     mode: given.mode === 'paused' || given.mode === 'stopped' ? given.mode : 'running',
     scan: Number(given.scan),
     timeMs: Number(given.time_ms),
+    exchanges: Number(given.exchanges ?? 1),
     energised: elements.filter(({ energised }) => energised).map(({ range }) => range),
     ready: elements.filter(({ energised, conducts }) => !energised && conducts === true).map(({ range }) => range),
     values: valued('value'),
     forced: valued('forced'),
     errors: (Array.isArray(given.errors) ? given.errors : []) as Picture['errors'],
   };
+}
+
+/** What the status bar says of a look at a PLC. */
+export function lookText({ scan, timeMs, exchanges }: Pick<Picture, 'scan' | 'timeMs' | 'exchanges'>): string {
+  const several = exchanges > 1 ? ` · ${t('values of up to {0} scans', exchanges)}` : '';
+  return `$(plug) ${t('PLC, look {0}', scan)} · ${clock(timeMs)}${several}`;
 }
 
 /** A time as people read it: `0.35 s`, `12 min 5 s`. */

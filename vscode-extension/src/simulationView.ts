@@ -3,7 +3,7 @@
 import * as vscode from 'vscode';
 import { plc } from './plc';
 import type { ServerController } from './server';
-import { clock, deviceAt, MONITOR, parsePicture, simulate, type Mode, type Picture, type Source } from './simulation';
+import { clock, deviceAt, lookText, MONITOR, parsePicture, simulate, type Mode, type Picture, type Source } from './simulation';
 import type { PlainRange } from './structuralEdits';
 import { freeName } from './testing';
 
@@ -293,7 +293,7 @@ export class SimulationView implements vscode.Disposable {
       }
     }
     if (picture.source === 'plc') {
-      this.status.text = `$(plug) ${vscode.l10n.t('PLC, look {0}', picture.scan)} · ${clock(picture.timeMs)}`;
+      this.status.text = lookText(picture);
       this.status.command = 'rungwise.controller.monitor';
       this.status.show();
       return;

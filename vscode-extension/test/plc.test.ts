@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { alarmRows, isProgram, NO_PLC, noteAlarm, parseState, raised, rowsOf, statusText } from '../src/plc';
+import { alarmRows, alarmsOf, isProgram, NO_PLC, noteAlarm, parseState, raised, rowsOf, statusText } from '../src/plc';
+import { lookText } from '../src/simulation';
 
 const CONNECTED = {
   connected: true,
@@ -81,6 +82,18 @@ test('an alarm is a row with the times when it was raised and gone', () => {
   const twice = noteAlarm(again, { ...told, at_ms: 5000 });
   assert.equal(rows(twice)[0], 'error Too full: since 5 s');
   assert.equal(twice.length, 3);
+});
+
+test('alarms in a PLC are those of the program that is monitored', () => {
+  const told = (uri: string, source: string) => ({ uri, source, when: 'D1', message: 'm', severity: 'hint', raised: true, at_ms: 1 });
+  const all = [told('a', 'plc'), told('b', 'plc'), told('c', 'simulator')].reduce(noteAlarm, [] as Parameters<typeof noteAlarm>[0]);
+  const of = (monitored?: string) => alarmsOf(all, monitored).map(({ uri }) => uri).sort();
+  assert.deepEqual([of(), of('a'), of('d')], [['a', 'b', 'c'], ['a', 'c'], ['c']]);
+});
+
+test('the status bar says of how many scans the values of a look may be', () => {
+  assert.equal(lookText({ scan: 3, timeMs: 1500, exchanges: 1 }), '$(plug) PLC, look 3 · 1.50 s');
+  assert.equal(lookText({ scan: 3, timeMs: 1500, exchanges: 4 }), '$(plug) PLC, look 3 · 1.50 s · values of up to 4 scans');
 });
 
 test('of many alarms the newest are kept', () => {

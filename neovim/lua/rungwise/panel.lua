@@ -100,6 +100,9 @@ local function head_line(panel)
   local words = { signs[panel.mode] .. ' ' .. (panel.is_plc and t('PLC') or modes[panel.mode]) }
   if panel.is_plc then
     table.insert(words, ('%.2f s'):format(panel.time_ms / 1000))
+    if (panel.exchanges or 1) > 1 then
+      table.insert(words, t('values of up to %d scans', panel.exchanges))
+    end
   elseif panel.mode ~= 'stopped' then
     table.insert(words, t('scan %d', panel.scan))
     table.insert(words, ('%.2f s'):format(panel.time_ms / 1000))
@@ -242,6 +245,7 @@ end
 
 --- What a moment of the simulation changes.
 local function take(panel, moment)
+  panel.exchanges = moment.exchanges
   if moment.source == 'plc' then
     -- Its scans are milliseconds here, for nothing is known of them; a PLC that stands still is looked at all the same.
     local scan = math.floor(moment.time_ms)

@@ -125,7 +125,7 @@ local function show_difference(plan)
     vim.api.nvim_buf_set_lines(buffer, 0, -1, false, vim.split(vim.trim(plan[side]), '\n'))
     vim.bo[buffer].modifiable = false
     vim.bo[buffer].bufhidden = 'wipe'
-    vim.api.nvim_buf_set_name(buffer, ('rungwise://plc/%d/%s.il'):format(buffer, side))
+    vim.api.nvim_buf_set_name(buffer, ('rungwise://plc/%d/%s.%s'):format(buffer, side, plan.form == 'ladder' and 'lad' or 'il'))
     vim.cmd.diffthis()
   end
   vim.cmd.redraw()

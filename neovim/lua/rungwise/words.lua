@@ -66,6 +66,7 @@ M.chinese = {
   ['since %s'] = '自 %s',
   ['simulation'] = '仿真',
   ['there was no alarm'] = '没有报警',
+  ['values of up to %d scans'] = '值最多来自 %d 次扫描',
   ['not so in the PLC'] = 'PLC 中不是这样',
   ['nothing goes on with the PLC'] = '没有正在进行的 PLC 操作',
   ['End what goes on with the PLC'] = '结束正在进行的 PLC 操作',

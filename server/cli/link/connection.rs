@@ -9,6 +9,7 @@ use crate::project::Project;
 use crate::text::{Language, Message};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::Path;
+use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
 #[derive(clap::Args)]
@@ -81,6 +82,9 @@ pub(super) fn failed(error: &LinkError, language: Language) -> Outcome {
     if error.is_of_line() { Outcome::LinkFailed } else { Outcome::Findings }
 }
 
+/// Whether the user has ended something is looked at so often.
+pub(super) const ATTENTION: Duration = Duration::from_millis(50);
+
 /// A bar on a terminal, nothing elsewhere.
 pub(super) struct Bar {
     bar: Option<(Stage, ProgressBar)>,
@@ -121,8 +125,8 @@ impl Bar {
 }
 
 /// Asks on the terminal whether to go on; without one, only if the user has said yes before.
-pub(super) fn confirmed(question: &Message, is_yes: bool, language: Language) -> bool {
-    use std::io::{BufRead, IsTerminal, Write};
+pub(super) fn confirmed(question: &Message, is_yes: bool, host: &mut AnyHost, language: Language) -> bool {
+    use std::io::{IsTerminal, Write};
     if is_yes {
         return true;
     }
@@ -132,11 +136,30 @@ pub(super) fn confirmed(question: &Message, is_yes: bool, language: Language) ->
         return false;
     }
     let _ = write!(std::io::stderr(), "{} [y/N] ", question.render(language));
-    let mut answer = String::new();
-    let is_read = std::io::stdin().lock().read_line(&mut answer).is_ok();
-    let is_confirmed = is_read && matches!(answer.trim().to_lowercase().as_str(), "y" | "yes" | "是");
+    let answer = typed(host).unwrap_or_default();
+    let is_confirmed = matches!(answer.trim().to_lowercase().as_str(), "y" | "yes" | "是");
     if !is_confirmed {
         remark(&Message::new("link.cancelled").render(language));
     }
     is_confirmed
+}
+
+/// A line that somebody types; nothing if Ctrl-C comes in its place. Reading goes on behind a signal, so it is left to a
+/// thread, with which the process ends.
+fn typed(host: &mut AnyHost) -> Option<String> {
+    let (sender, line) = channel();
+    std::thread::spawn(move || {
+        let mut answer = String::new();
+        if std::io::stdin().read_line(&mut answer).is_ok() {
+            // Nobody waits any more if it comes too late.
+            let _ = sender.send(answer);
+        }
+    });
+    loop {
+        match line.recv_timeout(ATTENTION) {
+            Ok(answer) => return Some(answer),
+            Err(RecvTimeoutError::Timeout) if !host.line().is_cancelled() => {}
+            Err(_) => return None,
+        }
+    }
 }

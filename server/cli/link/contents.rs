@@ -25,3 +25,8 @@ pub(super) fn words_at(path: &Path, language: Language) -> Result<(Vec<u16>, &'s
         Outcome::Unusable
     })
 }
+
+/// Whether a file is a drawing, by its name.
+pub(super) fn is_drawn(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("lad"))
+}

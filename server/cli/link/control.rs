@@ -37,7 +37,7 @@ pub(in crate::cli) struct Clear {
 pub(in crate::cli) fn start(arguments: &Start, language: Language) -> Outcome {
     let started = || -> Result<Outcome, Outcome> {
         let mut host = arguments.connection.open(Path::new("."), language)?;
-        if !confirmed(&Message::new("link.ask-start"), arguments.yes, language) {
+        if !confirmed(&Message::new("link.ask-start"), arguments.yes, &mut host, language) {
             return Err(Outcome::Findings);
         }
         if host.start().map_err(|error| failed(&error, language))? {
@@ -72,7 +72,7 @@ pub(in crate::cli) fn clear(arguments: &Clear, language: Language) -> Outcome {
             .with("title", if title.is_empty() { String::new() } else { format!(" \"{title}\"") })
             .with("capacity", parameters.capacity())
             .with("sum", format!("{:04X}", parameters.sum()));
-        if !confirmed(&question, arguments.yes, language) {
+        if !confirmed(&question, arguments.yes, &mut host, language) {
             return Err(Outcome::Findings);
         }
         host.clear(!arguments.devices).map_err(|error| failed(&error, language))?;

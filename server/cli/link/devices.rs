@@ -48,7 +48,10 @@ fn refused(reason: &Message, language: Language) -> Outcome {
 }
 
 fn read(words: &[String], language: Language) -> Result<Vec<Setting>, Outcome> {
-    let read = words.iter().map(|word| Setting::read(word));
+    let read = words.iter().map(|word| match Setting::read(word) {
+        Ok(setting) if setting.name.is_empty() => Err(Message::new("link.nameless")),
+        read => read,
+    });
     read.collect::<Result<_, _>>().map_err(|reason| refused(&reason, language))
 }
 

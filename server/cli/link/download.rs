@@ -2,7 +2,7 @@
 
 use super::Connection;
 use super::connection::{Bar, confirmed, failed};
-use super::contents::words_at;
+use super::contents::{is_drawn, words_at};
 use crate::cli::Outcome;
 use crate::cli::colour::Colour;
 use crate::cli::diff::unified;
@@ -11,6 +11,7 @@ use crate::link::{Mode, Plan};
 use crate::machine_code::decode;
 use crate::project::{Backup, Origin};
 use crate::text::{Language, Message};
+use crate::translate::from_machine_code::drawn;
 use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
@@ -42,6 +43,12 @@ fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Resul
     let beside = arguments.file.as_deref().unwrap_or(&here);
     let last = Backup::latest(beside);
     let backup = last.as_ref().filter(|_| arguments.rollback);
+    let known = last.as_ref().map(|(path, _)| path.as_path());
+    if let Some(path) = Backup::unreadable_behind(beside, known).filter(|_| arguments.rollback) {
+        let reason = Message::new("link.unreadable-backup").with("path", path.display()).render(language);
+        let help = Message::new("link.help-unreadable-backup").render(language);
+        caution("unreadable-backup", &reason, &help, language);
+    }
     if let Some((path, backup)) = backup {
         let told = Message::new("link.rolls-back").with("path", path.display());
         let told = told.with("time", &backup.time).with("port", &backup.port).with("model", &backup.model);
@@ -62,7 +69,7 @@ fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Resul
     if let Some((_, backup)) = backup {
         caution_other_plc(backup, &host.identity().version(), &plan, language);
     }
-    say(&changes(&plan, colour, language));
+    say(&changes(&plan, is_drawn(beside), colour, language));
     if plan.bytes() == 0 {
         remark(&Message::new("link.same").render(language));
     }
@@ -73,7 +80,7 @@ fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Resul
         Message::new(if arguments.start { "link.ask-download-start" } else { "link.ask-download" })
             .with("bytes", plan.bytes())
             .with("model", host.identity().target.title);
-    if !confirmed(&question, arguments.yes, language) {
+    if !confirmed(&question, arguments.yes, &mut host, language) {
         return Err(Outcome::Findings);
     }
     // What changes nothing leaves nothing to go back to.
@@ -128,10 +135,12 @@ fn caution_other_plc(backup: &Backup, version: &str, plan: &Plan, language: Lang
     }
 }
 
-/// What changes in the PLC, as a diff of instruction lists.
-pub(super) fn changes(plan: &Plan, colour: Colour, language: Language) -> String {
-    let list = |words: &[u16]| decode(words, plan.model).text;
-    let (before, after) = (list(plan.before.program()), list(plan.wanted.program()));
+/// What changes in the PLC, as a diff of instruction lists, or of drawings.
+pub(super) fn changes(plan: &Plan, is_drawn: bool, colour: Colour, language: Language) -> String {
+    let [before, after] = [&plan.before, &plan.wanted].map(|image| match is_drawn {
+        true => drawn(image.program(), plan.model),
+        false => decode(image.program(), plan.model).text,
+    });
     if before == after {
         return String::new();
     }

@@ -1,7 +1,7 @@
 //! `rungwise monitor`
 
 use super::Connection;
-use super::connection::{AnyHost, failed};
+use super::connection::{ATTENTION, AnyHost, failed};
 use super::devices::settings_of;
 use super::status::StatusFormat;
 use crate::cli::Outcome;
@@ -9,7 +9,7 @@ use crate::cli::comments;
 use crate::cli::input::{complain, is_writable, put, remark, say, usable_manifest};
 use crate::cli::run::duration;
 use crate::link::{Holds, NamesOfPlc, Point, Watch};
-use crate::simulate::{AlarmChange, Alarms, Trace, TraceRow, Value, WithSymbols, milliseconds};
+use crate::simulate::{AlarmChange, Alarms, Trace, TraceRow, Value, WithSymbols};
 use crate::text::{Language, Message};
 use serde_json::{Map, Value as Json, json};
 use std::path::{Path, PathBuf};
@@ -44,9 +44,6 @@ pub(in crate::cli) struct Arguments {
     #[arg(long, value_enum, default_value = "text")]
     format: StatusFormat,
 }
-
-/// Whether the user has ended it is looked at so often.
-const ATTENTION: Duration = Duration::from_millis(50);
 
 pub(in crate::cli) fn run(arguments: &Arguments, language: Language) -> Outcome {
     carry_out(arguments, language).unwrap_or_else(|outcome| outcome)
@@ -108,6 +105,10 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
             Ok(values) => values,
             Err(error) => break Err(error),
         };
+        if look == 0 && watch.exchanges() > 1 {
+            let told = Message::new("link.several-scans").with("count", watch.exchanges());
+            remark(&told.render(language));
+        }
         let values: Vec<Value> = points.iter().zip(values).map(|(point, value)| point.value(value)).collect();
         let time_ns = host.line().now().saturating_sub(start).as_nanos() as i64;
         let of = |wanted: Point| {
@@ -190,7 +191,7 @@ fn tell(trace: &Trace, format: StatusFormat) {
         }
         StatusFormat::Text => {
             let words: Vec<String> = values.map(|(name, value)| format!("{name}={value}")).collect();
-            format!("{} ms  {}", milliseconds(row.time_ns), words.join("  "))
+            format!("{:.1} ms  {}", row.time_ns as f64 / 1e6, words.join("  "))
         }
     };
     say(&format!("{text}\n"));

@@ -2,12 +2,12 @@
 
 use super::Connection;
 use super::connection::{Bar, failed};
+use super::contents::is_drawn;
 use crate::cli::Outcome;
 use crate::cli::input::{complain, put, remark};
-use crate::document::{Document, Notation};
 use crate::machine_code::decode;
 use crate::text::{Language, Message};
-use crate::translate::{Options, To, translate};
+use crate::translate::from_machine_code::drawn;
 use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
@@ -41,13 +41,8 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
     let target = host.identity().target;
     let listing = decode(image.program(), target.model);
     let unread = listing.lines.iter().filter(|line| !line.is_read).count();
-    let is_drawn =
-        output.and_then(Path::extension).is_some_and(|extension| extension.eq_ignore_ascii_case("lad"));
-    let text = match is_drawn {
-        true => {
-            let document = Document::new(&listing.text, Notation::FxIl, target);
-            translate(&document, None, To::Ladder, &Options::default()).text
-        }
+    let text = match output.is_some_and(is_drawn) {
+        true => drawn(image.program(), target.model),
         false => listing.text,
     };
     if !put(&text, output, language) {

@@ -2,7 +2,7 @@
 
 use super::Connection;
 use super::connection::{Bar, failed};
-use super::contents::words_at;
+use super::contents::{is_drawn, words_at};
 use super::download::changes;
 use crate::cli::Outcome;
 use crate::cli::colour::Colour;
@@ -26,7 +26,7 @@ pub(in crate::cli) fn run(arguments: &Arguments, colour: Colour, language: Langu
         let plan = host.plan(&words, target, &mut |progress| bar.show(progress));
         bar.clear();
         let plan = plan.map_err(|error| failed(&error, language))?;
-        say(&changes(&plan, colour, language));
+        say(&changes(&plan, is_drawn(&arguments.file), colour, language));
         let is_same = plan.before.program() == plan.wanted.program();
         remark(&Message::new(if is_same { "link.same" } else { "link.other" }).render(language));
         Ok(if is_same { Outcome::Clean } else { Outcome::Findings })

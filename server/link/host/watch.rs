@@ -22,6 +22,8 @@ pub struct Watch {
     /// Where each point's value is found.
     found: Vec<Found>,
     is_registered: bool,
+    /// How many requests the last look took.
+    exchanges: u64,
 }
 
 /// Where a value is found.
@@ -57,6 +59,12 @@ impl Watch {
     /// What is watched.
     pub fn points(&self) -> &[Point] {
         &self.points
+    }
+
+    /// How many exchanges brought the values of the last look. Those of one are of one moment between two scans; a PLC
+    /// that runs may have scanned between any two of them.
+    pub fn exchanges(&self) -> u64 {
+        self.exchanges
     }
 
     /// Enters a point into the list, if it belongs there.
@@ -118,14 +126,17 @@ impl Watch {
 }
 
 impl<T: Transport> Host<T> {
-    /// The values of all that is watched, in the order of the points; of bits 0 or 1. Values in the first 64 bytes are
-    /// from one moment: 512 bits, or 32 words.
+    /// The values of all that is watched, in the order of the points; of bits 0 or 1. Each 64 bytes of them are from one
+    /// moment, 512 bits or 32 words; [`Watch::exchanges`] says then how many moments there were.
     ///
     /// # Errors
     /// If there is no such device, or the line fails.
     pub fn poll(&mut self, watch: &mut Watch) -> Result<Vec<i64>, LinkError> {
         if self.dialect() == Dialect::Plain {
-            return self.read(&watch.points);
+            let before = self.line.exchanges();
+            let values = self.read(&watch.points)?;
+            watch.exchanges = self.line.exchanges() - before;
+            return Ok(values);
         }
         for point in &watch.points {
             Place::of::<Extended>(*point)?;
@@ -133,15 +144,18 @@ impl<T: Transport> Host<T> {
         if !watch.is_registered {
             self.register(watch)?;
         }
+        let mut before = self.line.exchanges();
         let result = match self.result(watch) {
             // A PLC that has lost the list, as after a change of its mode, says no.
             Err(LinkError::Refused { .. }) => {
                 self.register(watch)?;
+                before = self.line.exchanges();
                 self.result(watch)?
             }
             other => other?,
         };
         let aside = self.read(&watch.aside())?;
+        watch.exchanges = self.line.exchanges() - before;
         Ok(watch.found.iter().map(|found| watch.value(*found, &result, &aside)).collect())
     }
 

@@ -6,7 +6,7 @@ use super::super::projects::file_path;
 use super::super::simulation::MonitorMethod;
 use super::super::status::LineStatus;
 use super::super::workspace::Workspace;
-use super::drift::{Encoded, drift, encoded};
+use super::drift::{Encoded, drift, encoded, is_drawn};
 use super::recording::SharedRecording;
 use super::shown::Shown;
 use super::watching::Watching;
@@ -16,6 +16,7 @@ use crate::machine_code::{Image, decode};
 use crate::project::{Backup, Origin};
 use crate::simulate::Value;
 use crate::text::Message;
+use crate::translate::from_machine_code::drawn;
 use serde_json::{Value as Json, json};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -469,7 +470,7 @@ impl Thread {
             Order::State { uri } => return Ok(self.state(uri.as_ref())),
             Order::Plan { uri } => {
                 let (encoded, plan) = plc.plan(&workspace, &uri, &shown(Stage::Reading))?;
-                answer = Some(planned(&encoded, &plan));
+                answer = Some(planned(&encoded, &plan, is_drawn(&workspace, &uri)));
                 about = Some(uri);
             }
             Order::Download { uri, is_started, sum } => {
@@ -661,7 +662,10 @@ impl Connected {
     }
 
     fn point(&self, name: &str) -> Result<Point, Message> {
-        let unknown = || Message::new("link.no-device").with("device", name);
+        let unknown = || match name.trim() {
+            "" => Message::new("link.nameless"),
+            name => Message::new("link.no-device").with("device", name),
+        };
         Point::named(name, self.host.identity().target).ok_or_else(unknown)
     }
 }
@@ -671,13 +675,17 @@ fn told(error: &LinkError) -> Message {
     Message::new("link.failed").with_messages("reasons", vec![error.message(), error.help()])
 }
 
-fn planned(encoded: &Encoded, plan: &Plan) -> Json {
-    let list = |words: &[u16]| decode(words, plan.model).text;
+fn planned(encoded: &Encoded, plan: &Plan, is_drawn: bool) -> Json {
+    let list = |words: &[u16]| match is_drawn {
+        true => drawn(words, plan.model),
+        false => decode(words, plan.model).text,
+    };
     json!({
         "same": plan.before.program() == plan.wanted.program(),
         "bytes": plan.bytes(),
         "sum": format!("{:04X}", plan.found),
         "steps": encoded.words.len(),
+        "form": if is_drawn { "ladder" } else { "fx" },
         "before": list(plan.before.program()),
         "after": list(plan.wanted.program()),
     })

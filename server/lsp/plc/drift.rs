@@ -3,7 +3,7 @@
 use super::super::simulation::files_around;
 use super::super::to_proto::Place;
 use super::super::workspace::Workspace;
-use crate::document::Document;
+use crate::document::{Document, Notation};
 use crate::machine_code::{Image, Program, executed};
 use crate::target::{Model, Target};
 use crate::text::Message;
@@ -24,6 +24,11 @@ pub(super) struct Encoded {
 /// The document is none that the editor has open.
 pub(super) fn not_open(uri: &Uri) -> Message {
     Message::new("link.not-open").with("uri", uri.as_str())
+}
+
+/// Whether the document is a ladder diagram.
+pub(super) fn is_drawn(workspace: &Workspace, uri: &Uri) -> bool {
+    workspace.snapshot().open(uri).is_some_and(|open| open.document.notation() == Notation::Ladder)
 }
 
 /// The words of the program that the document at `uri` is a part of.

@@ -400,6 +400,7 @@ impl Watching {
             time_ms: self.time_ns() as f64 / 1e6,
             edition: self.edition,
             branch: self.recording.branch(),
+            exchanges: self.watch.exchanges(),
             elements,
             values: values.collect(),
             errors: Vec::new(),

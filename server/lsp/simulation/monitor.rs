@@ -35,6 +35,8 @@ pub(in crate::lsp) struct Picture {
     pub(in crate::lsp) time_ms: f64,
     pub(in crate::lsp) edition: u64,
     pub(in crate::lsp) branch: u64,
+    /// How many moments the values are of: exchanges on the line to a PLC.
+    pub(in crate::lsp) exchanges: u64,
     pub(in crate::lsp) elements: Vec<Json>,
     pub(in crate::lsp) values: Vec<Json>,
     pub(in crate::lsp) errors: Vec<Json>,

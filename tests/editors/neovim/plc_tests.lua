@@ -112,6 +112,19 @@ check('lines that are not so in the PLC are marked, and the status line says so'
   until_drifted({})
   edit("call setline(3, 'LDI X1')")
   until_drifted({ 3 })
+  -- The table says of how many scans its values may be.
+  vim.cmd('Rungwise plc table')
+  until_true('a row', function()
+    return table.concat(vim.api.nvim_buf_get_lines(0, 0, -1, false), '\n'):find('Y0', 1, true) ~= nil
+  end)
+  require('rungwise.plc').tell(program, 'monitor', { names = vim.tbl_map(function(number)
+    return 'D' .. number
+  end, vim.fn.range(40)) })
+  until_true('the exchanges of a look', function()
+    return (vim.api.nvim_buf_get_lines(0, 0, 1, false)[1] or ''):find('values of up to 2 scans', 1, true) ~= nil
+  end)
+  vim.cmd.close()
+  vim.api.nvim_set_current_buf(program)
   plc:kill('sigkill')
   until_drifted({})
   until_true('a status line without a PLC', function()

@@ -544,7 +544,10 @@ check('a program goes into a PLC after a look at what changes, and its power is 
   -- What changes stands side by side in a tab of its own.
   local shown = vim.tbl_map(vim.api.nvim_win_get_buf, vim.api.nvim_tabpage_list_wins(0))
   assert(#shown == 2 and vim.wo.diff, vim.inspect(shown))
-  assert(vim.api.nvim_buf_get_lines(shown[1], 0, -1, false)[1] == 'END')
+  local before, after = unpack(vim.tbl_map(function(buffer)
+    return table.concat(vim.api.nvim_buf_get_lines(buffer, 0, -1, false), '\n')
+  end, shown))
+  assert(before:find('[END]', 1, true) and not before:find('( )', 1, true) and after:find('( )', 1, true), before .. after)
   vim.cmd.tabclose()
   assert(vim.api.nvim_get_current_buf() == program)
   local space = vim.api.nvim_get_namespaces().rungwise_simulation

@@ -14,7 +14,7 @@ export const PLC_TESTS = {
 };
 
 /** A virtual PLC, with an empty memory if nothing else is said, and where it listens. */
-async function virtualPlc(...more) {
+export async function virtualPlc(...more) {
   const plc = spawn(process.env.RUNGWISE_SERVER, ['plc', '--listen', '127.0.0.1:0', ...more], { stdio: ['pipe', 'pipe', 'inherit'] });
   const lines = createInterface({ input: plc.stdout });
   const next = () => new Promise((resolve) => lines.once('line', resolve));
@@ -28,7 +28,7 @@ async function virtualPlc(...more) {
   return { plc, port, shown };
 }
 
-async function connect(workbench, port) {
+export async function connect(workbench, port) {
   await ask(workbench, 'Rungwise: PLC: Connect', 'Port of the PLC');
   const other = workbench.page.locator('.quick-input-list .monaco-list-row', { hasText: 'Another port' }).first();
   await other.click();

@@ -3,6 +3,7 @@
 import { existsSync, mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { openBrowser } from './browser.mjs';
+import { listener, projectAt } from './page_line.mjs';
 import { Workbench } from './workbench.mjs';
 
 export async function runTrustTests(server, workspace, home, report, artefacts) {
@@ -12,6 +13,8 @@ export async function runTrustTests(server, workspace, home, report, artefacts) 
   mkdirSync(join(workspace, '.vscode'));
   const settings = { 'rungwise.server.path': program, 'rungwise.target': 'fx3u' };
   writeFileSync(join(workspace, '.vscode', 'settings.json'), JSON.stringify(settings));
+  const line = await listener();
+  projectAt(workspace, line.port);
   await server.start(workspace, { trusted: false });
   const browser = await openBrowser(home);
   try {
@@ -28,8 +31,18 @@ export async function runTrustTests(server, workspace, home, report, artefacts) 
         throw new Error('the program that the folder names was started');
       }
     });
+    await report.check('page: in a folder without trust nothing is said to a PLC, whoever asks for it', async () => {
+      await workbench.openByName('named.il');
+      await workbench.status('FX3U');
+      await workbench.command('Rungwise: PLC: Connect');
+      await workbench.page.locator('.notifications-toasts', { hasText: 'in a workspace that is not trusted' }).first().waitFor({ timeout: 45_000 });
+      if (line.count() !== 0) {
+        throw new Error(`${line.count()} connections`);
+      }
+    });
   } finally {
     await browser.close();
     server.stop();
+    line.server.close();
   }
 }

@@ -33,6 +33,8 @@ export interface Moment {
   readonly mode: 'running' | 'paused' | 'stopped';
   readonly scan: number;
   readonly timeMs: number;
+  /** How many moments the values are of. */
+  readonly exchanges?: number;
   readonly edition: number;
   readonly branch: number;
   readonly firstScan?: number;
@@ -117,6 +119,7 @@ export function parseMoment(given: unknown): Moment | undefined {
     scan: source === 'plc' ? Math.floor(number('time_ms')) : number('scan'),
     ...(source === 'plc' && { scanMs: 1 }),
     timeMs: number('time_ms'),
+    ...(typeof state['exchanges'] === 'number' && { exchanges: state['exchanges'] }),
     edition: number('edition'),
     branch: number('branch'),
     values: Array.isArray(state['values']) ? (state['values'] as Reading[]) : [],

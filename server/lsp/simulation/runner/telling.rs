@@ -116,6 +116,7 @@ impl Running {
             time_ms: self.session.machine().now_ns() as f64 / 1e6,
             edition: self.edition,
             branch: self.branch,
+            exchanges: 1,
             elements,
             values: self.monitor.values(None, self.session.machine()),
             errors: self.errors_of(place, number as u32),

@@ -60,10 +60,12 @@ export class Toolbar {
       put(this.run, 'title', words);
       put(this.run, 'aria-label', words);
       put(this.run, 'class', mode === 'stopped' ? 'run primary' : 'run icon');
-      say(this.mode, isReal ? t('PLC') : { running: t('Running'), paused: t('Paused'), stopped: t('Stopped') }[mode]);
       put(this.mode, 'data-mode', mode);
       [...this.others, this.speed].forEach((control) => (control.disabled = mode === 'stopped'));
     }
+    const exchanges = moment?.exchanges ?? 1;
+    const real = exchanges > 1 ? `${t('PLC')} · ${t('values of up to {0} scans', exchanges)}` : t('PLC');
+    say(this.mode, isReal ? real : { running: t('Running'), paused: t('Paused'), stopped: t('Stopped') }[mode]);
     say(this.scan, mode === 'stopped' ? '–' : String(moment?.scan ?? 0));
     say(this.time, mode === 'stopped' ? '–' : clock(moment?.timeMs ?? 0));
     say(this.scanTime, mode === 'stopped' ? '–' : `${moment?.scanMs ?? 10} ms`);
