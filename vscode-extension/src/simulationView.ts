@@ -374,9 +374,10 @@ function placedValues(document: vscode.TextDocument, values: Picture['values']):
     const row = rows.get(range.start.line) ?? [];
     rows.set(range.start.line, [...row, `${document.getText(toRange(range))} = ${value}`]);
   }
+  // In brackets, since hints of the row follow: `[T0 = 3] = 1 s`.
   return [...rows].map(([line, words]) => {
     const { start, end } = document.lineAt(line).range;
-    return { range: { start, end }, text: `  ${words.join(', ')}  ` };
+    return { range: { start, end }, text: `  [${words.join(', ')}]  ` };
   });
 }
 

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { pageDocument } from '../src/panel/document';
 import {
-  basesOf, firstSignals, grouped, isSwitch, namesOf, parseMoment, parseRows, progress, readAs, reading, sliderEnds, typedIn, typedNumber, written, type Row,
+  basesOf, firstSignals, grouped, isSwitch, namesOf, parseMoment, parseRows, progress, readAs, reading, sliderEnds, typedIn, typedNumber, variableToAdd, written, type Row,
 } from '../src/panel/rows';
 import { LABEL_WIDTH, rowAt, scanAt, scene, sceneHeight, type Shape } from '../src/panel/scene';
 import { svg } from '../src/panel/svg';
@@ -36,6 +36,15 @@ test('a panel shows groups in their order, and those of which something was sear
   assert.deepEqual(shown('motor'), [['outputs', ['Y0']]]);
   assert.deepEqual(firstSignals(rows), ['X0', 'Y0', 'T0', 'C0']);
   assert.deepEqual(rows.filter(isSwitch).map(({ name }) => name), ['X0']);
+});
+
+test('what can be added to a panel is said in names that the program has', () => {
+  const added = (names: readonly string[], contact?: string) =>
+    variableToAdd(parseRows({ rows: names.map((name) => ({ name, group: 'variables', type: 'bit', contact })) }));
+  assert.equal(variableToAdd(rows), undefined);
+  assert.equal(variableToAdd([]), undefined);
+  assert.equal(added(['Mixer.Start', 'Mixer.X0']), 'Mixer.Start');
+  assert.equal(added(['Mixer.Delay.ET'], 'Mixer.Delay.Q'), 'Mixer.Delay.Q');
 });
 
 test('numbers are read and written as people do', () => {

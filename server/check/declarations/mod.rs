@@ -26,6 +26,8 @@ mod recursive_pou;
 
 mod missing_task;
 
+mod config_path;
+
 mod similar_names;
 
 mod guess;
@@ -43,5 +45,6 @@ pub(super) const RULES: &[&Rule] = &[
     &unused_variable::RULE,
     &recursive_pou::RULE,
     &missing_task::RULE,
+    &config_path::RULE,
     &similar_names::RULE,
 ];

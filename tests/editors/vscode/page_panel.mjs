@@ -25,7 +25,8 @@ export async function panelPage(workbench) {
   });
 }
 
-async function openPanel(workbench, file, first = 'X0') {
+/** Opens a file, starts its simulation, and gives the page of its panel. */
+export async function openPanel(workbench, file, first = 'X0') {
   await workbench.clear();
   await workbench.openFile(file);
   await workbench.goTo(2, 6);
@@ -37,7 +38,8 @@ async function openPanel(workbench, file, first = 'X0') {
   return panel;
 }
 
-const isOn = async (panel, name) => (await panel.locator(`[data-name="${name}"]`).getAttribute('data-on')) === 'true';
+/** Whether the lamp of a row is on. */
+export const isOn = async (panel, name) => (await panel.locator(`[data-name="${name}"]`).getAttribute('data-on')) === 'true';
 
 /** The pieces of the editor's text that are bold: what is energised. */
 async function energised(workbench) {
@@ -146,7 +148,7 @@ async function byKeys(workbench, workspace) {
 }
 
 /** Saves the chart under the name that is proposed, and looks at the file. */
-async function save(workbench, panel, label, file, isRight) {
+export async function save(workbench, panel, label, file, isRight) {
   await panel.locator('.tools .text').click();
   await panel.locator('.menu button', { hasText: label }).click();
   await workbench.page.waitForSelector('.quick-input-widget:visible', { timeout: 45_000 });
@@ -172,6 +174,10 @@ async function restarted(workbench) {
 async function declared(workbench) {
   const panel = await openPanel(workbench, 'mixer.il', 'Start');
   const row = (name) => panel.locator(`[data-name="${name}"]`);
+  const proposed = await panel.locator('.fields input[type="text"]').getAttribute('placeholder');
+  if (proposed !== 'Add variables: Mixer.Delay.Q') {
+    throw new Error(`a panel of variables proposes ${proposed}`);
+  }
   const names = await panel.locator('.row').evaluateAll((rows) => rows.map((own) => own.dataset.name));
   if (names.join(' ') !== 'Mixer.Start Mixer.Stop Mixer.Motor Mixer.Delay.ET') {
     throw new Error(`on the panel are ${names}`);

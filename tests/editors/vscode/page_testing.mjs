@@ -20,6 +20,7 @@ async function scenarios(workbench) {
   const isMarked = async () => (await marks()) > 0;
   await workbench.until('the difference at its place', isMarked);
   await workbench.screenshot('35-scenario-failed');
+  await pictured(workbench);
   await workbench.command('Testing: Focus on Test Explorer View');
   const rows = workbench.page.locator('.test-explorer .monaco-list-row');
   await workbench.until('the file in the test view', async () => (await rows.allInnerTexts()).some((row) => row.includes('tested.test.toml')));
@@ -35,6 +36,7 @@ async function scenarios(workbench) {
   await workbench.until('what is covered of the program', async () =>
     (await files.allInnerTexts()).some((row) => row.includes('tested.lad') && row.includes('%')));
   await workbench.until('no difference any more', async () => !(await isMarked()));
+  await gutters(workbench);
   await workbench.screenshot('36-scenario-coverage');
   await workbench.openFile('tested.test.toml');
   await workbench.command('File: Revert File');
@@ -42,6 +44,39 @@ async function scenarios(workbench) {
   await workbench.until('lenses of the program', async () =>
     (await lens(workbench, 'Simulate').count()) === 1 && (await lens(workbench, 'Run scenarios').count()) === 1);
   await workbench.clear();
+}
+
+/** The message of a scenario that failed shows what was, and what was expected, over time. */
+async function pictured(workbench) {
+  await workbench.openFile('tested.test.toml');
+  await workbench.goTo(6, 1);
+  await workbench.command('Test: Peek Output');
+  const peek = workbench.page.locator('.test-output-peek-message-container');
+  const text = await workbench.until('the message with its picture', async () => {
+    const words = (await peek.allInnerTexts()).join('\n').replaceAll('\u00a0', ' ');
+    return words.includes('expected') && words;
+  });
+  for (const [what, piece] of [
+    ['what is wrong', /Y0 is 1 where 0 was expected/], ['times', /^ms +0/m], ['the input', /^X0 +_+▆/m],
+    ['the output', /^Y0 +_+▆/m], ['what was expected', /^ *expected +_/m], ['where they differ', /\^/],
+  ]) {
+    if (!piece.test(text)) {
+      throw new Error(`${what} is missing in\n${text}`);
+    }
+  }
+  await workbench.screenshot('35-scenario-picture');
+  await workbench.page.keyboard.press('Escape');
+}
+
+/** Beside the lines of the program stands what of them was covered: of the rung that starts only the start. */
+async function gutters(workbench) {
+  await workbench.openFile('tested.lad');
+  const covered = workbench.page.locator('.editor-instance .coverage-deco-gutter');
+  await workbench.until('marks beside the lines', async () => (await covered.count()) > 0);
+  const kinds = await covered.evaluateAll((marks) => marks.map((mark) => mark.className));
+  if (!kinds.some((kind) => kind.includes('coverage-deco-hit')) || !kinds.some((kind) => kind.includes('coverage-deco-miss'))) {
+    throw new Error(`beside the lines stand ${kinds.join(' | ')}`);
+  }
 }
 
 async function recording(workbench) {

@@ -3,6 +3,7 @@
 import { copyFileSync, mkdirSync, readFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { openBrowser } from './browser.mjs';
+import { CHART_FILES, CHART_TESTS } from './page_chart.mjs';
 import { DEBUGGING_FILES, DEBUGGING_TESTS } from './page_debugging.mjs';
 import { DEVICE_FILES, DEVICE_TESTS } from './page_devices.mjs';
 import { DRAWING_TESTS } from './page_drawing.mjs';
@@ -19,7 +20,7 @@ import { Workbench } from './workbench.mjs';
 const REPAIR_LIMIT_MS = 20_000;
 
 export async function runPageTests(server, workspace, home, report, artefacts) {
-  for (const [name, fixture] of Object.entries({ ...VIEW_FILES, ...DEVICE_FILES, ...TRANSLATION_FILES, ...SIMULATION_FILES, ...PLC_FILES, ...PANEL_FILES, ...TESTING_FILES, ...DEBUGGING_FILES })) {
+  for (const [name, fixture] of Object.entries({ ...VIEW_FILES, ...DEVICE_FILES, ...TRANSLATION_FILES, ...SIMULATION_FILES, ...PLC_FILES, ...PANEL_FILES, ...CHART_FILES, ...TESTING_FILES, ...DEBUGGING_FILES })) {
     mkdirSync(dirname(join(workspace, name)), { recursive: true });
     copyFileSync(join(workspace, fixture), join(workspace, name));
   }
@@ -29,7 +30,7 @@ export async function runPageTests(server, workspace, home, report, artefacts) {
     const workbench = new Workbench(await browser.newPage(), artefacts);
     await report.check('page: the workbench opens', () => workbench.load(`http://${server.authority}/?folder=${workspace}`));
     // The last one leaves VS Code without a server.
-    const tests = { ...FIRST_TESTS, ...DRAWING_TESTS, ...VIEW_TESTS, ...DEVICE_TESTS, ...TRANSLATION_TESTS, ...SIMULATION_TESTS, ...PLC_TESTS, ...LINE_TESTS, ...PANEL_TESTS, ...TESTING_TESTS, ...DEBUGGING_TESTS, ...LAST_TESTS };
+    const tests = { ...FIRST_TESTS, ...DRAWING_TESTS, ...VIEW_TESTS, ...DEVICE_TESTS, ...TRANSLATION_TESTS, ...SIMULATION_TESTS, ...PLC_TESTS, ...LINE_TESTS, ...PANEL_TESTS, ...CHART_TESTS, ...TESTING_TESTS, ...DEBUGGING_TESTS, ...LAST_TESTS };
     const chosen = new RegExp(process.env.RUNGWISE_TESTS_NAMED ?? '');
     for (const [name, test] of Object.entries(tests).filter(([name]) => chosen.test(name))) {
       await report.check(`page: ${name}`, async () => {

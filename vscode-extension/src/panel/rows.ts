@@ -75,6 +75,12 @@ export function groupTitle(group: Group): string {
   }
 }
 
+/** A variable that can be added to the panel of a program of IEC 61131-3; a PLC with devices has those. */
+export function variableToAdd(rows: readonly Row[]): string | undefined {
+  const isDevice = ({ name }: Row) => /^[A-Z]{1,2}\d+$/i.test(name);
+  return rows.some(isDevice) ? undefined : (rows.find(({ contact }) => contact !== undefined)?.contact ?? rows[0]?.name);
+}
+
 /** Reads the rows of an answer; what is none is left out. */
 export function parseRows(answer: unknown): Row[] {
   const rows = (answer as { rows?: unknown } | null)?.rows;

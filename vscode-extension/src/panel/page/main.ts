@@ -2,7 +2,7 @@
 
 import { t, useTranslations } from '../../words';
 import type { ToPage } from '../messages';
-import { firstSignals, groupTitle, grouped, namesOf, type Base, type Moment, type Reading, type Row } from '../rows';
+import { firstSignals, groupTitle, grouped, namesOf, variableToAdd, type Base, type Moment, type Reading, type Row } from '../rows';
 import type { Viewport } from '../viewport';
 import { ChartView } from './chartView';
 import { element, put, say } from './dom';
@@ -34,7 +34,7 @@ class Page {
   private readonly toolbar: Toolbar;
   private readonly chart: ChartView;
   private readonly search = element('input', { type: 'search', class: 'search', placeholder: t('Search name, symbol or comment') });
-  private readonly chosen = element('input', { type: 'text', class: 'search', spellcheck: false, placeholder: t('Add devices: D100 M5') });
+  private readonly chosen = element('input', { type: 'text', class: 'search', spellcheck: false });
   private readonly groups = element('main', { class: 'groups' });
   private readonly note = element('p', { class: 'note', role: 'status' });
   private readonly divider = element('div', { class: 'divider', role: 'separator', tabindex: 0, 'aria-orientation': 'horizontal', 'aria-label': t('Height of the chart') });
@@ -60,7 +60,7 @@ class Page {
     });
     this.watcher = new IntersectionObserver((entries) => this.look(entries), { root: this.groups, rootMargin: '100px' });
     this.chosen.value = (this.kept.chosen ?? []).join(' ');
-    this.chosen.setAttribute('aria-label', t('Add devices: D100 M5'));
+    this.suggest();
     this.chosen.addEventListener('change', () => this.choose());
     document.body.replaceChildren(this.toolbar.node, element('div', { class: 'fields' }, this.search, this.chosen), this.note, this.groups, this.divider, this.chart.node);
     if (this.kept.chosen !== undefined) {
@@ -77,6 +77,7 @@ class Page {
       return;
     }
     this.rows = rows;
+    this.suggest();
     const names = new Set(rows.map(({ name }) => name));
     const signals = this.kept.signals?.filter((name) => names.has(name)) ?? [];
     this.keep({ signals: signals.length > 0 || this.kept.signals?.length === 0 ? signals : firstSignals(rows) });
@@ -112,6 +113,14 @@ class Page {
 
   takeTrace(message: Extract<ToPage, { type: 'trace' }>): void {
     this.chart.take(message.id, message.answer);
+  }
+
+  /** Says what can be added, in the names that this program has. */
+  private suggest(): void {
+    const variable = variableToAdd(this.rows);
+    const words = variable === undefined ? t('Add devices: D100 M5') : t('Add variables: {0}', variable);
+    this.chosen.placeholder = words;
+    put(this.chosen, 'aria-label', words);
   }
 
   private choose(): void {

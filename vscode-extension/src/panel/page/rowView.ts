@@ -141,7 +141,7 @@ export class RowView {
 
   private pushButton(label: string): HTMLButtonElement {
     const title = t('Hold to switch {0}', label);
-    const button = element('button', { type: 'button', class: 'push', title, 'aria-label': title });
+    const button = element('button', { type: 'button', class: 'push', title, 'aria-label': title }, icon('press'));
     const press = () => {
       if (this.release === undefined && !button.disabled) {
         this.release = this.around.plc.press(this.row.name, this.value === true);
