@@ -63,8 +63,8 @@ impl Builder {
         self.gate(Gate::Invert)
     }
 
-    /// Power goes on where there is some or `condition` holds. What led here is asked once more on a path of its own from
-    /// the left rail. Nothing where the power is kept, or the outputs so far may have changed what led here.
+    /// Power goes on where there is some or `condition` holds. What led here is asked once more on a path of its own
+    /// from the left rail. Nothing where the power is kept, or the outputs so far may have changed what led here.
     pub(super) fn in_parallel(&mut self, condition: Expression) -> Option<()> {
         let power = self.power()?;
         if self.open.iter().any(|open| open.kept > 0) || power.size() > Builder::REPEATED_MAX {
