@@ -8,7 +8,7 @@ const MOTOR: &str = "; start\nLD X0\nOR Y0\nANI X1\nOUT Y0\nEND\n";
 /// The same but for the stop contact.
 const WRONG: &str = "LD X0\nOR Y0\nAND X1\nOUT Y0\nEND\n";
 /// A contact in parallel with what already drives an output has no drawing.
-const KEPT: &str = "LD X0\nOUT Y0\nOR X1\nOUT Y1\nEND\n";
+const KEPT: &str = "LDI Y0\nOUT Y0\nOR X1\nOUT Y1\nEND\n";
 #[test]
 fn a_list_is_drawn_listed_and_written_as_equations_with_proof() {
     let folder = folder(&[("motor.il", MOTOR)]);
@@ -33,7 +33,7 @@ fn what_has_no_other_form_is_carried_along_and_told() {
     let (code, drawn, err) = run(&folder, &["translate", "kept.il", "--to", "ladder", "--prove"]);
     assert_eq!(code, 0, "{err}");
     assert!(err.starts_with("kept.il:1: this rung is kept as it is: a contact is put in parallel"), "{err}");
-    assert!(drawn.contains("{il\nLD X0\nOUT Y0\nOR X1\nOUT Y1\n}\n"), "{drawn}");
+    assert!(drawn.contains("{il\nLDI Y0\nOUT Y0\nOR X1\nOUT Y1\n}\n"), "{drawn}");
     std::fs::write(folder.path().join("kept.lad"), drawn).unwrap();
     assert_eq!(run(&folder, &["translate", "kept.lad", "--to", "fx"]).1, KEPT);
     assert_eq!(run(&folder, &["prove", "kept.il", "kept.lad"]).0, 0);

@@ -130,6 +130,7 @@ mod target_iec;
 mod tidy;
 mod token_scopes;
 mod translate;
+mod translate_boxes;
 mod translate_iec;
 mod translate_two_outputs;
 mod translate_words;

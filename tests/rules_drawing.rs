@@ -438,6 +438,74 @@ fn a_name_in_the_wire_is_one_mistake() {
 }
 
 #[test]
+fn every_stray_operand_has_fixes() {
+    // The drawing, and what each fix makes of it.
+    let cases: &[(&str, &[&str])] = &[
+        // Over a wire: a contact, or no name.
+        (
+            "|   X0      X1         Y0  |\n+---| |----------------( )-+\n",
+            &[
+                "|   X0      X1         Y0  |\n+---| |-----| |--------( )-+\n",
+                "|   X0                 Y0  |\n+---| |----------------( )-+\n",
+            ],
+        ),
+        (
+            "│   X0      X1         Y0  │\n├───┤ ├────────────────( )─┤\n",
+            &[
+                "│   X0      X1         Y0  │\n├───┤ ├─────┤ ├────────( )─┤\n",
+                "│   X0                 Y0  │\n├───┤ ├────────────────( )─┤\n",
+            ],
+        ),
+        // Names below their elements.
+        (
+            "+---| |----------------( )-+\n|   X0      X1         Y0  |\n",
+            &[
+                "+---| |-----| |--------( )-+\n|   X0      X1         Y0  |\n",
+                "+---| |----------------( )-+\n|   X0                 Y0  |\n",
+            ],
+        ),
+        // Far from the one element without a name.
+        (
+            "|                X1    Y0  |\n+---| |----------------( )-+\n",
+            &[
+                "|   X1                 Y0  |\n+---| |----------------( )-+\n",
+                "|                      Y0  |\n+---| |----------------( )-+\n",
+            ],
+        ),
+        // Over two.
+        (
+            "|   LONGNAME           Y0  |\n+---| |-| |------------( )-+\n",
+            &[
+                "|    LONGNAME          Y0  |\n+---| |-| |------------( )-+\n",
+                "|                      Y0  |\n+---| |-| |------------( )-+\n",
+            ],
+        ),
+        // What is no device draws no contact.
+        (
+            "|   X0      K5         Y0  |\n+---| |----------------( )-+\n",
+            &["|   X0                 Y0  |\n+---| |----------------( )-+\n"],
+        ),
+        ("|   X0      K50  |\n+---| |----(M0)--+\n", &["|   X0           |\n+---| |----(M0)--+\n"]),
+        ("+--[X0 X1]----(Y0)--+\n", &["+--[X0   ]----(Y0)--+\n"]),
+    ];
+    for (text, expected) in cases {
+        let found = found(text);
+        let stray: Vec<_> = found.iter().filter(|problem| problem.code == "stray-operand").collect();
+        let made: Vec<String> = stray
+            .iter()
+            .flat_map(|problem| &problem.fixes)
+            .map(|fix| TextEdit::apply_all(&fix.edits, text))
+            .collect();
+        assert_eq!(made, *expected, "{text}");
+        for fix in stray.iter().flat_map(|problem| &problem.fixes) {
+            let titles =
+                [Language::English, Language::SimplifiedChinese].map(|language| fix.title.render(language));
+            assert!(titles[0] != titles[1] && titles.iter().all(|title| !title.contains("stray-operand")));
+        }
+    }
+}
+
+#[test]
 fn a_torn_bracket_is_one_mistake() {
     for (text, place) in [
         ("|   X0      Y0\n+---| |-----( -\n", "unreadable-cell 2:13"),

@@ -2,7 +2,7 @@
 
 use super::glyph::Arms;
 use super::grid::{Grid, WIDE};
-use crate::text::{Diagnostic, Message};
+use crate::text::{Diagnostic, Message, Span, TextEdit};
 
 /// As many blank columns through all lines of a drawing keep what is behind them apart.
 const GAP: usize = 3;
@@ -38,15 +38,17 @@ pub(super) fn take_beside(grid: &mut Grid, problems: &mut Vec<Diagnostic>) {
         (cells().any(is_strange) && !cells().any(is_element)).then_some(at)
     });
     let Some(at) = found else { return };
-    let first = drawn.iter().find_map(|row| {
+    let lines = drawn.iter().filter_map(|row| {
         let content = |column: &usize| grid.at(*row, *column) != ' ';
         let start = (at..grid.width(*row)).find(content)?;
         let end = (start..grid.width(*row)).rev().find(content)? + 1;
         Some(grid.span(*row, start, end))
     });
-    if let Some(span) = first {
-        let message = Message::new("stray-operand.beside");
-        problems.push(Diagnostic::new("stray-operand", span, message));
+    let lines: Vec<Span> = lines.collect();
+    if let Some(first) = lines.first() {
+        let problem = Diagnostic::new("stray-operand", *first, Message::new("stray-operand.beside"));
+        let edits = lines.iter().map(|line| TextEdit::new(*line, "")).collect();
+        problems.push(problem.fix(Message::new("stray-operand.remove-beside"), edits));
     }
     for row in drawn {
         grid.clear(row, at..usize::MAX);

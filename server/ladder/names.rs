@@ -1,6 +1,7 @@
 //! Whose name each word outside a symbol is.
 
 mod strays;
+pub(super) use strays::without;
 
 use super::content::{Wants, is_preset};
 use super::grid::Grid;
@@ -389,10 +390,11 @@ impl Naming<'_> {
                 symbol.element.notes.push(operand.span);
                 continue;
             }
-            let message = Message::new("stray-operand.surplus").with("text", operand.span.of(self.text));
+            let text = operand.span.of(self.text);
+            let message = Message::new("stray-operand.surplus").with("text", text);
             let related = Message::new("stray-operand.element");
             let problem = Diagnostic::new("stray-operand", operand.span, message);
-            self.problems.push(problem.related(symbol.element.span, related));
+            self.problems.push(without(problem.related(symbol.element.span, related), text));
         }
     }
 }

@@ -4,6 +4,7 @@ use super::blocks::BlockRow;
 use super::content::{Reading, Wants, pieces, read_braces, read_brackets, read_parentheses};
 use super::glyph::{Arms, contact_mark, continues_word, is_operator, starts_word};
 use super::grid::{Grid, TAKEN, WIDE};
+use super::names::without;
 use super::ragged::ASIDE;
 use super::{Element, ElementKind, OperandPlace};
 use crate::target::{DeviceKind, Location, Operand, OperandProblem, Target, Width};
@@ -572,8 +573,9 @@ impl Scanner<'_> {
     fn symbol(&mut self, row: usize, start: usize, end: usize, reading: Reading) -> Token {
         let span = self.grid.span(row, start, end);
         for surplus in reading.surplus {
-            let message = Message::new("stray-operand.inside").with("text", surplus.of(self.text));
-            self.problems.push(Diagnostic::new("stray-operand", surplus, message));
+            let text = surplus.of(self.text);
+            let message = Message::new("stray-operand.inside").with("text", text);
+            self.problems.push(without(Diagnostic::new("stray-operand", surplus, message), text));
         }
         let columns = (start as u32, end as u32);
         let mut element = Element::new(reading.kind, span, self.grid.line(row), columns);

@@ -1,6 +1,8 @@
 //! Puts a path together from what is met on the way, as a list writes it and as a drawing shows it.
 
-use super::{Action, Drive, Expression, Gate, Path};
+use super::{Action, Contact, Deed, Drive, Expression, Gate, Path, Test, touches_bits};
+use crate::ladder::ContactKind;
+use crate::target::Operand;
 
 /// A path in the making: the path from the left rail, and those that leave one another up to where power stands.
 #[derive(Debug)]
@@ -61,6 +63,44 @@ impl Builder {
         self.gate(Gate::Invert)
     }
 
+    /// Power goes on where there is some or `condition` holds. What led here is asked once more on a path of its own
+    /// from the left rail. Nothing where the power is kept, or the outputs so far may have changed what led here.
+    pub(super) fn in_parallel(&mut self, condition: Expression) -> Option<()> {
+        let power = self.power()?;
+        if self.open.iter().any(|open| open.kept > 0) || power.size() > Builder::REPEATED_MAX {
+            return None;
+        }
+        let outputs = || self.open.iter().flat_map(|open| open.path.actions());
+        if !power.contacts().into_iter().all(|contact| outputs().all(|output| leaves(output, contact))) {
+            return None;
+        }
+        self.back_to(1, true)?;
+        let root = self.open.first_mut()?;
+        if !root.path.gates.is_empty() {
+            let first = std::mem::take(&mut root.path);
+            root.path.drives.push(Drive::Path(first));
+        }
+        let gates = vec![Gate::Pass(Expression::or([power, condition]))];
+        self.open.push(Open { path: Path { gates, drives: Vec::new() }, kept: 0 });
+        Some(())
+    }
+
+    /// What must hold for power to be here; nothing where that is not for contacts alone to say.
+    fn power(&self) -> Option<Expression> {
+        let mut power = Expression::Constant(true);
+        for gate in self.open.iter().flat_map(|open| &open.path.gates) {
+            match gate {
+                Gate::Pass(condition) => power.and_with(condition.clone()),
+                Gate::Invert => power = Expression::Not(Box::new(power)),
+                Gate::Through(_) => return None,
+            }
+        }
+        Some(power)
+    }
+
+    /// So many contacts and connections are asked once more, so that a path does not grow with the square of its list.
+    const REPEATED_MAX: usize = 48;
+
     /// Power drives `action`.
     pub(super) fn drive(&mut self, action: Action) {
         if let Some(open) = self.open.last_mut() {
@@ -114,4 +154,19 @@ impl Builder {
         }
         Some(&mut self.open.last_mut()?.path)
     }
+}
+
+/// Whether `contact` is the same when it is asked again behind `output`.
+fn leaves(output: &Action, contact: &Contact) -> bool {
+    let ([read], Test::Bit(kind)) = (&contact.terms[..], contact.test) else { return false };
+    let is_steady = match (kind, read.operand) {
+        (ContactKind::NormallyOpen | ContactKind::NormallyClosed, _) => true,
+        (_, Operand::Device(device)) => !device.has_single_edge(),
+        _ => false,
+    };
+    let is_coil = matches!(output.deed, Deed::Coil(_)) && !touches_bits(output);
+    let Some(driven) = output.terms.first() else { return false };
+    let has_preset = driven.operand.device().is_some_and(|device| device.kind.has_preset());
+    let is_other = !driven.may_cover(read) && !read.may_cover(driven);
+    is_steady && is_coil && (driven.is_lone() || has_preset) && is_other
 }

@@ -154,6 +154,11 @@ impl Expression {
         }
     }
 
+    /// How many contacts, constants and connections it has.
+    pub(super) fn size(&self) -> usize {
+        1 + self.parts().iter().map(Expression::size).sum::<usize>()
+    }
+
     /// Calls `found` with each contact, left to right and top to bottom.
     pub fn visit<'e>(&'e self, found: &mut impl FnMut(&'e Contact)) {
         match self {

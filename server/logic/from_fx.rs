@@ -127,7 +127,7 @@ impl Reader<'_> {
         }
         match role {
             Role::Series | Role::BlockSeries => self.builder.pass(block.condition).ok_or(Refusal::TooDeep),
-            _ => Err(Refusal::ParallelToBranch),
+            _ => self.builder.in_parallel(block.condition).ok_or(Refusal::ParallelToBranch),
         }
     }
 

@@ -7,7 +7,7 @@ use super::to_iec::{self, Helper, Helpers};
 use super::{Options, To, Translated, Translation, to_boolean, to_fx, to_ladder};
 use crate::document::{Document, Notation};
 use crate::ladder::{Drawing, Style};
-use crate::logic::{Network, Path};
+use crate::logic::{Drive, Network, Path};
 use crate::target::Target;
 use crate::text::Message;
 
@@ -19,8 +19,8 @@ enum Body {
     Lines(Vec<Line>),
     /// Instructions of IEC 61131-3 as they are laid out.
     Text(String),
-    /// A drawing that has no right rail yet.
-    Drawing(Box<Drawing>),
+    /// Drawings that have no right rail yet, one below the other.
+    Drawings(Vec<Drawing>),
     /// Equations.
     Equations(Vec<String>),
     /// What had no other form, as it stands in the source, with the reason.
@@ -50,11 +50,15 @@ pub(super) fn write(
     let mut unless_cancelled =
         |source| (!is_cancelled()).then(|| body(source, (to, target), is_moved, options, &mut helpers));
     let bodies: Vec<Body> = sources.iter().map(&mut unless_cancelled).collect::<Option<_>>()?;
-    let rails = bodies.iter().filter_map(|body| match body {
-        Body::Drawing(drawing) => Some(drawing.rail_column_min()),
-        _ => None,
+    let drawings = bodies.iter().flat_map(|body| match body {
+        Body::Drawings(drawings) => &drawings[..],
+        _ => &[],
     });
-    let rail = rails.max().unwrap_or(0).max(options.style.width.clamp(1, Style::WIDTH_MAX) - 1);
+    let rail = drawings
+        .map(Drawing::rail_column_min)
+        .max()
+        .unwrap_or(0)
+        .max(options.style.width.clamp(1, Style::WIDTH_MAX) - 1);
     let mut page = Page { text: String::new(), to, rail };
     let needs_header = to == To::Iec && is_whole && !sources.is_empty() && !header::has_units(document);
     if needs_header {
@@ -123,16 +127,29 @@ fn body(
             to_iec::lines(path, helpers).map(|lines| Body::Text(header::laid_out(&(lines.join("\n") + "\n"))))
         }
         To::Boolean => to_boolean::equations(path, options.notation).map(Body::Equations),
-        To::Ladder => drawing(path, target, options),
+        To::Ladder => rungs_of(path, source.rung.is_list)
+            .into_iter()
+            .map(|path| drawing(path, target, options))
+            .collect::<Result<_, _>>()
+            .map(Body::Drawings),
     };
     written.unwrap_or_else(kept)
 }
 
-fn drawing(path: &Path, target: &Target, options: &Options) -> Result<Body, Message> {
+/// What is drawn as a rung of its own: of a list each path that begins at the left rail.
+fn rungs_of(path: &Path, is_list: bool) -> Vec<&Path> {
+    let at_rail = path.drives.iter().map(|drive| match drive {
+        Drive::Path(path) => Some(path),
+        Drive::Action(_) => None,
+    });
+    let parts: Option<Vec<&Path>> = at_rail.collect();
+    parts.filter(|_| is_list && path.gates.is_empty()).unwrap_or_else(|| vec![path])
+}
+
+fn drawing(path: &Path, target: &Target, options: &Options) -> Result<Drawing, Message> {
     let plan = to_ladder::plan(path, target.model)?;
     let drawing = Drawing::new(&plan.shape, &plan.graph, &plan.source, options.style.kind);
-    let drawing = drawing.ok_or_else(|| Message::new("translate.no-drawing"))?;
-    Ok(Body::Drawing(Box::new(drawing)))
+    drawing.ok_or_else(|| Message::new("translate.no-drawing"))
 }
 
 /// Whether the program ends with this rung.
@@ -210,13 +227,19 @@ impl Page {
             Body::Lines(lines) => lines.iter().for_each(|line| self.line(&line.to_string())),
             Body::Text(text) => self.text.push_str(&text),
             Body::Equations(equations) => equations.iter().for_each(|equation| self.line(equation)),
-            Body::Drawing(drawing) => match drawing.paint(self.rail) {
-                Some(lines) => lines.iter().for_each(|line| self.line(line)),
-                None => {
+            Body::Drawings(drawings) => {
+                let painted = drawings.iter().map(|drawing| drawing.paint(self.rail));
+                let Some(painted) = painted.collect::<Option<Vec<_>>>() else {
                     let text = source.rung.span.of(source.chunk.text());
                     return self.kept(text, source.rung.is_list, Message::new("translate.no-drawing"));
+                };
+                for (number, lines) in painted.iter().enumerate() {
+                    if number > 0 {
+                        self.text.push('\n');
+                    }
+                    lines.iter().for_each(|line| self.line(line));
                 }
-            },
+            }
             Body::Kept(text, reason) => return self.kept(&text, source.rung.is_list, reason),
         }
         None

@@ -3,8 +3,8 @@
 //! A name that belongs to no element, or one name over two of them.
 //!
 //! A name names the element whose columns it overlaps. One that stands over a wire names nothing, and a contact that is
-//! taken for another is a fault that nobody sees in the logic. If an element without a name is near, moving the name
-//! over it is offered.
+//! taken for another is a fault that nobody sees in the logic. Moving the name over the nearest element without one is
+//! offered, or drawing a contact below it where there is none, or leaving the name out.
 //!
 //! ```lad
 //! |   X0                X1                   Y0  |

@@ -4,7 +4,8 @@
 use super::{Candidate, Named, Naming, Word};
 use crate::ladder::ElementKind;
 use crate::ladder::scan::{Symbol, Token, What};
-use crate::text::{Diagnostic, Message, Span, TextEdit};
+use crate::target::Operand;
+use crate::text::{Diagnostic, Message, Span, TextEdit, text_width};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 impl Naming<'_> {
@@ -167,26 +168,45 @@ impl Naming<'_> {
                         problem = problem.fix(title, vec![edit]);
                     }
                 }
-                self.problems.push(problem);
+                self.problems.push(without(problem, text));
                 continue;
             }
             let message = Message::new("stray-operand.nothing").with("text", text);
             let mut problem = Diagnostic::new("stray-operand", span, message);
-            const ASIDE: usize = 4;
             let gap = |symbol: &usize| {
                 let symbol = &self.tokens.symbols[*symbol];
                 symbol.start.saturating_sub(word.end).max(word.start.saturating_sub(symbol.end))
             };
-            if let Some(symbol) = self.nameless_near(word, ASIDE).min_by_key(gap) {
+            if let Some(symbol) = self.nameless_near(word, usize::MAX / 2).min_by_key(gap) {
                 let symbol = &self.tokens.symbols[symbol];
                 problem = problem.related(symbol.element.span, Message::new("stray-operand.nearest"));
                 if let Some(edit) = self.moved(word, symbol) {
                     let title = Message::new("stray-operand.move").with("text", text);
                     problem = problem.fix(title, vec![edit]);
                 }
+            } else if let Some(edit) = self.contact_at(word, names_below) {
+                let title = Message::new("stray-operand.draw").with("text", text);
+                problem = problem.fix(title, vec![edit]);
             }
-            self.problems.push(problem);
+            self.problems.push(without(problem, text));
         }
+    }
+
+    /// The edit that draws a contact for `word` where there is but wire beside it.
+    fn contact_at(&self, word: &Word, names_below: bool) -> Option<TextEdit> {
+        const CONTACT: usize = 3;
+        let name = self.grid.span(word.row, word.start, word.end).of(self.text);
+        if matches!(self.target.read(name), Operand::Invalid(_) | Operand::Constant { .. }) {
+            return None;
+        }
+        let row = if names_below { word.row.checked_sub(1)? } else { word.row + 1 };
+        // As names are printed: one of two cells begins where its contact does.
+        let start = (word.start + word.end + 1).checked_sub(CONTACT)? / 2;
+        let mut around = start.checked_sub(1)?..start + CONTACT + 1;
+        let is_wire = |column: usize| self.grid.arms(row, column).is_horizontal();
+        let is_free = row < self.grid.height() && around.all(is_wire);
+        let symbol = if self.grid.is_ascii() { "| |" } else { "┤ ├" };
+        is_free.then(|| TextEdit::new(self.grid.span(row, start, start + CONTACT), symbol))
     }
 
     /// Elements without a name, one line away and at most `aside` columns to the side.
@@ -242,6 +262,13 @@ impl Naming<'_> {
             }
         }
     }
+}
+
+/// A problem with a word that may be left out: `text`, for which there are blanks then.
+pub(in crate::ladder) fn without(problem: Diagnostic, text: &str) -> Diagnostic {
+    let blanks = " ".repeat(text_width(text));
+    let edit = TextEdit::new(problem.span, blanks);
+    problem.fix(Message::new("stray-operand.remove").with("text", text), vec![edit])
 }
 
 /// Whether the element lacks an operand that it must have.

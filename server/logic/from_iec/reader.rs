@@ -281,6 +281,9 @@ impl<'s, 'a> Reader<'s, 'a> {
                 self.invert()?;
                 return match role {
                     Role::BlockSeries => self.builder.pass(block.condition).ok_or(Refusal::TooDeep),
+                    Role::BlockParallel => {
+                        self.builder.in_parallel(block.condition).ok_or(Refusal::ParallelToBranch)
+                    }
                     _ => Err(Refusal::ParallelToBranch),
                 };
             }
