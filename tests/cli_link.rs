@@ -202,14 +202,12 @@ fn examples_do_in_the_virtual_plc_what_they_do_in_the_simulator() {
 #[cfg(unix)]
 #[test]
 fn a_pseudo_terminal_does_the_same() {
-    for example in
-        examples().into_iter().filter(|example| ["motor", "traffic-lights"].contains(&&*example.name))
-    {
+    for example in examples() {
         let arguments = ["--pty", "--stepped", "--scan-time", "10ms", "--model", example.target.name];
         let plc = VirtualPlc::listening(example.folder.path(), &arguments);
         assert!(plc.port.starts_with("/dev/"), "{}", plc.port);
         example.goes_there_and_back(&plc.port);
-        example.does_as_the_simulator(&plc.port, 300);
+        example.does_as_the_simulator(&plc.port, 600);
         assert_eq!(plc.quit(), Some(0));
     }
 }

@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Two programs that differ in many places, long enough for several frames.
 fn programs(model: Model) -> [Vec<u16>; 2] {
     let list = |shift: usize| -> String {
-        (0..40).map(|n| format!("LD X{}\nOUT M{}\n", n % 8, (n * shift) % 100)).collect::<String>() + "END\n"
+        (0..36).map(|n| format!("LD X{}\nOUT M{}\n", n % 8, (n * shift) % 100)).collect::<String>() + "END\n"
     };
     let longer = format!("LD M8000\nMOV K5 D0\n{}", list(3));
     [words(&list(7), model), words(&longer, model)]
@@ -36,7 +36,11 @@ fn faults_of(seed: u64) -> Faults {
 }
 
 fn program_in(line: &Loopback) -> Vec<u16> {
-    let words = line.ends().server.plc().words();
+    program_of(line.ends().server.plc())
+}
+
+fn program_of(plc: &Plc) -> Vec<u16> {
+    let words = plc.words();
     let end = words.iter().position(|word| *word == END).map_or(words.len(), |end| end + 1);
     words[..end].to_vec()
 }
@@ -76,6 +80,29 @@ impl Case {
         self.plcs[usize::from(!seed.is_multiple_of(20))].clone()
     }
 
+    /// From now on each start of the PLC is looked at: the answer says whether it has ever begun to run a program that
+    /// is neither of the two. A PLC that runs takes no program, so this is so at every moment.
+    fn watched(&self, line: &Loopback) -> Arc<AtomicBool> {
+        let (programs, has_run) = (self.programs.clone(), Arc::<AtomicBool>::default());
+        let seen = Arc::clone(&has_run);
+        let look =
+            move |plc: &Plc| _ = seen.fetch_or(!programs.contains(&program_of(plc)), Ordering::Relaxed);
+        line.ends().at_start = Some(Box::new(look));
+        has_run
+    }
+
+    /// Whether what a host says of a download that has failed is so.
+    fn is_true(&self, line: &Loopback, fate: Fate) -> bool {
+        let [before, after] = &self.programs;
+        let (program, is_running) = (program_in(line), Case::is_running(line));
+        match fate {
+            Fate::Untouched => program == *before && is_running,
+            Fate::Stopped => program == *before,
+            Fate::Partial | Fate::Unverified => !is_running,
+            Fate::Verified => program == *after,
+        }
+    }
+
     fn is_running(line: &Loopback) -> bool {
         line.ends().server.plc().mode() == Mode::Run
     }
@@ -83,6 +110,7 @@ impl Case {
     /// Carries out the script of a seed; what the host says is compared with the PLC.
     fn script(&self, seed: u64, tally: &mut Tally) {
         let line = Loopback::with(Server::new(self.plc(seed / 2)), Faults::default());
+        let has_run_partly = self.watched(&line);
         // Every other script has its faults from the beginning; the others when the plan is made.
         let is_early = seed.is_multiple_of(2);
         let start = || line.reconnect(faults_of(seed));
@@ -110,18 +138,13 @@ impl Case {
                     start();
                 }
                 let end = host.download(&plan, true, &mut |_| {});
-                let program = program_in(&line);
                 let (fate, is_true) = match &end {
                     Ok(report) => {
                         let is_running = report.mode == Mode::Run;
-                        (Fate::Verified, program == *after && Case::is_running(&line) == is_running)
+                        let is_right = program_in(&line) == *after;
+                        (Fate::Verified, is_right && Case::is_running(&line) == is_running)
                     }
-                    Err(failure) => match failure.fate {
-                        Fate::Untouched => (failure.fate, program == *before && Case::is_running(&line)),
-                        Fate::Stopped => (failure.fate, program == *before),
-                        Fate::Partial | Fate::Unverified => (failure.fate, !Case::is_running(&line)),
-                        Fate::Verified => (failure.fate, program == *after),
-                    },
+                    Err(failure) => (failure.fate, self.is_true(&line, failure.fate)),
                 };
                 if !is_true {
                     wrong.push(format!("{end:?} is not true"));
@@ -149,6 +172,9 @@ impl Case {
         let (program, rest) = held.split_at(after.len());
         if program != after || rest.iter().any(|word| *word != BLANK) {
             wrong.push("something is left behind the program".into());
+        }
+        if has_run_partly.load(Ordering::Relaxed) {
+            wrong.push("part of a program has run".into());
         }
         tally.wrong.extend(wrong.into_iter().map(|what| format!("seed {seed}: {what}")));
     }
@@ -223,6 +249,7 @@ fn a_download_that_is_ended_at_any_request_is_told_truly_and_can_be_finished() {
                 _ => left -= 1,
             };
             let ended = Overheard { line: line.clone(), hear };
+            let has_run_partly = case.watched(&line);
             let is_running = || Case::is_running(&line);
             let planned =
                 Host::connect(Line::new(ended, Patience::default(), cancel)).and_then(|mut host| {
@@ -247,14 +274,8 @@ fn a_download_that_is_ended_at_any_request_is_told_truly_and_can_be_finished() {
             assert_eq!(failure.cause, LinkError::Cancelled, "{requests}");
             // What lets hosts write the program is taken back in any case.
             assert_eq!(line.ends().server.plc().shown("M8118"), Some(Value::Bit(false)), "{requests}");
-            let (program, is_running) = (program_in(&line), is_running());
-            let is_true = match failure.fate {
-                Fate::Untouched => program == *before && is_running,
-                Fate::Stopped => program == *before,
-                Fate::Partial | Fate::Unverified => !is_running,
-                Fate::Verified => program == *after,
-            };
-            assert!(is_true, "{requests}: {failure:?}, and it runs: {is_running}");
+            let is_true = case.is_true(&line, failure.fate);
+            assert!(is_true, "{requests}: {failure:?}, and it runs: {}", is_running());
             fates.push(failure.fate);
             let again = line.host().and_then(|mut host| {
                 let plan = host.plan(after, case.target, &mut |_| {})?;
@@ -262,9 +283,62 @@ fn a_download_that_is_ended_at_any_request_is_told_truly_and_can_be_finished() {
             });
             assert!(again.is_ok_and(|report| report.mode == Mode::Run), "{requests}");
             assert!(program_in(&line) == *after && Case::is_running(&line), "{requests}");
+            assert!(!has_run_partly.load(Ordering::Relaxed), "{requests}");
         }
         fates.dedup();
         let all = [Fate::Untouched, Fate::Stopped, Fate::Partial, Fate::Unverified, Fate::Verified];
         assert_eq!(fates, all, "{model:?}");
+    }
+}
+
+/// The line breaks at each frame there is, once before the request has come and once when only its answer is lost.
+#[test]
+fn a_line_that_breaks_at_any_frame_leaves_no_partial_program_running() {
+    for (model, is_answer) in
+        [(Model::Fx2n, false), (Model::Fx2n, true), (Model::Fx1s, false), (Model::Fx1s, true)]
+    {
+        let case = Case::new(model);
+        let [before, after] = &case.programs;
+        let mut fates = Vec::new();
+        for frames in 0.. {
+            let line = Loopback::with(Server::new(case.plc(1)), Faults::default());
+            let has_run_partly = case.watched(&line);
+            let (broken, mut left) = (line.clone(), frames);
+            let hear = move || match left {
+                0 => broken.cut(is_answer),
+                _ => left -= 1,
+            };
+            let breaking = Overheard { line: line.clone(), hear };
+            let mut host = match Host::connect(Line::new(breaking, Patience::default(), Arc::default())) {
+                Ok(host) => host,
+                Err(error) => {
+                    assert!(matches!(error, LinkError::Gone { .. }), "{frames}: {error:?}");
+                    continue;
+                }
+            };
+            let ended = match host.plan(after, case.target, &mut |_| {}) {
+                Ok(plan) => host.download(&plan, true, &mut |_| {}),
+                Err(error) => {
+                    assert!(matches!(error, LinkError::Gone { .. }), "{frames}: {error:?}");
+                    assert!(program_in(&line) == *before && Case::is_running(&line), "{frames}");
+                    continue;
+                }
+            };
+            let Err(failure) = ended else { break };
+            assert!(matches!(failure.cause, LinkError::Gone { .. }), "{frames}: {failure:?}");
+            assert!(case.is_true(&line, failure.fate), "{frames}: {failure:?}");
+            fates.push(failure.fate);
+            line.reconnect(Faults::default());
+            let again = line.host().and_then(|mut host| {
+                let plan = host.plan(after, case.target, &mut |_| {})?;
+                host.download(&plan, true, &mut |_| {}).map_err(|failure| failure.cause)
+            });
+            assert!(again.is_ok_and(|report| report.mode == Mode::Run), "{frames}");
+            assert!(program_in(&line) == *after && Case::is_running(&line), "{frames}");
+            assert!(!has_run_partly.load(Ordering::Relaxed), "{frames}");
+        }
+        fates.dedup();
+        let all = [Fate::Untouched, Fate::Stopped, Fate::Partial, Fate::Unverified, Fate::Verified];
+        assert_eq!(fates, all, "{model:?}, answers: {is_answer}");
     }
 }

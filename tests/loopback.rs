@@ -2,7 +2,7 @@
 
 use rungwise::link::frame::{BITS_PER_BYTE, STX};
 use rungwise::link::plc::{Faults, Plc, Server, Wire};
-use rungwise::link::{Host, Line, LinkError, Patience, Transport};
+use rungwise::link::{Host, Line, LinkError, Mode, Patience, Transport};
 use rungwise::machine_code::encode;
 use rungwise::target::{Model, Target};
 use std::io;
@@ -20,9 +20,16 @@ pub struct Ends {
     pub now_ns: i64,
     byte_ns: i64,
     busy_ns: [i64; 2],
+    /// When the PLC has something to do next, whatever arrives.
+    due_ns: i64,
+    /// Called whenever the PLC has come to RUN.
+    pub at_start: Option<AtStart>,
     pub sent: Vec<u8>,
     pub received: Vec<u8>,
 }
+
+/// Looks at a PLC.
+pub type AtStart = Box<dyn FnMut(&Plc) + Send>;
 
 /// From one scan to the next.
 pub const SCAN_NS: i64 = 10_000_000;
@@ -41,6 +48,8 @@ impl Loopback {
             now_ns: 0,
             byte_ns,
             busy_ns: [0; 2],
+            due_ns: 0,
+            at_start: None,
             sent: Vec::new(),
             received: Vec::new(),
         })))
@@ -55,9 +64,17 @@ impl Loopback {
         Host::connect(Line::new(self.clone(), Patience::default(), Arc::default()))
     }
 
+    /// From the next byte on one direction is dead: that to the PLC, or that of its answers.
+    pub fn cut(&self, is_answer: bool) {
+        let mut ends = self.ends();
+        let dead = Faults { disconnect: 1.0, ..Faults::default() };
+        if is_answer { ends.to_host.set_faults(dead) } else { ends.to_plc.set_faults(dead) }
+    }
+
     /// The line is put together again, and goes on with these faults.
     pub fn reconnect(&self, faults: Faults) {
         let mut ends = self.ends();
+        ends.due_ns = 0;
         ends.server.greet();
         for wire in 0..2 {
             let wire = if wire == 0 { &mut ends.to_plc } else { &mut ends.to_host };
@@ -75,9 +92,19 @@ impl Ends {
 
     /// Lets everything happen that does so up to now.
     fn settle(&mut self) {
+        let is_quiet = self.to_plc.next_ns().is_none_or(|next| next > self.now_ns);
+        if is_quiet && self.due_ns > self.now_ns {
+            return;
+        }
         while let Some(byte) = self.to_plc.receive(self.now_ns) {
             self.server.advance(self.now_ns);
-            let Some(answer) = self.server.take(byte, self.now_ns) else { continue };
+            let before = self.server.plc().mode();
+            let answer = self.server.take(byte, self.now_ns);
+            let is_started = before == Mode::Stop && self.server.plc().mode() == Mode::Run;
+            if let Some(look) = self.at_start.as_mut().filter(|_| is_started) {
+                look(self.server.plc());
+            }
+            let Some(answer) = answer else { continue };
             let bytes = if self.to_host.is_refused() { vec![0x15] } else { answer.bytes };
             for byte in bytes {
                 let due = self.arrival(1);
@@ -87,7 +114,7 @@ impl Ends {
                 self.byte_ns = (BITS_PER_BYTE * 1_000_000_000 / u64::from(baud)) as i64;
             }
         }
-        self.server.advance(self.now_ns);
+        self.due_ns = self.server.advance(self.now_ns).unwrap_or(i64::MAX);
     }
 
     fn is_dead(&self) -> bool {

@@ -52,9 +52,17 @@ impl Transport for TcpTransport {
     }
 
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
-        // A time-out of 0 would mean to wait for ever.
-        self.stream.set_read_timeout(Some(wait.max(Duration::from_micros(1))))?;
-        match self.stream.read(buffer) {
+        // A time-out of 0 would mean to wait for ever, and systems round a short one up to some milliseconds.
+        let read = if wait.is_zero() {
+            self.stream.set_nonblocking(true)?;
+            let read = self.stream.read(buffer);
+            self.stream.set_nonblocking(false)?;
+            read
+        } else {
+            self.stream.set_read_timeout(Some(wait.max(Duration::from_micros(1))))?;
+            self.stream.read(buffer)
+        };
+        match read {
             Ok(0) => Err(io::ErrorKind::UnexpectedEof.into()),
             Ok(count) => Ok(count),
             Err(error) if super::is_nothing(&error) => Ok(0),
