@@ -136,5 +136,6 @@ mod translate_two_outputs;
 mod translate_words;
 mod unit_calls;
 mod usage;
+mod vcd;
 mod virtual_plc;
 mod word_machines;

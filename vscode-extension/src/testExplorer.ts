@@ -190,7 +190,8 @@ function failed(
 ): vscode.TestMessage {
   const text = new vscode.MarkdownString().appendText(message);
   if (isFirst && picture !== undefined) {
-    text.appendCodeblock(picture, 'text');
+    // The view of a message draws several blanks as one, and time goes by columns.
+    text.appendCodeblock(picture.replaceAll(' ', '\u00a0'), 'text');
   }
   const told = new vscode.TestMessage(text);
   if (item.uri !== undefined) {

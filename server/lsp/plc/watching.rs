@@ -132,7 +132,7 @@ impl Watching {
         if image != self.image {
             (self.image, self.comparison, self.is_other) = (image, None, false);
         }
-        self.code = compiled(&self.files).ok().map(|(_, watched)| watched);
+        self.code = compiled(&self.files, true).ok();
         self.unknown.clear();
         let names = NamesOfPlc(target);
         let named = self.names.iter().filter_map(|name| Some((name.clone(), names.variable(name)?)));
@@ -327,7 +327,7 @@ impl Watching {
         more: &[String],
     ) -> Result<Json, Message> {
         let gone = || not_open(&self.uri);
-        let (code, _) = compiled(&self.files)?;
+        let code = compiled(&self.files, false)?;
         let snapshot = workspace.snapshot();
         let around = snapshot.around(snapshot.open(&self.uri).ok_or_else(gone)?);
         let names = NamesOfPlc(target);

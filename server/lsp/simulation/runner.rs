@@ -134,7 +134,8 @@ struct Thread {
 /// A program that runs, or pauses.
 struct Running {
     session: Session,
-    watched: Arc<Code>,
+    /// Code that says what it sees, once somebody has looked: it takes as long to make as the code that runs.
+    watched: Option<Arc<Code>>,
     /// The version of each file that was compiled, and the documents.
     files: Vec<(Uri, i32, Document)>,
     /// Whether the text is no longer what runs.
@@ -298,10 +299,10 @@ impl Running {
     fn start(workspace: &Workspace, uri: &Uri) -> Result<Running, Message> {
         let around = around(workspace, uri).ok_or_else(|| Message::new("simulate.not-running"))?;
         let files = files(&around);
-        let (code, watched) = compiled(&files)?;
+        let code = compiled(&files, false)?;
         Ok(Running {
             session: Session::new(code).with_limit(history_limit(workspace, uri)),
-            watched,
+            watched: None,
             files,
             is_outdated: false,
             is_paused: false,
@@ -424,9 +425,9 @@ impl Running {
     fn scan(&mut self) {
         let next = self.next_ns();
         let is_picture = !self.is_outdated && self.monitor.has_text() && self.since_picture() >= PICTURE;
-        let outcome = match is_picture {
-            true => {
-                let (sights, watched) = (&mut self.sights, &self.watched);
+        let outcome = match self.watched.as_ref().filter(|_| is_picture) {
+            Some(watched) => {
+                let sights = &mut self.sights;
                 let shown = self.monitor.instructions(watched);
                 sights.clear();
                 self.session.scan_seen(next, watched, |sight| {
@@ -435,7 +436,7 @@ impl Running {
                     }
                 })
             }
-            false => {
+            None => {
                 self.sights.clear();
                 self.session.scan(next)
             }
@@ -572,14 +573,14 @@ impl Running {
         }
         let files = files(&around);
         self.is_news = true;
-        match compiled(&files) {
-            Ok((code, watched)) => {
+        match compiled(&files, false) {
+            Ok(code) => {
                 self.task = None;
                 if !self.session.adopt(code) {
                     self.recorder.adopt(self.session.machine());
                 }
                 self.edition += 1;
-                (self.watched, self.is_outdated) = (watched, false);
+                (self.watched, self.is_outdated) = (None, false);
                 self.sights.clear();
                 self.watch_alarms(workspace, uri);
             }
@@ -587,6 +588,14 @@ impl Running {
         }
         (self.files, self.drivers) = (files, None);
         self.locate(workspace, uri);
+    }
+
+    /// Code that says what it sees; what could be compiled without that can be with it.
+    fn watched(&mut self) -> Arc<Code> {
+        if self.watched.is_none() {
+            self.watched = compiled(&self.files, true).ok();
+        }
+        self.watched.clone().unwrap_or_else(|| Arc::clone(self.session.machine().code()))
     }
 
     /// Watches the alarms of the project in the program as it is now.

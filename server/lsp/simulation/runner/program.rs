@@ -23,28 +23,23 @@ pub(super) fn files(around: &Around) -> Vec<(Uri, i32, Document)> {
     files.map(|open| (open.uri.clone(), open.version, open.document.clone())).collect()
 }
 
-/// Code that is fast, and code that says what it sees.
-pub(in crate::lsp) fn compiled(files: &[(Uri, i32, Document)]) -> Result<(Arc<Code>, Arc<Code>), Message> {
+/// Code that is fast, or that says what it sees.
+pub(in crate::lsp) fn compiled(
+    files: &[(Uri, i32, Document)],
+    is_watched: bool,
+) -> Result<Arc<Code>, Message> {
     let documents: Vec<&Document> = files.iter().map(|(_, _, document)| document).collect();
-    let make = |is_watched| {
-        compile(&documents, is_watched).map(Arc::new).map_err(|problems| {
-            let first = problems.first();
-            let place = first.and_then(|problem| {
-                let document = documents.get(problem.place.document as usize)?;
-                Some(document.line_of(problem.place.span.start as usize) + 1)
-            });
-            let reason = first.map(|problem| problem.obstacle.message());
-            Message::new("simulate.refused")
-                .with("line", place.unwrap_or(0))
-                .with_messages("reason", reason.into_iter().collect())
-        })
-    };
-    // Most of the work is reading the program, which each does for itself.
-    let (plain, watched) = std::thread::scope(|threads| {
-        let watched = threads.spawn(|| make(true));
-        (make(false), watched.join())
-    });
-    Ok((plain?, watched.unwrap_or_else(|_| make(true))?))
+    compile(&documents, is_watched).map(Arc::new).map_err(|problems| {
+        let first = problems.first();
+        let place = first.and_then(|problem| {
+            let document = documents.get(problem.place.document as usize)?;
+            Some(document.line_of(problem.place.span.start as usize) + 1)
+        });
+        let reason = first.map(|problem| problem.obstacle.message());
+        Message::new("simulate.refused")
+            .with("line", place.unwrap_or(0))
+            .with_messages("reason", reason.into_iter().collect())
+    })
 }
 
 /// The files of the program that the document at `uri` is a part of, as the editor has them now.

@@ -88,8 +88,11 @@ impl Running {
         }
         (self.is_news, self.shown) = (false, Some(Instant::now()));
         let scans = self.session.machine().scans();
+        let watched = match self.monitor.has_text() && !self.is_outdated {
+            true => self.watched(),
+            false => Arc::clone(self.session.machine().code()),
+        };
         if !self.is_outdated && self.sights.is_empty() && self.monitor.has_text() {
-            let watched = Arc::clone(&self.watched);
             self.sights = self.session.sights(scans, &watched).unwrap_or_default();
         }
         let number = self.files.iter().position(|(file, ..)| file == uri)?;
@@ -99,10 +102,10 @@ impl Running {
             true => Vec::new(),
             false => {
                 let machine = self.session.machine();
-                let mut elements = self.monitor.elements(place, &self.watched, &self.sights, machine);
+                let mut elements = self.monitor.elements(place, &watched, &self.sights, machine);
                 if machine.is_any_forced() {
                     let held = |own| machine.is_forced(own).then(|| machine.value(own, 0));
-                    elements.extend(self.monitor.forced(place, &self.watched, &held));
+                    elements.extend(self.monitor.forced(place, &watched, &held));
                 }
                 elements
             }
@@ -136,6 +139,7 @@ impl Running {
         if self.is_outdated {
             return Err(Message::new("why.outdated"));
         }
+        let watched = self.watched();
         let number = self.files.iter().position(|(file, ..)| file == uri).ok_or_else(gone)?;
         let here = Place::new(&self.files[number].2, workspace.snapshot().manner);
         let name = match about {
@@ -151,7 +155,7 @@ impl Running {
         }
         let documents: Vec<&Document> = self.files.iter().map(|(_, _, document)| document).collect();
         let drivers = self.drivers.get_or_insert_with(|| Drivers::of(&documents));
-        let reason = Inquiry::new(&self.session, &self.watched, &documents, drivers).why(&name, scan);
+        let reason = Inquiry::new(&self.session, &watched, &documents, drivers).why(&name, scan);
         let reason = reason.ok_or_else(|| Message::new("why.unknown").with("name", &name))?;
         Ok(match is_brief {
             true => why::brief(&reason, here.language).into(),

@@ -47,7 +47,8 @@ const PATHS = {
   minus: 'M3 7.25h10v1.5H3z',
   fit: 'M1.5 3H3v10H1.5zM13 3h1.5v10H13zM4 8l2.6-2.6v1.85h2.8V5.4L12 8l-2.6 2.6V8.75H6.6v1.85z',
   follow: 'M2 7.25h6.4L5.9 4.75 7 3.7 11.3 8 7 12.3l-1.1-1.05 2.5-2.5H2zM12.4 3h1.6v10h-1.6z',
-  press: 'M7.25 2h1.5v5.1l1.95-1.95 1.05 1.05L8 9.95 4.25 6.2 5.3 5.15l1.95 1.95zM3 11.75h10v1.5H3z',
+  // The sign for a push button in drawings of ladder: a cap above two contacts.
+  press: 'M4.5 2.5h7V4H8.75v3.5H14V9H2V7.5h5.25V4H4.5zM3.5 10.6a1.4 1.4 0 1 1 0 2.8 1.4 1.4 0 0 1 0-2.8zm9 0a1.4 1.4 0 1 1 0 2.8 1.4 1.4 0 0 1 0-2.8z',
   lock: 'M5 7V5a3 3 0 0 1 6 0v2h1v6.5H4V7zm1.5 0h3V5a1.5 1.5 0 0 0-3 0z',
 } as const;
 
