@@ -20,6 +20,8 @@ mod declared;
 
 mod helpers;
 
+mod block_coils;
+
 mod paired;
 
 mod reached;
@@ -248,6 +250,9 @@ fn written(
 ) -> Option<Translation> {
     let target = dialect::target(document, to, options.model);
     dialect::convert(document, (to, target), &mut program, Purpose::Text { is_whole });
+    if to == To::Iec && !document.target().is_fx() {
+        block_coils::doubt(&mut program.rungs);
+    }
     let write = |program: &source::Program| {
         page::write(document, program, (to, target), options, is_whole, is_cancelled)
     };
