@@ -37,7 +37,7 @@ pub mod told;
 
 mod dialect;
 use dialect::Purpose;
-pub use dialect::{device_called, variable_called};
+pub use dialect::{KEPT, KEPT_FORMS, device_called, variable_called};
 
 mod header;
 
