@@ -24,6 +24,8 @@ pub fn measure(table: &Table) {
         check_of(table, &of("check, list"), targets("< 1 s"), &list);
         check_of(table, &of("check, ladder"), targets("< 1 s"), &drawing);
     }
+    // Ten times the rungs.
+    table.judge_growth("1000 rungs, ", "10000 rungs, ", 12.0);
 }
 
 fn open(text: &str, notation: Notation) -> Document {
