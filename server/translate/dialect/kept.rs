@@ -14,7 +14,7 @@ pub const KEPT: &[&str] = &[
     // The order of execution: interrupts, loops, subroutines, the power of a section, steps, the pulse of a result.
     "CALL", "SRET", "FEND", "IRET", "EI", "DI", "FOR", "NEXT", "MC", "MCR", "STL", "RET", "IST", "MEP", "MEF",
     "WDT",
-    // Inputs and outputs beyond the image: fast counters and pulses, drives, displays, keys, special units, serial lines.
+    // Beyond the image of inputs and outputs: fast counters, pulses, drives, displays, keys, units, serial lines.
     "HSCS", "HSCR", "HSZ", "SPD", "PLSY", "PLSR", "PLSV", "PWM", "DRVI", "DRVA", "ZRN", "ABS", "REF", "REFF",
     "MTR", "TKY", "HKY", "DSW", "ARWS", "PR", "FROM", "TO", "RD3A", "WR3A", "RS", "VRRD", "VRSC", "PID",
     // The clock.
