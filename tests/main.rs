@@ -132,6 +132,7 @@ mod token_scopes;
 mod translate;
 mod translate_boxes;
 mod translate_iec;
+mod translate_rows;
 mod translate_two_outputs;
 mod translate_words;
 mod unit_calls;

@@ -271,7 +271,7 @@ fn branches_nest_as_deep_as_the_model_allows() {
 }
 
 /// A rung in which an instruction stands at a place of its own.
-fn around(form: Form, line: &str) -> String {
+pub(crate) fn around(form: Form, line: &str) -> String {
     match form.instruction.role {
         Role::Load | Role::StepLoad => format!("{line}\nOUT Y7\n"),
         Role::Series | Role::Parallel => format!("LD X1\n{line}\nOUT Y7\n"),

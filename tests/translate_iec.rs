@@ -824,7 +824,7 @@ const KEPT: &[(&str, &[&str])] = &[
     ("echidna-x-tutorial-example2", &[THERE_NOT_BOOLEAN, BACK_NOT_BOOLEAN]),
     ("echidna-x-tutorial-example3", &[THERE_NOT_BOOLEAN, BACK_NOT_BOOLEAN]),
     // RES of an LDmicro counter: a coil in the drawing, a call of the block in the list.
-    ("ldmicrowebsim-test-0", &["there undecided translate.different"]),
+    ("ldmicrowebsim-test-0", &["there undecided translate.block-coil"]),
     // Open wires and prose, which the check reports.
     ("vdorr-negative-test01", &["there undecided logic.open-circuit"]),
     ("vdorr-readme", &["there undecided logic.unreadable", "there undecided logic.unreadable"]),
@@ -894,6 +894,28 @@ fn there_and_back(name: &str, document: &Document) -> Vec<String> {
         }
     }
     said
+}
+
+#[test]
+fn a_coil_of_a_block_is_named() {
+    let drawn = "\
+| a                             C2 |
++-| |---------------------------(R)-+
+
+|           C2                      |
+|          +-----+                  |
+| b        | CTU |               y  |
++-| |------|CU  Q|--------------( )-+
+|       4--|PV   |                  |
+|          +-----+                  |
+";
+    let translation = to(&drawing(drawn), To::Iec);
+    let [reset, count] = &translation.rungs[..] else { panic!("{translation:?}") };
+    assert!(translation.text.contains("R       C2\n"), "{}", translation.text);
+    assert_eq!(reset.certificate, Some(Certificate::Undecided));
+    let note = reset.note.as_ref().expect("a note").render(Language::English);
+    assert!(note.contains("`C2` is a function block"), "{note}");
+    assert!(count.note.is_none() && count.certificate.is_some_and(Certificate::is_certain));
 }
 
 #[test]

@@ -20,6 +20,8 @@ mod declared;
 
 mod helpers;
 
+mod block_coils;
+
 mod paired;
 
 mod reached;
@@ -35,7 +37,7 @@ pub mod told;
 
 mod dialect;
 use dialect::Purpose;
-pub use dialect::{device_called, variable_called};
+pub use dialect::{KEPT, KEPT_FORMS, device_called, variable_called};
 
 mod header;
 
@@ -250,6 +252,9 @@ fn written(
 ) -> Option<Translation> {
     let target = dialect::target(document, to, options.model);
     dialect::convert(document, (to, target), &mut program, Purpose::Text { is_whole });
+    if to == To::Iec && !document.target().is_fx() {
+        block_coils::doubt(&mut program.rungs);
+    }
     let write = |program: &source::Program| {
         page::write(document, program, (to, target), options, is_whole, is_cancelled)
     };

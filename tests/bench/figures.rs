@@ -1,5 +1,6 @@
 //! Durations of one kind of event, and the rows of the table.
 
+use std::cell::RefCell;
 use std::time::{Duration, Instant};
 
 /// Durations of one kind of event, sorted.
@@ -31,6 +32,8 @@ pub struct Table {
     pub calibration: Duration,
     /// Only rows that contain one of these words are measured; all if there are none.
     pub wanted: Vec<String>,
+    /// The medians of the rows so far.
+    pub medians: RefCell<Vec<(String, Duration)>>,
 }
 
 impl Table {
@@ -50,10 +53,26 @@ impl Table {
 
     pub fn row(&self, what: &str, target: &str, figures: &Figures) {
         let (median, p95) = (figures.percentile(50), figures.percentile(95));
+        self.medians.borrow_mut().push((what.to_string(), median));
         let ratio = median.as_secs_f64() / self.calibration.as_secs_f64();
         let processor = figures.processor.map_or(String::new(), milliseconds);
         let (median, p95) = (milliseconds(median), milliseconds(p95));
         println!("| {what} | {median} | {p95} | {ratio:.3} | {processor} | {target} |");
+    }
+
+    /// Rows that judge whether what takes some time with `small` as the first word takes no more than `most` times as
+    /// long with `large`.
+    pub fn judge_growth(&self, small: &str, large: &str, most: f64) {
+        let medians = self.medians.borrow();
+        for (name, median) in medians.iter() {
+            let Some(what) = name.strip_prefix(small) else { continue };
+            let grown = medians.iter().find(|(other, _)| other.strip_prefix(large) == Some(what));
+            let Some((name, grown)) = grown else { continue };
+            let ratio = grown.as_secs_f64() / median.as_secs_f64();
+            let judged = if ratio <= most { "holds" } else { "TOO MUCH" };
+            let value = format!("{ratio:.1} times: {judged}");
+            self.value(&format!("{name}, to {}", small.trim()), &format!("<= {most} times"), &value);
+        }
     }
 
     /// A row with a value that is no duration.

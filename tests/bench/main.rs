@@ -50,6 +50,7 @@ use figures::{Figures, Table, calibrate, milliseconds};
 use lsp_client::{Client, at};
 use programs::Program;
 use serde_json::{Value, json};
+use std::cell::RefCell;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -67,7 +68,7 @@ fn main() {
         return;
     }
     let wanted = arguments.into_iter().filter(|argument| !argument.starts_with("--")).collect();
-    let table = Table { calibration: calibrate(), wanted };
+    let table = Table { calibration: calibrate(), wanted, medians: RefCell::default() };
     table.head();
     for notation in ["il", "lad"] {
         for lines in [1_000, 5_000, 50_000] {

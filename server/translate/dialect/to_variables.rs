@@ -5,7 +5,9 @@ mod applied;
 use super::counted::{Coils, Reached, stopping, turned};
 use super::first_scan;
 use super::registers::is_wide_counter;
-use super::{END_POINTER, Lack, PULSE, Purpose, Registers, address, pair_address, single_edge, without};
+use super::{
+    END_POINTER, KEPT, Lack, PULSE, Purpose, Registers, address, pair_address, single_edge, without,
+};
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::logic::{
     Action, Call, Callee, Computation, Contact, Deed, Drive, Expression, Gate, Path, Storage, Term, Test,
@@ -225,6 +227,9 @@ impl Converter<'_> {
             let label = variable(&label.key(), label.span);
             let jump = Action { deed: Deed::Jump, terms: vec![label], span: action.span };
             return Ok(vec![Drive::Action(jump)]);
+        }
+        if KEPT.contains(&form.instruction.mnemonic) {
+            return Err(Lack::Unnamed);
         }
         let drives = self.applied(form, &action.terms, action.span)?;
         if form.pulse { self.on_arrival(drives, action.span).map(|drive| vec![drive]) } else { Ok(drives) }
