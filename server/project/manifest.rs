@@ -1,5 +1,6 @@
 //! The manifest `rungwise.toml`.
 
+use super::PlcSettings;
 use crate::check::Severities;
 use crate::document::{Notation, exclusive_names};
 use crate::simulate::{Alarm, duration};
@@ -38,6 +39,8 @@ pub struct Manifest {
     pub tasks: Vec<TaskSettings>,
     /// The serial port of the PLC.
     pub port: Option<String>,
+    /// What a download writes into the parameters of the PLC.
+    pub plc: PlcSettings,
     /// What is kept while a program is watched in a PLC.
     pub monitor: MonitorSettings,
     /// What people are told of while the program is watched in a PLC, or runs in the simulator.
@@ -271,6 +274,9 @@ impl Manifest {
                 let start = item(text, &["check", "never"], number).start as usize;
                 return Err(ManifestError { message, span: within.shifted(start) });
             }
+        }
+        if let Some((message, span)) = self.plc.problem(self.target().map(|target| target.model)) {
+            return Err(ManifestError { message, span: within_quotes(text, span) });
         }
         for alarm in &self.alarms {
             let fail = |message, span| Err(ManifestError { message, span: within_quotes(text, span) });
