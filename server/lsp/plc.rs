@@ -8,8 +8,8 @@
 //! rungwise.plc.connect      { uri?, port?: string, timeout?: ms = 1000 }   // the port of the project of `uri`
 //! rungwise.plc.disconnect   { }
 //! rungwise.plc.state        { uri? }                     // with what of `uri` is not in the PLC as it stands there
-//! rungwise.plc.plan         { uri }                      → { same, bytes, steps, sum, form: "ladder" | "fx", before, after,
-//!                                                            parameters: string[] }
+//! rungwise.plc.plan         { uri }                      → { same, bytes, steps, sum,
+//!                             form: "ladder" | "fx", before, after, parameters: string[] }
 //! rungwise.plc.verify       { uri }                      // the same
 //! rungwise.plc.download     { uri, start?: boolean, confirmed?: boolean, sum? }
 //!                                                        → { written, compared, steps, mode, backup? }

@@ -12,8 +12,8 @@ use toml::Spanned;
 pub struct PlcSettings {
     /// At most 32 characters of ASCII.
     pub title: Option<Spanned<String>>,
-    /// Which devices keep their values without power, as `M500-M1023`: at most one range each of M, S, D, counters of 16
-    /// and counters of 32 bits; FX2N only.
+    /// Which devices keep their values without power, as `M500-M1023`: at most one range each of M, S, D, counters of
+    /// 16 and counters of 32 bits; FX2N only.
     pub latch: Vec<Spanned<String>>,
 }
 
