@@ -1,7 +1,11 @@
 //! What the verbs of the programming port say by the way: questions, backups, what is shown of a program, and of a look.
 
 use crate::binary::{command, folder, run};
-use crate::virtual_plc::VirtualPlc;
+use crate::virtual_plc::{Pass, VirtualPlc, proxy};
+use rungwise::link::frame::framed;
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::sync::mpsc::channel;
 use tempfile::TempDir;
 
 const MOTOR: &str = "LD X0\nOUT Y0\nEND\n";
@@ -100,4 +104,69 @@ fn ctrl_c_ends_a_question() {
         assert!(rest.contains("cancelled"), "{rest}");
     }
     check(&folder, &["verify", "motor.il", "--port", &plc.port], 0);
+}
+
+/// What a PLC answers to a request for its parameters.
+fn asked(address: &str, body: &str, digits: usize) -> String {
+    let mut stream = TcpStream::connect(address).unwrap();
+    stream.write_all(&framed(body.as_bytes())).unwrap();
+    let mut answer = vec![0; digits + 4];
+    stream.read_exact(&mut answer).unwrap();
+    String::from_utf8(answer[1..=digits].to_vec()).unwrap()
+}
+
+#[test]
+fn title_and_latched_ranges_are_those_of_the_project() {
+    let manifest =
+        "files = [\"motor.il\"]\n[plc]\ntitle = \"PRESS 3\"\nlatch = [\"M0-M1023\", \"D100-D511\"]\n";
+    let folder = folder(&[("motor.il", MOTOR), ("rungwise.toml", manifest)]);
+    let plc = VirtualPlc::start(folder.path(), &["--program", "motor.il"]);
+    let (sender, written) = channel();
+    let port = proxy(plc.address(), move |body| {
+        if body.starts_with("E11") {
+            sender.send(body.to_string()).unwrap();
+        }
+        Pass::On
+    });
+    let (_, err) = check(&folder, &["download", "--yes", "--port", &port], 0);
+    assert!(err.contains("the title of the PLC becomes \"PRESS 3\"; it is \"\""), "{err}");
+    assert!(err.contains("M0–M1023 are latched then; M500–M1023 are"), "{err}");
+    // All of the parameters in two pieces, with a sum of 0, as the maker's tool writes them; nothing of the program.
+    let title = "5052455353203320".to_string() + &"20".repeat(24);
+    let first = "E118000400800000000000000".to_string() + &"20".repeat(8) + &title;
+    let first = first + "0008FF0BF401E703640EC70EDC0EFF0E";
+    let second = "E1180401CC800FE03".to_string() + &"0000".repeat(12);
+    assert_eq!(written.try_iter().collect::<Vec<_>>(), [first, second]);
+    let title = |port: &str| {
+        let (out, _) = check(&folder, &["status", "--port", port, "--format", "json"], 0);
+        serde_json::from_str::<serde_json::Value>(&out).unwrap()["title"].as_str().unwrap().to_string()
+    };
+    assert_eq!(title(&plc.port), "PRESS 3");
+    assert_eq!(asked(plc.address(), "E01803004", 8), "0008FF0B");
+    assert_eq!(asked(plc.address(), "E01804004", 8), "C800FE03");
+    // There is nothing to do a second time; and all of it comes back.
+    let (_, err) = check(&folder, &["download", "--dry-run", "--port", &plc.port], 0);
+    assert!(err.contains("is the same") && !err.contains("latched"), "{err}");
+    check(&folder, &["download", "--rollback", "--yes", "--port", &plc.port], 0);
+    assert_eq!(title(&plc.port), "");
+    assert_eq!(asked(plc.address(), "E01803004", 8), "F409FF0B");
+}
+
+#[test]
+fn what_cannot_be_a_parameter_is_refused_in_the_manifest() {
+    let plc = "port = \"tcp://127.0.0.1:1\"\nfiles = [\"motor.il\"]\n";
+    for (target, own, word) in [
+        ("fx2n", "title = \"a title that is longer than a PLC has place for\"", "at most 32 characters"),
+        ("fx2n", "title = \"冲压\"", "at most 32 characters"),
+        ("fx2n", "latch = [\"M0-M3071\"]", "no range that can be latched"),
+        ("fx2n", "latch = [\"M9-M3\"]", "no range that can be latched"),
+        ("fx2n", "latch = [\"C100-C220\"]", "no range that can be latched"),
+        ("fx2n", "latch = [\"M0-M9\", \"M20-M30\"]", "a second range"),
+        ("fx1n", "latch = [\"M0-M9\"]", "in an FX2N only"),
+    ] {
+        let manifest = format!("target = \"{target}\"\n{plc}[plc]\n{own}\n");
+        let folder = folder(&[("motor.il", MOTOR), ("rungwise.toml", &manifest)]);
+        let (_, err) = check(&folder, &["download", "--yes"], 2);
+        assert!(err.contains(word) && err.contains("rungwise.toml:5:"), "{own}: {err}");
+    }
 }

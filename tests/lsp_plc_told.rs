@@ -68,6 +68,9 @@ fn how_far_a_download_is_is_told_in_percent_bytes_and_time() {
             let own: Vec<_> = said.iter().filter(|said| said.starts_with(&format!("{word}: "))).collect();
             assert!(own.iter().all(|said| said.ends_with(" s left") && said.contains(" bytes, ")), "{own:?}");
             assert!(!own.is_empty(), "{word}: {said:?}");
+            // What there is in all is known from the beginning.
+            let totals = own.iter().map(|said| said.split(' ').nth(3));
+            assert!(totals.clone().all(|total| Some(total) == totals.clone().next_back()), "{own:?}");
         }
         // LD M, OUT M: two bytes each, and END.
         let last = if verb == "plan" {

@@ -89,11 +89,21 @@ fn with(text: &str, label: &str) -> String {
 #[test]
 fn keys_and_tables_that_are_not_there_yet_are_proposed() {
     let keys = ["name", "target", "dialect", "files", "comments", "port"];
-    let tables =
-        ["[check]", "[format]", "[monitor]", "[rules]", "[[alarm]]", "[simulate]", "[[task]]", "[translate]"];
+    let tables = [
+        "[check]",
+        "[format]",
+        "[monitor]",
+        "[plc]",
+        "[rules]",
+        "[[alarm]]",
+        "[simulate]",
+        "[[task]]",
+        "[translate]",
+    ];
     assert_eq!(labels("$0"), set(keys.into_iter().chain(tables)));
     let left = labels("target = \"fx2n\"\n$0\nname = \"a\"\n[rules]\n");
-    let tables = ["[check]", "[format]", "[monitor]", "[[alarm]]", "[simulate]", "[[task]]", "[translate]"];
+    let tables =
+        ["[check]", "[format]", "[monitor]", "[plc]", "[[alarm]]", "[simulate]", "[[task]]", "[translate]"];
     assert_eq!(left, set(["dialect", "files", "comments", "port"].into_iter().chain(tables)));
     let left = labels("[format]\nstyle = \"iec\"\n$0");
     assert_eq!(
@@ -102,6 +112,7 @@ fn keys_and_tables_that_are_not_there_yet_are_proposed() {
             "width",
             "[check]",
             "[monitor]",
+            "[plc]",
             "[rules]",
             "[[alarm]]",
             "[simulate]",
@@ -145,7 +156,10 @@ fn values_are_the_words_and_files_that_fit() {
     assert_eq!(labels("rules.open-circuit = \"$0\""), set(["error", "warning", "hint", "off"]));
     let codes = RULES.iter().map(|rule| rule.code).filter(|code| *code != "open-circuit");
     let rules = labels("[rules]\nopen-circuit = \"off\"\n$0\n[check]\n[format]\n[[task]]\n");
-    assert_eq!(rules, set(codes.chain(["[monitor]", "[[alarm]]", "[simulate]", "[[task]]", "[translate]"])));
+    assert_eq!(
+        rules,
+        set(codes.chain(["[monitor]", "[plc]", "[[alarm]]", "[simulate]", "[[task]]", "[translate]"]))
+    );
     assert_eq!(labels("[translate]\ntarget = $0"), set(["fx1s", "fx1n", "fx2n", "fx3u"]));
     assert_eq!(labels("files = [$0"), set(["main.lad", "sub/motors.il"]));
     assert_eq!(labels("files = [$0]"), set(["main.lad", "sub/motors.il"]), "closed by the editor");

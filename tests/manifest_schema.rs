@@ -39,7 +39,7 @@ fn every_table_has_the_keys_that_are_read() {
     let schema = schema();
     assert_eq!(keys(&schema), keys_read("zzz = 1"));
     assert_eq!(keys(&schema["properties"]["format"]), keys_read("[format]\nzzz = 1"));
-    for table in ["check", "monitor", "simulate", "translate"] {
+    for table in ["check", "monitor", "plc", "simulate", "translate"] {
         assert_eq!(keys(&schema["properties"][table]), keys_read(&format!("[{table}]\nzzz = 1")));
         assert_eq!(schema["properties"][table]["additionalProperties"], Value::Bool(false));
     }

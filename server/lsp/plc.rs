@@ -8,7 +8,8 @@
 //! rungwise.plc.connect      { uri?, port?: string, timeout?: ms = 1000 }   // the port of the project of `uri`
 //! rungwise.plc.disconnect   { }
 //! rungwise.plc.state        { uri? }                     // with what of `uri` is not in the PLC as it stands there
-//! rungwise.plc.plan         { uri }                      → { same, bytes, steps, sum, form: "ladder" | "fx", before, after }
+//! rungwise.plc.plan         { uri }                      → { same, bytes, steps, sum,
+//!                             form: "ladder" | "fx", before, after, parameters: string[] }
 //! rungwise.plc.verify       { uri }                      // the same
 //! rungwise.plc.download     { uri, start?: boolean, confirmed?: boolean, sum? }
 //!                                                        → { written, compared, steps, mode, backup? }
@@ -29,6 +30,7 @@
 //!
 //! `sum` is that of the program in the PLC; a download that is told one is refused if another program is there
 //! meanwhile.
+//! `parameters` are sentences about the title and the latched ranges that `[plc]` of `rungwise.toml` changes.
 //! `before` and `after` are what is in the PLC and what shall be, as drawings where `uri` is one, else as instruction
 //! lists. Whoever does not send
 //! `confirmed` is asked by the server before a PLC is written or started. A request that is cancelled ends at the next
@@ -54,6 +56,8 @@
 //! `drift` are the instructions of `uri` that are not so in the PLC, as far as that is known: from the last upload,
 //! download or comparison. While a program is monitored, `rungwise/monitor` comes as in a simulation, with
 //! `source: "plc"`: values are those that were read in one exchange, and the power is computed from them.
+
+mod answers;
 
 mod desk;
 

@@ -64,6 +64,11 @@ impl Image {
         &self.memory
     }
 
+    /// The same program with other parameters; nothing if it does not fit then.
+    pub fn with_parameters(&self, parameters: ParameterBlock) -> Option<Image> {
+        Image::new(parameters, self.program())
+    }
+
     /// The words of the program: up to END, or without the blank memory behind it where there is no END.
     pub fn program(&self) -> &[u16] {
         program_in(&self.memory)
@@ -71,14 +76,25 @@ impl Image {
 
     /// What must be written to make this image of `old`, in pieces of `most` bytes or fewer, and as few of them as
     /// possible. The sum is left to the PLC, which computes it when a download ends.
+    ///
+    /// Of parameters that change all are written, with a sum of 0, as the maker's tool was recorded to do.
     pub fn changed_chunks(&self, old: &Image, most: usize) -> Vec<Chunk> {
-        const SUM: usize = 1;
         let words: Vec<u16> = self.words().collect();
-        let old: Vec<u16> = old.words().collect();
-        let is_changed = |place: &usize| *place != SUM && words.get(*place) != old.get(*place);
+        let held: Vec<u16> = old.words().collect();
+        let is_changed = |place: &usize| words.get(*place) != held.get(*place);
         let most = (most / 2).max(1);
         let mut chunks = Vec::new();
-        let mut place = 0;
+        let parameters = self.parameters.with_sum(0);
+        if parameters != old.parameters.with_sum(0) {
+            let mut address = PARAMETER_ADDRESS;
+            for words in parameters.to_words().chunks(most) {
+                let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+                let length = bytes.len() as u32;
+                chunks.push(Chunk { address, bytes });
+                address += length;
+            }
+        }
+        let mut place = ParameterBlock::WORDS;
         while let Some(first) = (place..words.len()).find(is_changed) {
             let end = (first + most).min(words.len());
             let last = (first..end).rev().find(is_changed).unwrap_or(first);

@@ -175,6 +175,14 @@ impl ParameterBlock {
         Some(self)
     }
 
+    /// With the title and the latched ranges of another block.
+    pub fn with_settings_of(mut self, other: &ParameterBlock) -> ParameterBlock {
+        for words in [TITLE, LATCHES..LATCHES + LATCHED.len()] {
+            self.words[words.clone()].copy_from_slice(&other.words[words]);
+        }
+        self
+    }
+
     /// Blocks of 500 file registers.
     pub fn file_register_blocks(&self) -> u16 {
         self.words[FILE_REGISTERS + 1]

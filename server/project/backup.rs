@@ -1,7 +1,7 @@
 //! What was in a PLC before a download, kept beside the project in `.rungwise/backup`.
 
 use super::Project;
-use crate::machine_code::Image;
+use crate::machine_code::{Image, ParameterBlock};
 use crate::target::Target;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
@@ -50,6 +50,11 @@ impl Backup {
     /// The backup in a file; nothing if there is none, or none that can be read.
     pub fn read(path: &Path) -> Option<Backup> {
         serde_json::from_str(&std::fs::read_to_string(path).ok()?).ok()
+    }
+
+    /// The parameters.
+    pub fn parameters(&self) -> ParameterBlock {
+        ParameterBlock::from_words(&self.parameters)
     }
 
     /// Whether a file may be one, by its name.

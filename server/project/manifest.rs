@@ -1,5 +1,6 @@
 //! The manifest `rungwise.toml`.
 
+use super::PlcSettings;
 use crate::check::Severities;
 use crate::document::{Notation, exclusive_names};
 use crate::simulate::{Alarm, HistoryLimit, duration};
@@ -38,6 +39,8 @@ pub struct Manifest {
     pub tasks: Vec<TaskSettings>,
     /// The serial port of the PLC.
     pub port: Option<String>,
+    /// What a download writes into the parameters of the PLC.
+    pub plc: PlcSettings,
     /// What is kept while a program is watched in a PLC.
     pub monitor: MonitorSettings,
     /// How programs are simulated.
@@ -290,6 +293,9 @@ impl Manifest {
                 let start = item(text, &["check", "never"], number).start as usize;
                 return Err(ManifestError { message, span: within.shifted(start) });
             }
+        }
+        if let Some((message, span)) = self.plc.problem(self.target().map(|target| target.model)) {
+            return Err(ManifestError { message, span: within_quotes(text, span) });
         }
         for alarm in &self.alarms {
             let fail = |message, span| Err(ManifestError { message, span: within_quotes(text, span) });

@@ -3,6 +3,9 @@
 mod manifest;
 pub use manifest::{FormatSettings, FormatStyle, MOST_WIDTH, Manifest, ManifestError, TaskSettings};
 
+mod plc;
+pub use plc::PlcSettings;
+
 mod comments;
 pub use comments::{CommentsFile, decode};
 

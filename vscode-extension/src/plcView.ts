@@ -23,6 +23,8 @@ interface Plan {
   readonly after: string;
   /** What both sides are: drawings, or instruction lists. */
   readonly form?: 'ladder' | 'fx';
+  /** What changes in the parameters, a sentence each. */
+  readonly parameters?: readonly string[];
 }
 
 export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocumentContentProvider, vscode.Disposable {
@@ -191,7 +193,8 @@ export class PlcView implements vscode.TreeDataProvider<PlcRow>, vscode.TextDocu
     }
     const write = t('Download');
     const start = t('Download and Start');
-    const detail = t('The PLC stops. What is in it now is kept in .rungwise/backup. After a start the machine may move.');
+    const stops = t('The PLC stops. What is in it now is kept in .rungwise/backup. After a start the machine may move.');
+    const detail = [stops, ...(plan.parameters ?? [])].join('\n');
     const question = t('Write {0} bytes ({1} steps) into the {2} at {3}?', plan.bytes, plan.steps, this.state.title ?? 'PLC', this.state.port ?? '');
     // What Enter chooses is what does nothing.
     const chosen = await vscode.window.showWarningMessage(question, { modal: true, detail }, t('Only Look'), write, start);

@@ -192,7 +192,7 @@ M.verbs = {
       if is_start then
         question = t('Stop the PLC, write %d bytes into it and start it? The machine may move.', plan.bytes)
       end
-      if is_confirmed(question) then
+      if is_confirmed(table.concat(vim.list_extend({ question }, plan.parameters or {}), '\n')) then
         tell_long(buffer, 'download', { confirmed = true, start = is_start, sum = plan.sum }, function(done)
           client.notify(t('%d bytes written, %d read back and compared; the PLC is in %s',
             done.written, done.compared, done.mode))

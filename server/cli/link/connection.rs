@@ -144,8 +144,8 @@ pub(super) fn confirmed(question: &Message, is_yes: bool, host: &mut AnyHost, la
     is_confirmed
 }
 
-/// A line that somebody types; nothing if Ctrl-C comes in its place. Reading goes on behind a signal, so it is left to a
-/// thread, with which the process ends.
+/// A line that somebody types; nothing if Ctrl-C comes in its place. Reading goes on behind a signal, so it is left to
+/// a thread, which ends with the process.
 fn typed(host: &mut AnyHost) -> Option<String> {
     let (sender, line) = channel();
     std::thread::spawn(move || {

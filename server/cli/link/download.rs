@@ -6,7 +6,7 @@ use super::contents::{is_drawn, words_at};
 use crate::cli::Outcome;
 use crate::cli::colour::Colour;
 use crate::cli::diff::unified;
-use crate::cli::input::{caution, complain, remark, say};
+use crate::cli::input::{caution, complain, remark, say, usable_manifest};
 use crate::link::{Mode, Plan};
 use crate::machine_code::decode;
 use crate::project::{Backup, Origin};
@@ -66,10 +66,12 @@ fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Resul
     let plan = host.plan_behind(replaced, &words, target, &mut |progress| bar.show(progress));
     bar.clear();
     let plan = plan.map_err(|error| failed(&error, language))?;
+    let plan = with_parameters(plan, backup.map_or(beside, |(path, _)| path), language)?;
     if let Some((_, backup)) = backup {
         caution_other_plc(backup, &host.identity().version(), &plan, language);
     }
     say(&changes(&plan, is_drawn(beside), colour, language));
+    plan.parameter_changes().iter().for_each(|change| remark(&change.render(language)));
     if plan.bytes() == 0 {
         remark(&Message::new("link.same").render(language));
     }
@@ -112,6 +114,21 @@ fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Resul
             Err(outcome)
         }
     }
+}
+
+/// The plan with the title and the latched ranges of the backup, or those that the project of the program at `path`
+/// names.
+///
+/// # Errors
+/// With the outcome, after a complaint about the manifest.
+fn with_parameters(plan: Plan, path: &Path, language: Language) -> Result<Plan, Outcome> {
+    if Backup::is_named_so(path) {
+        let kept = Backup::read(path).map(|backup| backup.parameters());
+        return Ok(plan.with_parameters(|own| kept.map_or(own, |kept| own.with_settings_of(&kept))));
+    }
+    let manifest = usable_manifest(path, language).ok_or(Outcome::Unusable)?;
+    let model = plan.model;
+    Ok(plan.with_parameters(|own| manifest.plc.applied(own, model)))
 }
 
 /// Says if the PLC does not look like the one that a backup was read from.

@@ -4,7 +4,9 @@ use super::program::{Cut, Teller};
 use super::{Dialect, Host};
 use crate::link::frame::MOST_DATA;
 use crate::link::{Command, LinkError, Mode, Transport};
-use crate::machine_code::{Chunk, END, Image, PARAMETER_ADDRESS, PROGRAM_ADDRESS, ParameterBlock, executed};
+use crate::machine_code::{
+    Chunk, END, Image, Latch, PARAMETER_ADDRESS, PROGRAM_ADDRESS, ParameterBlock, executed,
+};
 use crate::target::{Model, Target};
 use crate::text::Message;
 use std::sync::Arc;
@@ -130,6 +132,29 @@ impl Plan {
         self.wanted.changed_chunks(&self.before, MOST_DATA).iter().map(|chunk| chunk.bytes.len()).sum()
     }
 
+    /// The same with other parameters, where the program fits then.
+    pub fn with_parameters(mut self, parameters: impl FnOnce(ParameterBlock) -> ParameterBlock) -> Plan {
+        if let Some(wanted) = self.wanted.with_parameters(parameters(*self.wanted.parameters())) {
+            self.wanted = wanted;
+        }
+        self
+    }
+
+    /// What changes in the parameters, a sentence each.
+    pub fn parameter_changes(&self) -> Vec<Message> {
+        let [before, after] = [self.before.parameters(), self.wanted.parameters()];
+        let told = |key, before: String, after: String| {
+            (before != after).then(|| Message::new(key).with("before", before).with("after", after))
+        };
+        let range = |block: &ParameterBlock, latch| {
+            block.latched(latch).map_or_else(|| "–".to_string(), |(first, last)| format!("{first}–{last}"))
+        };
+        let latches = Latch::ALL.into_iter();
+        let latches =
+            latches.filter_map(|latch| told("link.latch-changes", range(before, latch), range(after, latch)));
+        told("link.title-changes", before.title(), after.title()).into_iter().chain(latches).collect()
+    }
+
     /// The plan that undoes this one.
     pub fn undone(&self) -> Plan {
         Plan {
@@ -145,7 +170,8 @@ impl Plan {
 impl<T: Transport> Host<T> {
     /// Reads what is in the PLC and sees whether `program` may take its place. Nothing is changed.
     ///
-    /// The parameters of the PLC stay as they are: which devices are latched, its title, its memory.
+    /// The parameters of the PLC stay as they are, which devices are latched, its title, its memory, unless
+    /// [`Plan::with_parameters`] says otherwise.
     ///
     /// # Errors
     /// If the PLC is another one than `target`, has a keyword or too little memory, or if the line fails.

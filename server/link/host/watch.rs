@@ -126,8 +126,8 @@ impl Watch {
 }
 
 impl<T: Transport> Host<T> {
-    /// The values of all that is watched, in the order of the points; of bits 0 or 1. Each 64 bytes of them are from one
-    /// moment, 512 bits or 32 words; [`Watch::exchanges`] says then how many moments there were.
+    /// The values of all that is watched, in the order of the points; of bits 0 or 1. Each 64 bytes of them are from
+    /// one moment, 512 bits or 32 words; [`Watch::exchanges`] says then how many moments there were.
     ///
     /// # Errors
     /// If there is no such device, or the line fails.

@@ -6,6 +6,7 @@ use super::super::projects::file_path;
 use super::super::simulation::MonitorMethod;
 use super::super::status::LineStatus;
 use super::super::workspace::Workspace;
+use super::answers::{planned, word_of};
 use super::drift::{Encoded, drift, encoded, is_drawn};
 use super::recording::SharedRecording;
 use super::shown::Shown;
@@ -16,7 +17,6 @@ use crate::machine_code::{Image, decode};
 use crate::project::{Backup, Origin};
 use crate::simulate::Value;
 use crate::text::Message;
-use crate::translate::from_machine_code::drawn;
 use serde_json::{Value as Json, json};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -470,7 +470,7 @@ impl Thread {
             Order::State { uri } => return Ok(self.state(uri.as_ref())),
             Order::Plan { uri } => {
                 let (encoded, plan) = plc.plan(&workspace, &uri, &shown(Stage::Reading))?;
-                answer = Some(planned(&encoded, &plan, is_drawn(&workspace, &uri)));
+                answer = Some(planned(&encoded, &plan, is_drawn(&workspace, &uri), language));
                 about = Some(uri);
             }
             Order::Download { uri, is_started, sum } => {
@@ -570,6 +570,9 @@ impl Connected {
         let (words, target) = (&encoded.words, encoded.target);
         let plan = self.host.plan_behind(replaced, words, target, &mut |progress| shown.report(progress));
         let plan = plan.map_err(|error| told(&error))?;
+        let manifest = workspace.snapshot().open(uri).map(|open| Arc::clone(&open.manifest));
+        let plan = plan
+            .with_parameters(|own| manifest.map_or(own, |manifest| manifest.plc.applied(own, target.model)));
         self.image = Some(plan.before.clone());
         Ok((encoded, plan))
     }
@@ -673,27 +676,4 @@ impl Connected {
 /// What went wrong on the line, and what helps.
 fn told(error: &LinkError) -> Message {
     Message::new("link.failed").with_messages("reasons", vec![error.message(), error.help()])
-}
-
-fn planned(encoded: &Encoded, plan: &Plan, is_drawn: bool) -> Json {
-    let list = |words: &[u16]| match is_drawn {
-        true => drawn(words, plan.model),
-        false => decode(words, plan.model).text,
-    };
-    json!({
-        "same": plan.before.program() == plan.wanted.program(),
-        "bytes": plan.bytes(),
-        "sum": format!("{:04X}", plan.found),
-        "steps": encoded.words.len(),
-        "form": if is_drawn { "ladder" } else { "fx" },
-        "before": list(plan.before.program()),
-        "after": list(plan.wanted.program()),
-    })
-}
-
-fn word_of(mode: Mode) -> &'static str {
-    match mode {
-        Mode::Run => "RUN",
-        Mode::Stop => "STOP",
-    }
 }
