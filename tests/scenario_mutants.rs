@@ -2,7 +2,7 @@
 
 use rungwise::document::Document;
 use rungwise::project::{Manifest, open_document};
-use rungwise::scenario::Mutants;
+use rungwise::scenario::{Bench, Mutants};
 use rungwise::text::Language;
 use rungwise::translate::{Proof, prove};
 
@@ -125,6 +125,38 @@ fn faults_behind_detectors_of_edges_declare_what_they_need_and_run() {
             let made = &mutants.documents(mutant).unwrap_or_else(|| panic!("{mutant:?}"))[0];
             let all: [&Document; 1] = [made];
             assert!(rungwise::simulate::compile(&all, false).is_ok(), "{mutant:?}\n{}", made.text());
+        }
+    }
+}
+
+/// Drawings of two rungs whose rails stand where none are drawn by the writer of mutants.
+const ODD_RAILS: [&str; 8] = [
+    // A rail that begins above the first rung, and none on the right.
+    "|\n+------+\n|      |  one    red\n| two  +--[ ]-+--( )-\n+-[ ]---------+\n|             |  dim\n|             +--( )-\n",
+    // It goes on below the last one.
+    "|   X0      X1        Y0  |\n+---| |-----|/|------( )--+\n|   X2                Y1  |\n+---| |--------------( )--+\n|                         |\n|                         |\n",
+    "    a      b        y\n ---] [----]/[-----( )\n\n    c               z\n ---] [------------( )\n",
+    "    a      b        y    |\n ---] [----]/[-----( )---|\n    c               z    |\n ---] [------------( )---|\n",
+    "|   a      b        y\n|---] [----]/[-----( )\n|   c               z\n|---] [------------( )\n",
+    "||   a      b        y   ||\n||--] [----]/[-----( )---||\n||   c               z   ||\n||--] [------------( )---||\n",
+    "        |   X0      X1        Y0  |\n        +---| |-----|/|------( )--+\n        |                         |\n        |   X2                Y1  |\n        +---| |--------------( )--+\n",
+    "|   a      b    |    y   |\n|---] [---]/[---|---( )--|\n|   c           |    z   |\n|---] [---------|---( )--|\n",
+];
+
+#[test]
+fn mutants_of_drawings_with_odd_rails_run_and_are_others() {
+    for text in ODD_RAILS {
+        let document = open_document("a.lad", text, &Manifest::default(), None, None);
+        assert!(Bench::new(&[&document]).is_ok(), "{text}");
+        let documents: [&Document; 1] = [&document];
+        let mutants = Mutants::of(&documents);
+        assert!(mutants.len() >= 4, "{text}");
+        for mutant in mutants.sample(usize::MAX, 0) {
+            let told = mutant.change.message().render(Language::English);
+            let made = mutants.documents(mutant).unwrap_or_else(|| panic!("{told} is not written\n{text}"));
+            assert!(Bench::new(&[&made[0]]).is_ok(), "{told} does not run\n{text}\n{}", made[0].text());
+            let is_other = matches!(prove(&document, &made[0]), Proof::Different(_));
+            assert!(is_other, "{told} is the same\n{text}\n{}", made[0].text());
         }
     }
 }

@@ -144,6 +144,12 @@ impl<'d> Mutants<'d> {
         while text.ends_with('\n') {
             text.pop();
         }
+        // Below rails that are indented the drawing goes on.
+        let (_, _, first) = document.line_at(span.start as usize);
+        if document.notation() == Notation::Ladder && is_drawn(&first) {
+            let indent = &first[..first.len() - first.trim_start().len()];
+            text = text.lines().map(|line| format!("{indent}{line}")).collect::<Vec<_>>().join("\n");
+        }
         let mut changed = (*document).clone();
         changed.apply(&[Edit { range: Some(span.start as usize..span.end as usize), text }]);
         if !declarations.is_empty() {
@@ -195,12 +201,38 @@ fn behind_head(document: &Document, source: &Source) -> Option<usize> {
     None
 }
 
-/// The lines in which a drawing stands.
+/// The lines in which a drawing stands, with rails that begin above it or end below it: beside the rails of another
+/// drawing they would be part of it, and have no end.
 fn lines(document: &Document, span: Span) -> Span {
     let (_, start, _) = document.line_at(span.start as usize);
-    let (_, last, text) = document.line_at(span.end as usize);
-    let end = last + text.trim_end_matches(['\r', '\n']).len();
-    Span::new(start, end.max(span.end as usize))
+    let end = end_of_line(document, span.end as usize).max(span.end as usize);
+    let (mut above, mut below) = (start, end);
+    while above > 0 && is_bare_rail(&document.line_at(above - 1).2) {
+        above = document.line_at(above - 1).1;
+    }
+    while below + 1 < document.len() && is_bare_rail(&document.line_at(below + 1).2) {
+        below = end_of_line(document, below + 1);
+    }
+    // Rails that lead to another rung belong to both.
+    let leads_on = |offset: Option<usize>| offset.is_some_and(|at| is_drawn(&document.line_at(at).2));
+    let start = if leads_on(above.checked_sub(1)) { start } else { above };
+    let end = if leads_on((below + 1 < document.len()).then_some(below + 1)) { end } else { below };
+    Span::new(start, end)
+}
+
+/// Where the line ends in which an offset lies, before what ends it.
+fn end_of_line(document: &Document, offset: usize) -> usize {
+    let (_, start, text) = document.line_at(offset);
+    start + text.trim_end_matches(['\r', '\n']).len()
+}
+
+fn is_bare_rail(line: &str) -> bool {
+    let line = line.trim();
+    !line.is_empty() && line.chars().all(|sign| matches!(sign, '|' | '│' | ' ' | '\t'))
+}
+
+fn is_drawn(line: &str) -> bool {
+    line.trim_start().starts_with(['|', '│', '+', '├', '└'])
 }
 
 /// Splitmix64 of Sebastiano Vigna, which is in the public domain.
