@@ -158,9 +158,38 @@ fn a_register_is_what_was_written_to_it() {
         ("MOV K1 D0Z0", "LD= D5 K5"),
         ("MOV K5 D5", "LD= D0Z0 K5"),
         ("DMOV D0 Z0", "LD= V0 K5"),
+        ("RST V0", "LDD= Z0 K5"),
+        ("RST Z0", "LD= D0Z0 K5"),
     ];
     for (write, compare) in there {
         assert_ne!(again(write, compare), "equal", "{write}; {compare}");
+    }
+}
+
+#[test]
+fn a_condition_that_an_output_changes_is_not_asked_again() {
+    for (contact, output) in [
+        ("LD D0.3", "RST D0"),
+        ("LD> D0 K5", "RST D0.3"),
+        ("LDD> D0 K5", "RST D1"),
+        ("LD> D0Z0 K5", "RST D5"),
+        ("LD> D0Z0 K5", "RST Z0"),
+        ("LD M0Z0", "RST Z0"),
+        ("LD M0Z0", "RST M5"),
+        ("LD> D0 K5V0", "RST V0"),
+        ("LDD> Z0 K5", "RST V0"),
+        ("LD> K1M0 K5", "RST M3"),
+    ] {
+        for last in ["MOV K5 K1Y0", "CJ P0;LD X1;OUT Y1;P0;LD X2;OUT Y2"] {
+            let once = format!("{contact};{output};{last}");
+            let twice = format!("{contact};{output};{contact};{last}");
+            assert_ne!(verdict(&once, &twice), "equal", "{once}");
+        }
+    }
+    for (contact, output) in [("LD D0.3", "RST D2"), ("LD> D0 K5", "RST M3"), ("LD M0", "RST M5")] {
+        let once = format!("{contact};{output};MOV K5 K1Y0");
+        let twice = format!("{contact};{output};{contact};MOV K5 K1Y0");
+        assert_eq!(verdict(&once, &twice), "equal", "{once}");
     }
 }
 

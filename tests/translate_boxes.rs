@@ -87,6 +87,9 @@ fn a_box_is_the_smallest_possible() {
         "LD X0\nOR Y0\nOUT Y0\nOR X1\nOUT Y1\n",
         "LD Y1\nINV\nOUT Y0\nSET Y1\nOR X1\nOUT M0\n",
         "LD T0\nOUT T0 K5\nOR X1\nOUT M0\n",
+        // An index register may lead to what is driven.
+        "LDI M0Z0\nOUT M5\nOR X1\nOUT Y1\n",
+        "LDI T5\nOUT T0Z0 K1\nOR X1\nOUT Y1\n",
         // The relay tells its edge to one contact.
         "LDP M2800\nOUT Y0\nOR X1\nOUT Y1\n",
         // The power before it is wanted once more.

@@ -91,7 +91,7 @@ impl Builder {
         for gate in self.open.iter().flat_map(|open| &open.path.gates) {
             match gate {
                 Gate::Pass(condition) => power.and_with(condition.clone()),
-                Gate::Invert => power = Expression::Not(Box::new(power)),
+                Gate::Invert => power = power.negated(),
                 Gate::Through(_) => return None,
             }
         }
@@ -166,7 +166,7 @@ fn leaves(output: &Action, contact: &Contact) -> bool {
     };
     let is_coil = matches!(output.deed, Deed::Coil(_)) && !touches_bits(output);
     let Some(driven) = output.terms.first() else { return false };
-    let has_preset = driven.operand.device().is_some_and(|device| device.kind.has_preset());
+    let has_preset = matches!(driven.operand, Operand::Device(device) if device.kind.has_preset());
     let is_other = !driven.may_cover(read) && !read.may_cover(driven);
     is_steady && is_coil && (driven.is_lone() || has_preset) && is_other
 }

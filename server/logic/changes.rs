@@ -11,6 +11,8 @@ use smol_str::{SmolStr, ToSmolStr};
 const KINDS: usize = DeviceKind::ALL.len() + 5;
 const VARIABLES: usize = DeviceKind::ALL.len();
 const ANYWHERE: usize = KINDS - 1;
+/// The index registers.
+const INDEX: [usize; 2] = [DeviceKind::V as usize, DeviceKind::Z as usize];
 /// A row of registers that is longer counts as all of its kind.
 const ROW_MAX: u16 = 64;
 
@@ -170,12 +172,6 @@ impl Changes {
                     }
                     self.touch(slot(term), formulas);
                 }
-                // In 32 bits one index register has the upper half of the other.
-                (Operand::Device(Device { kind: DeviceKind::V | DeviceKind::Z, .. }), _) => {
-                    for kind in [DeviceKind::V, DeviceKind::Z] {
-                        self.change_kind(kind as usize, formulas);
-                    }
-                }
                 _ => self.change_kind(slot(term), formulas),
             }
         }
@@ -205,9 +201,14 @@ impl Changes {
         }
     }
 
-    /// Anything of a kind may have changed. What may lie anywhere may be any variable.
+    /// Anything of a kind may have changed. What may lie anywhere may be any variable, and in 32 bits one index
+    /// register has the upper half of the other.
     fn change_kind(&mut self, slot: usize, formulas: &mut Formulas) {
-        let slots = if slot == ANYWHERE { VARIABLES..KINDS } else { slot..slot + 1 };
+        let slots: Vec<usize> = match slot {
+            ANYWHERE => (VARIABLES..KINDS).collect(),
+            _ if INDEX.contains(&slot) => INDEX.to_vec(),
+            _ => vec![slot],
+        };
         for slot in slots {
             self.kinds[slot] = self.events;
             self.touch(slot, formulas);

@@ -6,6 +6,7 @@ use crate::target::{Constant, Device, DeviceKind, DirectAddress, Operand, Width}
 use crate::text::{Span, folded};
 use smol_str::{SmolStr, ToSmolStr, format_smolstr};
 use std::fmt;
+use std::ops::Range;
 
 /// An operand: what it says, how it was written, and where. Two terms are equal if they mean the same, however written.
 #[derive(Clone, Debug)]
@@ -131,7 +132,7 @@ impl Term {
         subscripts.into_iter().all(|inside| inside.is_some_and(|inside| inside.split(',').all(is_plain)))
     }
 
-    /// Whether who writes to it may change `other`: the same, or what may lie in the same place.
+    /// Whether who writes to it may change `other`: the same, or what may lie in the same place, or leads there.
     pub fn may_cover(&self, other: &Term) -> bool {
         let area = |term: &Term| match (term.operand, term.storage) {
             (Operand::Direct(address), _) | (Operand::Variable, Storage::At(address)) => {
@@ -149,6 +150,34 @@ impl Term {
                 && (is_within(&keys[0], &keys[1]) || is_within(&keys[1], &keys[0]))
             || is_anywhere && is_variable(self) && is_variable(other)
             || !is_apart && area(self).is_some() && area(self) == area(other)
+            || self.devices().iter().any(|(kind, own)| {
+                let meets = |(other, theirs): &(DeviceKind, Range<u32>)| {
+                    kind == other && own.start < theirs.end && theirs.start < own.end
+                };
+                other.devices().iter().any(meets)
+            })
+    }
+
+    /// The devices of the FX family that its value of 16 bits may depend on, by kind and number. One state resets
+    /// others, and what an index register leads to may be anything of its kind.
+    fn devices(&self) -> Vec<(DeviceKind, Range<u32>)> {
+        let all = |kind: DeviceKind| (kind, 0..u32::MAX);
+        let indices = || [DeviceKind::V, DeviceKind::Z].map(all).to_vec();
+        let with_index = |device: Device| [vec![all(device.kind)], indices()].concat();
+        let row =
+            |first: Device, count: u32| vec![(first.kind, first.number..first.number.saturating_add(count))];
+        match self.operand {
+            Operand::Device(device) => match device.kind {
+                DeviceKind::V | DeviceKind::Z => indices(),
+                DeviceKind::S => vec![all(device.kind)],
+                _ => row(device, 1),
+            },
+            Operand::WordBit { word, .. } => row(word, 1),
+            Operand::Nibbles { digits, first, index: None } => row(first, 4 * u32::from(digits)),
+            Operand::Indexed { device: first, .. } | Operand::Nibbles { first, .. } => with_index(first),
+            Operand::Constant { index: Some(_), .. } => indices(),
+            _ => Vec::new(),
+        }
     }
 
     /// The register that it is, or is a bit of: a word that nothing changes but who writes to it, or to a row of

@@ -46,7 +46,7 @@ fn parts(source: Source) -> Vec<Source> {
     let Some(path) = source.path().filter(|path| path.drives.len() > 1 && is_cut_anywhere(path)) else {
         return vec![source];
     };
-    let gates: Vec<&Term> = path.gates.iter().flat_map(terms).collect();
+    let gates: Vec<Term> = path.gates.iter().flat_map(read).collect();
     let mut groups: Vec<Vec<Drive>> = Vec::new();
     let mut starts = Vec::new();
     let (mut is_steady, mut was_steering) = (true, false);
@@ -90,19 +90,24 @@ fn join_gates(path: &mut Path) {
 
 /// Whether a drive of it looks at more than its condition, and its condition is the same however often it is asked.
 fn is_cut_anywhere(path: &Path) -> bool {
-    let is_single =
-        |term: &&Term| matches!(term.operand, Operand::Device(device) if device.has_single_edge());
-    let is_passed = |gate: &Gate| !matches!(gate, Gate::Through(_)) && !terms(gate).iter().any(is_single);
+    let is_single = |term: &Term| matches!(term.operand, Operand::Device(device) if device.has_single_edge());
+    let is_passed = |gate: &Gate| !matches!(gate, Gate::Through(_)) && !read(gate).iter().any(is_single);
     path.gates.iter().all(is_passed) && path.drives.iter().flat_map(actions).any(touches_bits)
 }
 
-fn terms(gate: &Gate) -> Vec<&Term> {
-    match gate {
-        Gate::Pass(condition) => {
-            condition.contacts().into_iter().flat_map(|contact| &contact.terms).collect()
+/// What a gate reads, of a value of 32 bits both halves.
+fn read(gate: &Gate) -> Vec<Term> {
+    let Gate::Pass(condition) = gate else { return Vec::new() };
+    let mut read = Vec::new();
+    for contact in condition.contacts() {
+        read.extend_from_slice(&contact.terms);
+        if matches!(contact.test, Test::Compare(operator) if operator.is_wide()) {
+            let lower = contact.terms.iter().filter_map(|term| device_of(term).zip(Some(term.span)));
+            let upper = |device: Device| Device { number: device.number.saturating_add(1), ..device };
+            read.extend(lower.map(|(device, span)| Term::of_device(upper(device), span)));
         }
-        Gate::Invert | Gate::Through(_) => Vec::new(),
     }
+    read
 }
 
 fn actions(drive: &Drive) -> Vec<&Action> {
@@ -124,7 +129,7 @@ fn device_of(term: &Term) -> Option<Device> {
 }
 
 /// Whether an action changes nothing that one of these may be: it jumps, or what it writes is something else.
-fn leaves_alone(action: &Action, terms: &[&Term]) -> bool {
+fn leaves_alone(action: &Action, terms: &[Term]) -> bool {
     match action.deed {
         Deed::Jump | Deed::Return => true,
         Deed::Instruction(form) if form.instruction.flow() == Flow::Jump => true,
@@ -132,7 +137,7 @@ fn leaves_alone(action: &Action, terms: &[&Term]) -> bool {
         Deed::Instruction(form) if form.instruction.flow() == Flow::Straight => {
             let is_register = |device: Device| device.kind == DeviceKind::D && !device.is_special();
             let is_relay =
-                |term: &&Term| term.is_lone() && device_of(term).is_some_and(|own| !own.is_special());
+                |term: &Term| term.is_lone() && device_of(term).is_some_and(|own| !own.is_special());
             let mut changes = action.changes().into_iter();
             changes.all(|own| device_of(&own).is_some_and(is_register)) && terms.iter().all(is_relay)
         }
