@@ -32,7 +32,9 @@ export async function connect(workbench, port) {
   await ask(workbench, 'Rungwise: PLC: Connect', 'Port of the PLC');
   const other = workbench.page.locator('.quick-input-list .monaco-list-row', { hasText: 'Another port' }).first();
   await other.click();
-  await workbench.page.locator('.quick-input-widget input').first().waitFor({ timeout: 45_000 });
+  // The list goes, and a box comes that proposes a port.
+  const proposed = () => workbench.page.locator('.quick-input-widget:visible input').first().inputValue({ timeout: 1_000 });
+  await workbench.until('the box for a port', () => proposed().then((value) => value.startsWith('tcp:'), () => false));
   await answer(workbench, port);
 }
 
@@ -57,9 +59,9 @@ async function ask(workbench, command, title) {
 
 /** Answers the box at the top of the window. */
 async function answer(workbench, text) {
-  await workbench.page.keyboard.press('Control+a');
-  await workbench.page.keyboard.type(text);
-  await workbench.page.keyboard.press('Enter');
+  const box = workbench.page.locator('.quick-input-widget input').first();
+  await box.fill(text);
+  await box.press('Enter');
   await workbench.page.waitForSelector('.quick-input-widget', { state: 'hidden', timeout: 45_000 });
 }
 

@@ -192,11 +192,10 @@ async function target(workbench, workspace) {
 }
 
 async function failureMessage(workbench) {
-  // What other tests left in the folder may have moved its first rows out of sight.
-  await workbench.page.locator('.explorer-folders-view .monaco-list').first().hover();
-  await workbench.page.mouse.wheel(0, -100_000);
-  await workbench.page.locator('.explorer-folders-view .monaco-list-row', { hasText: '.vscode' }).first().click();
-  await workbench.openFile('settings.json');
+  // By its name: what other tests left in the folder may have moved its row out of sight.
+  await workbench.openByName('settings.json');
+  await workbench.page.locator('.tab.active', { hasText: 'settings.json' }).first().waitFor({ timeout: 45_000 });
+  await workbench.page.waitForSelector('.editor-instance .view-line', { timeout: 45_000 });
   await workbench.goTo(1, 2);
   await workbench.page.keyboard.insertText('"rungwise.server.path": "/nowhere/rungwise",');
   await workbench.page.keyboard.press('Control+s');
