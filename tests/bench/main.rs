@@ -50,7 +50,7 @@ use figures::{Figures, Table, calibrate, milliseconds};
 use lsp_client::{Client, at};
 use programs::Program;
 use serde_json::{Value, json};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -68,7 +68,8 @@ fn main() {
         return;
     }
     let wanted = arguments.into_iter().filter(|argument| !argument.starts_with("--")).collect();
-    let table = Table { calibration: calibrate(), wanted, medians: RefCell::default() };
+    let table =
+        Table { calibration: calibrate(), wanted, shortest: RefCell::default(), missed: Cell::default() };
     table.head();
     for notation in ["il", "lad"] {
         for lines in [1_000, 5_000, 50_000] {
@@ -86,6 +87,9 @@ fn main() {
     link::measure(&table);
     command_line::measure(&table);
     println!("| (calibration again) | {} | | | | |", milliseconds(calibrate()));
+    if table.missed.get() {
+        std::process::exit(1);
+    }
 }
 
 /// The program that is measured.

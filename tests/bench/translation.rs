@@ -9,65 +9,70 @@ use rungwise::translate::{Options, To, Translation, prove, translate};
 use std::time::{Duration, Instant};
 
 pub fn measure(table: &Table) {
-    for (rungs, kept) in [(1_000, true), (1_000, false), (10_000, true)] {
-        // Behind a comment as long as that, a program of a thousand rungs keeps no trees either.
-        let head = if kept { String::new() } else { format!("(* {} *)\n", "- ".repeat(150_000)) };
-        let list = open(&(head + &programs::rungs(rungs)), Notation::FxIl);
-        let drawing = open(&translate(&list, None, To::Ladder, &without_proof()).text, Notation::Ladder);
+    for rungs in [1_000, 10_000] {
+        let list = Document::new(&programs::rungs(rungs), Notation::FxIl, Target::of(Model::Fx3u));
+        let iec_list = Document::new(&programs::iec(rungs * 5), Notation::IecIl, Target::of(Model::Iec));
+        let (drawing, iec_drawing) = (drawn(&list), drawn(&iec_list));
         let targets = |full: &'static str| if rungs == 10_000 { full } else { "" };
-        let trees = if kept { "" } else { " without trees" };
-        let of = |what: &str| format!("{rungs} rungs{trees}, {what}");
-        translation(table, &of("ladder to FX list"), targets("< 150 ms"), &drawing, To::Fx, false);
-        from_text(table, &of("ladder to FX list, from the text on"), targets("< 150 ms"), &drawing, To::Fx);
-        from_text(table, &of("FX list to ladder, from the text on"), targets("< 300 ms"), &list, To::Ladder);
-        translation(table, &of("FX list to ladder"), targets("< 300 ms"), &list, To::Ladder, false);
-        translation(table, &of("ladder to FX list, proved"), targets("< 2 s"), &drawing, To::Fx, true);
-        translation(table, &of("FX list to ladder, proved"), targets("< 2 s"), &list, To::Ladder, true);
-        timed(table, &of("proof of list and ladder"), "", || _ = prove(&list, &drawing));
-        check_of(table, &of("check, list"), targets("< 1 s"), &list);
-        check_of(table, &of("check, ladder"), targets("< 1 s"), &drawing);
+        for (proves, by, limits) in [(false, "", ["< 150 ms", "< 300 ms"]), (true, ", proved", ["< 2 s"; 2])]
+        {
+            let [to_list, to_ladder] = limits.map(targets);
+            for (what, document, to, target) in [
+                ("ladder to FX list", &drawing, To::Fx, to_list),
+                ("FX list to ladder", &list, To::Ladder, to_ladder),
+                ("ladder to IEC list", &iec_drawing, To::Iec, to_list),
+                ("IEC list to ladder", &iec_list, To::Ladder, to_ladder),
+            ] {
+                translation(table, &format!("{rungs} rungs, {what}{by}"), target, document, to, proves);
+            }
+        }
+        for (what, list, drawing) in [("", &list, &drawing), ("IEC ", &iec_list, &iec_drawing)] {
+            let of = |check: &str| format!("{rungs} rungs, {check}");
+            let name = of(&format!("proof of {what}list and ladder, from the text on"));
+            timed(table, &name, "", || _ = prove(&again(list), &again(drawing)));
+            check_of(table, &of(&format!("check, {what}list")), targets("< 1 s"), list);
+            check_of(table, &of(&format!("check, {what}ladder")), targets("< 1 s"), drawing);
+        }
     }
-    // Ten times the rungs, and the same work for each of them.
-    table.judge_growth("1000 rungs without trees, ", "10000 rungs, ", 12.0);
+    table.judge_growth("1000 rungs, ", "10000 rungs, ", &["from the text on", "cold"], 12.0);
 }
 
-fn open(text: &str, notation: Notation) -> Document {
-    Document::new(text, notation, Target::of(Model::Fx3u))
+fn drawn(list: &Document) -> Document {
+    let drawing = translate(list, None, To::Ladder, &without_proof()).text;
+    Document::new(&drawing, Notation::Ladder, list.target())
+}
+
+/// The document as the command line has it: nothing of it is known yet but its text.
+fn again(document: &Document) -> Document {
+    Document::new(&document.text(), document.notation(), document.target())
 }
 
 fn without_proof() -> Options {
     Options { proves: false, ..Options::default() }
 }
 
+/// Of an open document, and from the text on: an open one of a thousand rungs keeps its trees, one of ten thousand does
+/// not.
 fn translation(table: &Table, name: &str, target: &str, document: &Document, to: To, proves: bool) {
     let options = Options { proves, ..Options::default() };
-    timed(table, name, target, || {
+    let translated = |document: &Document| {
         let Translation { rungs, .. } = translate(document, None, to, &options);
         assert!(rungs.iter().all(|rung| rung.note.is_none()), "everything can be translated");
-    });
-}
-
-/// As on the command line: nothing is known of the document yet. An open one of a thousand rungs keeps its trees, one
-/// of ten thousand does not.
-fn from_text(table: &Table, name: &str, target: &str, document: &Document, to: To) {
-    let text = document.text();
-    timed(table, name, target, || {
-        _ = translate(&open(&text, document.notation()), None, to, &without_proof());
-    });
+    };
+    timed(table, name, target, || translated(document));
+    timed(table, &format!("{name}, from the text on"), target, || translated(&again(document)));
 }
 
 /// Both tiers from the text on, and again after an edit of one rung.
 fn check_of(table: &Table, name: &str, target: &str, document: &Document) {
     let severities = Severities::default();
-    let text = document.text();
-    timed(table, &format!("{name}, cold"), target, || {
-        _ = check::all(&open(&text, document.notation()), &severities);
-    });
+    timed(table, &format!("{name}, cold"), target, || _ = check::all(&again(document), &severities));
     let name = format!("{name}, after an edit");
     if !table.wants(&name) {
         return;
     }
     let mut edited = document.clone();
+    let text = document.text();
     check::all(&edited, &severities);
     let place = text.len() / 2 + text[text.len() / 2..].find("X1").unwrap_or(0) + 1;
     let figures = Figures::of(20, |round| {
