@@ -9,10 +9,12 @@
 use super::layout::Layout;
 use super::scan::Scanner;
 use super::token::{Region, Token, TokenKind};
-use super::{IecTree, parse, split};
+use super::{IecTree, ItemKind, parse, split};
 use crate::target::iec::is_keyword;
 use crate::target::{Model, Target};
 use crate::text::{Severity, Span};
+use std::borrow::Cow;
+use std::mem::{Discriminant, discriminant};
 
 /// Columns from an operator to its operand.
 const OPERAND_COLUMN: usize = 8;
@@ -38,30 +40,41 @@ pub fn format_chunk(chunk: &str, tree: &IecTree, options: &FormatOptions) -> Str
     let formatted = Printer::new(chunk, tree, options).print();
     // A broken text may read otherwise once it is moved; then it stays as it is, for a formatter must change nothing.
     let target = Target::of(Model::Iec);
-    // What stood on one line may be several chunks on lines of its own.
-    let mut start = 0;
-    let stable = split(&formatted).into_iter().all(|end| {
-        let part = &formatted[std::mem::replace(&mut start, end)..end];
-        part == Printer::new(part, &parse(part, target), options).print()
-    });
     let again = parse(&formatted, target);
-    if stable && meaning(chunk, tree) == meaning(&formatted, &again) { formatted } else { chunk.to_string() }
+    let stable = match split(&formatted)[..] {
+        [_] => formatted == Printer::new(&formatted, &again, options).print(),
+        // What stood on one line may be several chunks on lines of its own.
+        ref ends => {
+            let mut start = 0;
+            ends.iter().all(|end| {
+                let part = &formatted[std::mem::replace(&mut start, *end)..*end];
+                part == Printer::new(part, &parse(part, target), options).print()
+            })
+        }
+    };
+    if stable && meaning(chunk, tree).eq(meaning(&formatted, &again)) { formatted } else { chunk.to_string() }
+}
+
+/// One thing that must not change.
+#[derive(PartialEq)]
+enum Meaning<'t> {
+    Word(Cow<'t, str>),
+    Item(Discriminant<ItemKind>, u32),
+    Mistake(&'static str, Cow<'t, str>),
 }
 
 /// What must not change: the words, the kinds and depths of the items, and the mistakes.
-fn meaning(chunk: &str, tree: &IecTree) -> Vec<String> {
+fn meaning<'t>(chunk: &'t str, tree: &'t IecTree) -> impl Iterator<Item = Meaning<'t>> {
     let words = Scanner::new(chunk)
         .filter(|token| token.kind != TokenKind::Newline && !is_stray_semicolon(token))
-        .map(
-            |token| {
-                if token.kind.is_trivia() { text_of(chunk, token.span) } else { upper(chunk, token.span) }
-            },
-        );
-    let items =
-        tree.items.iter().map(|item| format!("{:?} {}", std::mem::discriminant(&item.kind), item.depth));
+        .map(|token| {
+            let text = token.span.of(chunk);
+            Meaning::Word(if token.kind.is_trivia() { text.into() } else { upper(text) })
+        });
+    let items = tree.items.iter().map(|item| Meaning::Item(discriminant(&item.kind), item.depth));
     let errors = tree.problems.iter().filter(|problem| problem.severity == Severity::Error);
-    let errors = errors.map(|problem| format!("{} {}", problem.code, upper(chunk, problem.span)));
-    words.chain(items).chain(errors).collect()
+    let errors = errors.map(|problem| Meaning::Mistake(problem.code, upper(problem.span.of(chunk))));
+    words.chain(items).chain(errors)
 }
 
 /// A semicolon in a body, which ends nothing and is left out.
@@ -69,12 +82,10 @@ fn is_stray_semicolon(token: &Token) -> bool {
     token.kind == TokenKind::Semicolon && token.region == Region::Body
 }
 
-fn text_of(chunk: &str, span: Span) -> String {
-    span.of(chunk).to_string()
-}
-
-fn upper(chunk: &str, span: Span) -> String {
-    span.of(chunk).to_uppercase()
+/// Most words are capitals already.
+fn upper(text: &str) -> Cow<'_, str> {
+    let is_upper = text.bytes().all(|byte| byte.is_ascii() && !byte.is_ascii_lowercase());
+    if is_upper { text.into() } else { text.to_uppercase().into() }
 }
 
 /// One line of the result, before neighbours are aligned.
