@@ -1,9 +1,9 @@
 //! Machine code: worked examples and recorded captures, the parameter block, the memory image.
 
 use rungwise::machine_code::{
-    self, BLANK, END, Image, Latch, NO_MACHINE_CODE, ParameterBlock, address_of_step, decode, encode, sum,
+    self, BLANK, END, Image, NO_MACHINE_CODE, ParameterBlock, address_of_step, decode, encode, sum,
 };
-use rungwise::target::{Device, DeviceKind, Model, Target};
+use rungwise::target::{Device, DeviceKind, Latch, Latches, Model, Target};
 use rungwise::text::{Language, catalogue_keys};
 
 fn words(list: &str) -> Vec<u16> {
@@ -164,6 +164,53 @@ fn the_block_of_a_new_plc() {
         assert_eq!(block.with_latched(latch, first, last), Some(block));
     }
     assert_eq!(block.with_latched(Latch::States, at(DeviceKind::M, 0), at(DeviceKind::M, 1)), None);
+}
+
+#[test]
+fn latches_are_those_of_the_block() {
+    let all = |target: &'static Target| {
+        let ranges = target.devices.iter();
+        ranges.flat_map(|range| (range.first..=range.last).map(|number| Device::new(range.kind, number)))
+    };
+    // What the block of a new PLC says is what the model keeps; that of an FX1S says something else, and is not asked.
+    for model in [Model::Fx1s, Model::Fx1n, Model::Fx2n, Model::Fx3u] {
+        let (target, latches) = (Target::of(model), ParameterBlock::new(model).latches());
+        for device in all(target) {
+            let keeps = Latches::default().keep(device, target);
+            assert_eq!(latches.keep(device, target), keeps, "{device} of {}", target.title);
+        }
+    }
+    let target = Target::of(Model::Fx2n);
+    let at = Device::new;
+    let block = ParameterBlock::new(Model::Fx2n);
+    let block = block.with_latched(Latch::Relays, at(DeviceKind::M, 100), at(DeviceKind::M, 200)).unwrap();
+    let block = block.with_latched(Latch::Counters, at(DeviceKind::C, 9), at(DeviceKind::C, 3)).unwrap();
+    let latches = block.latches();
+    for (kind, number, keeps) in [
+        (DeviceKind::M, 99, false),
+        (DeviceKind::M, 100, true),
+        (DeviceKind::M, 200, true),
+        (DeviceKind::M, 201, false),
+        (DeviceKind::M, 600, false),
+        (DeviceKind::M, 1024, true),
+        (DeviceKind::M, 8000, false),
+        (DeviceKind::C, 5, false),
+        (DeviceKind::C, 150, false),
+        (DeviceKind::C, 230, true),
+        (DeviceKind::D, 300, true),
+        (DeviceKind::T, 250, true),
+    ] {
+        assert_eq!(latches.keep(at(kind, number), target), keeps, "{kind:?}{number}");
+    }
+    for range in target.devices {
+        let runs = latches.runs(range, target);
+        assert_eq!(*runs[0].0.start(), range.first);
+        assert_eq!(*runs[runs.len() - 1].0.end(), range.last);
+        assert!(runs.windows(2).all(|pair| pair[0].0.end() + 1 == *pair[1].0.start()), "{runs:?}");
+        for (numbers, keeps) in runs {
+            assert!(numbers.clone().all(|number| latches.keep(at(range.kind, number), target) == keeps));
+        }
+    }
 }
 
 #[test]

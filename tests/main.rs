@@ -51,6 +51,7 @@ mod ladder_by_hand;
 mod ladder_generate;
 mod ladder_print;
 mod ladder_read;
+mod latches;
 mod ldmicro;
 mod line_time;
 mod link;

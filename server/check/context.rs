@@ -5,7 +5,7 @@ use super::sense::{Regions, Uses};
 use super::words::plain::is_plain;
 use crate::document::{Chunk, ChunkRef, Document, Notation, Operation, Pou, Scopes, Tree};
 use crate::il::fx::FxTree;
-use crate::target::{Model, Target};
+use crate::target::{Device, Model, Target};
 use crate::text::{Diagnostic, Span};
 use std::cell::{Cell, OnceCell};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -182,6 +182,11 @@ impl<'a> ProgramContext<'a> {
     /// What the program is written for.
     pub fn target(&self) -> &'static Target {
         self.files.first().map_or(Target::of(Model::Fx2n), |file| file.document.target())
+    }
+
+    /// Whether the PLC keeps the device without power.
+    pub(super) fn keeps(&self, device: Device) -> bool {
+        self.files.first().is_some_and(|file| file.document.keeps(device))
     }
 
     /// The chunks of all files, in order.

@@ -15,7 +15,7 @@ static READ: Mutex<BTreeMap<PathBuf, Arc<CommentsFile>>> = Mutex::new(BTreeMap::
 
 /// What the project of the file at `path` says about its devices.
 pub(super) fn of(path: &Path, manifest: &Manifest) -> Arc<Comments> {
-    file_of(path, manifest).map(|file| file.comments.clone()).unwrap_or_default()
+    manifest.said_of_devices(file_of(path, manifest).as_deref())
 }
 
 fn file_of(path: &Path, manifest: &Manifest) -> Option<Arc<CommentsFile>> {

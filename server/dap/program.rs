@@ -241,17 +241,18 @@ fn files_of(path: &Path) -> Result<(Vec<File>, HistoryLimit), Message> {
         return Err(error.message.clone());
     }
     let manifest = project.map(|project| project.manifest.clone()).unwrap_or_default();
-    let comments = project.and_then(|project| {
+    let comments_file = project.and_then(|project| {
         let file = project.root.join(project.manifest.comments.as_ref()?);
-        Some(CommentsFile::open(&file, manifest.target().unwrap_or(Target::of(Model::Fx2n))).comments.clone())
+        Some(CommentsFile::open(&file, manifest.target().unwrap_or(Target::of(Model::Fx2n))))
     });
+    let comments = manifest.said_of_devices(comments_file.as_ref());
     let mut files = Vec::new();
     for path in &around.files {
         let path = path.canonicalize().map_err(|_| unread(path))?;
         let stamp = Stamp::of(&path);
         let text = read_text(&path).ok_or_else(|| unread(&path))?;
         let document = open_document(&path.to_string_lossy(), &text, &manifest, None, None);
-        let document = comments.as_ref().map(|comments| document.commented(comments)).unwrap_or(document);
+        let document = document.commented(&comments);
         files.push(File { path, document, stamp, is_outdated: false });
     }
     let documents: Vec<&Document> = files.iter().map(|file| &file.document).collect();

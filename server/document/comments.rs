@@ -1,7 +1,7 @@
-//! What a project says about its devices: a symbol and a comment for each.
+//! What a project says about its devices: a symbol and a comment for each, and which keep their values without power.
 
 use super::Symbol;
-use crate::target::{Device, Symbols};
+use crate::target::{Device, Latches, Symbols};
 use crate::text::Span;
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
@@ -13,6 +13,7 @@ pub struct Comments {
     rows: Vec<DeviceComment>,
     index: FxHashMap<Symbol, usize>,
     symbols: Arc<Symbols>,
+    latches: Latches,
 }
 
 /// What is said about one device or direct address. The spans are places in the comments file, empty where it has
@@ -45,7 +46,12 @@ impl Comments {
             _ => None,
         });
         let symbols = Arc::new(Symbols::new(symbols));
-        Comments { rows, index, symbols }
+        Comments { rows, index, symbols, latches: Latches::default() }
+    }
+
+    /// The same for a PLC whose parameters set these latches.
+    pub fn with_latches(self, latches: Latches) -> Comments {
+        Comments { latches, ..self }
     }
 
     /// What is said about `thing`.
@@ -61,6 +67,11 @@ impl Comments {
     /// All rows in the order of the file.
     pub fn rows(&self) -> &[DeviceComment] {
         &self.rows
+    }
+
+    /// Which devices keep their values without power.
+    pub fn latches(&self) -> &Latches {
+        &self.latches
     }
 
     /// The names that programs may write.

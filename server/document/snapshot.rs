@@ -6,7 +6,7 @@ use super::pages::{self, Cursor, Page, Pages};
 use super::split::split;
 use super::{Chunk, Comments, Notation, Outer, Scopes, Size};
 use crate::ladder::NameHabit;
-use crate::target::Target;
+use crate::target::{Device, Target};
 use crate::text::{Encoding, LineColumn, Span, column_of_offset, offset_of_column};
 use ropey::Rope;
 use std::ops::Range;
@@ -133,6 +133,11 @@ impl Document {
     /// What the project says about its devices.
     pub fn comments(&self) -> &Arc<Comments> {
         &self.comments
+    }
+
+    /// Whether the PLC keeps the device without power.
+    pub fn keeps(&self, device: Device) -> bool {
+        self.comments.latches().keep(device, self.target())
     }
 
     /// The target as words of the text are read: with the project's symbols.

@@ -1,6 +1,6 @@
 //! Devices in words: their kind, range and purpose on a target, and what numbers mean to timers.
 
-use crate::document::Chunk;
+use crate::document::{Chunk, Document};
 use crate::target::{Constant, Device, DeviceKind, DeviceRange, Operand, Target};
 use crate::text::{Language, Message, Spanned, phrase};
 
@@ -49,8 +49,9 @@ pub(super) fn purpose(range: &DeviceRange, language: Language) -> String {
     if special.is_empty() || kind.starts_with(special) { kind } else { format!("{kind}, {special}") }
 }
 
-/// What `device` is on `target`: kind, purpose, range, and the meaning of a special one. Markdown.
-pub(super) fn describe(device: Device, target: &Target, language: Language) -> String {
+/// What `device` is on the target of a document: kind, purpose, range, and the meaning of a special one. Markdown.
+pub(super) fn describe(device: Device, document: &Document, language: Language) -> String {
+    let target = document.target();
     let kind = kind_name(device.kind, language);
     let Some(range) = device.range_on(target) else {
         let ranges: Vec<String> = target.ranges(device.kind).map(range_name).collect();
@@ -65,8 +66,12 @@ pub(super) fn describe(device: Device, target: &Target, language: Language) -> S
             Some(Message::new("hover.special-written").with_phrase("meaning", special.meaning))
         }
         Some(special) => Some(Message::new("hover.special-read").with_phrase("meaning", special.meaning)),
-        None if range.latched => Some(Message::new("hover.latched")),
-        None => None,
+        None => match (document.keeps(device), range.latched) {
+            (true, true) => Some(Message::new("hover.latched")),
+            (true, false) => Some(Message::new("hover.latched-by-project")),
+            (false, true) => Some(Message::new("hover.forgotten-by-project")),
+            (false, false) => None,
+        },
     };
     if let Some(more) = more {
         text += &format!("\n\n{}", more.render(language));

@@ -331,7 +331,7 @@ impl View<'_> {
     }
 
     fn device(&self, device: Device, count: u16) -> String {
-        let mut text = devices::describe(device, self.document.target(), self.language);
+        let mut text = devices::describe(device, self.document, self.language);
         if count > 1 {
             let last = Device::new(device.kind, device.number.saturating_add(u32::from(count) - 1));
             let word = format!("{device} × {count}");

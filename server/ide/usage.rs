@@ -360,16 +360,12 @@ fn new_row(document: &Document, key: &UsageKey, mention: &Mention, at: ChunkRef<
         UsageKey::Direct(address) => address.to_string(),
         UsageKey::Variable(..) => mention.span.of(at.chunk.text()).to_string(),
     };
-    let range = match key {
-        UsageKey::Device(device) => device.range_on(document.target()),
-        _ => None,
-    };
     UsageRow {
         key: key.clone(),
         name,
         symbol: said.map(|row| row.symbol.to_string()).unwrap_or_default(),
         comment: said.map(|row| row.comment.to_string()).unwrap_or_default(),
-        is_latched: range.is_some_and(|range| range.latched),
+        is_latched: matches!(key, UsageKey::Device(device) if document.keeps(*device)),
         preset: String::new(),
         reads: 0,
         writes: 0,

@@ -315,7 +315,7 @@ fn read_project(
     let project = Project::read(root);
     let settings = snapshot.settings.clone();
     let comments_file = sheets::comments_file(root, &project.manifest, &snapshot.sheets);
-    let comments = comments_file.as_ref().map(|file| file.comments.clone()).unwrap_or_default();
+    let comments = project.manifest.said_of_devices(comments_file.as_deref());
     // Another target or dialect reads the same text as another program.
     let same = old.is_some_and(|old| *old.manifest == project.manifest && old.settings.reads_like(&settings));
     let known: FxHashMap<&Arc<Path>, &OnDisk> =

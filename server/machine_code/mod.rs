@@ -30,7 +30,7 @@ mod decode;
 pub use decode::{Listed, Listing, decode};
 
 mod parameters;
-pub use parameters::{Latch, ParameterBlock};
+pub use parameters::ParameterBlock;
 
 mod image;
 pub use image::{Chunk, Image, executed, sum, words_of};

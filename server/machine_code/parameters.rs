@@ -1,7 +1,7 @@
 //! The parameter block before a program.
 
 use super::bits;
-use crate::target::{Device, DeviceKind, Model, Target};
+use crate::target::{Device, DeviceKind, Latch, Latches, Model, Target};
 use std::ops::Range;
 
 /// The 46 words from 8000h on: how much memory there is, and what of the devices keeps its value without power.
@@ -23,26 +23,7 @@ pub struct ParameterBlock {
     words: [u16; ParameterBlock::WORDS],
 }
 
-/// A kind of device of which a range keeps its values without power.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub enum Latch {
-    /// Auxiliary relays.
-    Relays,
-    /// States.
-    States,
-    /// Counters of 16 bits.
-    Counters,
-    /// Counters of 32 bits.
-    WideCounters,
-    /// Data registers.
-    Registers,
-}
-
 impl Latch {
-    /// All of them.
-    pub const ALL: [Latch; 5] =
-        [Latch::Relays, Latch::States, Latch::Counters, Latch::WideCounters, Latch::Registers];
-
     fn words(self) -> Range<usize> {
         let first = LATCHES + 2 * self as usize;
         first..first + 2
@@ -56,14 +37,8 @@ impl Latch {
     }
 
     fn word(self, device: Device) -> Option<u16> {
-        let kind = match self {
-            Latch::Relays => DeviceKind::M,
-            Latch::States => DeviceKind::S,
-            Latch::Counters | Latch::WideCounters => DeviceKind::C,
-            Latch::Registers => DeviceKind::D,
-        };
         match self {
-            _ if device.kind != kind => None,
+            _ if device.kind != self.devices().0 => None,
             Latch::Registers => u16::try_from(device.number.checked_mul(2)?).ok(),
             _ => bits::number(device),
         }
@@ -173,6 +148,16 @@ impl ParameterBlock {
     pub fn with_latched(mut self, latch: Latch, first: Device, last: Device) -> Option<ParameterBlock> {
         self.words[latch.words()].copy_from_slice(&[latch.word(first)?, latch.word(last)?]);
         Some(self)
+    }
+
+    /// Which devices keep their values without power. Words that name no devices of their kind set nothing.
+    pub fn latches(&self) -> Latches {
+        Latch::ALL.into_iter().fold(Latches::default(), |latches, latch| match self.latched(latch) {
+            Some((first, last)) if [first, last].map(|device| device.kind) == [latch.devices().0; 2] => {
+                latches.with(latch, first, last)
+            }
+            _ => latches,
+        })
     }
 
     /// With the title and the latched ranges of another block.

@@ -1,14 +1,15 @@
 //! The manifest `rungwise.toml`.
 
-use super::PlcSettings;
+use super::{CommentsFile, PlcSettings};
 use crate::check::Severities;
-use crate::document::{Notation, exclusive_names};
+use crate::document::{Comments, Notation, exclusive_names};
 use crate::simulate::{Alarm, HistoryLimit, duration};
 use crate::target::Target;
 use crate::text::{Message, Severity, Span};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::ops::{Range, RangeInclusive};
+use std::sync::Arc;
 use toml::Spanned;
 use toml::de::DeTable;
 
@@ -240,6 +241,15 @@ impl Manifest {
     /// The language of `.il` files, if the manifest names one.
     pub fn notation(&self) -> Option<Notation> {
         self.dialect.as_deref().and_then(dialect_named)
+    }
+
+    /// What the project says about its devices: in its comments file, and of the latches of its PLC.
+    pub fn said_of_devices(&self, file: Option<&CommentsFile>) -> Arc<Comments> {
+        let comments = file.map(|file| file.comments.clone()).unwrap_or_default();
+        match self.plc.latches() {
+            latches if latches == *comments.latches() => comments,
+            latches => Arc::new(Comments::clone(&comments).with_latches(latches)),
+        }
     }
 
     /// The alarms.

@@ -1,7 +1,7 @@
 //! What a project says of the parameters of its PLC: `[plc]` in `rungwise.toml`.
 
-use crate::machine_code::{Latch, ParameterBlock};
-use crate::target::{Device, DeviceKind, Model, Operand};
+use crate::machine_code::ParameterBlock;
+use crate::target::{Device, Latch, Latches, Model, Operand};
 use crate::text::Message;
 use serde::Deserialize;
 use toml::Spanned;
@@ -17,16 +17,6 @@ pub struct PlcSettings {
     pub latch: Vec<Spanned<String>>,
 }
 
-/// The devices of an FX2N whose latches can be set: those up to the last one; others are always latched, or never.
-/// Source: the lists of devices in the FX programming manuals.
-const LATCHES: [(Latch, DeviceKind, u32, u32); 5] = [
-    (Latch::Relays, DeviceKind::M, 0, 1023),
-    (Latch::States, DeviceKind::S, 0, 999),
-    (Latch::Counters, DeviceKind::C, 0, 199),
-    (Latch::WideCounters, DeviceKind::C, 200, 255),
-    (Latch::Registers, DeviceKind::D, 0, 511),
-];
-
 impl PlcSettings {
     /// Whether nothing is said.
     pub fn is_empty(&self) -> bool {
@@ -41,6 +31,12 @@ impl PlcSettings {
             let (latch, first, last) = range;
             block.with_latched(latch, first, last).unwrap_or(block)
         })
+    }
+
+    /// Which devices keep their values without power in a PLC of this project.
+    pub fn latches(&self) -> Latches {
+        let ranges = self.latch.iter().filter_map(|words| range(words.get_ref()));
+        ranges.fold(Latches::default(), |latches, (latch, first, last)| latches.with(latch, first, last))
     }
 
     /// What is wrong, and where, of a project for this model.
@@ -74,9 +70,7 @@ fn range(words: &str) -> Option<(Latch, Device, Device)> {
         _ => None,
     };
     let (first, last) = (device(first)?, device(last)?);
-    let is_own = |(_, kind, least, most): &&(Latch, DeviceKind, u32, u32)| {
-        let is_one = |device: Device| device.kind == *kind && (*least..=*most).contains(&device.number);
-        is_one(first) && is_one(last) && first.number <= last.number
-    };
-    LATCHES.iter().find(is_own).map(|(latch, ..)| (*latch, first, last))
+    let latch =
+        Latch::of(first).filter(|own| Latch::of(last) == Some(*own) && first.number <= last.number)?;
+    Some((latch, first, last))
 }

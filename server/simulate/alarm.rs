@@ -4,7 +4,7 @@
 use super::expression::{Expression, Names};
 use super::{Layout, Value, Variable};
 use crate::target::iec::is_identifier;
-use crate::target::{Symbols, Target};
+use crate::target::{Latches, Symbols, Target};
 use crate::text::{Message, Severity};
 use serde_json::{Value as Json, json};
 
@@ -30,7 +30,8 @@ impl Alarm {
     pub fn check(&self, target: Option<&Target>, has_symbols: bool) -> Result<(), Message> {
         match target.filter(|target| target.is_fx()) {
             Some(target) => {
-                let names = NamesOfTarget { target, layout: Layout::new(target), has_symbols };
+                let names =
+                    NamesOfTarget { target, layout: Layout::new(target, &Latches::default()), has_symbols };
                 Expression::read(&self.when, &names).map(|_| ())
             }
             None => Expression::read(&self.when, &AnyNames).map(|_| ()),

@@ -10,7 +10,7 @@ use crate::ladder::CoilKind;
 use crate::logic::{Deed, Term};
 use crate::target::outside::FIRST_HIGH_SPEED;
 use crate::target::{
-    Constant, Device, DeviceKind, Fault, Flow, Form, Model, Opcode, Operand, Role, Semantics, Target,
+    Constant, Device, DeviceKind, Fault, Flow, Form, Latches, Model, Opcode, Operand, Role, Semantics, Target,
 };
 use crate::text::Span;
 use rustc_hash::FxHashMap;
@@ -25,7 +25,8 @@ pub fn compile(documents: &[&Document], is_watched: bool) -> Result<Code, Vec<Pr
     if !target.is_fx() {
         return iec::compile(documents, target, is_watched);
     }
-    let mut compiler = Compiler::new(target, is_watched);
+    let latches = documents.first().map(|document| *document.comments().latches()).unwrap_or_default();
+    let mut compiler = Compiler::new(target, &latches, is_watched);
     for (number, document) in (0..).zip(documents) {
         for at in document.chunks() {
             compiler.offset = (number, at.start);
@@ -87,9 +88,9 @@ struct Steps {
 }
 
 impl Compiler {
-    fn new(target: &'static Target, is_watched: bool) -> Compiler {
+    fn new(target: &'static Target, latches: &Latches, is_watched: bool) -> Compiler {
         Compiler {
-            builder: Builder::new(target, Arc::new(Layout::new(target)), is_watched),
+            builder: Builder::new(target, Arc::new(Layout::new(target, latches)), is_watched),
             offset: (0, 0),
             problems: Vec::new(),
             labels: FxHashMap::default(),

@@ -2,13 +2,13 @@
 
 use super::clock::CLOCK_SLOTS;
 use super::row::{CELLS, Cell, Row};
-use crate::target::{Device, DeviceKind, Target};
+use crate::target::{Device, DeviceKind, Latches, Target};
 use std::ops::Range;
 
 /// A place in the memory of words.
 pub type Slot = u32;
 
-/// Where each device of a target lies, and the real-time clock behind them. Only depends on the target.
+/// Where each device of a target lies, and the real-time clock behind them. Where they lie depends on the target alone.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub struct Layout {
     kinds: [Vec<Run>; DeviceKind::ALL.len()],
@@ -61,12 +61,11 @@ pub(super) fn index_register(register: Device) -> Option<Device> {
 }
 
 impl Layout {
-    /// The memory of `target`.
-    pub fn new(target: &Target) -> Layout {
+    /// The memory of `target`, of which `latches` are kept.
+    pub fn new(target: &Target, latches: &Latches) -> Layout {
         let cells = usize::from(Row::OFF) + 1;
         let mut layout = Layout { kinds: Default::default(), cells, slots: 0, clock: 0 };
         for range in target.devices {
-            let count = (range.last - range.first + 1) as usize;
             let kind = range.kind;
             let (cells, slots) = match kind {
                 DeviceKind::T | DeviceKind::C => (CELLS_OF_COUNTER, SLOTS_OF_TIMER),
@@ -74,17 +73,15 @@ impl Layout {
                 _ if kind.is_word() => (0, 1),
                 _ => continue,
             };
-            let (cells, slots) = (cells * count, slots * count);
-            layout.kinds[kind as usize].push(Run {
-                first: range.first,
-                last: range.last,
-                cells: layout.cells,
-                slots: layout.slots,
-                latched: range.latched,
-                bits: range.bits,
-            });
-            layout.cells += cells;
-            layout.slots += slots;
+            for (numbers, latched) in latches.runs(range, target) {
+                let (first, last) = numbers.into_inner();
+                let run =
+                    Run { first, last, cells: layout.cells, slots: layout.slots, latched, bits: range.bits };
+                layout.kinds[kind as usize].push(run);
+                let count = (last - first + 1) as usize;
+                layout.cells += cells * count;
+                layout.slots += slots * count;
+            }
         }
         layout.clock = layout.slots as Slot;
         layout.slots += CLOCK_SLOTS;

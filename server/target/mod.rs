@@ -9,6 +9,9 @@ pub use model::{Limits, Model, Target};
 mod device;
 pub use device::{Device, DeviceKind, DeviceRange, SpecialDevice};
 
+mod latches;
+pub use latches::{Latch, Latches};
+
 mod operand;
 pub use operand::{Constant, DirectAddress, Location, Operand, OperandProblem, Width};
 

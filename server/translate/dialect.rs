@@ -272,9 +272,9 @@ pub(super) fn keep_guarded(sources: &mut [Source], written: &[Translated]) -> bo
     has_more
 }
 
-/// Whether what lies at an address is kept while the PLC of the FX `family` is off.
-pub(super) fn is_kept(address: DirectAddress, family: &Target) -> bool {
-    devices_at(address).any(|device| doubts::is_latched(device, family))
+/// Whether what lies at an address is kept while the PLC of a document of the FX family is off.
+pub(super) fn is_kept(address: DirectAddress, document: &Document) -> bool {
+    devices_at(address).any(|device| document.keeps(device))
 }
 
 /// Drops the END behind all other rungs, and makes a return of one before others.

@@ -147,10 +147,8 @@ pub(super) fn header(document: &Document, program: &Program, helpers: &[Helper])
     let sources = &program.rungs;
     let is_kept = |term: &Term| match (term.address(), Operand::read(root(term), document.target().model)) {
         _ if !document.target().is_fx() => false,
-        (Some(address), _) => dialect::is_kept(address, document.target()),
-        (None, Operand::Device(device)) => {
-            device.range_on(document.target()).is_some_and(|range| range.latched)
-        }
+        (Some(address), _) => dialect::is_kept(address, document),
+        (None, Operand::Device(device)) => document.keeps(device),
         _ => false,
     };
     let scopes = document.scopes();

@@ -359,7 +359,7 @@ fn coil_of(context: &ProgramContext<'_>, number: u32, name: &Name<'_>) -> Option
     let is_relay = match name.key {
         Key::Device(device) => {
             let is_kind = match device.kind {
-                DeviceKind::M => is_general(device, context.target()),
+                DeviceKind::M => is_general(device, context),
                 DeviceKind::Y => true,
                 _ => false,
             };

@@ -415,7 +415,7 @@ impl<'c, 'a> Collector<'c, 'a> {
         let is_written = acts.writes_but(&[]);
         if let Key::Device(device) = name.key {
             let is_written = is_written || self.uses.is_written_in_row(device);
-            let is_latched = device.range_on(self.context.target()).is_some_and(|range| range.latched);
+            let is_latched = self.context.keeps(device);
             let source = match device.kind {
                 DeviceKind::X if !is_written => Source::Input,
                 _ if device.is_special() => Source::Unknown,

@@ -45,7 +45,6 @@
 //! +--| |-------( )-+
 //! ```
 
-use super::relays::is_latched;
 use super::uses::{Key, Use, Uses};
 use crate::check::{ProgramContext, Rule, Run};
 use crate::document::{Act, Part};
@@ -67,7 +66,7 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let mut free = FreeRelays { uses, context, next: 0 };
     for (number, name) in uses.names() {
         let Key::Device(device) = name.key else { continue };
-        if device.kind != DeviceKind::M || device.is_special() || !is_latched(device, target) {
+        if device.kind != DeviceKind::M || device.is_special() || !context.keeps(device) {
             continue;
         }
         if uses.acts(number).writes_but(&[Act::Coil, Act::Pulse]) {
@@ -122,11 +121,11 @@ impl FreeRelays<'_, '_> {
     fn take(&mut self) -> Option<Device> {
         loop {
             let device = Device::new(DeviceKind::M, self.next);
-            let range = device.range_on(self.context.target())?;
-            if range.latched || device.is_special() {
-                return None;
-            }
+            device.range_on(self.context.target()).filter(|_| !device.is_special())?;
             self.next += 1;
+            if self.context.keeps(device) {
+                continue;
+            }
             let named = self.uses.device(device).is_some();
             if !named && !self.uses.is_read_in_row(device) && !self.uses.is_written_in_row(device) {
                 return Some(device);

@@ -136,7 +136,7 @@ fn moved(uses: &Uses<'_>, read: &Use, coil: &Use) -> Option<Vec<TextEdit>> {
 
 fn is_passing_relay(context: &ProgramContext<'_>, name: &Name<'_>) -> bool {
     match name.key {
-        Key::Device(device) => device.kind == DeviceKind::M && is_general(device, context.target()),
+        Key::Device(device) => device.kind == DeviceKind::M && is_general(device, context),
         _ => {
             let is_bit = |variable: &&crate::document::Variable| {
                 variable.declared == DeclaredType::Elementary(ElementaryType::Bool)

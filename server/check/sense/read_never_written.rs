@@ -142,7 +142,7 @@ fn may_only_the_program_write(context: &ProgramContext<'_>, wiring: &Wiring, nam
             DeviceKind::Y | DeviceKind::T | DeviceKind::C | DeviceKind::V | DeviceKind::Z => {
                 device.range_on(context.target()).is_some()
             }
-            DeviceKind::M | DeviceKind::D => is_general(device, context.target()),
+            DeviceKind::M | DeviceKind::D => is_general(device, context),
             _ => false,
         },
         _ => wiring.is_inside(name) && name.variable.is_some_and(|variable| !variable.constant),

@@ -5,19 +5,14 @@ use crate::check::ProgramContext;
 use crate::document::{Act, DeclaredType, Variable};
 use crate::il::iec::SectionKind;
 use crate::target::iec::ElementaryType;
-use crate::target::{Device, DeviceKind, Target};
+use crate::target::{Device, DeviceKind};
 use rustc_hash::FxHashSet;
 
 /// Whether it is a relay or a register of the general range: none that the CPU knows, none that keeps its value without
 /// power and may have it from another day or from a panel, and none that the model lacks, which its own rule reports.
-pub fn is_general(device: Device, target: &Target) -> bool {
-    let is_kind = matches!(device.kind, DeviceKind::M | DeviceKind::D);
-    is_kind && !device.is_special() && device.range_on(target).is_some_and(|range| !range.latched)
-}
-
-/// Whether it keeps its value without power.
-pub(super) fn is_latched(device: Device, target: &Target) -> bool {
-    device.range_on(target).is_some_and(|range| range.latched)
+pub fn is_general(device: Device, context: &ProgramContext<'_>) -> bool {
+    let is_kind = matches!(device.kind, DeviceKind::M | DeviceKind::D) && !device.is_special();
+    is_kind && device.range_on(context.target()).is_some() && !context.keeps(device)
 }
 
 /// Whether it is a variable that only its own unit sees, of an elementary type.

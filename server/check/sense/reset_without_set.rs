@@ -66,7 +66,7 @@
 //! END_PROGRAM
 //! ```
 
-use super::relays::{first_of, is_latchable, is_latched, is_written_in_row};
+use super::relays::{first_of, is_latchable, is_written_in_row};
 use super::rungs::PlainRung;
 use super::uses::Key;
 use crate::check::{ProgramContext, Rule, Run};
@@ -97,7 +97,7 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
         let message = Message::new(key).with("name", uses.words(&reset));
         let diagnostic = Diagnostic::new(RULE.code, reset.span, message);
         // Of what keeps its value without power nobody knows what it was before.
-        let begins_off = matches!(name.key, Key::Device(device) if !is_latched(device, context.target()));
+        let begins_off = matches!(name.key, Key::Device(device) if !context.keeps(device));
         let is_only = uses.of_name(number).filter(|one| one.access.act == Act::Reset).count() == 1;
         let rung = (begins_off && is_only).then(|| PlainRung::of(uses, &reset)).flatten();
         found.push(match rung {

@@ -118,7 +118,7 @@ fn may_only_the_program_read(context: &ProgramContext<'_>, wiring: &Wiring, name
     match name.key {
         Key::Device(device) => match device.kind {
             DeviceKind::T | DeviceKind::C => device.range_on(context.target()).is_some(),
-            DeviceKind::M | DeviceKind::D => is_general(device, context.target()),
+            DeviceKind::M | DeviceKind::D => is_general(device, context),
             _ => false,
         },
         _ => wiring.is_inside(name),

@@ -97,8 +97,8 @@ fn driven_relays(around: &Neighbourhood<'_>) -> Vec<(usize, Relay)> {
 /// Whether neither the PLC itself reads or writes a device, nor keeps it while it is off.
 fn is_plain_relay(around: &Neighbourhood<'_>, device: Device) -> bool {
     let target = around.document.target();
-    let is_latched = device.range_on(target).is_none_or(|range| range.latched);
-    device.kind == DeviceKind::M && !is_latched && device.special_on(target).is_none()
+    let is_general = device.range_on(target).is_some() && !around.document.keeps(device);
+    device.kind == DeviceKind::M && is_general && device.special_on(target).is_none()
 }
 
 /// Whether a bit is a variable that nobody outside of its program unit knows, in a place of its own. What is nowhere

@@ -4,10 +4,8 @@ use super::program::{Cut, Teller};
 use super::{Dialect, Host};
 use crate::link::frame::MOST_DATA;
 use crate::link::{Command, LinkError, Mode, Transport};
-use crate::machine_code::{
-    Chunk, END, Image, Latch, PARAMETER_ADDRESS, PROGRAM_ADDRESS, ParameterBlock, executed,
-};
-use crate::target::{Model, Target};
+use crate::machine_code::{Chunk, END, Image, PARAMETER_ADDRESS, PROGRAM_ADDRESS, ParameterBlock, executed};
+use crate::target::{Latch, Model, Target};
 use crate::text::Message;
 use std::sync::Arc;
 use std::time::Duration;

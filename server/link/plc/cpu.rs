@@ -1,10 +1,10 @@
 //! The CPU of the virtual PLC: its program, its mode, and the scans that it runs.
 
-use crate::document::{Document, Notation};
+use crate::document::{Comments, Document, Notation};
 use crate::link::{Mode, Switch};
-use crate::machine_code::{END, Image, ParameterBlock, decode, sum};
+use crate::machine_code::{END, Image, ParameterBlock, decode, sum, words_of};
 use crate::simulate::{Code, Machine, Value, Variable, compile};
-use crate::target::{Device, DeviceKind, Target};
+use crate::target::{Device, DeviceKind, Latches, Target};
 use std::sync::Arc;
 
 /// A PLC without hardware.
@@ -16,8 +16,8 @@ pub struct Plc {
     /// Whether something has been written into the program since it was last taken over.
     pub(super) is_open: bool,
     pub(super) machine: Machine<u8>,
-    /// The words of a program that ran, and what runs them.
-    coded: Option<(Vec<u16>, Arc<Code>)>,
+    /// The words of a program that ran with these latches, and what runs them.
+    coded: Option<(Vec<u16>, Latches, Arc<Code>)>,
     /// What a host wants to watch, as it wrote it.
     pub(super) watch_list: Vec<u8>,
     pub(super) mode: Mode,
@@ -106,6 +106,13 @@ impl Plc {
     pub fn words(&self) -> Vec<u16> {
         let (words, _) = self.program[PARAMETER_BYTES..].as_chunks::<2>();
         words.iter().map(|word| u16::from_le_bytes(*word)).collect()
+    }
+
+    /// Which devices it keeps without power, as its parameters say.
+    pub(super) fn latches(&self) -> Latches {
+        words_of(&self.program[..PARAMETER_BYTES])
+            .map(|words| ParameterBlock::from_words(&words).latches())
+            .unwrap_or_default()
     }
 
     /// Puts a program into the memory as a download does; the CPU has to stand still.
@@ -234,13 +241,16 @@ impl Plc {
         let (memory, _) = self.program[PARAMETER_BYTES..].as_chunks::<2>();
         let end = memory.iter().position(|word| u16::from_le_bytes(*word) == END)?;
         let words: Vec<u16> = memory[..=end].iter().map(|word| u16::from_le_bytes(*word)).collect();
-        if let Some((_, code)) = self.coded.as_ref().filter(|(known, _)| *known == words) {
+        let latches = self.latches();
+        let is_known = |(known, kept, _): &&(Vec<u16>, Latches, _)| *known == words && *kept == latches;
+        if let Some((_, _, code)) = self.coded.as_ref().filter(is_known) {
             return Some(Arc::clone(code));
         }
         let list = decode(&words, self.target.model).text;
-        let document = Document::new(&list, Notation::FxIl, self.target);
+        let comments = Arc::new(Comments::default().with_latches(latches));
+        let document = Document::with_comments(&list, Notation::FxIl, self.target, comments);
         let code = Arc::new(compile(&[&document], false).ok()?);
-        self.coded = Some((words, Arc::clone(&code)));
+        self.coded = Some((words, latches, Arc::clone(&code)));
         Some(code)
     }
 }

@@ -44,8 +44,11 @@ impl Plc {
 
     fn saved(&self) -> Saved {
         let code = self.machine.code();
-        let is_kept = |device: &Device| !device.is_special() && device.kind != DeviceKind::X;
-        let own: Vec<Device> = code.layout.latched().filter(is_kept).collect();
+        let latches = self.latches();
+        let is_kept = |device: &Device| {
+            !device.is_special() && device.kind != DeviceKind::X && latches.keep(*device, self.target)
+        };
+        let own: Vec<Device> = code.layout.devices().filter(is_kept).collect();
         let is_on = |device: &&Device| device.kind.is_bit() && self.machine.bit(**device) != 0;
         let number = |device: &Device| Some((device.to_string(), self.machine.word(*device, 0)));
         let words = own.iter().filter(|device| device.kind.is_word()).filter_map(number);

@@ -15,7 +15,7 @@ use crate::simulate::code::{Code, Op, Place};
 use crate::simulate::row::{Cell, Row};
 use crate::simulate::{Layout, Obstacle, Problem};
 use crate::target::iec::{ElementaryType, Formula};
-use crate::target::{DirectAddress, Target};
+use crate::target::{DirectAddress, Latches, Target};
 use crate::text::{Message, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
@@ -101,7 +101,7 @@ impl Ground for (&mut Builder, &mut Parts) {
 impl<'a> Compiler<'a> {
     fn new(declared: Declarations<'a>, target: &'static Target, is_watched: bool) -> Compiler<'a> {
         Compiler {
-            builder: Builder::new(target, Arc::new(Layout::new(target)), is_watched),
+            builder: Builder::new(target, Arc::new(Layout::new(target, &Latches::default())), is_watched),
             declared,
             parts: Parts { initials: vec![Vec::new()], ..Parts::default() },
             image: Image::default(),

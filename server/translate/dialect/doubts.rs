@@ -7,7 +7,7 @@ use super::{devices_at, guarded};
 use crate::document::{Document, Scopes, Variable};
 use crate::il::iec::{PouKind, SectionKind};
 use crate::logic::{Action, Deed, Path, Term};
-use crate::target::{Device, DeviceKind, Operand, Target};
+use crate::target::{Device, DeviceKind, Latches, Operand, Target};
 use crate::text::{Message, folded};
 use crate::translate::{Source, declared};
 use smol_str::SmolStr;
@@ -21,11 +21,12 @@ pub(super) fn all(
     family: &Target,
     (instances, initials): (&Instances, &Initials),
 ) -> Vec<Option<Message>> {
+    let plc = Plc { family, latches: document.comments().latches() };
     let doubts = sources.iter().zip(guarded::are(sources)).map(|(source, is_guarded)| {
         let path = source.path()?;
         match document.target().is_fx() {
-            true => of_devices(path, family, is_guarded),
-            false => of_variables(path, (document.scopes(), source.pou), family, (instances, initials)),
+            true => of_devices(path, plc, is_guarded),
+            false => of_variables(path, (document.scopes(), source.pou), plc, (instances, initials)),
         }
     });
     let mut doubts: Vec<Option<Message>> = doubts.collect();
@@ -36,6 +37,20 @@ pub(super) fn all(
         doubts[first] = configuration(document).or_else(|| first_value(document.scopes(), family, initials));
     }
     doubts
+}
+
+/// The PLC of the FX family that a program is for, or becomes one for.
+#[derive(Clone, Copy)]
+struct Plc<'a> {
+    family: &'a Target,
+    latches: &'a Latches,
+}
+
+impl Plc<'_> {
+    /// Whether it keeps a device while it is off.
+    fn keeps(self, device: Device) -> bool {
+        self.latches.keep(device, self.family)
+    }
 }
 
 /// What decides when, how often and with what the programs of IEC 61131-3 run. An FX list runs in each scan, from its
@@ -76,32 +91,27 @@ fn doubt(key: &'static str, word: impl AsRef<str>) -> Message {
 }
 
 /// What the devices of a rung make doubtful.
-fn of_devices(path: &Path, family: &Target, is_guarded: bool) -> Option<Message> {
+fn of_devices(path: &Path, plc: Plc<'_>, is_guarded: bool) -> Option<Message> {
     let timed = |action: &&Action| matches!((&action.deed, &action.terms[..]), (Deed::Coil(_), [_, _]));
     let timers =
         path.actions().into_iter().filter(timed).filter_map(|action| action.terms[0].operand.device());
     let mut left_out = timers.filter(|device| is_guarded && device.kind == DeviceKind::T);
     let jumped = left_out.next().map(|timer| doubt("translate.jumped-timer", timer.to_string()));
     let devices = || path.terms().into_iter().filter_map(|term| term.operand.device());
-    jumped.or_else(|| devices().find_map(|device| latched_counter(device, family)))
+    jumped.or_else(|| devices().find_map(|device| latched_counter(device, plc)))
 }
 
 /// What a latched counter remembers of its input while the PLC is off, nobody says alike.
-fn latched_counter(device: Device, family: &Target) -> Option<Message> {
-    let is_latched = device.kind == DeviceKind::C && is_latched(device, family);
+fn latched_counter(device: Device, plc: Plc<'_>) -> Option<Message> {
+    let is_latched = device.kind == DeviceKind::C && plc.keeps(device);
     is_latched.then(|| doubt("translate.latched-counter", device.to_string()))
-}
-
-/// Whether a model keeps a device while it is off.
-pub(super) fn is_latched(device: Device, family: &Target) -> bool {
-    device.range_on(family).is_some_and(|range| range.latched)
 }
 
 /// What the declarations of the variables of a rung make doubtful.
 fn of_variables(
     path: &Path,
     (scopes, unit): (&Scopes, Option<usize>),
-    family: &Target,
+    plc: Plc<'_>,
     (instances, initials): (&Instances, &Initials),
 ) -> Option<Message> {
     let called = path.actions().into_iter().find_map(|action| match (&action.deed, action.terms.first()) {
@@ -112,7 +122,7 @@ fn of_variables(
         _ => None,
     });
     called.or_else(|| {
-        path.terms().into_iter().find_map(|term| of_variable(term, scopes, (unit, initials), family))
+        path.terms().into_iter().find_map(|term| of_variable(term, scopes, (unit, initials), plc))
     })
 }
 
@@ -120,7 +130,7 @@ fn of_variable(
     term: &Term,
     scopes: &Scopes,
     (unit, initials): (Option<usize>, &Initials),
-    family: &Target,
+    plc: Plc<'_>,
 ) -> Option<Message> {
     if term.operand != Operand::Variable {
         return None;
@@ -136,18 +146,18 @@ fn of_variable(
     if is_doubtful(variable, scopes, (unit, initials)) {
         return Some(doubt("translate.initial", name));
     }
-    let devices = devices(variable, family);
+    let devices = devices(variable, plc.family);
     // Inputs are read anew in each scan.
     let mut kept = devices.iter().filter(|device| device.kind != DeviceKind::X);
     let is_kept = variable.is_retained();
-    if let Some(device) = kept.find(|device| is_latched(**device, family) != is_kept) {
+    if let Some(device) = kept.find(|device| plc.keeps(**device) != is_kept) {
         let key = if is_kept { "translate.retained" } else { "translate.not-retained" };
         return Some(doubt(key, name).with("device", device.to_string()));
     }
     if is_kept && devices.is_empty() {
         return Some(doubt("translate.retained-alone", name));
     }
-    devices.into_iter().find_map(|device| latched_counter(device, family))
+    devices.into_iter().find_map(|device| latched_counter(device, plc))
 }
 
 /// Whether a variable has a value at first that nothing gives it in the other language.
