@@ -5,12 +5,31 @@
 use rungwise::check::{self, RULES, Rule, Severities};
 use rungwise::document::{Document, Notation};
 use rungwise::target::{Model, Target};
-use rungwise::text::{Language, Severity, Span, catalogue_keys};
+use rungwise::text::{Diagnostic, Fix, Language, Severity, Span, TextEdit, catalogue_keys};
 use std::collections::HashSet;
 
 /// Rules whose failing example would not fit on a page, or would not be seen on it.
 const WITHOUT_FAILING_EXAMPLE: &[&str] =
     &["text-too-large", "tab-in-drawing", "device-comments", "program-too-large"];
+
+/// Programs with a fix of rules whose pages have none.
+const FIXED_ELSEWHERE: &[(&str, Notation, &str)] = &[
+    (
+        "contact-after-coil",
+        Notation::Ladder,
+        "|  X0      X1      Y0  |\n+--| |-----| |-----( )-+\n|  X2   Y1  |          |\n+--| |--( )-+          |\n",
+    ),
+    ("unreadable-cell", Notation::Ladder, "|  X0      Y0  |\n+--| |--?--( )-+\n"),
+    ("tab-in-drawing", Notation::Ladder, "|  X0\tY0  |\n+--| |--( )-+\n"),
+    ("unknown-device", Notation::FxIl, "LD XO\nOUT Y0\nEND\n"),
+    ("lenient-form", Notation::IecIl, "PROGRAM Main\nVAR a : BOOL; END_VAR\nLD a;\nST a\nEND_PROGRAM\n"),
+    ("read-never-written", Notation::FxIl, "LD X0\nOUT M21\nLD M20\nOUT Y0\nEND\n"),
+    (
+        "unknown-function-block",
+        Notation::IecIl,
+        "PROGRAM Main\nVAR T1 : TON; a : BOOL; END_VAR\nCAL TON(IN := a)\nLD T1.Q\nST a\nEND_PROGRAM\n",
+    ),
+];
 
 /// A fenced example: its program without the marks, and where the marks point.
 struct Example {
@@ -36,6 +55,56 @@ fn every_page_is_true() {
         wrong.extend(examples.iter().filter_map(|example| check_example(rule, example)));
     }
     assert!(wrong.is_empty(), "{} examples are wrong:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+#[test]
+fn every_rule_has_a_fix_or_a_reason() {
+    let page = include_str!("../docs/quick-fixes.md");
+    let reasons = page.lines().filter_map(|line| line.strip_prefix("| `")?.split_once("` | "));
+    let without: HashSet<&str> = reasons.filter(|(_, why)| why.len() > 20).map(|(code, _)| code).collect();
+    let mut wrong = Vec::new();
+    for code in without.iter().filter(|code| Rule::named(code).is_none()) {
+        wrong.push(format!("{code}: no rule"));
+    }
+    for rule in RULES.iter() {
+        let mut all = examples(&rule.page());
+        all.extend(FIXED_ELSEWHERE.iter().filter(|(code, ..)| *code == rule.code).map(
+            |&(_, notation, text)| {
+                let model = if notation == Notation::IecIl { Model::Iec } else { Model::Fx2n };
+                let (target, text) = (Target::of(model), text.to_string());
+                Example { notation, target, text, marks: Vec::new(), line: 0 }
+            },
+        ));
+        let mut fixes = 0;
+        for example in &all {
+            let document = Document::new(&example.text, example.notation, example.target);
+            let found = check::all(&document, &Severities::default());
+            let own = found.iter().filter(|found| found.code == rule.code);
+            for fix in own.flat_map(|found| &found.fixes) {
+                fixes += 1;
+                wrong.extend(complaint_of(fix, rule, example, &found));
+            }
+        }
+        match (fixes, without.contains(rule.code)) {
+            (0, false) => wrong.push(format!("{}: no fix, and no reason why", rule.code)),
+            (1.., true) => wrong.push(format!("{}: has a fix and a reason why not", rule.code)),
+            _ => {}
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// What is wrong with a fix: behind it there are as many findings of its rule, or more errors.
+fn complaint_of(fix: &Fix, rule: &Rule, example: &Example, before: &[Diagnostic]) -> Option<String> {
+    let text = TextEdit::apply_all(&fix.edits, &example.text);
+    let after = check::all(&Document::new(&text, example.notation, example.target), &Severities::default());
+    let own = |found: &[Diagnostic]| found.iter().filter(|found| found.code == rule.code).count();
+    let errors =
+        |found: &[Diagnostic]| found.iter().filter(|found| found.severity == Severity::Error).count();
+    let title = fix.title.render(Language::English);
+    let is_better = own(&after) < own(before) && errors(&after) <= errors(before);
+    let codes: Vec<&str> = after.iter().map(|found| found.code).collect();
+    (!is_better).then(|| format!("{}: “{title}” leaves {codes:?}:\n{text}", rule.code))
 }
 
 #[test]

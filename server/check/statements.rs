@@ -109,7 +109,8 @@ impl<'a> Statement<'a> {
     }
 }
 
-/// Puts `line` on a line of its own before the one in which `word` stands. Offsets are those of `text`.
+/// Puts `line` on a line of its own before the one in which `word` stands; it may be several. Offsets are those of
+/// `text`.
 pub(super) fn line_before(text: &str, word: Span, line: &str) -> TextEdit {
     let head = text.get(..word.start as usize).unwrap_or("");
     let start = head.rfind(['\n', '\r']).map_or(0, |newline| newline + 1);
@@ -117,6 +118,7 @@ pub(super) fn line_before(text: &str, word: Span, line: &str) -> TextEdit {
     let tail = text.get(word.start as usize..).unwrap_or("");
     let own = tail.find('\n').is_some_and(|newline| tail[..newline].ends_with('\r'));
     let newline = if head[..start].ends_with("\r\n") || own { "\r\n" } else { "\n" };
+    let line = line.replace('\n', newline);
     // Behind something else on the same line, such as a label, a new line begins right before the word.
     let is_first = head[start..].chars().all(|c| c.is_whitespace() || c.is_ascii_digit() || c == '\u{feff}');
     match is_first {

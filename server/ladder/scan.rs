@@ -8,7 +8,7 @@ use super::names::without;
 use super::ragged::ASIDE;
 use super::{Element, ElementKind, OperandPlace};
 use crate::target::{DeviceKind, Location, Operand, OperandProblem, Target, Width};
-use crate::text::{Diagnostic, Message, Span, TextEdit};
+use crate::text::{Diagnostic, Fix, Message, Span, TextEdit};
 use std::cell::OnceCell;
 
 /// A piece of a row.
@@ -149,6 +149,11 @@ impl Scanner<'_> {
         self.unreadable(span, Message::new("unreadable-cell.character").with("text", span.of(self.text)));
         let wire = |column: usize| self.grid.arms(row, column).is_horizontal();
         let bridged = start > 0 && wire(start - 1) && wire(end);
+        if let Some(problem) = self.problems.last_mut().filter(|_| bridged) {
+            let wire = self.grid.at(row, start - 1).to_string().repeat(end - start);
+            let edits = vec![TextEdit::new(span, wire)];
+            problem.fixes.push(Fix { title: Message::new("unreadable-cell.wire"), edits });
+        }
         Token { start, end, what: if bridged { What::Wire } else { What::Unreadable } }
     }
 

@@ -4,7 +4,8 @@
 //! to them: the resource, the program as the configuration calls it, function blocks within it, the variable. A word of
 //! that way that names nothing leaves the variable without its address, and an output without an address moves nothing.
 //!
-//! A type that is not the one of the declaration is reported too.
+//! A type that is not the one of the declaration is reported too, and so is a variable with two lines: it has one
+//! address and one first value, and which of them it is, each maker decides.
 //!
 //! ```iec
 //! PROGRAM Press
@@ -26,6 +27,8 @@
 //!              ^^^^^
 //!         Hall.Left.Ram AT %QW1 : INT;
 //!                                 ^^^
+//!         Hall.Left.Ram AT %QX0.2 : BOOL;
+//!         ^^^^^^^^^^^^^
 //!     END_VAR
 //! END_CONFIGURATION
 //! ```
@@ -49,12 +52,15 @@
 //! END_CONFIGURATION
 //! ```
 
+use super::removal;
 use super::unknown_parameter::with_names;
 use crate::check::iec::{View, views};
 use crate::check::{ProgramContext, Rule, Run};
 use crate::document::{DeclaredType, Pou};
 use crate::il::iec::{Declaration, ItemKind, SectionKind};
-use crate::text::{Diagnostic, Message, Severity, Span, folded};
+use crate::text::{Diagnostic, Fix, Message, Severity, Span, TextEdit, folded};
+use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
 
 pub(super) const RULE: Rule = Rule {
     code: "config-path",
@@ -73,10 +79,15 @@ struct Instance<'v> {
 
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let (mut resource, mut instances, mut configured) = (None, Vec::new(), Vec::new());
+    let mut configurations = 0;
     for (start, view) in views(context) {
         for item in &view.tree.items {
             match item.kind {
-                ItemKind::Configuration { .. } | ItemKind::End(_) => resource = None,
+                ItemKind::Configuration { .. } => {
+                    configurations += 1;
+                    resource = None;
+                }
+                ItemKind::End(_) => resource = None,
                 ItemKind::Resource { name, .. } => resource = name.map(|name| name.of(view.text)),
                 ItemKind::Instance(index) => {
                     let instance = view.tree.instances.get(index as usize);
@@ -87,13 +98,22 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
                 }
                 ItemKind::Section { kind: SectionKind::Config, declarations, .. } => {
                     let declarations = declarations.of(&view.tree.declarations).iter();
-                    configured.extend(declarations.map(|declaration| (start, view, declaration)));
+                    configured.extend(declarations.map(|own| (configurations, start, view, own)));
                 }
                 _ => {}
             }
         }
     }
-    for (start, view, declaration) in configured {
+    let mut first: FxHashMap<(usize, SmolStr), (usize, View<'_>, &Declaration)> = FxHashMap::default();
+    for (configuration, start, view, declaration) in configured {
+        if let Some(path) = declaration.path {
+            let words: Vec<&str> = steps(path, view.text).map(|step| step.of(view.text)).collect();
+            let key = (configuration, folded(&words.join(".")));
+            match first.get(&key) {
+                Some(before) => found.push(again((start, &view, declaration), before)),
+                None => _ = first.insert(key, (start, view, declaration)),
+            }
+        }
         found.extend(judge(&view, declaration, &instances).map(|diagnostic| diagnostic.shifted(start)));
     }
 }
@@ -146,6 +166,33 @@ fn judge(view: &View<'_>, declaration: &Declaration, instances: &[Instance<'_>])
         }
         _ => None,
     }
+}
+
+/// A second line about a variable.
+fn again(
+    (start, view, declaration): (usize, &View<'_>, &Declaration),
+    (first, other_view, other): &(usize, View<'_>, &Declaration),
+) -> Diagnostic {
+    let span = |declaration: &Declaration, start| declaration.path.unwrap_or_default().shifted(start);
+    let name = declaration.path.unwrap_or_default().of(view.text);
+    let message = Message::new("config-path.twice").with("name", name);
+    let mut diagnostic = Diagnostic::new(RULE.code, span(declaration, start), message)
+        .related(span(other, *first), Message::new("config-path.first"));
+    let said = |view: &View<'_>, declaration: &Declaration| {
+        let behind = declaration.path.map_or(declaration.span.start, |path| path.end);
+        let said = Span { start: behind, end: declaration.span.end }.of(view.text);
+        folded(&said.split_whitespace().collect::<String>())
+    };
+    let mut offer = |key, edit: Option<TextEdit>| {
+        if let Some(edit) = edit {
+            diagnostic.fixes.push(Fix { title: Message::new(key), edits: vec![edit] });
+        }
+    };
+    offer("config-path.remove", removal(view.text, declaration, start));
+    if said(view, declaration) != said(other_view, other) {
+        offer("config-path.remove-first", removal(other_view.text, other, *first));
+    }
+    diagnostic
 }
 
 /// The words of a path.

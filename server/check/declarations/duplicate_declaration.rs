@@ -35,9 +35,10 @@
 //! END_PROGRAM
 //! ```
 
+use super::removal;
 use crate::check::iec::{View, views_of};
 use crate::check::{ProgramContext, Rule, Run};
-use crate::il::iec::{ItemKind, Run as Records, SectionKind, TypeSpec};
+use crate::il::iec::{Declaration, ItemKind, Run as Records, SectionKind, TypeSpec};
 use crate::text::{Diagnostic, Message, Severity, Span, folded};
 use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
@@ -49,23 +50,46 @@ pub(super) const RULE: Rule = Rule {
     source: include_str!("duplicate_declaration.rs"),
 };
 
-/// Names that must differ from each other, with their places.
+/// Names that must differ from each other, with their places and what they are declared as.
 #[derive(Default)]
-struct Names(FxHashMap<SmolStr, Span>);
+struct Names(FxHashMap<SmolStr, (Span, Option<SmolStr>)>);
 
 impl Names {
     fn add(&mut self, view: &View<'_>, start: usize, span: Span, found: &mut Vec<Diagnostic>) {
+        self.add_declared(view, start, (span, None), found);
+    }
+
+    fn add_declared(
+        &mut self,
+        view: &View<'_>,
+        start: usize,
+        (span, declaration): (Span, Option<&Declaration>),
+        found: &mut Vec<Diagnostic>,
+    ) {
         let name = span.of(view.text);
         let at = span.shifted(start);
-        match self.0.get(&folded(name)) {
-            Some(first) => {
-                let message = Message::new("duplicate-declaration.found").with("name", name);
-                let diagnostic = Diagnostic::new(RULE.code, at, message);
-                found.push(diagnostic.related(*first, Message::new("duplicate-declaration.first")));
-            }
-            None => _ = self.0.insert(folded(name), at),
-        }
+        let said = declaration.map(|own| said_of(view, own));
+        let Some((first, before)) = self.0.get(&folded(name)) else {
+            self.0.insert(folded(name), (at, said));
+            return;
+        };
+        let message = Message::new("duplicate-declaration.found").with("name", name);
+        let diagnostic = Diagnostic::new(RULE.code, at, message)
+            .related(*first, Message::new("duplicate-declaration.first"));
+        // Of two that say something else nobody knows which is meant.
+        let again = declaration.filter(|own| said == *before && own.names.of(&view.tree.names).len() == 1);
+        found.push(match again.and_then(|own| removal(view.text, own, start)) {
+            Some(edit) => diagnostic.fix(Message::new("duplicate-declaration.remove"), vec![edit]),
+            None => diagnostic,
+        });
     }
+}
+
+/// What stands behind the names of a declaration, however it is spaced.
+fn said_of(view: &View<'_>, declaration: &Declaration) -> SmolStr {
+    let last = declaration.names.of(&view.tree.names).last().map_or(declaration.span.start, |name| name.end);
+    let said = Span { start: last, end: declaration.span.end }.of(view.text);
+    folded(&said.split_whitespace().collect::<Vec<_>>().join(""))
 }
 
 #[derive(Default)]
@@ -108,10 +132,10 @@ impl Scope {
                         SectionKind::Access | SectionKind::Config => continue,
                         _ => &mut self.variables,
                     };
-                    each_name(view, declarations, |name| names.add(view, start, name, found));
+                    each_name(view, declarations, |name| names.add_declared(view, start, name, found));
                 }
                 ItemKind::Types { declarations } => {
-                    each_name(view, declarations, |name| self.types.add(view, start, name, found));
+                    each_name(view, declarations, |name| self.types.add_declared(view, start, name, found));
                 }
                 ItemKind::Configuration { .. } | ItemKind::Resource { .. } => self.runtime = Names::default(),
                 ItemKind::Task(index) => {
@@ -130,9 +154,13 @@ impl Scope {
     }
 }
 
-fn each_name(view: &View<'_>, declarations: Records, mut take: impl FnMut(Span)) {
+fn each_name<'v>(
+    view: &View<'v>,
+    declarations: Records,
+    mut take: impl FnMut((Span, Option<&'v Declaration>)),
+) {
     for declaration in declarations.of(&view.tree.declarations) {
-        declaration.names.of(&view.tree.names).iter().for_each(|name| take(*name));
+        declaration.names.of(&view.tree.names).iter().for_each(|name| take((*name, Some(declaration))));
     }
 }
 
@@ -142,7 +170,7 @@ fn inside_types(view: &View<'_>, start: usize, found: &mut Vec<Diagnostic>) {
         let mut names = Names::default();
         match written.value {
             TypeSpec::Structure { fields } => {
-                each_name(view, fields, |name| names.add(view, start, name, found));
+                each_name(view, fields, |name| names.add_declared(view, start, name, found));
             }
             TypeSpec::Enumeration { values } => {
                 for name in values.of(&view.tree.names) {

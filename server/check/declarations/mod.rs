@@ -1,6 +1,8 @@
 //! Declarations of IEC 61131-3 programs.
 
 use super::Rule;
+use crate::il::iec::Declaration;
+use crate::text::{Span, TextEdit};
 
 mod undeclared_variable;
 
@@ -48,3 +50,12 @@ pub(super) const RULES: &[&Rule] = &[
     &config_path::RULE,
     &similar_names::RULE,
 ];
+
+/// Takes out the line of a declaration that has it for itself.
+fn removal(text: &str, declaration: &Declaration, start: usize) -> Option<TextEdit> {
+    let (from, to) = (declaration.span.start as usize, declaration.span.end as usize);
+    let line = text.get(..from)?.rfind('\n').map_or(0, |newline| newline + 1);
+    let end = to + text.get(to..)?.find('\n')? + 1;
+    let alone = text.get(line..from)?.trim().is_empty() && text.get(to..end)?.trim() == ";";
+    alone.then(|| TextEdit::new(Span::new(line, end).shifted(start), ""))
+}

@@ -33,10 +33,10 @@
 
 use crate::check::iec::{Callee, Place, Root, ValueType, View};
 use crate::check::{ChunkContext, Rule, Run};
-use crate::document::DeclaredType;
+use crate::document::{DeclaredType, Variable};
 use crate::il::iec::{ItemKind, OperandId};
 use crate::target::Operand;
-use crate::text::{Diagnostic, Message, Severity};
+use crate::text::{Diagnostic, Message, Severity, TextEdit};
 
 pub(super) const RULE: Rule = Rule {
     code: "unknown-function-block",
@@ -71,7 +71,11 @@ fn judge(view: &View<'_>, id: OperandId) -> Option<Diagnostic> {
         Operand::Variable => match view.place(id) {
             // The block itself instead of an instance; any other name is an undeclared variable.
             Place::Undeclared if view.is_block(word) => {
-                diagnostic(Message::new("unknown-function-block.block"))
+                let found = diagnostic(Message::new("unknown-function-block.block"))?;
+                Some(instances(view, word).fold(found, |found, name| {
+                    let title = Message::new("unknown-function-block.call").with("name", name);
+                    found.fix(title, vec![TextEdit::new(operand.span, name)])
+                }))
             }
             Place::Typed(declared) => {
                 let title = match view.value_of(declared.clone()) {
@@ -90,4 +94,18 @@ fn judge(view: &View<'_>, id: OperandId) -> Option<Diagnostic> {
         },
         _ => None,
     }
+}
+
+/// So many instances are offered.
+const MOST_INSTANCES: usize = 4;
+
+/// The instances of a block in the unit of the call.
+fn instances<'v>(view: &View<'v>, block: &str) -> impl Iterator<Item = &'v str> {
+    let own = view.pou.and_then(|pou| view.scopes.pous.get(pou));
+    let variables = own.map_or(&[][..], |pou| &pou.variables);
+    let is_instance = move |variable: &&Variable| match &variable.declared {
+        DeclaredType::Named(name) => name.eq_ignore_ascii_case(block),
+        _ => false,
+    };
+    variables.iter().filter(is_instance).map(|variable| variable.name.as_str()).take(MOST_INSTANCES)
 }

@@ -33,9 +33,10 @@
 //! END_PROGRAM
 //! ```
 
+use super::removal;
 use crate::check::{ProgramContext, Rule, Run};
 use crate::document::{ChunkRef, Document, Symbol, Use};
-use crate::il::iec::{Declaration, IecTree, ItemKind, SectionKind};
+use crate::il::iec::{IecTree, ItemKind, SectionKind};
 use crate::text::{Diagnostic, Message, Severity, Span, TextEdit, folded};
 use rustc_hash::FxHashSet;
 
@@ -129,15 +130,6 @@ fn sections<'a>(at: ChunkRef<'a>, tree: &'a IecTree, unit: &mut Unit<'a>, global
             }
         }
     }
-}
-
-/// Takes out the line of a declaration that has it for itself.
-fn removal(text: &str, declaration: &Declaration, start: usize) -> Option<TextEdit> {
-    let (from, to) = (declaration.span.start as usize, declaration.span.end as usize);
-    let line = text.get(..from)?.rfind('\n').map_or(0, |newline| newline + 1);
-    let end = to + text.get(to..)?.find('\n')? + 1;
-    let alone = text.get(line..from)?.trim().is_empty() && text.get(to..end)?.trim() == ";";
-    alone.then(|| TextEdit::new(Span::new(line, end).shifted(start), ""))
 }
 
 impl Unit<'_> {

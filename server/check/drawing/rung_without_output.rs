@@ -31,6 +31,7 @@
 
 use super::Drawn;
 use crate::check::order::rung::Finding;
+use crate::check::statements::removal;
 use crate::check::{ChunkContext, Rule, Run};
 use crate::document::Tree;
 use crate::ladder::reduce::bypasses;
@@ -66,7 +67,8 @@ fn of_list(context: &ChunkContext<'_>, found: &mut Vec<Diagnostic>) {
         if first != last {
             diagnostic = diagnostic.related(first, Message::new("rung-without-output.first"));
         }
-        found.push(diagnostic);
+        let title = Message::new("rung-without-output.remove");
+        found.push(diagnostic.fix(title, vec![removal(text, Span { start: first.start, end: last.end })]));
     }
 }
 

@@ -53,7 +53,8 @@ struct Loop<'a> {
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let mut loops: Vec<Loop<'_>> = Vec::new();
     let mut open: Vec<usize> = Vec::new();
-    let mut labels: FxHashMap<Device, (Span, Option<usize>)> = FxHashMap::default();
+    // With the loops around each, the outermost first.
+    let mut labels: FxHashMap<Device, (Statement<'_>, Vec<usize>)> = FxHashMap::default();
     let mut jumps: Vec<(Device, Span)> = Vec::new();
     for statement in context.executed() {
         match statement.kind {
@@ -68,7 +69,7 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
                 }
             }
             StatementKind::Label(device) => {
-                labels.entry(device).or_insert((statement.word, open.last().copied()));
+                labels.entry(device).or_insert_with(|| (statement, open.clone()));
             }
             StatementKind::Instruction(Flow::Jump) => {
                 let operand = statement.first.map_or(statement.word, |operand| operand.span);
@@ -77,16 +78,35 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
             _ => {}
         }
     }
-    for (device, jump) in jumps {
-        let Some(&(label, Some(innermost))) = labels.get(&device) else { continue };
-        let Loop { begin, end } = &loops[innermost];
-        if jump.start < begin.span.start || *end < jump.start {
-            let message = Message::new("jump-into-loop.found").with("label", device);
-            found.push(
-                Diagnostic::new(RULE.code, jump, message)
-                    .related(begin.span, Message::new("jump-into-loop.loop"))
-                    .related(label, Message::new("jump-into-loop.label")),
-            );
+    for (device, jump) in &jumps {
+        let Some((label, around)) = labels.get(device) else { continue };
+        let Some(innermost) = around.last().map(|innermost| &loops[*innermost]) else { continue };
+        if !innermost.is_entered_by(*jump) {
+            continue;
         }
+        let message = Message::new("jump-into-loop.found").with("label", device);
+        let diagnostic = Diagnostic::new(RULE.code, *jump, message)
+            .related(innermost.begin.span, Message::new("jump-into-loop.loop"))
+            .related(label.word, Message::new("jump-into-loop.label"));
+        // Jumps within the loop go on with its next round, and must stay there.
+        let entered = around.iter().map(|outer| &loops[*outer]).find(|outer| outer.is_entered_by(*jump));
+        let mut others = jumps.iter().filter(|(other, _)| other == device);
+        let entered = entered.filter(|entered| others.all(|(_, other)| entered.is_entered_by(*other)));
+        let moved = entered
+            .and_then(|entered| Some(vec![entered.begin.line_before(label.text())?, label.removal()?]));
+        found.push(match moved {
+            Some(edits) => {
+                let title = Message::new("jump-into-loop.move").with("label", device);
+                diagnostic.fix(title, edits)
+            }
+            None => diagnostic,
+        });
+    }
+}
+
+impl Loop<'_> {
+    /// Whether a jump to a label in it comes from outside.
+    fn is_entered_by(&self, jump: Span) -> bool {
+        jump.start < self.begin.span.start || self.end < jump.start
     }
 }

@@ -15,6 +15,8 @@ mod constant;
 
 mod removal;
 
+mod interlock;
+
 mod rewrite;
 
 mod contradiction_on_path;

@@ -96,6 +96,7 @@
 //! END_PROGRAM
 //! ```
 
+use super::interlock;
 use super::slice::{Obstacle, Slice};
 use crate::check::sense::{Key, Use};
 use crate::check::{ProgramContext, Rule, Run};
@@ -317,7 +318,13 @@ impl Judge<'_, '_, '_> {
         let related = places.into_iter().fold(diagnostic, |diagnostic, (span, words)| {
             diagnostic.related(span, Message::new("mutual-exclusion.coil").with("name", words))
         });
-        self.found.push(related);
+        // What is not decided may be right as it is.
+        let is_open = related.message.key() == "mutual-exclusion.undecided";
+        let interlock = if is_open { None } else { interlock::of(self.context, numbers) };
+        self.found.push(match interlock {
+            Some((title, edits)) => related.fix(title, edits),
+            None => related,
+        });
     }
 
     /// What is to be said of a pair; nothing if the two are proved never to be on together.

@@ -15,17 +15,20 @@ use crate::translate::{to_fx, to_ladder};
 /// Instruction List of IEC 61131-3.
 pub(super) fn edits(context: &ChunkContext<'_>, rung: &ProofRung, path: &Path) -> Option<Vec<TextEdit>> {
     match (context.chunk.tree(), rung.drawn) {
-        (Tree::Ladder(_), Some(number)) => {
-            let drawn = Drawn::of(context)?;
-            let plan = to_ladder::plan(path, context.target.model).ok()?;
-            let drawing = |kind| Drawing::new(&plan.shape, &plan.graph, &plan.source, kind);
-            let is_meant = |graph: &Graph, text: &str| does(path, (text, graph), drawn.scopes);
-            let edit = redraw_as(drawn.text, drawn.tree, number, drawing, is_meant, context.target)?;
-            Some(vec![edit])
-        }
+        (Tree::Ladder(_), Some(number)) => redrawn(context, number, path),
         (Tree::Fx(tree), None) => list(context, tree, path),
         _ => None,
     }
+}
+
+/// The edits that draw `path` in the place of the rung with this number in a drawing.
+pub(super) fn redrawn(context: &ChunkContext<'_>, number: usize, path: &Path) -> Option<Vec<TextEdit>> {
+    let drawn = Drawn::of(context)?;
+    let plan = to_ladder::plan(path, context.target.model).ok()?;
+    let drawing = |kind| Drawing::new(&plan.shape, &plan.graph, &plan.source, kind);
+    let is_meant = |graph: &Graph, text: &str| does(path, (text, graph), drawn.scopes);
+    let edit = redraw_as(drawn.text, drawn.tree, number, drawing, is_meant, context.target)?;
+    Some(vec![edit])
 }
 
 /// The lines that differ.

@@ -36,9 +36,13 @@
 //! END
 //! ```
 
+use super::free::{FreeDevices, renamed, symbol_of};
+use super::rungs::MOST_MENDED;
+use super::uses::{Key, Use};
 use crate::check::{ProgramContext, Rule, Run};
 use crate::document::Act;
-use crate::text::{Diagnostic, Message, Severity};
+use crate::target::{Device, DeviceKind};
+use crate::text::{Diagnostic, Message, Severity, TextEdit};
 
 pub(super) const RULE: Rule = Rule {
     code: "edge-in-skipped-code",
@@ -52,7 +56,9 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     if !uses.is_fx || !regions.has_parts() {
         return;
     }
-    for (number, _) in uses.names() {
+    let mut relays = FreeDevices::of(context, DeviceKind::M);
+    let mut mended = 0;
+    for (number, name) in uses.names() {
         if !uses.acts(number).has(&[Act::ReadEdge, Act::Pulse]) {
             continue;
         }
@@ -64,7 +70,46 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
                 () => continue,
             };
             let message = Message::new(key).with("name", uses.words(&one));
-            found.push(Diagnostic::new(RULE.code, one.span, message));
+            let diagnostic = Diagnostic::new(RULE.code, one.span, message);
+            // What the program writes has its edges in the middle of a scan.
+            let input = match name.key {
+                Key::Device(device) if device.kind == DeviceKind::X && mended < MOST_MENDED => Some(device),
+                _ => None,
+            };
+            let taken = input.and_then(|input| taken_before(context, &one, input, &mut relays));
+            mended += usize::from(taken.is_some());
+            found.push(match taken {
+                Some((relay, edits)) => {
+                    let title = Message::new("edge-in-skipped-code.before").with("relay", relay);
+                    diagnostic.fix(title.with("name", uses.words(&one)), edits)
+                }
+                None => diagnostic,
+            });
         }
     }
+}
+
+/// Takes the edge of an input at the start of the program, which every scan comes to, into a free relay. It is on in
+/// the scan of the edge, and the contact asks for that.
+fn taken_before(
+    context: &ProgramContext<'_>,
+    one: &Use,
+    input: Device,
+    relays: &mut FreeDevices<'_, '_>,
+) -> Option<(Device, Vec<TextEdit>)> {
+    let uses = context.uses();
+    let (symbol, words) = symbol_of(uses, one)?;
+    let (contact, pulse) = match words.to_ascii_uppercase().as_str() {
+        "LDP" | "ANDP" | "ORP" => (&words[..words.len() - 1], "PLS"),
+        "LDF" | "ANDF" | "ORF" => (&words[..words.len() - 1], "PLF"),
+        _ => return None,
+    };
+    let first = context.executed().next()?;
+    let relay = relays.take()?;
+    let edits = vec![
+        first.line_before(&format!("LD {input}\n{pulse} {relay}"))?,
+        TextEdit::new(symbol, contact),
+        renamed(uses, one, input, relay)?,
+    ];
+    Some((relay, edits))
 }

@@ -45,11 +45,12 @@
 //! +--| |-------( )-+
 //! ```
 
-use super::uses::{Key, Use, Uses};
+use super::free::{FreeDevices, renamed};
+use super::uses::{Key, Use};
 use crate::check::{ProgramContext, Rule, Run};
-use crate::document::{Act, Part};
-use crate::target::{Device, DeviceKind, Operand};
-use crate::text::{Diagnostic, Message, Severity, TextEdit};
+use crate::document::Act;
+use crate::target::DeviceKind;
+use crate::text::{Diagnostic, Message, Severity};
 
 pub(super) const RULE: Rule = Rule {
     code: "latched-range",
@@ -63,7 +64,7 @@ const MOST_PLACES: usize = 200;
 
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let (uses, target) = (context.uses(), context.target());
-    let mut free = FreeRelays { uses, context, next: 0 };
+    let mut free = FreeDevices::of(context, DeviceKind::M);
     for (number, name) in uses.names() {
         let Key::Device(device) = name.key else { continue };
         if device.kind != DeviceKind::M || device.is_special() || !context.keeps(device) {
@@ -90,46 +91,18 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
         let message = Message::new("latched-range.found").with("name", device);
         let diagnostic = Diagnostic::new(RULE.code, coil.span, message);
         let places: Vec<Use> = uses.of_name(number).take(MOST_PLACES + 1).collect();
-        let is_renamed = places.len() <= MOST_PLACES
-            && !uses.is_read_in_row(device)
-            && places.iter().all(|one| is_plain_word(uses, one, device));
-        found.push(match is_renamed.then(|| free.take()).flatten() {
-            Some(other) => {
-                let edits = places.iter().map(|one| TextEdit::new(one.span, other.to_string()));
+        let may_be_renamed = places.len() <= MOST_PLACES && !uses.is_read_in_row(device);
+        let other = may_be_renamed.then(|| free.take()).flatten();
+        let renamed = other.and_then(|other| {
+            let edits = places.iter().map(|one| renamed(uses, one, device, other));
+            Some((other, edits.collect::<Option<Vec<_>>>()?))
+        });
+        found.push(match renamed {
+            Some((other, edits)) => {
                 let title = Message::new("latched-range.replace").with("name", device).with("other", other);
-                diagnostic.fix(title, edits.collect())
+                diagnostic.fix(title, edits)
             }
             None => diagnostic,
         });
-    }
-}
-
-/// Whether the word at the place is the name of the device and nothing else.
-fn is_plain_word(uses: &Uses<'_>, one: &Use, device: Device) -> bool {
-    one.access.part == Part::Whole
-        && Operand::read(&uses.words(one), crate::target::Model::Fx3u) == Operand::Device(device)
-}
-
-/// General relays that the program does not name, each given once.
-struct FreeRelays<'c, 'a> {
-    uses: &'c Uses<'a>,
-    context: &'c ProgramContext<'a>,
-    next: u32,
-}
-
-impl FreeRelays<'_, '_> {
-    fn take(&mut self) -> Option<Device> {
-        loop {
-            let device = Device::new(DeviceKind::M, self.next);
-            device.range_on(self.context.target()).filter(|_| !device.is_special())?;
-            self.next += 1;
-            if self.context.keeps(device) {
-                continue;
-            }
-            let named = self.uses.device(device).is_some();
-            if !named && !self.uses.is_read_in_row(device) && !self.uses.is_written_in_row(device) {
-                return Some(device);
-            }
-        }
     }
 }

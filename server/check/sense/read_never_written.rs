@@ -64,12 +64,15 @@
 //! END_PROGRAM
 //! ```
 
+use super::free::renamed;
 use super::relays::{Wiring, is_general};
+use super::rungs::MOST_MENDED;
 use super::uses::{Key, Name, Use, Uses};
 use crate::check::{ProgramContext, Rule, Run};
 use crate::document::{Act, Part};
+use crate::target::iec::nearest;
 use crate::target::{Device, DeviceKind};
-use crate::text::{Diagnostic, Message, Severity};
+use crate::text::{Diagnostic, Message, Severity, TextEdit};
 use rustc_hash::FxHashMap;
 
 pub(super) const RULE: Rule = Rule {
@@ -106,7 +109,13 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
             _ => "read-never-written.found",
         });
         let message = message.with("name", uses.words(&read));
-        unwritten.push((kind, Diagnostic::new(RULE.code, read.span, message)));
+        let diagnostic = Diagnostic::new(RULE.code, read.span, message);
+        let meant = (unwritten.len() < MOST_MENDED).then(|| meant(context, number, name)).flatten();
+        let diagnostic = match meant.and_then(|meant| replaced(uses, number, name, meant)) {
+            Some((title, edits)) => diagnostic.fix(title.with("name", uses.words(&read)), edits),
+            None => diagnostic,
+        };
+        unwritten.push((kind, diagnostic));
     }
     // Where most relays or registers are never written, something outside of the program does it.
     let is_panels = |kind: &Option<DeviceKind>| {
@@ -147,4 +156,58 @@ fn may_only_the_program_write(context: &ProgramContext<'_>, wiring: &Wiring, nam
         },
         _ => wiring.is_inside(name) && name.variable.is_some_and(|variable| !variable.constant),
     }
+}
+
+/// What is written and was meant most likely: what nothing reads before what is read, and of these the next in number;
+/// of variables one of the same unit and type with nearly the same name.
+fn meant(context: &ProgramContext<'_>, number: u32, name: &Name<'_>) -> Option<u32> {
+    let uses = context.uses();
+    let is_written = |other: u32| other != number && uses.acts(other).writes_but(&[]);
+    match name.key {
+        Key::Device(device) => {
+            let rank = |(other, one): (u32, &Name<'_>)| {
+                let Key::Device(found) = one.key else { return None };
+                let (acts, distance) = (uses.acts(other), found.number.abs_diff(device.number));
+                // Outputs are for the machine, and need no reader.
+                let is_idle = device.kind != DeviceKind::Y && !acts.reads();
+                let near = if is_idle { NEAR_IDLE } else { 1 };
+                let fits = found.kind == device.kind && is_written(other) && distance <= near;
+                (fits && found.range_on(context.target()).is_some()).then_some((!is_idle, distance, other))
+            };
+            uses.names().filter_map(rank).min().map(|(_, _, other)| other)
+        }
+        Key::Local(file, unit, _) => {
+            let own = name.variable?;
+            let is_like = |one: &Name<'_>| {
+                matches!(one.key, Key::Local(f, u, _) if (f, u) == (file, unit))
+                    && one.variable.is_some_and(|variable| variable.declared == own.declared)
+            };
+            let alike = || uses.names().filter(|(other, one)| is_written(*other) && is_like(one));
+            let names = alike().filter_map(|(_, one)| Some(one.variable?.name.as_str()));
+            let near = nearest(&own.name, names).into_iter().next()?;
+            let mut found = alike().filter(|(_, one)| one.variable.is_some_and(|own| own.name == near));
+            found.next().map(|(other, _)| other)
+        }
+        _ => None,
+    }
+}
+
+/// A relay or register that is written and read nowhere may be meant from so far away.
+const NEAR_IDLE: u32 = 16;
+/// What is read in more places is replaced by hand.
+const MOST_PLACES: usize = 100;
+
+/// Reads the name with the number `meant` in all places instead.
+fn replaced(uses: &Uses<'_>, number: u32, name: &Name<'_>, meant: u32) -> Option<(Message, Vec<TextEdit>)> {
+    let written = uses.of_name(meant).find(|one| one.access.act.writes())?;
+    let edit = |one: &Use| match (name.key, uses.name(meant)?.key) {
+        (Key::Device(device), Key::Device(other)) => renamed(uses, one, device, other),
+        _ => uses.is_list(one).then(|| TextEdit::new(one.span, uses.words(&written))),
+    };
+    let reads = uses.of_name(number).filter(|one| one.access.act.reads());
+    let places: Vec<Use> = reads.take(MOST_PLACES + 1).collect();
+    let edits =
+        places.iter().filter(|_| places.len() <= MOST_PLACES).map(edit).collect::<Option<Vec<_>>>()?;
+    let title = Message::new("read-never-written.replace").with("other", uses.words(&written));
+    (!edits.is_empty()).then(|| (title.with("rung", written.rung), edits))
 }

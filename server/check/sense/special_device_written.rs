@@ -30,9 +30,12 @@
 //! +--| |-------( )-+
 //! ```
 
-use super::uses::Key;
+use super::free::{FreeDevices, renamed};
+use super::rungs::{MOST_MENDED, PlainRung};
+use super::uses::{Key, Use};
 use crate::check::{ProgramContext, Rule, Run};
-use crate::text::{Diagnostic, Message, Severity};
+use crate::target::Device;
+use crate::text::{Diagnostic, Message, Severity, TextEdit};
 
 pub(super) const RULE: Rule = Rule {
     code: "special-device-written",
@@ -43,6 +46,7 @@ pub(super) const RULE: Rule = Rule {
 
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let uses = context.uses();
+    let mut mended = 0;
     for (number, name) in uses.names() {
         let Key::Device(device) = name.key else { continue };
         let special = device.is_special().then(|| device.special_on(context.target())).flatten();
@@ -52,7 +56,34 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
             let message = Message::new("special-device-written.found")
                 .with("device", device)
                 .with_phrase("meaning", special.meaning);
-            found.push(Diagnostic::new(RULE.code, one.span, message));
+            let diagnostic = Diagnostic::new(RULE.code, one.span, message);
+            mended += 1;
+            found.push(if mended <= MOST_MENDED {
+                with_fixes(context, &one, device, diagnostic)
+            } else {
+                diagnostic
+            });
         }
     }
+}
+
+/// Another device for what is written, and the program without what is lost anyway.
+fn with_fixes(
+    context: &ProgramContext<'_>,
+    one: &Use,
+    device: Device,
+    mut diagnostic: Diagnostic,
+) -> Diagnostic {
+    let free = FreeDevices::of(context, device.kind).take();
+    if let Some((free, edit)) =
+        free.and_then(|free| Some((free, renamed(context.uses(), one, device, free)?)))
+    {
+        let title = Message::new("special-device-written.replace").with("free", free);
+        diagnostic = diagnostic.fix(title, vec![edit]);
+    }
+    if let Some(rung) = PlainRung::of(context.uses(), one) {
+        let title = Message::new("special-device-written.remove").with("rung", one.rung);
+        diagnostic = diagnostic.fix(title, vec![TextEdit::new(rung.all, "")]);
+    }
+    diagnostic
 }

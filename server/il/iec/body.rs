@@ -9,7 +9,7 @@ use super::reader::Reader;
 use super::scan::{ends_open_list, leaves_parentheses};
 use super::token::{Region, Token, TokenKind};
 use super::{ItemKind, ListForm, Parameter, PouKind};
-use crate::text::{Message, Span};
+use crate::text::{Fix, Message, Span, TextEdit};
 
 /// The parser of a chunk.
 pub struct BodyReader<'a> {
@@ -138,7 +138,7 @@ impl<'a> BodyReader<'a> {
         match token.kind {
             TokenKind::Newline => self.reader.at += 1,
             TokenKind::Semicolon => {
-                self.reader.hint(token.span, "lenient-form.stray-semicolon");
+                self.reader.stray_semicolon(token.span);
                 self.reader.at += 1;
             }
             TokenKind::RightParenthesis => self.close(token),
@@ -173,7 +173,7 @@ impl<'a> BodyReader<'a> {
                 }
             }
             TokenKind::Semicolon => {
-                self.reader.hint(next.span, "lenient-form.stray-semicolon");
+                self.reader.stray_semicolon(next.span);
                 self.reader.at += 1;
             }
             _ => {
@@ -272,9 +272,34 @@ impl<'a> BodyReader<'a> {
                 Message::new("unclosed-parenthesis.open"),
             );
         }
+        self.offer_parenthesis(&frame);
         if let FrameKind::List(list) = frame.kind {
             let last = self.reader.tokens[self.reader.at.saturating_sub(1)];
             self.finish_list(list, last);
+        }
+    }
+
+    /// Adds to what was reported of an open parenthesis the one that closes it here: that of a deferred operation on a
+    /// line of its own, as the standard wants it.
+    fn offer_parenthesis(&mut self, frame: &Frame) {
+        let Some(last) = self.reader.at.checked_sub(1).and_then(|at| self.reader.tokens.get(..=at)) else {
+            return;
+        };
+        let Some(last) = last.iter().rev().find(|token| token.kind != TokenKind::Newline) else { return };
+        let text = self.reader.text;
+        let line = text.get(..frame.open.start as usize).unwrap_or("");
+        let line = &text[line.rfind('\n').map_or(0, |newline| newline + 1)..];
+        let margin = &line[..line.len() - line.trim_start_matches([' ', '\t']).len()];
+        let newline = if text.contains("\r\n") { "\r\n" } else { "\n" };
+        let close = match frame.kind {
+            FrameKind::Expression => format!("{newline}{margin})"),
+            FrameKind::Value | FrameKind::List(_) => ")".to_string(),
+        };
+        let problems = self.reader.tree.problems.iter_mut().rev();
+        let mut own = problems.filter(|one| one.code == "unclosed-parenthesis" && one.span == frame.open);
+        if let Some(problem) = own.find(|problem| problem.fixes.is_empty()) {
+            let edits = vec![TextEdit::new(Span::at(last.span.end as usize), close)];
+            problem.fixes.push(Fix { title: Message::new("unclosed-parenthesis.close"), edits });
         }
     }
 

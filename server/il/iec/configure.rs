@@ -41,7 +41,7 @@ pub fn read_configuration(reader: &mut Reader, block: &Block) {
             TokenKind::Task => read_task(reader, block, at),
             TokenKind::Program => read_instance(reader, block, at),
             TokenKind::Semicolon => {
-                reader.hint(block.token_span(at), "lenient-form.stray-semicolon");
+                reader.stray_semicolon(block.token_span(at));
                 at + 1
             }
             kind if kind.opens_section() => read_section(reader, block, at),

@@ -228,7 +228,7 @@ fn read_declarations<'b>(
     let terminated = grammar.clone().then_ignore(just(TokenKind::Semicolon)).lazy();
     while at < end {
         if block.kinds[at] == TokenKind::Semicolon {
-            reader.hint(block.token_span(at), "lenient-form.stray-semicolon");
+            reader.stray_semicolon(block.token_span(at));
             at += 1;
             continue;
         }

@@ -5,7 +5,7 @@ use super::scan::Scanner;
 use super::token::{Region, Token, TokenKind};
 use super::{IecTree, Item, ItemKind, OperandId};
 use crate::target::{Model, Operand, iec};
-use crate::text::{Diagnostic, Message, Severity, Span, Spanned};
+use crate::text::{Diagnostic, Message, Severity, Span, Spanned, TextEdit};
 
 /// The tokens of a chunk and the tree that they become.
 pub struct Reader<'a> {
@@ -109,6 +109,13 @@ impl<'a> Reader<'a> {
     /// Something is read although the standard's grammar does not allow it.
     pub fn hint(&mut self, span: Span, key: &'static str) {
         self.hint_with(span, Message::new(key));
+    }
+
+    /// A semicolon where none is wanted.
+    pub fn stray_semicolon(&mut self, span: Span) {
+        let hint = Diagnostic::new("lenient-form", span, Message::new("lenient-form.stray-semicolon"));
+        let hint = hint.fix(Message::new("lenient-form.remove-semicolon"), vec![TextEdit::new(span, "")]);
+        self.tree.problems.push(Diagnostic { severity: Severity::Hint, ..hint });
     }
 
     pub fn hint_with(&mut self, span: Span, message: Message) {
