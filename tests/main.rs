@@ -122,6 +122,7 @@ mod simulate_recorder;
 mod simulate_rungs;
 mod simulate_session;
 mod simulate_special;
+mod simulate_surroundings;
 mod simulate_why;
 mod simulate_words;
 mod stack_machine;

@@ -1,9 +1,8 @@
 //! What applied instructions do that take many scans, or work with what is around the PLC.
 
-use crate::simulate::{Plc, device, switched};
+use crate::simulate::{Plc, device};
 use rungwise::document::{Document, Notation};
-use rungwise::simulate::{ErrorKind, Outcome, Session, Touch, compile};
-use rungwise::target::outside::Event;
+use rungwise::simulate::{ErrorKind, Outcome, Session, Value, compile};
 use rungwise::target::{Fault, Flow, Form, Model, Opcode, Role, Semantics, Target, instructions};
 use std::sync::Arc;
 
@@ -819,23 +818,28 @@ fn what_happens_around_the_plc_belongs_to_its_history() {
     let text = "LD M8000\nOUT C235 K5\nFROM K2 K7 D0 K1\nRS D20 K0 D10 K8\nVRRD K0 D1\nLD X1\nDABS X4 Y4 D2\n\
                 LD M8000\nOUT Y0\nLD X3\nOUT Y1\nEND\n";
     let document = Document::new(text, Notation::FxIl, Target::of(Model::Fx3u));
-    let mut session = Session::new(Arc::new(compile(&[&document], false).expect("a program")));
+    let code = Arc::new(compile(&[&document], false).expect("a program"));
+    let mut session = Session::new(Arc::clone(&code));
+    let happens = |name: &str, value: &str| {
+        let variable = code.variable(name).unwrap_or_else(|| panic!("{name}"));
+        let value = Value::read(value).unwrap_or_else(|| panic!("{value}"));
+        variable.set(&code, &value).unwrap_or_else(|| panic!("{name} = {value}"))
+    };
     let around = [
-        Touch::Pulse(device("X0"), 4),
-        Touch::Around(Event::Buffer(2, 7, -3)),
-        Touch::Around(Event::Byte(b'o', false)),
-        Touch::Around(Event::Byte(b'k', true)),
-        Touch::Around(Event::Trimmer(0, 77)),
-        Touch::Around(Event::Absolute(5)),
-        Touch::Around(Event::Contact(0, 3, true)),
-        switched(&session, "X1", true),
+        happens("x0.pulses", "4"),
+        happens("U2\\G7", "-3"),
+        happens("RS.received", "ok"),
+        happens("VR0", "77"),
+        happens("ABS", "5"),
+        happens("Y0.X3", "on"),
+        happens("X1", "1"),
     ];
     for scan in 1..60 {
         if scan == 3 {
             around.iter().cloned().for_each(|touch| session.touch(touch));
         }
         if scan == 50 {
-            session.touch(Touch::Around(Event::Module(2, false)));
+            session.touch(happens("U2", "0"));
         }
         session.scan(scan * 10_000_000);
     }

@@ -7,6 +7,7 @@ use crate::document::Document;
 use crate::simulate::{
     Code, ErrorKind, Machine, Place, Problem, Session, Touch, Trace, Value, Variable, compile, milliseconds,
 };
+use crate::target::Port;
 use crate::target::iec::nearest;
 use crate::text::{Language, Message, Span};
 use serde_json::{Value as Json, json};
@@ -185,14 +186,16 @@ impl Bench {
         let mut touches = Vec::new();
         for input in &scenario.inputs {
             let Some(variable) = names.find(&input.name) else { continue };
-            let (touch, reason) = match &input.kind {
-                InputKind::Set(value) => (variable.set(&self.code, value), "cli.run-no-value"),
-                InputKind::Force(value) => (variable.force(&self.code, value), "cli.run-no-value"),
-                InputKind::Release => (Some(variable.release()), "scenario.no-release"),
+            let touch = match &input.kind {
+                InputKind::Set(value) => variable.set(&self.code, value).ok_or(value),
+                InputKind::Force(value) => variable.force(&self.code, value).ok_or(value),
+                InputKind::Release => Ok(variable.release()),
             };
             match touch {
-                Some(touch) => touches.push((input.scan, touch)),
-                None => names.flaw(&input.name, Message::new(reason)),
+                Ok(touch) => touches.push((input.scan, touch)),
+                Err(value) => {
+                    names.flaw(&input.name, variable.refusal(&self.code, &input.name.name, value));
+                }
             }
         }
         let last = scenario.last.or(golden.and_then(Golden::last)).unwrap_or(0);
@@ -386,6 +389,13 @@ impl Running<'_> {
             if want.expected.holds(&actual, self.check.deviation) {
                 continue;
             }
+            // Of a frame that was not sent it is told what was.
+            let (key, actual) = match *variable {
+                Variable::Around(Port::Sent) if self.check.kind == CheckKind::Once => {
+                    ("scenario.not-sent", machine.value(Variable::Around(Port::LastSent), 0))
+                }
+                _ => (key, actual),
+            };
             let message = Message::new(key)
                 .with("name", &want.name.name)
                 .with("actual", &actual)

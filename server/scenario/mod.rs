@@ -14,6 +14,8 @@ mod read;
 
 mod steps;
 
+mod surroundings;
+
 mod bench;
 pub use bench::{Bench, Failure, Report};
 

@@ -5,6 +5,7 @@ use super::suite::{Input, InputKind, Named};
 use super::witness::{USUAL_SCAN_NS, is_first_scan};
 use super::{Bench, SUITE_ENDING, Scenario};
 use crate::simulate::{Code, Value, milliseconds};
+use crate::target::Port;
 use crate::text::{Language, Message, Span};
 use crate::translate::{Counterexample, Value as Held};
 use std::collections::BTreeMap;
@@ -77,6 +78,7 @@ impl Recording {
         });
         let inputs: Vec<Input> = inputs.collect();
         let outputs = self.outputs(code, names);
+        let sent = code.target.is_fx().then(|| Port::Sent.to_string());
         let stem = program.rsplit_once('.').map_or(program, |(stem, _)| stem);
         let scenario = Scenario {
             name: String::new(),
@@ -84,7 +86,7 @@ impl Recording {
             scan_ns,
             last: Some(scans.saturating_sub(1)),
             checks: Vec::new(),
-            watch: outputs.iter().map(|name| named(name)).collect(),
+            watch: outputs.iter().chain(&sent).map(|name| named(name)).collect(),
             golden: None,
             tolerance: 0,
             deviation: 0.0,
@@ -108,7 +110,16 @@ impl Recording {
             has_errors = report.has_errors;
             let trace = report.trace;
             let mut before: Option<&[Value]> = None;
+            let sent = trace.names.iter().position(|name| Some(name) == sent.as_ref());
             for row in &trace.rows {
+                if let Some(Value::Text(frame)) = sent.map(|sent| &row.values[sent])
+                    && !frame.is_empty()
+                {
+                    let own = steps.entry(row.scan).or_default();
+                    let mut last = own.pop().unwrap_or_default();
+                    last.sent = Some(frame_told(frame));
+                    own.push(last);
+                }
                 for (number, name) in
                     trace.names.iter().enumerate().filter(|(_, name)| outputs.contains(name))
                 {
@@ -166,8 +177,12 @@ impl Recording {
 #[derive(Default)]
 struct Step {
     set: Vec<(String, Value)>,
+    /// Frames that the serial port receives, as TOML.
+    receive: Vec<String>,
     force: Vec<(String, Value)>,
     release: Vec<String>,
+    /// Frames that it sends, of which a step has one.
+    sent: Option<String>,
     expect: Vec<(String, Value)>,
 }
 
@@ -178,6 +193,8 @@ impl Step {
         let is_in = |all: &[(String, Value)]| all.iter().any(|(name, _)| is_own(name));
         let is_released = self.release.iter().any(is_own);
         match input.kind {
+            // Pulses add up, and a table has one value of a name.
+            InputKind::Set(_) if is_in(&self.set) && input.name.name.ends_with(PULSES) => false,
             InputKind::Set(_) => !is_released && !is_in(&self.force),
             InputKind::Force(_) => !is_released,
             InputKind::Release => true,
@@ -188,6 +205,9 @@ impl Step {
     fn add(&mut self, input: Input) {
         let name = input.name.name;
         let (all, value) = match input.kind {
+            InputKind::Set(Value::Text(frame)) if name.eq_ignore_ascii_case(&Port::Received.to_string()) => {
+                return self.receive.push(frame_told(&frame));
+            }
             InputKind::Set(value) => (&mut self.set, value),
             InputKind::Force(value) => (&mut self.force, value),
             InputKind::Release => return self.release.push(name),
@@ -206,12 +226,32 @@ impl Step {
                 pairs(values.iter().map(|(name, value)| (name, word(value))))
             );
         }
+        match self.receive.as_slice() {
+            [] => {}
+            [frame] => _ = write!(text, ", receive = {frame}"),
+            frames => _ = write!(text, ", receive = [{}]", frames.join(", ")),
+        }
+        if let Some(frame) = &self.sent {
+            let _ = write!(text, ", sent = {frame}");
+        }
         if !self.release.is_empty() {
             let names: Vec<String> = self.release.iter().map(|name| quoted(name)).collect();
             let _ = write!(text, ", release = [{}]", names.join(", "));
         }
         text
     }
+}
+
+/// What the names of pulses end in.
+const PULSES: &str = ".pulses";
+
+/// A frame as TOML: a text where all of it can be seen, else its bytes.
+fn frame_told(frame: &str) -> String {
+    if frame.chars().all(|character| character.is_ascii() && !character.is_ascii_control()) {
+        return quoted(frame);
+    }
+    let bytes: Vec<String> = frame.chars().map(|byte| format!("0x{:02X}", byte as u32)).collect();
+    format!("[{}]", bytes.join(", "))
 }
 
 /// A value as TOML.

@@ -1,13 +1,15 @@
 //! Reads the steps of a scenario: what is done and expected, and when.
 
 use super::suite::{Check, CheckKind, Expected, Input, InputKind, Named, Want};
+use super::surroundings::{self, Train};
 use super::table::{Entry, Reading};
 use crate::simulate::{Value, duration};
+use crate::target::Port;
 use crate::text::{Message, Span};
 use toml::de::{DeTable, DeValue};
 
 /// The keys of a step.
-const STEP_KEYS: [&str; 16] = [
+const STEP_KEYS: [&str; 19] = [
     "at",
     "after",
     "every",
@@ -16,7 +18,10 @@ const STEP_KEYS: [&str; 16] = [
     "force",
     "release",
     "pulse",
+    "pulses",
+    "receive",
     "expect",
+    "sent",
     "within",
     "always",
     "never",
@@ -52,11 +57,16 @@ impl Clock {
             reading.flaw(entry.span, Message::new("scenario.time"));
             return None;
         };
-        if self.first(time_ns) > MOST_SCANS {
-            reading.flaw(entry.span, Message::new("scenario.too-long").with("scans", MOST_SCANS));
-            return None;
+        self.is_within_reach(reading, entry.span, time_ns).then_some(time_ns)
+    }
+
+    /// Whether a scenario may be so long; tells if not.
+    pub fn is_within_reach(self, reading: &mut Reading<'_>, span: Span, time_ns: i64) -> bool {
+        let is_within = self.first(time_ns) <= MOST_SCANS;
+        if !is_within {
+            reading.flaw(span, Message::new("scenario.too-long").with("scans", MOST_SCANS));
         }
-        Some(time_ns)
+        is_within
     }
 
     /// A time as a number of scans.
@@ -200,6 +210,28 @@ impl Plan {
             self.inputs.push(Input { scan, name: name.clone(), kind: set(true) });
             self.inputs.push(Input { scan: off, name, kind: set(false) });
         }
+        for (name, entry) in named(reading, table, "pulses") {
+            self.pulses(reading, &name, entry, scan);
+        }
+        if let Some(entry) = reading.entry(table, "receive") {
+            let name = Named { name: Port::Received.to_string(), span: entry.key };
+            for frame in surroundings::frames(reading, entry) {
+                let kind = InputKind::Set(Value::Text(frame));
+                self.inputs.push(Input { scan, name: name.clone(), kind });
+            }
+        }
+    }
+
+    /// Pulses before a scan, or in each of those that begin in a time.
+    fn pulses(&mut self, reading: &mut Reading<'_>, name: &Named, entry: Entry<'_>, scan: u64) {
+        let name = Named { name: format!("{}.pulses", name.name), span: name.span };
+        let Some(train) = Train::read(reading, entry, self.clock) else { return };
+        let counts = train.counts(self.clock);
+        self.last = self.last.max(scan.saturating_add(counts.len().saturating_sub(1) as u64));
+        for (scan, count) in (scan..).zip(counts).filter(|(_, count)| *count != 0) {
+            let kind = InputKind::Set(Value::Number(count));
+            self.inputs.push(Input { scan, name: name.clone(), kind });
+        }
     }
 
     fn checks<'a>(
@@ -218,10 +250,18 @@ impl Plan {
         if let (Some(again), Some(_)) = (reading.entry(table, "for"), reading.entry(table, "until")) {
             reading.flaw(again.key, Message::new("scenario.for-and-until"));
         }
-        let kinds = [("expect", CheckKind::Once), ("always", CheckKind::Always), ("never", CheckKind::Never)];
+        let kinds = [
+            ("expect", CheckKind::Once),
+            ("sent", CheckKind::Once),
+            ("always", CheckKind::Always),
+            ("never", CheckKind::Never),
+        ];
         let mut has_range = false;
         for (key, kind) in kinds {
-            let wants = wants(reading, table, key);
+            let wants = match key {
+                "sent" => sent(reading, table),
+                key => wants(reading, table, key),
+            };
             if wants.is_empty() {
                 continue;
             }
@@ -250,7 +290,7 @@ impl Plan {
             self.checks.push(check);
         }
         let belongs = [
-            ("within", table.contains_key("expect"), "expect"),
+            ("within", table.contains_key("expect") || table.contains_key("sent"), "expect"),
             ("for", has_range, "always"),
             ("until", has_range, "always"),
         ];
@@ -325,6 +365,14 @@ fn wants<'a>(reading: &mut Reading<'_>, table: &'a DeTable<'a>, key: &str) -> Ve
         expected.map(|expected| Want { name, expected })
     };
     names.into_iter().filter_map(want).collect()
+}
+
+/// The frame that is to be sent.
+fn sent<'a>(reading: &mut Reading<'_>, table: &'a DeTable<'a>) -> Vec<Want> {
+    let Some(entry) = reading.entry(table, "sent") else { return Vec::new() };
+    let name = Named { name: Port::Sent.to_string(), span: entry.key };
+    let frame = surroundings::frame(reading, entry);
+    frame.map(|frame| Want { name, expected: Expected::Is(Value::Text(frame)) }).into_iter().collect()
 }
 
 fn value_of(reading: &mut Reading<'_>, entry: Entry<'_>) -> Option<Value> {

@@ -414,7 +414,7 @@ fn words(text: &str) -> Vec<&str> {
     let mut rest = text.trim_start();
     while let Some(first) = rest.chars().next() {
         let is_inside =
-            |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '#' | ':' | '[' | ']' | '\'');
+            |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '#' | ':' | '[' | ']' | '\'' | '\\');
         let length = match first {
             c if is_inside(c) || c == '%' && rest[1..].starts_with(|c: char| c.is_alphabetic()) => {
                 let behind = first.len_utf8();

@@ -2,7 +2,7 @@
 
 use super::iec::{self, Lies, Spot};
 use super::row::{Cell, Row};
-use super::{Code, Lanes, Machine, Slot, Value, Variable};
+use super::{Code, Lanes, Machine, Slot, Value, Variable, around};
 use crate::target::iec::Datum;
 use crate::target::{Device, Location};
 
@@ -139,6 +139,9 @@ impl<L: Lanes> Machine<L> {
                     }
                 }
             }
+            (Variable::Around(port), _) => {
+                self.outside.iter_mut().for_each(|outside| around::put(port, outside, value));
+            }
             _ => {}
         }
     }
@@ -185,7 +188,7 @@ impl<L: Lanes> Machine<L> {
         }
     }
 
-    /// What is wired to inputs, and what is forced, by name; with whether it is forced.
+    /// What is wired to inputs and stands around the CPU, and what is forced, by name; with whether it is forced.
     pub(super) fn standing(&self) -> Vec<(String, Value, bool)> {
         let inputs = self.code.terminals(Location::Input).into_iter().flatten();
         let wired = inputs.filter_map(|cell| {
@@ -203,7 +206,12 @@ impl<L: Lanes> Machine<L> {
                 }
             })
         });
-        wired.chain(forced).collect()
+        let outside = self.outside().first().into_iter();
+        let around = outside.flat_map(|outside| {
+            let standing = outside.standing().into_iter();
+            standing.map(|port| (port.to_string(), around::value(port, outside), false))
+        });
+        wired.chain(around).chain(forced).collect()
     }
 
     /// Whether it is forced.

@@ -81,6 +81,8 @@ pub use search::ChangeSearch;
 mod value;
 pub use value::Value;
 
+mod around;
+
 mod variable;
 pub use variable::Variable;
 

@@ -9,18 +9,12 @@ use super::history::{HistoryLimit, Log};
 use super::machine::{Machine, Outcome, Sight};
 use super::writes::{Tracer, Write};
 use super::{Spot, Value, Variable};
-use crate::target::Device;
-use crate::target::outside::Event;
 use std::sync::Arc;
 
 /// What is done to a PLC between two scans.
 #[derive(Clone, PartialEq, Debug)]
 pub enum Touch {
-    /// Lets pulses arrive before the next scan, see [`Machine::pulse`].
-    Pulse(Device, i32),
-    /// Something happens around the CPU.
-    Around(Event),
-    /// Writes a variable; of an input what is wired to it.
+    /// Writes a variable; of an input what is wired to it, of what is around the CPU what happens there.
     Write(Variable, Value),
     /// Holds a variable at a value.
     Hold(Variable, Value),
@@ -38,10 +32,6 @@ impl Touch {
             Touch::Hold(variable, ref value) => machine.hold_at(variable, value),
             Touch::LetGo(variable) => machine.let_go(variable),
             Touch::LetAllGo => machine.let_all_go(),
-            Touch::Pulse(device, count) => machine.pulse(device, count),
-            Touch::Around(event) => {
-                machine.outside_mut().iter_mut().for_each(|outside| outside.apply(event));
-            }
         }
     }
 }
@@ -200,7 +190,7 @@ impl Session {
     /// at, so that a switch that nobody has touched in a long history is soon known.
     pub(super) fn last_switching(&self, scan: u64, variable: Variable) -> Option<u64> {
         let of = |machine: &Machine<u8>| machine.value_inside(variable, 0);
-        if self.log.touches.iter().any(|(_, touch)| matches!(touch, Touch::Around(_))) {
+        if self.log.touches.iter().any(|(_, touch)| matches!(touch, Touch::Write(Variable::Around(_), _))) {
             // Keypads feed inputs from outputs.
             return self.last_change(scan, of);
         }
@@ -208,7 +198,6 @@ impl Session {
         let switches = self.log.touches.iter().rev().filter(|(_, touch)| match *touch {
             Touch::Write(own, _) | Touch::Hold(own, _) | Touch::LetGo(own) => own == variable,
             Touch::LetAllGo => true,
-            _ => false,
         });
         let mut scans: Vec<u64> = switches.map(|(before, _)| *before).collect();
         scans.dedup();

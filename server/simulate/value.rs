@@ -222,7 +222,16 @@ impl fmt::Display for Value {
             Value::Time(time) => {
                 f.write_str(&spelled(&Datum::Whole(i128::from(*time)), ElementaryType::Time))
             }
-            Value::Text(text) => write!(f, "'{}'", text.replace('$', "$$").replace('\'', "$'")),
+            Value::Text(text) => {
+                f.write_str("'")?;
+                text.chars().try_for_each(|character| match character {
+                    '$' | '\'' => write!(f, "${character}"),
+                    // As a literal has what cannot be seen.
+                    _ if character.is_control() => write!(f, "${:02X}", character as u32),
+                    _ => write!(f, "{character}"),
+                })?;
+                f.write_str("'")
+            }
             Value::Name(name) | Value::Word(name, _) => f.write_str(name),
         }
     }

@@ -5,9 +5,9 @@ use super::iec::{self, HandedOver, Leaf, UnitVariables, joined};
 use super::machine::Machine;
 use super::row::Cell;
 use super::session::Touch;
-use super::{Lanes, Layout, Lies, Slot, Spot, Value};
+use super::{Lanes, Layout, Lies, Slot, Spot, Value, around};
 use crate::target::iec::{Datum, ElementaryType};
-use crate::target::{Device, DeviceKind, Operand, Target};
+use crate::target::{Device, DeviceKind, Operand, Port, PortKind, Target};
 use crate::text::Message;
 use std::ops::RangeInclusive;
 
@@ -24,13 +24,15 @@ pub enum Variable {
     Typed(Spot),
     /// A variable of an enumerated type, with the number of the type.
     Enumerated(Spot, u32),
+    /// What is around the CPU.
+    Around(Port),
 }
 
 impl Code {
     /// The variable that a person calls `name`, letter case aside.
     ///
     /// `T0` is the current value of the timer, `TS0` its contact, `TC0` its coil, and so with counters (`CN0`, `CS0`,
-    /// `CC0`), as in the maker's tools. `D0:32` is a pair of registers.
+    /// `CC0`), as in the maker's tools. `D0:32` is a pair of registers. What is around the CPU has names as [`Port`] says.
     ///
     /// In IEC 61131-3 it is `Motor.Timer.ET`, `Resource.Main.Levels[3]` or `%IX0.0`; what stands around a name may be
     /// left out where only one variable is called so.
@@ -133,6 +135,9 @@ impl Layout {
             let word = self.slot(device).map(Variable::Word);
             return word.or_else(|| self.cell(device).map(Variable::Relay));
         }
+        if let Some(port) = Port::read(name, device) {
+            return Some(Variable::Around(port));
+        }
         let mut letters = name.chars();
         let kind = DeviceKind::of_letter(letters.next()?).filter(|kind| kind.has_preset())?;
         let part = letters.next()?.to_ascii_uppercase();
@@ -174,6 +179,7 @@ impl Variable {
             (Variable::Typed(_) | Variable::Enumerated(..), _) => {
                 self.datum(code, value).map(|_| Touch::Write(self, value.clone()))
             }
+            (Variable::Around(port), _) => around::taken(port, value).map(|value| Touch::Write(self, value)),
             (_, Value::Number(number)) if self.range(code)?.contains(number) => {
                 Some(Touch::Write(self, value.clone()))
             }
@@ -189,6 +195,7 @@ impl Variable {
                 let number = self.datum(code, value)?.whole();
                 code.iec.name_of_value(enumeration, number).cloned().map(Value::Name)
             }
+            (Variable::Around(port), _) => around::meant(port, value),
             (_, Value::Word(_, meant)) => Some((**meant).clone()),
             (Variable::Typed(spot), Value::Name(_)) => {
                 value.datum(spot.kind).map(|datum| Value::of_datum(datum, spot.kind))
@@ -215,12 +222,21 @@ impl Variable {
                 Some(if code.layout.is_wide(device) { wide } else { narrow })
             }
             Variable::Pair(..) => Some(wide),
+            Variable::Around(port) => match port.kind() {
+                PortKind::Number(range) => Some(range),
+                PortKind::Bit | PortKind::Frame => None,
+            },
         }
     }
 
     /// Why it, which people call `name`, cannot be set to `value`.
     pub fn refusal(self, code: &Code, name: &str, value: &Value) -> Message {
         let meant = self.meant(code, value);
+        if let Variable::Around(port) = self
+            && let Some(reason) = around::refusal(port, value)
+        {
+            return reason.with("name", name);
+        }
         match (meant.as_ref().unwrap_or(value), self.range(code)) {
             (Value::Number(number), Some(range)) => Message::new("simulate.range")
                 .with("name", name)
@@ -242,6 +258,8 @@ impl Variable {
     /// What holding it at `value` does; nothing if that is no value of it.
     pub fn force(self, code: &Code, value: &Value) -> Option<Touch> {
         match self.set(code, value)? {
+            // What is around the CPU has no image in it that could be held.
+            Touch::Write(Variable::Around(_), _) => None,
             Touch::Write(variable, value) => Some(Touch::Hold(variable, value)),
             _ => None,
         }
@@ -289,6 +307,7 @@ impl<L: Lanes> Machine<L> {
         match variable {
             Variable::Relay(cell) => Value::Bit(self.relay(cell).lane(lane)),
             Variable::Word(slot) => Value::Number(self.memory().word(slot, lane)),
+            Variable::Around(port) => around::value(port, &self.outside()[lane]),
             Variable::Typed(spot) => Value::of_datum(self.datum_at(spot, lane), spot.kind),
             Variable::Enumerated(spot, enumeration) => {
                 let number = self.datum_at(spot, lane).whole();

@@ -30,7 +30,7 @@ mod flow;
 pub use flow::Flow;
 
 pub mod outside;
-pub use outside::Outside;
+pub use outside::{Outside, Port, PortKind};
 
 pub mod semantics;
 pub use semantics::{Execution, Fault, Semantics};

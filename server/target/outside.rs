@@ -3,6 +3,9 @@
 //! It is part of the state of a simulated PLC and changes only by what instructions and scenarios do to it, so that a
 //! scan depends on nothing else than the state before it.
 
+mod port;
+pub use port::{Port, PortKind};
+
 use super::Device;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
@@ -27,6 +30,8 @@ pub struct Outside {
     arriving: [u32; 8],
     /// Pulses for the counters from C235 on before the next scan, negative for those backwards.
     counting: [i32; 21],
+    /// The same before this scan.
+    counted: [i32; 21],
     /// What watches high-speed counters.
     watches: Vec<Watch>,
     /// Contacts of keypads and switches between outputs and inputs, each with a diode: numbers of Y and X.
@@ -40,13 +45,22 @@ pub struct Serial {
     pub sent: VecDeque<Vec<u8>>,
     /// The frames that wait for the PLC to receive them, the first one first.
     pub waiting: VecDeque<Vec<u8>>,
-    /// Bytes of a frame whose last one has not come.
-    arriving: Vec<u8>,
+    /// Whether the latest was sent in this scan.
+    has_sent: bool,
 }
 
 impl Serial {
     /// Of sent frames more are forgotten.
     pub const MOST_FRAMES: usize = 64;
+
+    /// The PLC sends a frame.
+    pub fn send(&mut self, frame: Vec<u8>) {
+        self.sent.push_back(frame);
+        while self.sent.len() > Self::MOST_FRAMES {
+            self.sent.pop_front();
+        }
+        self.has_sent = true;
+    }
 }
 
 /// What a drive does with the pulses of an output.
@@ -58,23 +72,6 @@ pub struct Axis {
     pub pulses: i64,
     /// Pulses in a second at present, negative for those backwards.
     pub frequency: i64,
-}
-
-/// Something that happens around the CPU between two scans.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Event {
-    /// A special module changes a word in its buffer memory: module, number, word.
-    Buffer(u8, u16, i16),
-    /// A special module is plugged in, or taken away.
-    Module(u8, bool),
-    /// A byte arrives at the serial port, with whether it ends its frame.
-    Byte(u8, bool),
-    /// A trimmer is turned: its number and position.
-    Trimmer(u8, u8),
-    /// The servo amplifier stands at another position.
-    Absolute(i32),
-    /// A contact of a keypad between an output and an input is closed, or opened.
-    Contact(u32, u32, bool),
 }
 
 /// An instruction that waits for a high-speed counter. It acts on the pulses before the next scan.
@@ -143,29 +140,6 @@ impl Outside {
         };
     }
 
-    /// Lets something happen.
-    pub fn apply(&mut self, event: Event) {
-        match event {
-            Event::Buffer(module, number, word) => {
-                self.set_buffer(module, number, word);
-            }
-            Event::Module(module, is_there) => self.set_module(module, is_there),
-            Event::Byte(byte, is_last) => {
-                self.serial.arriving.push(byte);
-                if is_last {
-                    self.serial.waiting.push_back(std::mem::take(&mut self.serial.arriving));
-                }
-            }
-            Event::Trimmer(number, position) => {
-                if let Some(trimmer) = self.trimmers.get_mut(usize::from(number)) {
-                    *trimmer = position;
-                }
-            }
-            Event::Absolute(position) => self.absolute = position,
-            Event::Contact(y, x, is_closed) => self.set_contact(y, x, is_closed),
-        }
-    }
-
     /// The closed contacts of keypads: numbers of Y and X.
     pub fn contacts(&self) -> impl Iterator<Item = (u32, u32)> {
         self.contacts.iter().copied()
@@ -188,6 +162,8 @@ impl Outside {
 
     /// The pulses that arrived become those of a scan that begins; the inputs in `risen` went on in it.
     pub fn begin_scan(&mut self, risen: [bool; 8]) {
+        self.serial.has_sent = false;
+        self.counted = [0; 21];
         self.arrived = std::mem::take(&mut self.arriving);
         for (arrived, risen) in self.arrived.iter_mut().zip(risen) {
             *arrived = arrived.saturating_add(u32::from(risen));
@@ -197,7 +173,11 @@ impl Outside {
     /// Takes the pulses for a high-speed counter.
     pub fn take_counting(&mut self, counter: u32) -> i32 {
         let place = counter.saturating_sub(FIRST_HIGH_SPEED) as usize;
-        self.counting.get_mut(place).map(std::mem::take).unwrap_or(0)
+        let pulses = self.counting.get_mut(place).map(std::mem::take).unwrap_or(0);
+        if let Some(counted) = self.counted.get_mut(place) {
+            *counted = pulses;
+        }
+        pulses
     }
 
     /// Watches a high-speed counter until the next scan has begun.

@@ -47,7 +47,7 @@ impl Inquiry<'_> {
             _ if self.watched.target.is_fx() => None,
             Variable::Relay(cell) => Some(Spot::of_cell(cell)),
             Variable::Typed(spot) | Variable::Enumerated(spot, _) => Some(spot),
-            Variable::Word(_) | Variable::Pair(..) => None,
+            Variable::Word(_) | Variable::Pair(..) | Variable::Around(_) => None,
         }
     }
 

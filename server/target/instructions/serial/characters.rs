@@ -1,6 +1,5 @@
 //! RS, PRUN, ASCI, HEX, CCD, VRRD, VRSC: bytes, characters and trimmers.
 
-use crate::target::outside::Serial;
 use crate::target::{DeviceKind, Execution, Fault};
 
 /// On while each word carries one byte.
@@ -43,11 +42,7 @@ pub(super) fn communicate(execution: &mut dyn Execution) -> Result<(), Fault> {
     let most = execution.count(3, 0, 4_096)? as usize;
     if execution.relay(SEND) {
         let frame = bytes(execution, 0, to_send)?;
-        let sent = &mut execution.outside().serial.sent;
-        sent.push_back(frame);
-        while sent.len() > Serial::MOST_FRAMES {
-            sent.pop_front();
-        }
+        execution.outside().serial.send(frame);
         execution.set_relay(SEND, false);
         execution.set_register(SEND, 0);
     }
