@@ -229,6 +229,47 @@ steps = [
 }
 
 #[test]
+fn what_happens_around_the_plc_is_recorded() {
+    let program = "LD M8000\nRS D20 K2 D10 K8\nVRRD K0 D5\nFROM K0 K5 D6 K1\nOUT C235 K9\nLD C235\nOUT Y0\n\
+                   LDP X0\nMOV H6B6F D20\nSET M8122\nLD M8123\nRST M8123\nLD> D10 K0\nOUT Y1\nEND\n";
+    let mut tested = Tested::start(&[("cell.il", program)]);
+    let uri = tested.open("cell.il");
+    let mut tell = |verb: &str, more: Value| {
+        let mut argument = json!({ "uri": uri });
+        argument.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        tested.tell(&format!("rungwise.simulate.{verb}"), argument)
+    };
+    let value = |name: &str, value: Value| json!({ "name": name, "value": value });
+    tell("start", json!({ "paused": true }));
+    tell("step", json!({ "count": 2 }));
+    tell("set", value("VR0", json!(12)));
+    tell("set", value("U0\\G5", json!(-7)));
+    tell("set", value("X0.pulses", json!(4)));
+    tell("set", value("X0.pulses", json!(5)));
+    tell("set", value("RS.received", json!("ok")));
+    tell("set", value("RS.received", json!("'$02$03'")));
+    tell("step", json!({ "count": 3 }));
+    tell("set", value("X0", json!(1)));
+    tell("step", json!({ "count": 3 }));
+    let state = tell("state", json!({ "names": ["VR0", "U0\\G5", "RS.last", "D5", "D6"] }));
+    let values: Vec<&Value> = state["values"].as_array().unwrap().iter().map(|one| &one["value"]).collect();
+    assert_eq!(values, [&json!(12), &json!(-7), &json!("ok"), &json!(12), &json!(-7)]);
+    let text = tell("record", json!({}))["text"].as_str().unwrap().to_string();
+    let steps = r#"steps = [
+  { at = "0ms", expect = { Y0 = 0, Y1 = 0 } },
+  { at = "30ms", set = { VR0 = 12, "U0\\G5" = -7, "X0.pulses" = 4 } },
+  { at = "30ms", set = { "X0.pulses" = 5 }, expect = { Y0 = 1, Y1 = 1 }, receive = ["ok", [0x02, 0x03]] },
+  { at = "60ms", set = { X0 = 1 } },
+  { at = "70ms", sent = "ok" },
+]
+"#;
+    assert!(text.ends_with(steps), "{text}");
+    std::fs::write(tested.folder.path().join("cell.test.toml"), &text).unwrap();
+    let ran = tested.tell("rungwise.test.run", json!({ "uri": tested.uri("cell.test.toml") }));
+    assert_eq!((&ran["passed"], &ran["failed"]), (&json!(1), &json!(0)), "{ran:#}");
+}
+
+#[test]
 fn what_is_done_to_one_name_between_two_scans_is_recorded_in_its_order() {
     let program = "LD X0\nOUT Y0\nLD X1\nDIV D0 D1 D2\nLD M0\nOUT Y1\nEND\n";
     let mut tested = Tested::start(&[("order.il", program)]);

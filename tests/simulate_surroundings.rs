@@ -2,7 +2,8 @@
 //! language server.
 
 use crate::binary::{folder, run};
-use serde_json::Value;
+use crate::dap_client::Debugger;
+use serde_json::{Value, json};
 
 /// What a scenario of these steps gives with a program.
 fn steps(program: &str, steps: &str) -> (i32, String, String) {
@@ -109,6 +110,14 @@ fn trimmers_turn() {
     );
     fails(program, r#"{ set = { VR2 = 128 }, expect = { D0 = 128 } }"#, "D0 is 0 where 128 was expected");
     assert_eq!(values(program, &["VR3=200@50ms"], "D0")["D0"], 200);
+    // Small CPUs have two of their own, and their positions in registers.
+    let (small, suite) = (
+        "LD M8000\nMOV D8031 D0\nEND\n",
+        "[[scenario]]\nname = \"one\"\nsteps = [{ set = { VR1 = 9 }, expect = { D0 = 9 } }]\n",
+    );
+    let files = [("cell.il", small), ("cell.test.toml", suite), ("rungwise.toml", "target = \"fx1n\"\n")];
+    let (code, out, err) = run(&folder(&files), &["test"]);
+    assert_eq!(code, 0, "{out}{err}");
 }
 
 #[test]
@@ -172,4 +181,23 @@ fn what_is_no_value_of_the_surroundings_is_told() {
     assert!(code != 0 && format!("{out}{err}").contains("cannot be forced"), "{out}{err}");
     let (_, _, err) = steps(TALK, r#"{ receive = 5, expect = { D0 = 0 } }"#);
     assert!(err.contains("a list of its bytes"), "{err}");
+}
+
+#[test]
+fn the_console_of_the_debugger_sets_and_shows_them() {
+    let folder = folder(&[("cell.il", TALK)]);
+    let mut plc = Debugger::launch(&folder.path().canonicalize().unwrap().join("cell.il"), json!({}));
+    plc.begin();
+    assert_eq!(plc.console("set RS.received='o k'"), "'o k'");
+    plc.console("scan 2");
+    plc.event("stopped");
+    assert_eq!(plc.console("D0"), "3");
+    plc.console("set U0\\G5=7");
+    plc.console("scan 1");
+    plc.event("stopped");
+    assert_eq!(plc.console("U0\\G5 + VR0"), "7");
+    let refused = plc.refusal("evaluate", json!({ "expression": "force VR0=5", "context": "repl" }));
+    assert!(refused.contains("cannot be forced"), "{refused}");
+    let refused = plc.refusal("evaluate", json!({ "expression": "set RS.sent='a'", "context": "repl" }));
+    assert!(refused.contains("what the program gives"), "{refused}");
 }

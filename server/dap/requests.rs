@@ -358,14 +358,20 @@ impl<W: Write> Adapter<W> {
     pub(super) fn change(&mut self, name: &str, value: &str, is_force: bool) -> Result<(), Message> {
         let debugged = self.debugged()?;
         let variable = debugged.variable(name)?;
-        // The words behind a value are said by the adapter.
-        let value = Value::read(value.trim().split([' ', '（']).next().unwrap_or_default());
+        // The words behind a value are said by the adapter; a text has its quotes, and may have blanks between them.
+        let value = value.trim();
+        let value = match value.rfind('\'').filter(|end| *end > 0 && value.starts_with('\'')) {
+            Some(end) => &value[..=end],
+            None => value.split([' ', '（']).next().unwrap_or_default(),
+        };
+        let unread = || Message::new("cli.run-no-value").with("name", name);
+        let value = Value::read(value).ok_or_else(unread)?;
         let code = debugged.debuggee.code();
-        let touch = value.and_then(|value| match is_force {
+        let touch = match is_force {
             true => variable.force(code, &value),
             false => variable.set(code, &value),
-        });
-        let touch = touch.ok_or_else(|| Message::new("cli.run-no-value").with("name", name))?;
+        };
+        let touch = touch.ok_or_else(|| variable.refusal(code, name, &value))?;
         self.touch(touch)
     }
 

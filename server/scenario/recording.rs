@@ -205,7 +205,9 @@ impl Step {
     fn add(&mut self, input: Input) {
         let name = input.name.name;
         let (all, value) = match input.kind {
-            InputKind::Set(Value::Text(frame)) if name.eq_ignore_ascii_case(&Port::Received.to_string()) => {
+            InputKind::Set(Value::Text(frame) | Value::Name(frame) | Value::Word(frame, _))
+                if name.eq_ignore_ascii_case(&Port::Received.to_string()) =>
+            {
                 return self.receive.push(frame_told(&frame));
             }
             InputKind::Set(value) => (&mut self.set, value),

@@ -1,8 +1,11 @@
 //! Special relays and registers that the CPU writes by itself.
 
 use super::{Lanes, Machine, annunciators, clock};
-use crate::target::{Device, DeviceKind};
+use crate::target::{Device, DeviceKind, Model, Port};
 use std::sync::Arc;
+
+/// Where an FX1S and FX1N have the positions of their trimmers.
+const TRIMMERS: u32 = 8030;
 
 impl<L: Lanes> Machine<L> {
     /// Special relays and registers that the CPU writes at the start of a scan.
@@ -27,6 +30,15 @@ impl<L: Lanes> Machine<L> {
         }
         if is_first && layout.has(Device::new(DeviceKind::D, 8001)) {
             self.identify();
+        }
+        // These CPUs have two trimmers of their own.
+        if matches!(self.code.target.model, Model::Fx1s | Model::Fx1n) {
+            for number in 0..2 {
+                let Some(slot) = layout.slot(Device::new(DeviceKind::D, TRIMMERS + number)) else { continue };
+                for (lane, outside) in self.outside.iter().enumerate() {
+                    self.memory.set_word(slot, lane, outside.number(Port::Trimmer(number as u8)));
+                }
+            }
         }
         clock::advance(&mut self.memory, &layout, self.scans, self.scan_ns);
         annunciators::monitor(&mut self.memory, &layout);

@@ -32,7 +32,8 @@ impl Code {
     /// The variable that a person calls `name`, letter case aside.
     ///
     /// `T0` is the current value of the timer, `TS0` its contact, `TC0` its coil, and so with counters (`CN0`, `CS0`,
-    /// `CC0`), as in the maker's tools. `D0:32` is a pair of registers. What is around the CPU has names as [`Port`] says.
+    /// `CC0`), as in the maker's tools. `D0:32` is a pair of registers. What is around the CPU has the names that
+    /// [`Port`] says.
     ///
     /// In IEC 61131-3 it is `Motor.Timer.ET`, `Resource.Main.Levels[3]` or `%IX0.0`; what stands around a name may be
     /// left out where only one variable is called so.

@@ -52,11 +52,12 @@ pub const ROWS: &[Instruction] = &[
             bits_out("D3", "first of 8 flags: A to F, any of them, any digit").covering(8),
         ],
         "Takes numbers and six function keys from a keypad of 4 × 4 keys, scanned by four transistor \
-         outputs. Digits shift into `D2` from the right (0 to 9999, with `DHKY` to 99,999,999); the keys \
-         A to F switch the first six flags from `D3` on, the seventh is on while one of them is held, the \
-         eighth while a digit is. One round takes eight scans and ends with `M8029`, so a key must be \
-         held that long. With `M8167` on all sixteen keys are hexadecimal digits. A program can hold it \
-         only once. The flag of a function key stays on until another function key is pressed.\n\n\
+         outputs. Digits shift into `D2` from the right (0 to 9999, with `DHKY` to 99,999,999); the keys A \
+         to F switch the first six flags from `D3` on, the seventh is on while one of them is held, the \
+         eighth while a digit is. One round takes eight scans and ends with `M8029`, so a key must be held \
+         that long. With `M8167` on all sixteen keys are hexadecimal digits. A program can hold it only \
+         once. The flag of a function key stays on until another function key is pressed. In the simulator \
+         a scenario presses the key between `Y0` and `X3` by `Y0.X3 = 1`.\n\n\
          ```il\n\
          LD M8000\n\
          HKY X0 Y0 D0 M0\n\
@@ -83,12 +84,13 @@ pub const ROWS: &[Instruction] = &[
             count("n", "sets of switches", (1, 2)),
         ],
         "Reads one or two sets of four BCD thumbwheels through four (or eight) inputs and four strobe \
-         outputs, and stores the decimal number, 0 to 9999, in `D2` (the second set in the next \
-         register). `M8029` comes on after each round of four digits. With transistor outputs drive it \
-         all the time; with relay outputs let a button start it and `M8029` stop it, so that the relays \
-         do not wear out. The strobes follow one another slowly, and a new setting takes some tenths of a \
-         second to arrive. The wheels need a diode in each line. In the simulator a strobe lasts two \
-         scans. A digit above 9 is an operation error.\n\n\
+         outputs, and stores the decimal number, 0 to 9999, in `D2` (the second set in the next register). \
+         `M8029` comes on after each round of four digits. With transistor outputs drive it all the time; \
+         with relay outputs let a button start it and `M8029` stop it, so that the relays do not wear out. \
+         The strobes follow one another slowly, and a new setting takes some tenths of a second to arrive. \
+         The wheels need a diode in each line. In the simulator a strobe lasts two scans. A digit above 9 \
+         is an operation error. A scenario closes the contact of a wheel between `Y10` and `X10` by \
+         `Y10.X10 = 1`.\n\n\
          ```il\n\
          LD M8000\n\
          DSW X10 Y10 D0 K1\n\
@@ -228,12 +230,12 @@ pub const ROWS: &[Instruction] = &[
             count("n", "words to read", (1, 32_767)).or_register(),
         ],
         "Reads `n` words from the buffer memory of the special module `m1`, from number `m2` on, to `D`. \
-         Modules are counted from the CPU outwards beginning with 0; those with only inputs and outputs \
-         do not count. `DFROM` reads `n` pairs. It reads in every scan in which it is driven, and each \
-         word costs time: read many at once rarely, or the watchdog (`D8000`) trips. If no module answers \
-         at this number the CPU reports an error instead of a value. With `M8028` on, interrupts are \
-         accepted while words are transferred. In the simulator all eight modules answer, with 0 where \
-         nothing has been written, unless a scenario takes one away.\n\n\
+         Modules are counted from the CPU outwards beginning with 0; those with only inputs and outputs do \
+         not count. `DFROM` reads `n` pairs. It reads in every scan in which it is driven, and each word \
+         costs time: read many at once rarely, or the watchdog (`D8000`) trips. If no module answers at \
+         this number the CPU reports an error instead of a value. With `M8028` on, interrupts are accepted \
+         while words are transferred. In the simulator all eight modules answer, with 0 where nothing is \
+         written, until a scenario sets `U0 = 0`; it writes a word by `U0.G5 = 7`.\n\n\
          ```il\n\
          LD M8000\n\
          FROM K0 K5 D0 K4\n\
@@ -256,12 +258,12 @@ pub const ROWS: &[Instruction] = &[
             source("S", "first word to write").counted_by(3),
             count("n", "words to write", (1, 32_767)).or_register(),
         ],
-        "Writes `n` words from `S` on to the buffer memory of the special module `m1`, beginning at \
-         number `m2`. `DTO` writes `n` pairs; a constant is written `n` times. It writes in every scan in \
-         which it is driven. Settings belong into `TOP` or the first scan: some modules store a number in \
-         EEPROM at each write, and that memory wears out. After power-up a module needs a moment before \
-         it accepts values, as its manual says. The simulator keeps the words, and `FROM` reads them \
-         back.\n\n\
+        "Writes `n` words from `S` on to the buffer memory of the special module `m1`, beginning at number \
+         `m2`. `DTO` writes `n` pairs; a constant is written `n` times. It writes in every scan in which \
+         it is driven. Settings belong into `TOP` or the first scan: some modules store a number in EEPROM \
+         at each write, and that memory wears out. After power-up a module needs a moment before it \
+         accepts values, as its manual says. The simulator keeps the words, and `FROM` reads them back; a \
+         scenario expects them as `U0.G1`.\n\n\
          ```il\n\
          LD M8002\n\
          TO K0 K1 K4 K1\n\

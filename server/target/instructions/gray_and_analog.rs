@@ -65,13 +65,13 @@ pub const ROWS: &[Instruction] = &[
             destination("D", "measured value"),
         ],
         "Starts a conversion in a small analog module (FX0N-3A, FX2N-2AD), waits for it and stores the \
-         value, which would take several `FROM` and `TO` otherwise. `m1` counts the special modules \
-         from the CPU on beginning with 0. The channel is 1 or 2 for the FX0N-3A, 21 or 22 for the \
-         FX2N-2AD; some compatible controllers number their own channels from 0. It converts in every \
-         scan in which it is driven and makes the scan longer: drive it by a clock such as `M8012` if \
-         the value changes slowly. FX2N has it from version 3.00 on. In simulation the value is the \
-         word of the channel in the buffer memory of the module, which a scenario writes; a module \
-         number above 7, a channel above 99 and a module that does not answer are operation errors.\n\n\
+         value, which would take several `FROM` and `TO` otherwise. `m1` counts the special modules from \
+         the CPU on beginning with 0. The channel is 1 or 2 for the FX0N-3A, 21 or 22 for the FX2N-2AD; \
+         some compatible controllers number their own channels from 0. It converts in every scan in which \
+         it is driven and makes the scan longer: drive it by a clock such as `M8012` if the value changes \
+         slowly. FX2N has it from version 3.00 on. In simulation the value is the word of the channel in \
+         the buffer memory of the module, which a scenario writes (`U0.G1`); a module number above 7, a \
+         channel above 99 and a module that does not answer are operation errors.\n\n\
          ```il\n\
          LD M8000\n\
          RD3A K0 K1 D0\n\
@@ -93,12 +93,12 @@ pub const ROWS: &[Instruction] = &[
             source("S", "value to put out"),
         ],
         "Sends a value to a small analog module (FX0N-3A, FX2N-2DA), which puts it out as voltage or \
-         current. `m1` counts the special modules from the CPU on beginning with 0. The channel is 1 \
-         for the FX0N-3A, 21 or 22 for the FX2N-2DA. The module takes 8 or 12 bits: limit the value, \
-         because higher bits are lost and a little too much becomes a little more than nothing. The \
-         output keeps its value when the drive goes off: write 0 to stop. FX2N has it from version \
-         3.00 on. In simulation the value goes to the buffer memory of the module, to the word of the \
-         channel plus 100; operation errors are those of `RD3A`.\n\n\
+         current. `m1` counts the special modules from the CPU on beginning with 0. The channel is 1 for \
+         the FX0N-3A, 21 or 22 for the FX2N-2DA. The module takes 8 or 12 bits: limit the value, because \
+         higher bits are lost and a little too much becomes a little more than nothing. The output keeps \
+         its value when the drive goes off: write 0 to stop. FX2N has it from version 3.00 on. In \
+         simulation the value goes to the buffer memory of the module, to the word of the channel plus 100 \
+         (`U0.G101`); operation errors are those of `RD3A`.\n\n\
          ```il\n\
          LD X0\n\
          WR3A K0 K1 D0\n\

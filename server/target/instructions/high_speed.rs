@@ -86,8 +86,9 @@ pub const ROWS: &[Instruction] = &[
          one row, and the row's 8 contacts are copied to `D2`…, each row ten numbers after the last \
          (`M0`–`M7`, `M10`–`M17`, …). Every device must begin at a number ending in 0. Drive it all the \
          time by `M8000`; `M8029` comes on for a scan when all rows have been read. A row takes about 20 \
-         ms, so short presses can be missed. Every contact needs a diode in series, and a program can \
-         hold the instruction only once. In the simulator a row takes two scans.\n\n\
+         ms, so short presses can be missed. Every contact needs a diode in series, and a program can hold \
+         the instruction only once. In the simulator a row takes two scans, and a scenario closes the \
+         contact between `Y10` and `X12` by `Y10.X12 = 1`.\n\n\
          ```il\n\
          LD M8000\n\
          MTR X10 Y10 M0 K3\n\
@@ -114,8 +115,9 @@ pub const ROWS: &[Instruction] = &[
          counting pulse: a value that the program moves into the counter sets nothing. Only a few such \
          comparisons can be active at a time (four on FX1S and FX1N, six on FX2N), and each lowers the \
          highest frequency. On the larger models `D` can be one of the pointers `I010` to `I060`. The \
-         simulator counts the pulses between two scans when the second one begins, by the comparisons \
-         that were driven in the first, and takes up to 64 of these.\n\n\
+         simulator counts the pulses between two scans when the second one begins, by the comparisons that \
+         were driven in the first, and takes up to 64 of these; a scenario gives pulses by `pulses = { X0 \
+         = 40 }`.\n\n\
          ```il\n\
          LD M8000\n\
          OUT C235 K2147483647\n\
@@ -196,11 +198,11 @@ pub const ROWS: &[Instruction] = &[
         "Counts the pulses at a fast input (`X0` to `X5`) during `S2` milliseconds, over and over. `D` \
          holds the result of the last complete window, the next register the count of the running one and \
          the third the time that is left in it. Revolutions per minute are 60,000 × `D` ÷ (pulses per \
-         revolution × `S2`). The input cannot serve a high-speed counter, an interrupt or a pulse catch \
-         as well. A short window follows changes quickly but resolves coarsely: one pulse more or less in \
-         ten is ten per cent. The form `DSPD` exists on FX3U only. In the simulator pulses come from a \
-         scenario or from the input itself, one for each time it comes on, and those before the scan in \
-         which a window ends belong to that window.\n\n\
+         revolution × `S2`). The input cannot serve a high-speed counter, an interrupt or a pulse catch as \
+         well. A short window follows changes quickly but resolves coarsely: one pulse more or less in ten \
+         is ten per cent. The form `DSPD` exists on FX3U only. In the simulator pulses come from a \
+         scenario (`pulses = { X0 = 40 }`) or from the input itself, one for each time it comes on, and \
+         those before the scan in which a window ends belong to that window.\n\n\
          ```il\n\
          LD X10\n\
          SPD X0 K100 D0\n\

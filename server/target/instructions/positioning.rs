@@ -46,13 +46,13 @@ pub const ROWS: &[Instruction] = &[
             bits_out("D1", "first of 3 signals to the amplifier").covering(3),
             destination("D2", "position, a pair").covering(2),
         ],
-        "Reads the absolute position from a servo amplifier over six wires: two data bits and *ready* \
-         come in from `S` on; *servo on*, *transfer mode* and *request* go out from `D1` on. It is \
-         written `DABS`. `M8029` comes on when the position stands in `D2`. Do it once after power-up, \
-         before the first movement, and keep the drive on: switching it off breaks the reading off and \
-         takes *servo on* away. Move the result into the current value register of the pulse output, or \
-         read it there directly. The outputs must be transistors. In the simulator the amplifier needs no \
-         signals and answers after 19 scans, with the position that a scenario gives it.\n\n\
+        "Reads the absolute position from a servo amplifier over six wires: two data bits and *ready* come \
+         in from `S` on; *servo on*, *transfer mode* and *request* go out from `D1` on. It is written \
+         `DABS`. `M8029` comes on when the position stands in `D2`. Do it once after power-up, before the \
+         first movement, and keep the drive on: switching it off breaks the reading off and takes *servo \
+         on* away. Move the result into the current value register of the pulse output, or read it there \
+         directly. The outputs must be transistors. In the simulator the amplifier needs no signals and \
+         answers after 19 scans, with the position that a scenario gives it as `ABS`.\n\n\
          ```il\n\
          LD M8000\n\
          DABS X4 Y4 D0\n\

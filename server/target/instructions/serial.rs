@@ -28,7 +28,8 @@ pub const ROWS: &[Instruction] = &[
          reset `M8123` yourself, because nothing more is received before. With `M8161` on each word \
          carries one byte, otherwise two. Write `D8120` before the first execution; only one `RS` may be \
          active at a time. In the simulator a frame is sent within a scan, and the frames that a scenario \
-         hands over wait until they can be received.\n\n\
+         hands over (`receive`) wait until they can be received; what is sent can be expected there \
+         (`sent`).\n\n\
          ```il\n\
          LD M8002\n\
          MOV H0C81 D8120\n\
@@ -149,12 +150,12 @@ pub const ROWS: &[Instruction] = &[
         "VRRD",
         "read a trimmer",
         &[source("S", "trimmer number").within(0, 7), destination("D", "position, 0 to 255")],
-        "Reads the position of trimmer `S` as a number from 0 to 255. FX1S and FX1N have two of their \
-         own, 0 and 1, which can also be read in `D8030` and `D8031`; larger CPUs need a trimmer board \
-         with eight. Read it in every scan if the operator may turn it at any time. The value jumps by \
-         one or two on its own: do not compare it for equality. Multiply it before using it as the preset \
-         of a timer that runs longer than 25.5 s. In the simulator trimmers stand at 0 until a scenario \
-         turns them.\n\n\
+        "Reads the position of trimmer `S` as a number from 0 to 255. FX1S and FX1N have two of their own, \
+         0 and 1, which can also be read in `D8030` and `D8031`; larger CPUs need a trimmer board with \
+         eight. Read it in every scan if the operator may turn it at any time. The value jumps by one or \
+         two on its own: do not compare it for equality. Multiply it before using it as the preset of a \
+         timer that runs longer than 25.5 s. In the simulator trimmers stand at 0 until a scenario turns \
+         them: `VR0` is the first, `VR0 = 128` turns it halfway.\n\n\
          ```il\n\
          LD M8000\n\
          VRRD K0 D0\n\
