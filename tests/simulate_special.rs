@@ -67,7 +67,7 @@ fn routines(count: u32) -> String {
 }
 
 #[test]
-fn calls_nest_five_deep_and_the_sixth_ends_the_scan_at_its_instruction() {
+fn calls_nest_five_deep_and_the_sixth_is_not_executed() {
     let mut plc = Plc::list(&routines(5));
     plc.scans(2).check("D0=10 D1=2 D2=2");
     let text = routines(6);
@@ -79,11 +79,12 @@ fn calls_nest_five_deep_and_the_sixth_ends_the_scan_at_its_instruction() {
     };
     let outcome = plc.scan();
     assert_eq!(of(&outcome), (ErrorKind::TooDeep, "CALL P5".to_string()));
-    plc.check("D0=5 D1=1 D2=0");
+    // What is behind it is.
+    plc.check("D0=5 D1=1 D2=1 M8067 M8068 M8004 D8067=6702 D8004=8067");
     // The next scan begins at the top, with nothing left of the calls.
     let outcome = plc.scan();
     assert_eq!(of(&outcome).0, ErrorKind::TooDeep);
-    plc.check("D0=10 D1=2 D2=0");
+    plc.check("D0=10 D1=2 D2=2");
     // A routine that calls itself is stopped in the same way.
     let text = "LD M8000\nCALL P0\nFEND\nP0\nLD M8000\nINC D0\nCALL P0\nSRET\nEND\n";
     let mut plc = Plc::list(text);
@@ -92,11 +93,36 @@ fn calls_nest_five_deep_and_the_sixth_ends_the_scan_at_its_instruction() {
 }
 
 #[test]
-fn loops_nest_five_deep_and_the_sixth_ends_the_scan() {
+fn loops_nest_five_deep_and_the_sixth_is_passed_over() {
     let nested = |depth: usize| {
         format!("{}LD M8000\nINC D0\n{}END\n", "FOR K2\n".repeat(depth), "NEXT\n".repeat(depth))
     };
     Plc::list(&nested(5)).scans(1).check("D0=32");
-    let outcome = Plc::list(&nested(6)).scan();
+    let mut plc = Plc::list(&nested(6).replace("END", "LD M8000\nINC D1\nEND"));
+    let outcome = plc.scan();
     assert_eq!(outcome.errors.first().map(|error| error.kind), Some(ErrorKind::TooDeep));
+    plc.check("D0=0 D1=1 M8067 D8067=6704 D8004=8067 ~M8061");
+}
+
+#[test]
+fn what_has_nothing_to_go_back_to_is_not_executed() {
+    let mut plc = Plc::list("LD M8000\nINC D0\nSRET\nLD M8000\nINC D1\nEND\n");
+    let outcome = plc.scan();
+    assert_eq!(outcome.errors.first().map(|error| error.kind), Some(ErrorKind::NothingToReturnTo));
+    plc.check("D0=1 D1=1 M8067 D8067=6709");
+}
+
+#[test]
+fn the_watchdog_stops_the_cpu_until_it_is_switched_off() {
+    let mut plc = Plc::list("LD M8000\nINC D0\nLD X0\nOUT Y0\nP0\nLD X1\nCJ P0\nEND\n");
+    plc.set("X0").scans(2).check("D0=2 Y0 ~M8061 ~M8004");
+    plc.set("X1");
+    let outcome = plc.scan();
+    assert_eq!(outcome.errors.first().map(|error| error.kind), Some(ErrorKind::Watchdog));
+    // Outputs are off; registers can be looked at.
+    plc.check("D0=3 ~Y0 M8061 M8004 D8061=6105 D8004=8061 ~M8067");
+    plc.set("X1=0");
+    assert_eq!(plc.scan().errors, []);
+    plc.check("D0=3 ~Y0 ~M8000");
+    plc.set("M8061=0").scans(1).check("D0=4 Y0 M8000");
 }

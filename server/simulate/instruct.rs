@@ -3,6 +3,7 @@
 use super::code::{Call, CallCode, Code};
 use super::execution::Executing;
 use super::layout::RESET;
+use super::orders::CpuError;
 use super::run::Run;
 use super::{Cell, ErrorKind, Lanes, Machine, timing};
 use crate::target::{Device, DeviceKind, Execution, Fault};
@@ -111,16 +112,7 @@ impl<L: Lanes> Machine<L> {
 
     /// Tells the program and the caller that an instruction was not executed.
     fn fault(&mut self, code: &Code, at: usize, fault: Fault, lane: usize, run: &mut Run) {
-        for number in [8067, 8068, 8004] {
-            if let Some(cell) = code.layout.cell(Device::new(DeviceKind::M, number)) {
-                self.memory.set_bit(cell, lane, true);
-            }
-        }
-        for (number, value) in [(8067, fault.code()), (8004, 8067)] {
-            if let Some(slot) = code.layout.slot(Device::new(DeviceKind::D, number)) {
-                self.memory.set_word(slot, lane, value);
-            }
-        }
+        self.tell(code, L::NONE.with(lane, true), CpuError::OPERATION, fault.code());
         run.error(code, at, ErrorKind::Fault(fault), lane);
     }
 }

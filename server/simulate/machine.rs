@@ -64,11 +64,11 @@ pub enum ErrorKind {
     Fault(Fault),
     /// A calculation of an IEC 61131-3 program has no proper result; the scan went on.
     Calculation(Fault),
-    /// The scan did not end; it was stopped at this instruction.
+    /// The scan did not end; it was stopped at this instruction, and the CPU of an FX with it.
     Watchdog,
-    /// CALL or FOR nest deeper than the PLC can.
+    /// CALL or FOR nest deeper than the PLC can; it was not executed, nor the loop, and the scan went on.
     TooDeep,
-    /// SRET without CALL, or NEXT without FOR.
+    /// SRET without CALL, or NEXT without FOR; it was not executed.
     NothingToReturnTo,
     /// The program has stopped the CPU by M8037.
     Stopped,
@@ -265,11 +265,11 @@ impl<L: Lanes> Machine<L> {
         }
         let rows = self.forced_rows.clone();
         let mut run = Run::default();
-        if self.is_stopped() {
-            self.stand_still();
-        } else {
+        if self.is_running() {
             self.run(&code, rows.as_deref().unwrap_or(&code.rows), &mut run, watch);
             self.end_scan(&code, &mut run);
+        } else {
+            self.stand_still();
         }
         run.outcome
     }

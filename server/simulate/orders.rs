@@ -40,7 +40,40 @@ const WATCHDOG_MS: (i64, i64) = (200, 2_000);
 /// Annunciators are no steps.
 const ANNUNCIATORS: std::ops::RangeInclusive<u32> = 900..=999;
 
+/// On while there is an error of one of these kinds; its register says which relay is on.
+const ANY_ERROR: u32 = 8004;
+
+/// A kind of errors, each with a relay, and a register of the same number for the code.
+#[derive(Clone, Copy)]
+pub(super) struct CpuError {
+    relay: u32,
+    /// Remembers that there was one.
+    memory: Option<u32>,
+}
+
+impl CpuError {
+    /// The CPU stops, as if it were broken.
+    pub(super) const HARDWARE: CpuError = CpuError { relay: 8061, memory: None };
+    /// An instruction is not executed, and the CPU goes on.
+    pub(super) const OPERATION: CpuError = CpuError { relay: 8067, memory: Some(8068) };
+}
+
 impl<L: Lanes> Machine<L> {
+    /// Tells the program of an error in special relays and registers.
+    pub(super) fn tell(&mut self, code: &Code, lanes: L, error: CpuError, number: i64) {
+        for relay in [Some(error.relay), error.memory, Some(ANY_ERROR)].into_iter().flatten() {
+            if let Some(cell) = code.layout.cell(Device::new(DeviceKind::M, relay)) {
+                self.memory.set_cell(cell, self.memory.cell(cell) | lanes);
+            }
+        }
+        for (register, value) in [(error.relay, number), (ANY_ERROR, i64::from(error.relay))] {
+            let Some(slot) = code.layout.slot(Device::new(DeviceKind::D, register)) else { continue };
+            for lane in (0..L::COUNT).filter(|lane| lanes.lane(*lane)) {
+                self.memory.set_word(slot, lane, value);
+            }
+        }
+    }
+
     /// What the CPU says of itself when it gets power, in special registers.
     pub fn identify(&mut self) {
         let target = self.code.target;
@@ -97,8 +130,18 @@ impl<L: Lanes> Machine<L> {
     }
 
     /// Whether the program has stopped the CPU.
-    pub(super) fn is_stopped(&self) -> bool {
+    fn is_stopped(&self) -> bool {
         self.orders(STOP).lane(0)
+    }
+
+    /// Whether the watchdog has.
+    fn is_broken(&self) -> bool {
+        self.orders(CpuError::HARDWARE.relay).lane(0)
+    }
+
+    /// Whether a scan executes the program.
+    pub(super) fn is_running(&self) -> bool {
+        !self.is_stopped() && !self.is_broken()
     }
 
     /// A scan of a CPU that is stopped: the program is not executed.
@@ -127,7 +170,7 @@ impl<L: Lanes> Machine<L> {
             self.clear_all(own.into_iter(), lanes);
         }
         self.hold();
-        self.terminals.switch_off(self.orders(OUTPUTS_OFF));
+        self.terminals.switch_off(self.orders(OUTPUTS_OFF) | L::all(self.is_broken()));
         self.terminals.publish(&self.memory);
         if is_stopped {
             run.error(code, code.ops.len().saturating_sub(1), ErrorKind::Stopped, 0);

@@ -3,6 +3,7 @@
 use super::code::{Code, Op};
 use super::interrupts::{self, Interrupts};
 use super::machine::{Error, Outcome};
+use super::orders::CpuError;
 use super::row::{self, Row};
 use super::writes::Watch;
 use super::{ErrorKind, Glimpse, Lanes, Machine, Sight, iec, timing};
@@ -25,6 +26,22 @@ pub(super) struct Run {
     /// What calculations of IEC 61131-3 are made with, kept from one to the next so that none has to ask for memory.
     values: Vec<Datum>,
 }
+
+/// A jump, call or loop that is not executed.
+struct Refused {
+    kind: ErrorKind,
+    /// The error code of the CPU.
+    code: i64,
+    /// Where the program goes on.
+    next: usize,
+}
+
+/// The error codes of the CPU for this. Source: the error code list of the FX programming manuals, after which the CPU
+/// goes on with all but the watchdog.
+const CALLS_CODE: i64 = 6702;
+const LOOPS_CODE: i64 = 6704;
+const OTHER_CODE: i64 = 6709;
+const WATCHDOG_CODE: i64 = 6105;
 
 /// More often WDT does not help: a loop without end is stopped all the same.
 const MOST_RENEWALS: u32 = 8;
@@ -91,6 +108,7 @@ impl<L: Lanes> Machine<L> {
             }
             run.ops += 1;
             if run.ops > most_ops && !run.renew(&mut self.interrupts) {
+                self.tell(code, L::ALL, CpuError::HARDWARE, WATCHDOG_CODE);
                 return run.error(code, at, ErrorKind::Watchdog, 0);
             }
             let next = match *op {
@@ -116,7 +134,14 @@ impl<L: Lanes> Machine<L> {
                 Op::End => return,
                 op if op.leads_elsewhere() => match self.flow(code, at, op, run) {
                     Ok(next) => next,
-                    Err(kind) => return run.error(code, at, kind, 0),
+                    Err(refused) => {
+                        run.error(code, at, refused.kind, 0);
+                        if !code.target.is_fx() {
+                            return;
+                        }
+                        self.tell(code, L::ALL, CpuError::OPERATION, refused.code);
+                        refused.next
+                    }
                 },
                 op => {
                     self.change(code, at, op, run);
@@ -177,8 +202,9 @@ impl<L: Lanes> Machine<L> {
     }
 
     /// Finds where the program goes on behind an op that may lead elsewhere.
-    fn flow(&mut self, code: &Code, at: usize, op: Op, run: &mut Run) -> Result<usize, ErrorKind> {
+    fn flow(&mut self, code: &Code, at: usize, op: Op, run: &mut Run) -> Result<usize, Refused> {
         let next = at + 1;
+        let refused = |kind, code, next| Refused { kind, code, next };
         Ok(match op {
             Op::Step { rail, was, state, above, end } => {
                 let active = self.memory.cell(state) & self.memory.cell(above);
@@ -190,14 +216,15 @@ impl<L: Lanes> Machine<L> {
             Op::Jump { power, to } if self.memory.bit(power, 0) => to as usize,
             Op::Call { power, to } if self.memory.bit(power, 0) => {
                 if run.calls.len() >= code.most_calls() + run.routines.len() {
-                    return Err(ErrorKind::TooDeep);
+                    return Err(refused(ErrorKind::TooDeep, CALLS_CODE, next));
                 }
                 run.calls.push(next);
                 to as usize
             }
             Op::Interrupt => self.interrupt(code, run, next),
             Op::Return => {
-                let back = run.calls.pop().ok_or(ErrorKind::NothingToReturnTo)?;
+                let back = run.calls.pop();
+                let back = back.ok_or(refused(ErrorKind::NothingToReturnTo, OTHER_CODE, next))?;
                 match run.routines.pop_if(|depth| *depth > run.calls.len()) {
                     Some(_) => {
                         self.interrupts.are_allowed = true;
@@ -212,14 +239,15 @@ impl<L: Lanes> Machine<L> {
                 if rounds < 1 {
                     behind as usize
                 } else if run.loops.len() >= code.target.limits.loops as usize {
-                    return Err(ErrorKind::TooDeep);
+                    return Err(refused(ErrorKind::TooDeep, LOOPS_CODE, behind as usize));
                 } else {
                     run.loops.push((next, rounds));
                     next
                 }
             }
             Op::Next { first } => {
-                let (begin, rounds) = run.inner_loop(first as usize).ok_or(ErrorKind::NothingToReturnTo)?;
+                let nothing = refused(ErrorKind::NothingToReturnTo, OTHER_CODE, next);
+                let (begin, rounds) = run.inner_loop(first as usize).ok_or(nothing)?;
                 *rounds -= 1;
                 if *rounds > 0 {
                     *begin
