@@ -101,36 +101,6 @@ fn words_are_numbers_of_their_types() {
 }
 
 #[test]
-fn a_number_says_its_type_or_has_that_of_the_variables() {
-    for (variables, left, right, is_equal) in [
-        ("n, m : INT;", "LD n;ADD INT#5;ST m", "LD n;ADD 5;ST m", true),
-        ("n, m : INT;", "LD INT#16#5;ADD n;ST m", "LD 5;ADD n;ST m", true),
-        ("n, m : INT;", "LD INT#5;ST m", "LD 5;ST m", true),
-        ("n, m : UDINT;", "LD n;MOD UDINT#5;ST m", "LD n;MOD 5;ST m", true),
-        ("n, m : WORD;", "LD n;AND WORD#16#F;ST m", "LD n;AND 15;ST m", true),
-        ("n, m : INT;", "LD n;ADD INT#5;ST m", "LD n;ADD 6;ST m", false),
-        ("n, m : INT;", "LD n;ADD INT#5;ST m", "LD n;SUB 5;ST m", false),
-        ("n, m : INT;", "LD n;ADD INT#5;ST m", "LD n;ADD SINT#5;ST m", false),
-        // The sum may have 16 bits or 32.
-        ("n : INT; m : DINT;", "LD n;ADD INT#5;ST m", "LD n;ADD 5;ST m", false),
-        ("n : DINT; m : DINT;", "LD n;ADD INT#5;ST m", "LD n;ADD 5;ST m", false),
-        ("m : INT;", "LD INT#5;ADD INT#4;ST m", "LD 5;ADD 4;ST m", false),
-        ("n, m : REAL;", "LD n;ADD REAL#5;ST m", "LD n;ADD INT#5;ST m", false),
-        // No INT is that large.
-        ("n, m : INT;", "LD n;ADD INT#40000;ST m", "LD n;ADD 40000;ST m", false),
-    ] {
-        for [left, right] in [[left, right], [right, left]] {
-            let proof = prove(&iec(variables, left), &iec(variables, right));
-            assert_eq!(
-                matches!(proof, Proof::Equal { .. }),
-                is_equal,
-                "{variables} {left} | {right}: {proof:?}"
-            );
-        }
-    }
-}
-
-#[test]
 fn a_subrange_counts_wherever_it_is_declared() {
     let text = |declared: &str, body: &str| {
         let text =

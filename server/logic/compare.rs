@@ -74,7 +74,7 @@ pub fn compare_but(
     if let Some(relay) = left.asks_otherwise(&right) {
         return Comparison::AsksOtherwise(relay.clone());
     }
-    if let Some(unlike) = unlike(left.effects.iter(), right.effects.iter(), formulas) {
+    if let Some(unlike) = unlike(left.effects.iter(), right.effects.iter()) {
         return unlike;
     }
     for (left, right) in left.effects.iter().zip(&right.effects) {
@@ -106,7 +106,7 @@ pub fn compare_outcome(
     let [left, right] = [left, right].map(|paths| run(Run::by_outcome(rail), paths, formulas));
     let events = || [&left, &right].map(|run| run.effects.iter().filter(|e| e.event.is_some()));
     let [own, other] = events();
-    if let Some(unlike) = unlike(own, other, formulas) {
+    if let Some(unlike) = unlike(own, other) {
         return unlike;
     }
     if let Some(relay) = left.asks_otherwise(&right) {
@@ -165,7 +165,7 @@ fn in_step(sides: [&Run<'_>; 2], known: [usize; 2], formulas: &mut Formulas) -> 
     }
     let [left, right] = [0, 1].map(|side| sides[side].effects.iter().skip(known[side]));
     let alike = left.zip(right).take_while(|(left, right)| {
-        left.is_like(right, formulas) && equal(formulas, left.guard, right.guard) == Verdict::Equal
+        left.is_like(right) && equal(formulas, left.guard, right.guard) == Verdict::Equal
     });
     alike.filter(|(left, _)| runs_unit(left)).last().and_then(|(left, _)| left.event)
 }
@@ -199,14 +199,13 @@ fn difference(
 fn unlike<'a, 'p: 'a>(
     left: impl Iterator<Item = &'a Effect<'p>>,
     right: impl Iterator<Item = &'a Effect<'p>>,
-    formulas: &Formulas,
 ) -> Option<Comparison> {
     let (mut left, mut right) = (left.fuse(), right.fuse());
     loop {
         let sides = [left.next(), right.next()];
         match sides {
             [None, None] => return None,
-            [Some(left), Some(right)] if left.is_like(right, formulas) => {}
+            [Some(left), Some(right)] if left.is_like(right) => {}
             _ => return Some(Comparison::Unlike(sides.map(|side| side.map(|effect| worded(effect.action))))),
         }
     }

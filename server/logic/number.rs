@@ -96,24 +96,6 @@ fn is_number_of(literal: Literal, value: i128, kind: ElementaryType) -> bool {
     }
 }
 
-/// Whether it is a literal of a whole number.
-pub(super) fn is_whole_number(term: &Term) -> bool {
-    matches!(term.operand, Operand::Literal(Literal { value: LiteralValue::Integer(_), .. }))
-}
-
-/// Whether two literals are one whole number where variables of type `kind` are calculated with: each has that type or
-/// says none, and such a variable can be it.
-pub(super) fn is_one_number(left: &Term, right: &Term, kind: ElementaryType) -> bool {
-    let value = |term: &Term| match term.operand {
-        Operand::Literal(Literal { value: LiteralValue::Integer(value), named_type }) => {
-            let fits = integers(kind).is_some_and(|range| range.contains(&value));
-            (fits && named_type.is_none_or(|own| own == kind)).then_some(value)
-        }
-        _ => None,
-    };
-    value(left).is_some_and(|own| value(right) == Some(own))
-}
-
 /// The numbers that a word can be, as far as anything is known of them.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Numbers {

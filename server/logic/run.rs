@@ -2,10 +2,8 @@
 
 use super::changes::Changes;
 use super::formula::{Atom, Moment, Step};
-use super::number::{is_one_number, is_real, is_whole_number, number, range};
-use super::{
-    Action, Contact, Conversion, Deed, Drive, Expression, Formula, Formulas, Gate, Path, Term, Test, WIDE,
-};
+use super::number::{is_real, number, range};
+use super::{Action, Contact, Deed, Drive, Expression, Formula, Formulas, Gate, Path, Term, Test, WIDE};
 use crate::ladder::{CoilKind, CompareOperator, ContactKind};
 use crate::target::iec::LiteralValue;
 use crate::target::{Constant, Device, DeviceKind, Operand};
@@ -36,34 +34,10 @@ impl Effect<'_> {
         }
     }
 
-    /// Whether two effects do the same to the same operands, whatever the conditions; `formulas` know the types.
-    pub fn is_like(&self, other: &Effect<'_>, formulas: &Formulas) -> bool {
+    /// Whether two effects do the same to the same operands, whatever the conditions.
+    pub fn is_like(&self, other: &Effect<'_>) -> bool {
         let counts_alike = || self.counted().is_some_and(|own| other.counted() == Some(own));
-        let is_same = || self.action.terms == other.action.terms;
-        self.deed() == other.deed() && (is_same() || counts_alike() || self.calculates_like(other, formulas))
-    }
-
-    /// Whether two calculations of one function of the standard differ only in that a number says its type: `INT#5` is
-    /// `5` where whatever else is calculated with is an INT, and so is the result. Where nothing but numbers goes in,
-    /// each PLC calculates `5` in a size of its own.
-    fn calculates_like(&self, other: &Effect<'_>, formulas: &Formulas) -> bool {
-        let plain = |effect: &Effect<'_>| match &effect.action.deed {
-            Deed::Compute(own) => own.standard().is_some() && own.conversion == Conversion::None,
-            _ => false,
-        };
-        let (own, others) = (&self.action.terms, &other.action.terms);
-        let Some((_, inputs)) = own.split_last().filter(|_| plain(self) && plain(other)) else {
-            return false;
-        };
-        let is_variable = |term: &&Term| !is_whole_number(term);
-        let copies = matches!(&self.action.deed, Deed::Compute(own) if own.copies());
-        let mut kinds = own.iter().filter(is_variable).map(|term| formulas.type_of(&term.key()));
-        let Some(Some(kind)) = kinds.next() else { return false };
-        let is_same = |(left, right)| left == right || is_one_number(left, right, kind);
-        (copies || inputs.iter().any(|input| is_variable(&input)))
-            && kinds.all(|other| other == Some(kind))
-            && own.len() == others.len()
-            && own.iter().zip(others).all(is_same)
+        self.deed() == other.deed() && (self.action.terms == other.action.terms || counts_alike())
     }
 
     /// The timer or counter of 16 bits that a coil drives, and the constant up to which it counts: 0 works as 1 does.
@@ -440,11 +414,7 @@ impl<'p> Run<'p> {
                 let kept = call.kept_inputs(&action.terms);
                 action.terms.iter().skip(1).chain(&kept).map(|term| self.bit(term, formulas)).collect()
             }
-            Deed::Compute(_) => {
-                // A number is what it is, however it is written.
-                let terms = action.terms.iter().filter(|term| !is_whole_number(term));
-                terms.map(|term| self.bit(term, formulas)).collect()
-            }
+            Deed::Compute(_) => action.terms.iter().map(|term| self.bit(term, formulas)).collect(),
             _ => Vec::new(),
         };
         self.changes.event(action, formulas);
