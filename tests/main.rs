@@ -136,6 +136,7 @@ mod translate_iec;
 mod translate_rows;
 mod translate_two_outputs;
 mod translate_words;
+mod translation_faults;
 mod unit_calls;
 mod usage;
 mod vcd;
