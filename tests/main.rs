@@ -14,6 +14,7 @@ mod box_pins;
 mod chinese;
 mod cli;
 mod cli_link;
+mod cli_link_drift;
 mod cli_link_ended;
 mod cli_link_refused;
 mod cli_link_said;
