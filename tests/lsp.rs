@@ -424,7 +424,7 @@ fn quick_fixes_and_the_check_command() {
     client.notify("textDocument/didChange", mend);
     let command = json!({"command": "rungwise.check", "arguments": [URI]});
     let summary = client.request("workspace/executeCommand", command)["result"].clone();
-    assert_eq!(summary["message"], json!("check passed: 2 rungs, 9 of 8000 steps"), "{summary}");
+    assert_eq!(summary["message"], json!("check passed: 2 rungs, 9 of 8000 steps; 1 hint"), "{summary}");
     for wrong in [json!({"command": "rungwise.check"}), json!({"command": "rm", "arguments": [URI]})] {
         let answer = client.request("workspace/executeCommand", wrong);
         assert_eq!(answer["error"]["code"], json!(-32602), "{answer}");
