@@ -117,6 +117,27 @@ fn common_contacts_are_factored_out() {
 }
 
 #[test]
+fn branches_of_a_stack_become_rungs_and_come_back() {
+    let branched = "LD X0\nMPS\nAND X1\nOUT Y0\nMRD\nAND X2\nOUT Y1\nMPP\nAND X3\nOUT Y2\nEND\n";
+    let (title, split) = after(&list(branched), "X0", "rung.split");
+    assert_eq!(title, "Replace MPS, MRD and MPP by a rung for each output (saves 1 step)");
+    assert_eq!(split, "LD X0\nAND X1\nOUT Y0\nLD X0\nAND X2\nOUT Y1\nLD X0\nAND X3\nOUT Y2\nEND\n");
+    let (title, two) = after(&list(&split), "X0", "rung.merge");
+    assert_eq!(title, "Merge with the rung below by MPS, MRD and MPP (1 step more)");
+    let (title, three) = after(&list(&two), "X0", "rung.merge");
+    assert_eq!((title.as_str(), three.as_str()), ("Merge with the rung below by MPS, MRD and MPP", branched));
+    // The condition that all share may be a block of its own.
+    let block = "LD X0\nOR X4\nMPS\nAND X1\nOUT Y0\nMPP\nAND X2\nOUT Y1\nEND\n";
+    let (title, split) = after(&list(block), "X0", "rung.split");
+    assert_eq!(title, "Replace MPS, MRD and MPP by a rung for each output");
+    assert_eq!(split, "LD X0\nOR X4\nAND X1\nOUT Y0\nLD X0\nOR X4\nAND X2\nOUT Y1\nEND\n");
+    assert_eq!(after(&list(&split), "X0", "rung.merge").1, block);
+    // What the first branch drives the second would ask for once more.
+    let asked = "LD X0\nOR M4\nMPS\nAND X1\nOUT M4\nMPP\nAND X2\nOUT Y1\nEND\n";
+    assert!(!is_offered(&list(asked), "X0", "rung.split"));
+}
+
+#[test]
 fn a_rung_is_split_where_nothing_between_changes_what_is_read() {
     let text = "LD X0\nMPS\nAND X1\nOUT Y0\nMPP\nAND X2\nOUT Y1\n";
     let (title, split) = after(&list(text), "X0", "rung.split");

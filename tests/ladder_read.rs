@@ -644,6 +644,20 @@ fn function_blocks() {
         C1:CTU.Q (full) R
         block C1:CTU CU=wire R=not wire PV=K-5 =>Q=wire =>CV=open",
     );
+    // Subscripts belong to the operands.
+    check_on(
+        iec(),
+        "
+|              +-------+             |
+|   start      | MOVE  |       lamp  |
++---| |--------|EN  ENO|-------( )---+
+|   h[1,-2].a--|IN  OUT|--g[n].x[2]  |
+|              +-------+             |
+",
+        "L start _:MOVE.EN
+        _:MOVE.ENO (lamp) R
+        block _:MOVE EN=wire IN=h[1,-2].a =>ENO=wire =>OUT=g[n].x[2]",
+    );
     // Unicode frame, no names at the pins.
     check_on(
         iec(),

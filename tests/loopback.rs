@@ -71,11 +71,11 @@ impl Loopback {
         if is_answer { ends.to_host.set_faults(dead) } else { ends.to_plc.set_faults(dead) }
     }
 
-    /// The line is put together again, and goes on with these faults.
+    /// The line is put together again, and goes on with these faults. The PLC does not learn of that, as on a serial
+    /// line: it may be inside of a frame.
     pub fn reconnect(&self, faults: Faults) {
         let mut ends = self.ends();
         ends.due_ns = 0;
-        ends.server.greet();
         for wire in 0..2 {
             let wire = if wire == 0 { &mut ends.to_plc } else { &mut ends.to_host };
             wire.reconnect();

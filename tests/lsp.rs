@@ -417,6 +417,14 @@ fn quick_fixes_and_the_check_command() {
     let command = json!({"command": "rungwise.check", "arguments": [URI]});
     let summary = client.request("workspace/executeCommand", command)["result"].clone();
     assert_eq!((&summary["errors"], &summary["capacity"]), (&json!(1), &json!(8000)), "{summary}");
+    let said = summary["message"].as_str().unwrap();
+    assert!(said.starts_with("check failed: 1 error"), "{summary}");
+    // A program without mistakes is told so.
+    let mend = json!({"textDocument": {"uri": URI, "version": 2}, "contentChanges": [{"text": PROGRAM}]});
+    client.notify("textDocument/didChange", mend);
+    let command = json!({"command": "rungwise.check", "arguments": [URI]});
+    let summary = client.request("workspace/executeCommand", command)["result"].clone();
+    assert_eq!(summary["message"], json!("check passed: 2 rungs, 9 of 8000 steps; 1 hint"), "{summary}");
     for wrong in [json!({"command": "rungwise.check"}), json!({"command": "rm", "arguments": [URI]})] {
         let answer = client.request("workspace/executeCommand", wrong);
         assert_eq!(answer["error"]["code"], json!(-32602), "{answer}");

@@ -5,6 +5,7 @@ use std::io::{BufRead, BufReader, Lines, Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
+use std::sync::{Arc, Mutex};
 
 /// A virtual PLC that ends with the test.
 pub struct VirtualPlc {
@@ -72,6 +73,50 @@ impl Drop for VirtualPlc {
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
+}
+
+/// Lets several hosts speak with the PLC at `address`, a request and its answer after the other, as PLCs with several
+/// ports do; where `refuses` says so of the body of a request, the PLC says no. Gives its own address, as behind
+/// `--port`.
+pub fn shared(address: &str, refuses: impl Fn(&str) -> bool + Send + Sync + 'static) -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = format!("tcp://{}", listener.local_addr().unwrap());
+    let plc = Arc::new(Mutex::new(TcpStream::connect(address).unwrap()));
+    let refuses = Arc::new(refuses);
+    std::thread::spawn(move || {
+        for mut host in listener.incoming().map_while(Result::ok) {
+            let (plc, refuses) = (Arc::clone(&plc), Arc::clone(&refuses));
+            std::thread::spawn(move || -> std::io::Result<()> {
+                loop {
+                    let request = word(&mut host)?;
+                    let body = request.split(|byte| *byte == 3).next().unwrap_or_default();
+                    let body = String::from_utf8_lossy(body.get(1..).unwrap_or_default()).into_owned();
+                    let answer = match refuses(&body) {
+                        true => vec![0x15],
+                        false => {
+                            let mut plc = plc.lock().unwrap();
+                            plc.write_all(&request)?;
+                            word(&mut *plc)?
+                        }
+                    };
+                    host.write_all(&answer)?;
+                }
+            });
+        }
+    });
+    port
+}
+
+/// A request or an answer: a frame with its sum, or a byte that stands alone.
+fn word(stream: &mut impl Read) -> std::io::Result<Vec<u8>> {
+    let mut word = vec![0];
+    stream.read_exact(&mut word)?;
+    while word[0] == 2 && !word.iter().rev().skip(2).take(1).any(|byte| *byte == 3) {
+        let mut byte = [0];
+        stream.read_exact(&mut byte)?;
+        word.extend(byte);
+    }
+    Ok(word)
 }
 
 /// What a proxy does with a request.

@@ -93,6 +93,18 @@ impl<'a> Statement<'a> {
         Some(edit.shifted(self.at.start))
     }
 
+    /// Puts `line` on a line of its own behind this one; nothing where there are no lines but a drawing.
+    pub fn line_behind(&self, line: &str) -> Option<TextEdit> {
+        let text = self.list()?;
+        let span = self.relative(self.span);
+        let tail = text.get(span.end as usize..)?;
+        let length = tail.find('\n').map_or(tail.len(), |newline| newline + 1);
+        let newline = if text.contains("\r\n") { "\r\n" } else { "\n" };
+        let before = if tail[..length].ends_with('\n') { "" } else { newline };
+        let at = Span::at(span.end as usize + length);
+        Some(TextEdit::new(at, format!("{before}{line}{newline}")).shifted(self.at.start))
+    }
+
     /// Takes it out with its line; nothing in a drawing.
     pub fn removal(&self) -> Option<TextEdit> {
         Some(removal(self.list()?, self.relative(self.span)).shifted(self.at.start))

@@ -337,14 +337,23 @@ fn word_beside(
         let character = grid.at(row, column);
         continues_word(character) || character == WIDE || matches!(character, '\'' | '"' | '?')
     };
-    if !part(near) {
+    let (mut first, mut last) = (near, near);
+    if side == Side::Left && grid.at(row, near) == ']' {
+        first = subscript(grid, row, near, side).filter(|open| *open > 0 && part(open - 1))?;
+    } else if !part(near) {
         return None;
     }
-    let (mut first, mut last) = (near, near);
     match side {
         Side::Left => {
-            while first > 0 && part(first - 1) {
-                first -= 1;
+            while first > 0 {
+                first = match grid.at(row, first - 1) {
+                    ']' => match subscript(grid, row, first - 1, side) {
+                        Some(open) => open,
+                        None => break,
+                    },
+                    _ if part(first - 1) => first - 1,
+                    _ => break,
+                };
             }
             // `K-5`, `T#-1s`
             let sign = first > 1
@@ -364,11 +373,16 @@ fn word_beside(
                 && (first == 1 || grid.at(row, first - 2) == ' ');
             first -= usize::from(alone);
         }
-        Side::Right => {
-            while part(last + 1) {
-                last += 1;
-            }
-        }
+        Side::Right => loop {
+            last = match grid.at(row, last + 1) {
+                '[' => match subscript(grid, row, last + 1, side) {
+                    Some(close) => close,
+                    None => break,
+                },
+                _ if part(last + 1) => last + 1,
+                _ => break,
+            };
+        },
     }
     let beyond = match side {
         Side::Left => first.checked_sub(1).map_or(' ', |column| grid.at(row, column)),
@@ -380,4 +394,18 @@ fn word_beside(
     // The circle of the next box touches that box.
     let circle = arms.is_upright() && first == last && matches!(grid.at(row, first), 'O' | 'o');
     (!circle && !arms.is_horizontal() && !span.of(text).is_empty()).then_some((far, span))
+}
+
+/// The other bracket of the subscript of an array whose near bracket stands at `column`: `[1]`, `[n,-2]`.
+fn subscript(grid: &Grid, row: usize, column: usize, side: Side) -> Option<usize> {
+    let is_inside = |column: usize| {
+        let character = grid.at(row, column);
+        let is_sign = character == '-' && matches!(grid.at(row, column - 1), '[' | ',');
+        continues_word(character) || character == ',' || is_sign
+    };
+    let (far, bracket) = match side {
+        Side::Left => ((1..column).rev().find(|at| !is_inside(*at))?, '['),
+        Side::Right => ((column + 1..).find(|at| !is_inside(*at))?, ']'),
+    };
+    (grid.at(row, far) == bracket && far.abs_diff(column) > 1).then_some(far)
 }

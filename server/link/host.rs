@@ -24,6 +24,9 @@ mod program;
 mod comparison;
 pub use comparison::Comparison;
 
+mod drift;
+pub use drift::{Drift, DriftNews};
+
 mod download;
 pub use download::{DownloadFailure, Fate, Plan, Progress, Report, Stage};
 

@@ -81,15 +81,21 @@ impl<T: Transport> Line<T> {
         }
     }
 
-    /// Asks whether somebody is there.
+    /// Asks whether somebody is there. A PLC that is inside of a frame, whose sender has gone, takes that for a part of
+    /// it: so a whole frame is sent before the second try, whatever is answered to it.
     ///
     /// # Errors
     /// If nobody answers, or somebody who serves another host.
     pub fn greet(&mut self) -> Result<(), LinkError> {
         let mut is_refused = false;
-        for _ in 0..self.patience.tries.max(1) {
+        for attempt in 0..self.patience.tries.max(1) {
             self.check_cancelled()?;
             self.purge()?;
+            if attempt == 1 {
+                let whole = BARRIER.read(2);
+                self.send(&framed(&whole.body()))?;
+                let _ = self.answer(whole.expected())?;
+            }
             self.send(&[ENQ])?;
             match self.answer(Expected::Acknowledge)? {
                 Ok(_) => return Ok(()),

@@ -26,8 +26,8 @@ pub use mode::{Mode, Switch};
 
 mod host;
 pub use host::{
-    Comparison, DownloadFailure, Fate, Holds, Host, Identity, NamesOfPlc, Plan, Point, Progress, Report,
-    Stage, Status, StatusError, Watch,
+    Comparison, DownloadFailure, Drift, DriftNews, Fate, Holds, Host, Identity, NamesOfPlc, Plan, Point,
+    Progress, Report, Stage, Status, StatusError, Watch,
 };
 
 mod logbook;

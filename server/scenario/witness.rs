@@ -547,11 +547,16 @@ impl<'c> Finder<'c> {
         }
     }
 
-    /// Whether a name is that of the current value of a counter. It may be any: the counter compares it at each call.
+    /// Whether a name is that of the current value of a counter, whatever unit has it. It may be any: the counter
+    /// compares it at each call.
     fn is_count(&self, name: &str) -> bool {
-        let Some((counter, "CV")) = name.rsplit_once('.') else { return false };
-        let declared = self.scopes.type_of(self.unit, counter);
-        matches!(declared, Some(DeclaredType::Named(block)) if ["ctu", "ctd", "ctud"].contains(&block.as_str()))
+        let Some((path, "CV")) = name.rsplit_once('.') else { return false };
+        let counter = path.rsplit('.').next().unwrap_or(path);
+        let is_counter = |unit: usize| {
+            let declared = self.scopes.type_of(Some(unit), counter);
+            matches!(declared, Some(DeclaredType::Named(block)) if ["ctu", "ctd", "ctud"].contains(&block.as_str()))
+        };
+        (0..self.scopes.pous.len()).any(is_counter)
     }
 
     /// The variable that a proof calls `name`, or in the words of the other family `key`, with what it is called here.

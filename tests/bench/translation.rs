@@ -20,8 +20,8 @@ pub fn measure(table: &Table) {
             for (what, document, to, target) in [
                 ("ladder to FX list", &drawing, To::Fx, to_list),
                 ("FX list to ladder", &list, To::Ladder, to_ladder),
-                ("ladder to IEC list", &iec_drawing, To::Iec, to_list),
-                ("IEC list to ladder", &iec_list, To::Ladder, to_ladder),
+                ("ladder to IEC list", &iec_drawing, To::Iec, ""),
+                ("IEC list to ladder", &iec_list, To::Ladder, ""),
             ] {
                 translation(table, &format!("{rungs} rungs, {what}{by}"), target, document, to, proves);
             }

@@ -11,6 +11,7 @@
 //! PROGRAM Press
 //! VAR
 //!     Ram AT %Q* : BOOL;
+//!     Oil AT %Q* : BOOL;
 //! END_VAR
 //!     LD TRUE
 //!     ST Ram
@@ -25,9 +26,9 @@
 //!                   ^^^
 //!         Hall.Right.Ram AT %QX0.1 : BOOL;
 //!              ^^^^^
-//!         Hall.Left.Ram AT %QW1 : INT;
+//!         Hall.Left.Oil AT %QW1 : INT;
 //!                                 ^^^
-//!         Hall.Left.Ram AT %QX0.2 : BOOL;
+//!         Hall.Left.Oil AT %QX0.2 : BOOL;
 //!         ^^^^^^^^^^^^^
 //!     END_VAR
 //! END_CONFIGURATION

@@ -49,7 +49,7 @@ pub(super) const RULE: Rule = Rule {
 fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let mut end: Option<Statement<'_>> = None;
     let mut behind: Option<Statement<'_>> = None;
-    let mut count = 0;
+    let (mut count, mut last) = (0, None);
     for statement in context.statements() {
         match (end, statement.flow()) {
             (_, Some(Flow::Nothing)) => {}
@@ -57,6 +57,7 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
             (None, _) => {}
             (Some(_), _) => {
                 behind.get_or_insert(statement);
+                last = Some(statement);
                 count += statement.count;
             }
         }
@@ -65,9 +66,14 @@ fn check(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
     let message = Message::new("code-after-end.found").with("count", count);
     let mut diagnostic =
         Diagnostic::new(RULE.code, first.span, message).related(end.span, Message::new("code-after-end.end"));
-    // Where nothing but END follows, the first one goes; else it moves, if the last instruction is no END itself.
-    if let Some(removal) = end.removal() {
-        diagnostic = diagnostic.fix(Message::new("code-after-end.remove-end"), vec![removal]);
+    // Where the last instruction is an END itself, the first one goes; else it moves there.
+    let moved = match last {
+        Some(last) if last.flow() != Some(Flow::ProgramEnd) => last.line_behind(end.text()).map(Some),
+        _ => Some(None),
+    };
+    if let (Some(removal), Some(moved)) = (end.removal(), moved) {
+        let key = if moved.is_some() { "code-after-end.move-end" } else { "code-after-end.remove-end" };
+        diagnostic = diagnostic.fix(Message::new(key), std::iter::once(removal).chain(moved).collect());
     }
     found.push(diagnostic);
 }

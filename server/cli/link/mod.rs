@@ -11,6 +11,8 @@ pub(super) mod devices;
 
 pub(super) mod download;
 
+mod drift;
+
 pub(super) mod monitor;
 
 pub(super) mod ports;

@@ -2,7 +2,9 @@
 
 use super::Connection;
 use super::connection::{ATTENTION, AnyHost, failed};
+use super::contents::words_at;
 use super::devices::settings_of;
+use super::drift::{ProgramWatch, Wanted};
 use super::status::StatusFormat;
 use crate::cli::Outcome;
 use crate::cli::comments;
@@ -25,6 +27,9 @@ pub(in crate::cli) struct Arguments {
     /// Time from one look to the next; as fast as the line is if left out.
     #[arg(long, value_name = "TIME", value_parser = duration, default_value = "0ms")]
     interval: i64,
+    /// The program that should be in the PLC: tells whether it is there, and when it is not any more.
+    #[arg(long, value_name = "FILE")]
+    program: Option<PathBuf>,
     /// So many looks; until Ctrl-C if left out.
     #[arg(long, value_name = "N")]
     count: Option<u64>,
@@ -50,10 +55,10 @@ pub(in crate::cli) fn run(arguments: &Arguments, language: Language) -> Outcome 
 }
 
 fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outcome> {
-    let here = Path::new(".");
+    let here = arguments.program.as_deref().unwrap_or(Path::new("."));
     let manifest = usable_manifest(here, language).ok_or(Outcome::Unusable)?;
     let wanted = manifest.alarms();
-    if arguments.devices.is_empty() && wanted.is_empty() {
+    if arguments.devices.is_empty() && wanted.is_empty() && arguments.program.is_none() {
         let reason = Message::new("link.nothing-to-watch").render(language);
         complain(
             "nothing-to-watch",
@@ -63,6 +68,12 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
         );
         return Err(Outcome::Unusable);
     }
+    let program = match &arguments.program {
+        Some(path) => {
+            Some(words_at(path, language).map(|(words, target)| -> Wanted { (path, words, target) })?)
+        }
+        None => None,
+    };
     let mut host = arguments.connection.open(here, language)?;
     let target = host.identity().target;
     let point = |name: &String| {
@@ -97,6 +108,8 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
         points.push(point);
     }
     let mut watch = Watch::new(points.clone());
+    let program = ProgramWatch::new(&mut host, program.as_ref());
+    let mut program = program.map_err(|error| failed(&error, language))?;
     let mut trace = Trace::bounded(arguments.devices.clone(), arguments.keep as usize);
     let start = host.line().now();
     let mut look = 0;
@@ -124,12 +137,16 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
             break Err(error);
         }
         changes.iter().for_each(|change| tell_alarm(change, arguments.format, language));
+        if let Err(error) = program.look(&mut host, time_ns, (arguments.format, language)) {
+            break Err(error);
+        }
         look += 1;
         let is_over = arguments.time.is_some_and(|time| time_ns >= time);
         if is_over || arguments.count.is_some_and(|count| look >= count) {
             break Ok(());
         }
-        rest(&mut host, Duration::from_nanos(arguments.interval.max(0) as u64));
+        let interval = Duration::from_nanos(arguments.interval.max(0) as u64);
+        rest(&mut host, if points.is_empty() { interval.max(program.pause()) } else { interval });
     };
     let held = holds.release_all();
     if !held.is_empty() {
@@ -149,9 +166,12 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
             return Err(Outcome::Unusable);
         }
     }
+    program.end(language);
     match end {
         // Whoever watches ends it this way.
-        Ok(()) | Err(crate::link::LinkError::Cancelled) => Ok(Outcome::Clean),
+        Ok(()) | Err(crate::link::LinkError::Cancelled) => {
+            Ok(if program.is_other() { Outcome::Findings } else { Outcome::Clean })
+        }
         Err(error) => Err(failed(&error, language)),
     }
 }

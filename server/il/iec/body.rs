@@ -280,8 +280,11 @@ impl<'a> BodyReader<'a> {
     }
 
     /// Adds to what was reported of an open parenthesis the one that closes it here: that of a deferred operation on a
-    /// line of its own, as the standard wants it.
+    /// line of its own, as the standard wants it. The outermost ones get theirs; more are closed once these are.
     fn offer_parenthesis(&mut self, frame: &Frame) {
+        if self.frames.len() >= MOST_OFFERED {
+            return;
+        }
         let Some(last) = self.reader.at.checked_sub(1).and_then(|at| self.reader.tokens.get(..=at)) else {
             return;
         };
@@ -290,14 +293,17 @@ impl<'a> BodyReader<'a> {
         let line = text.get(..frame.open.start as usize).unwrap_or("");
         let line = &text[line.rfind('\n').map_or(0, |newline| newline + 1)..];
         let margin = &line[..line.len() - line.trim_start_matches([' ', '\t']).len()];
-        let newline = if text.contains("\r\n") { "\r\n" } else { "\n" };
+        let rest = text.get(frame.open.end as usize..).unwrap_or("");
+        let is_crlf = rest.find('\n').is_some_and(|newline| rest[..newline].ends_with('\r'));
+        let newline = if is_crlf { "\r\n" } else { "\n" };
         let close = match frame.kind {
             FrameKind::Expression => format!("{newline}{margin})"),
             FrameKind::Value | FrameKind::List(_) => ")".to_string(),
         };
         let problems = self.reader.tree.problems.iter_mut().rev();
-        let mut own = problems.filter(|one| one.code == "unclosed-parenthesis" && one.span == frame.open);
-        if let Some(problem) = own.find(|problem| problem.fixes.is_empty()) {
+        let mut inside = problems.take_while(|one| one.span.start >= frame.open.start);
+        if let Some(problem) = inside.find(|one| one.code == "unclosed-parenthesis" && one.span == frame.open)
+        {
             let edits = vec![TextEdit::new(Span::at(last.span.end as usize), close)];
             problem.fixes.push(Fix { title: Message::new("unclosed-parenthesis.close"), edits });
         }
@@ -310,6 +316,9 @@ impl<'a> BodyReader<'a> {
                 || leaves_parentheses(self.reader.rest_of_line(), self.reader.text))
     }
 }
+
+/// So many parentheses that wait for each other are closed by fixes.
+const MOST_OFFERED: usize = 32;
 
 fn unit_kind(kind: TokenKind) -> PouKind {
     match kind {

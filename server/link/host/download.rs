@@ -87,13 +87,13 @@ pub struct Report {
 pub enum Fate {
     /// It is the old one, and the CPU does what it did.
     Untouched,
-    /// It is the old one; the CPU was told to stop.
+    /// It is the old one; the CPU was told to stop, which it may not have heard.
     Stopped,
-    /// Part of it has been written. The PLC stands still.
+    /// Part of it was sent. The PLC stood still before that, and may have written it.
     Partial,
-    /// All of it has been written, but not found to be right. The PLC stands still.
+    /// All of it has been written, but not found to be right. The PLC stood still before that.
     Unverified,
-    /// It is the new one, word for word. The PLC was to be started, and whether it runs is not known.
+    /// It is the new one, word for word; whether the PLC runs is not known.
     Verified,
 }
 

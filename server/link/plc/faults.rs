@@ -58,6 +58,10 @@ impl Faults {
     }
 }
 
+/// Bytes that may be on the way: no host sends so many before it has heard of the first. More get lost, as where a
+/// receiver is overrun.
+const MOST_ON_THE_WAY: usize = 64 * 1024;
+
 /// One direction of a line with faults. Bytes keep their order.
 #[derive(Clone, Debug)]
 pub struct Wire {
@@ -102,7 +106,7 @@ impl Wire {
             self.is_dead = true;
             return;
         }
-        if self.happens(self.faults.drop) {
+        if self.happens(self.faults.drop) || self.on_the_way.len() >= MOST_ON_THE_WAY {
             return;
         }
         let mut byte = byte;

@@ -160,21 +160,27 @@ fn insert(sources: &mut Vec<Source>, place: usize, path: Path) {
     sources.insert(place, source);
 }
 
-/// The contact that is there for one of the relay of the first scan, or of the one that is off in it.
-pub(super) fn contact(kind: ContactKind, term: &Term) -> Option<(ContactKind, Term)> {
-    let variable = Term::new(Operand::Variable, RELAY, term.span);
-    match (term.operand, kind) {
-        (Operand::Device(Device::FIRST_SCAN), ContactKind::NormallyOpen | ContactKind::NormallyClosed) => {
-            Some((kind, variable))
-        }
-        (Operand::Device(Device::OFF_AT_FIRST), ContactKind::NormallyOpen) => {
-            Some((ContactKind::NormallyClosed, variable))
-        }
-        (Operand::Device(Device::OFF_AT_FIRST), ContactKind::NormallyClosed) => {
-            Some((ContactKind::NormallyOpen, variable))
-        }
+/// What a relay that tells the first scan from others is in it; nothing for any other term.
+pub(super) fn value_in(term: &Term) -> Option<bool> {
+    match term.operand {
+        Operand::Device(Device::FIRST_SCAN) => Some(true),
+        Operand::Device(Device::OFF_AT_FIRST) => Some(false),
         _ => None,
     }
+}
+
+/// The contact that is there for one of the relay of the first scan, or of the one that is off in it.
+pub(super) fn contact(kind: ContactKind, term: &Term) -> Option<(ContactKind, Term)> {
+    let is_open = match kind {
+        ContactKind::NormallyOpen => true,
+        ContactKind::NormallyClosed => false,
+        ContactKind::Rising | ContactKind::Falling => return None,
+    };
+    let kind = match value_in(term)? == is_open {
+        true => ContactKind::NormallyOpen,
+        false => ContactKind::NormallyClosed,
+    };
+    Some((kind, Term::new(Operand::Variable, RELAY, term.span)))
 }
 
 /// Puts the rung that switches the variable of the first scan before the others, if one of them asks for it.

@@ -86,7 +86,7 @@ impl Converter<'_> {
                 (Some(value), ContactKind::NormallyClosed) => return Ok(Expression::Constant(!value)),
                 // What the first scan is, IEC 61131-3 does not say.
                 (_, ContactKind::NormallyOpen | ContactKind::NormallyClosed)
-                    if self.purpose == Purpose::Proof && is_first_scan(term) =>
+                    if self.purpose == Purpose::Proof && first_scan::value_in(term).is_some() =>
                 {
                     (contact.test, vec![term.clone()])
                 }
@@ -316,11 +316,6 @@ fn counter_of(term: &Term) -> Option<Device> {
         Operand::Device(device) if device.kind == DeviceKind::C => Some(device),
         _ => None,
     }
-}
-
-/// Whether it is a relay that tells the first scan from others.
-fn is_first_scan(term: &Term) -> bool {
-    matches!(term.operand, Operand::Device(Device::FIRST_SCAN | Device::OFF_AT_FIRST))
 }
 
 fn call(

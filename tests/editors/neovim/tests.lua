@@ -226,7 +226,7 @@ check(':RungwiseCheck shows a summary', function()
     return said ~= nil
   end)
   vim.notify = notify
-  assert(said and said:match('^Rungwise: .*step'), tostring(said))
+  assert(said and said:match('^Rungwise: check passed: %d+ rungs, 15 of %d+ steps'), tostring(said))
 end)
 
 check('the status line shows target and steps, and follows :RungwiseTarget', function()

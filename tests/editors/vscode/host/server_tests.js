@@ -34,10 +34,11 @@ module.exports = [
   ['Check Program answers with a summary', async () => {
     await untilCodes(await open('conveyor_fx.il'), []);
     const clean = await vscode.commands.executeCommand('rungwise.checkProgram');
-    assert.match(clean, /\bsteps?\b/i);
+    assert.match(clean, /\bcheck passed: \d+ rungs, 15 of \d+ steps\b/);
     const { uri } = await open('three_mistakes.lad');
     const broken = await vscode.commands.executeCommand('rungwise.checkProgram', uri);
     assert.match(broken, /\b3 errors\b/);
+    assert.doesNotMatch(broken, /passed/);
   }],
   ['Show Server Version knows the version', async () => {
     assert.match(await vscode.commands.executeCommand('rungwise.serverVersion'), /^\d+\.\d+\.\d+/);
