@@ -119,6 +119,7 @@ mod simulate_iec_standard;
 mod simulate_iec_values;
 mod simulate_iec_why;
 mod simulate_iec_written;
+mod simulate_power;
 mod simulate_recorder;
 mod simulate_rungs;
 mod simulate_session;

@@ -3,7 +3,7 @@
 use crate::simulate::{device, switch};
 use proptest::prelude::*;
 use rungwise::document::{Document, Notation};
-use rungwise::simulate::{EnergisedKind, HistoryLimit, Machine, Session, compile, power_flow};
+use rungwise::simulate::{HistoryLimit, Machine, Session, compile};
 use rungwise::target::{Model, Target};
 use std::sync::Arc;
 
@@ -133,62 +133,4 @@ fn a_history_with_room_for_few_states_is_shorter_and_one_with_more_room_reaches_
     let (is_cut, first, moments) = run("1 MiB");
     assert!(is_cut && first >= 60_000 && moments == 2, "{first} {moments}");
     assert_eq!(run("64 MiB"), (false, 0, 8));
-}
-
-/// The text with what is energised marked below each line: `=` for wires, `#` for contacts and outputs.
-fn marked(text: &str, touches: &str) -> String {
-    let drawing = document(text, Notation::Ladder);
-    let code = Arc::new(compile(&[&drawing], false).expect("a program"));
-    let watched = Arc::new(compile(&[&drawing], true).expect("a program"));
-    let mut session = Session::new(code);
-    for name in touches.split_whitespace() {
-        switch(&mut session, name, true);
-    }
-    session.scan(0);
-    let sights = session.sights(1, &watched).expect("a scan");
-    let mut marks = vec![' '; text.len()];
-    for shown in power_flow(&drawing, 0, &watched, &sights, 0..text.len()) {
-        let mark = if shown.kind == EnergisedKind::Wire { '=' } else { '#' };
-        for at in shown.span.start..shown.span.end {
-            if shown.energised {
-                marks[at as usize] = mark;
-            }
-        }
-    }
-    let mut lines = Vec::new();
-    let mut start = 0;
-    for line in text.lines() {
-        let below: String = marks[start..start + line.len()].iter().collect();
-        lines.push(line.to_string());
-        if !below.trim().is_empty() {
-            lines.push(below.trim_end().to_string());
-        }
-        start += line.len() + 1;
-    }
-    lines.join("\n")
-}
-
-#[test]
-fn power_is_where_it_flowed_when_contacts_were_executed() {
-    let text = "\
-|   X0         X1     Y0 |
-+---| |---+----|/|---( )-+
-|   Y0    |              |
-+---| |---+              |
-
-|   Y0      X2        Y1 |
-+---| |-----| |------( )-+
-+--[END]-----------------+
-";
-    let expected = "\
-|   X0         X1     Y0 |
-+---| |---+----|/|---( )-+
- ===###=======#####==###=
-|   Y0    |              |
-+---| |---+              |
- ===
-";
-    let found = marked(text, "X0");
-    println!("{found}");
-    assert!(found.contains(" ==="), "{expected}\n{found}");
 }

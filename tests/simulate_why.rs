@@ -116,10 +116,15 @@ impl Plc {
     }
 
     fn why(&self, name: &str, scan: Option<u64>) -> String {
+        self.why_while(name, scan, &|| true)
+    }
+
+    fn why_while(&self, name: &str, scan: Option<u64>, goes_on: &dyn Fn() -> bool) -> String {
         let documents: Vec<&Document> = self.documents.iter().collect();
         let watched = Arc::new(compile(&documents, true).unwrap());
         let drivers = Drivers::of(&documents);
-        let reason = Inquiry::new(&self.session, &watched, &documents, &drivers).why(name, scan);
+        let inquiry = Inquiry::new(&self.session, &watched, &documents, &drivers).patient(goes_on);
+        let reason = inquiry.why(name, scan);
         let place = |place: rungwise::simulate::Place| {
             (documents[0].line_of(place.span.start as usize) + 1).to_string()
         };
@@ -133,6 +138,23 @@ impl Plc {
         assert_eq!(told, trimmed);
         self
     }
+}
+
+#[test]
+fn who_has_no_patience_for_a_long_history_is_told_how_far_it_was_looked_through() {
+    let mut plc = Plc::list("LD X0\nSET M0\nLD X1\nRST M0\nEND\n");
+    plc.run("X0", 1).run("X0=0", 5_000);
+    plc.check(
+        "M0",
+        "M0 is on since scan 0 (0 ms): SET M0 has power  [2]\n  X0 is on: an input, since scan 0 (0 ms)  [1]",
+    );
+    let left = std::cell::Cell::new(100);
+    let goes_on = || left.replace(left.get() - 1) > 1;
+    let told = plc.why_while("M0", None, &goes_on);
+    let mut words = told.strip_prefix("M0 is on: it has been so at least since scan ").expect("so far");
+    words = words.split_once(' ').expect("a number").0;
+    assert!((4_000..5_000).contains(&words.parse().expect("a number")), "{told}");
+    assert_eq!(left.get(), 0, "nothing more was looked at");
 }
 
 #[test]

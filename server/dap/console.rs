@@ -13,9 +13,12 @@ use crate::simulate::{Drivers, Expression, Inquiry, NamesOfCode, Touch, Value, d
 use crate::text::Message;
 use serde_json::{Value as Json, json};
 use std::io::Write;
+use std::time::{Duration, Instant};
 
 /// The words that something can begin with.
 const VERBS: [&str; 8] = ["run", "scan", "back", "set", "force", "release", "why", "help"];
+/// So long the history is looked through for one answer to why.
+const PATIENCE: Duration = Duration::from_secs(2);
 /// So many names are offered.
 const MOST_TARGETS: usize = 200;
 
@@ -127,7 +130,10 @@ impl<W: Write> Adapter<W> {
         let documents: Vec<&Document> = program.files.iter().map(|file| &file.document).collect();
         let debuggee = &debugged.debuggee;
         let drivers = program.drivers.get_or_init(|| Drivers::of(&documents));
+        let asked = Instant::now();
+        let goes_on = || asked.elapsed() < PATIENCE;
         let inquiry = Inquiry::new(debuggee.session(), debuggee.code(), &documents, drivers);
+        let inquiry = inquiry.patient(&goes_on);
         let sights = debuggee.sights();
         // Where a scan begins, the one before it is the answer.
         let is_inside = !sights.is_empty() || debuggee.scan() == 1;

@@ -310,7 +310,7 @@ impl Debuggee {
     /// Goes back to before the scan in which a variable changed last before this one; whether there is one.
     pub(super) fn back_to_change(&mut self, variable: Variable) -> bool {
         let last = self.session.machine().scans();
-        match self.session.last_change(last, |machine| machine.value(variable, 0)) {
+        match self.session.last_change(last, move |machine| machine.value(variable, 0)) {
             Some(scan) => {
                 let is_known = self.back_to(scan);
                 self.stand();

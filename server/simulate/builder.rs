@@ -367,8 +367,8 @@ impl Builder {
     pub(super) fn saw_contact(&mut self, src: Cell, invert: bool) {
         if self.is_watched {
             let power = self.power();
-            let place = self.now;
-            self.op(Op::SeenContact { place, src, invert, power });
+            let (place, rail) = (self.now, self.rail);
+            self.op(Op::SeenContact { place, src, invert, power, rail });
         }
     }
 
@@ -525,8 +525,8 @@ impl Builder {
 
     /// Says what is in a cell at the present instruction.
     pub(super) fn saw(&mut self, power: Cell) {
-        let place = self.instruction();
-        self.op(Op::Seen { place, power });
+        let (place, rail) = (self.now, self.rail);
+        self.op(Op::Seen { place, power, rail });
     }
 
     /// Drives relays with the current result.

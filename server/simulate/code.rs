@@ -99,10 +99,11 @@ pub(super) enum Op {
     For { call: u32, next: u32 },
     /// Ends the loop that began behind `first`.
     Next { first: u32 },
-    /// A place where a contact was evaluated: it conducts as its relay says, and power behind it is in a cell.
-    SeenContact { place: u32, src: Cell, invert: bool, power: Cell },
-    /// A place where power in a cell is what reaches an output.
-    Seen { place: u32, power: Cell },
+    /// A place where a contact was evaluated: it conducts as its relay says, and power behind it is in a cell, once it
+    /// has come from the left rail.
+    SeenContact { place: u32, src: Cell, invert: bool, power: Cell, rail: Cell },
+    /// A place where power in a cell is what reaches an output, once it has come from the left rail.
+    Seen { place: u32, power: Cell, rail: Cell },
     /// The CPU comes to an instruction of which nothing else is to be seen before it acts.
     Reached { place: u32 },
     /// Power in a cell is to be seen at an instruction at which nothing stops: it has come here, or left it.

@@ -15,8 +15,8 @@ pub struct Energised {
     pub span: Span,
     /// What it is.
     pub kind: EnergisedKind,
-    /// Whether power came through; of an output, whether it had power; of a line of a list, whether the current result
-    /// was on behind it.
+    /// Whether power came through; of an output, whether it had power, of an inversion, whether it gave it; of a line
+    /// of a list, whether the current result was on behind it, and had come from the rail.
     pub energised: bool,
 }
 
@@ -27,7 +27,7 @@ pub enum EnergisedKind {
     Wire,
     /// A contact, and whether it conducts, with power or without.
     Contact(bool),
-    /// A coil, or an instruction that power drives.
+    /// A coil, or an instruction that power drives or goes through.
     Output,
     /// A line of a list.
     Line,
@@ -137,7 +137,9 @@ impl Flow {
                 VertexKind::LeftRail => rail,
                 VertexKind::RightRail | VertexKind::Junction => power,
                 VertexKind::LooseEnd => false,
-                VertexKind::Element(element) => passes(graph.element(element), power, flow.sights[at]),
+                VertexKind::Element(element) => {
+                    rail && passes(graph.element(element), power, flow.sights[at])
+                }
             };
             for arc in graph.outgoing(id) {
                 let head = graph.arc(arc).head.0 as usize;
@@ -171,17 +173,21 @@ impl Flow {
         for (at, vertex) in graph.vertices.iter().enumerate() {
             let VertexKind::Element(id) = vertex.kind else { continue };
             let element = graph.element(id);
-            let Some(sight) = self.sights[at] else { continue };
-            let (kind, energised) = match sight.conducts {
-                Some(conducts) => (EnergisedKind::Contact(conducts != 0), self.out[at]),
-                None => (EnergisedKind::Output, sight.power != 0),
+            let (kind, energised) = match (&element.kind, self.sights[at]) {
+                // What comes out of it is seen behind it.
+                (ElementKind::Invert, _) => (EnergisedKind::Output, self.out[at]),
+                (_, None) => continue,
+                (_, Some(Sight { conducts: Some(conducts), .. })) => {
+                    (EnergisedKind::Contact(conducts != 0), self.out[at])
+                }
+                (_, Some(sight)) => (EnergisedKind::Output, sight.power != 0),
             };
             shown.push(Energised { span: element.span.shifted(start), kind, energised });
         }
     }
 }
 
-/// Whether power goes on behind an element.
+/// Whether power goes on behind an element of a rung whose left rail has power.
 fn passes(element: &Element, power: bool, sight: Option<Sight<u8>>) -> bool {
     match (&element.kind, sight) {
         (ElementKind::Invert, _) => !power,

@@ -62,9 +62,9 @@ impl Run {
     fn glimpse<'m, L: Lanes>(&'m self, machine: &'m Machine<L>, op: Op) -> Option<Glimpse<'m, L>> {
         let cell = |cell| machine.memory.cell(cell);
         let (instruction, is_stop, seen) = match op {
-            Op::Seen { place, power } => (place, true, Some((None, cell(power)))),
-            Op::SeenContact { place, src, invert, power } => {
-                (place, true, Some((Some(cell(src) ^ L::all(invert)), cell(power))))
+            Op::Seen { place, power, rail } => (place, true, Some((None, cell(power) & cell(rail)))),
+            Op::SeenContact { place, src, invert, power, rail } => {
+                (place, true, Some((Some(cell(src) ^ L::all(invert)), cell(power) & cell(rail))))
             }
             Op::Shown { place, power } => (place, false, Some((None, cell(power)))),
             Op::ShownCondition { place, src, invert, power } => {

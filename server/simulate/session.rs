@@ -7,6 +7,7 @@
 use super::code::Code;
 use super::history::{HistoryLimit, Log};
 use super::machine::{Machine, Outcome, Sight};
+use super::search::ChangeSearch;
 use super::writes::{Tracer, Write};
 use super::{Spot, Value, Variable};
 use std::sync::Arc;
@@ -164,35 +165,27 @@ impl Session {
     }
 
     /// The last scan up to `scan` after which `of` gave something else than before it; nothing if that is not known.
-    pub fn last_change<T: PartialEq>(&self, scan: u64, of: impl Fn(&Machine<u8>) -> T) -> Option<u64> {
-        let mut end = scan.min(self.machine.scans());
-        while end > self.first_scan() {
-            let start = self.moment_before(end - 1)?;
-            let (mut machine, mut before) = (start.clone(), of(start));
-            let mut changed = None;
-            self.replay(&mut machine, end, |machine| {
-                let now = of(machine);
-                if now != before {
-                    changed = Some(machine.scans());
-                    before = now;
-                }
-                true
-            });
-            if changed.is_some() {
-                return changed;
-            }
-            end = start.scans();
-        }
-        None
+    pub fn last_change<T: PartialEq>(
+        &self,
+        scan: u64,
+        of: impl Fn(&Machine<u8>) -> T + Send + 'static,
+    ) -> Option<u64> {
+        ChangeSearch::new(scan, of).look(self, || true).flatten()
     }
 
     /// The same for a variable that nothing but people change: only scans before which something was done are looked
-    /// at, so that a switch that nobody has touched in a long history is soon known.
-    pub(super) fn last_switching(&self, scan: u64, variable: Variable) -> Option<u64> {
-        let of = |machine: &Machine<u8>| machine.value_inside(variable, 0);
+    /// at, so that a switch that nobody has touched in a long history is soon known. Nothing as well if it was not
+    /// found while `goes_on`.
+    pub(super) fn last_switching(
+        &self,
+        scan: u64,
+        variable: Variable,
+        goes_on: impl FnMut() -> bool,
+    ) -> Option<u64> {
+        let of = move |machine: &Machine<u8>| machine.value_inside(variable, 0);
         if self.log.touches.iter().any(|(_, touch)| matches!(touch, Touch::Write(Variable::Around(_), _))) {
             // Keypads feed inputs from outputs.
-            return self.last_change(scan, of);
+            return ChangeSearch::new(scan, of).look(self, goes_on).flatten();
         }
         let last = scan.min(self.machine.scans());
         let switches = self.log.touches.iter().rev().filter(|(_, touch)| match *touch {

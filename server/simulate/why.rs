@@ -26,7 +26,7 @@ use writers::Writer;
 
 mod calculated;
 
-use super::{Code, Machine, Place, Session, Sight, Value, Variable, instruction_words};
+use super::{ChangeSearch, Code, Machine, Place, Session, Sight, Value, Variable, instruction_words};
 use crate::document::Document;
 use crate::ladder::CoilKind;
 use crate::logic::Deed;
@@ -83,6 +83,8 @@ pub struct Inquiry<'a> {
     /// The scan that is going on: the PLC as it is there, and what was seen of it.
     open: Option<(&'a Machine<u8>, Rc<Seen>)>,
     drivers: &'a Drivers,
+    /// Whether the history is looked through further.
+    goes_on: &'a dyn Fn() -> bool,
     known: RefCell<Vec<(u64, Rc<Seen>)>>,
     reasons: RefCell<usize>,
 }
@@ -129,6 +131,7 @@ impl<'a> Inquiry<'a> {
             documents,
             open: None,
             drivers,
+            goes_on: &|| true,
             known: RefCell::default(),
             reasons: RefCell::default(),
         }
@@ -137,6 +140,13 @@ impl<'a> Inquiry<'a> {
     /// Asks within the scan behind those of the session: the PLC as it is there, and what was seen so far.
     pub fn within(mut self, machine: &'a Machine<u8>, sights: Vec<Sight<u8>>) -> Inquiry<'a> {
         self.open = Some((machine, Rc::new(Seen::new(sights))));
+        self
+    }
+
+    /// Looks through the history no longer than while `goes_on`, asked after each of its scans; what has not changed by
+    /// then is told to be so at least since there.
+    pub fn patient(mut self, goes_on: &'a dyn Fn() -> bool) -> Inquiry<'a> {
+        self.goes_on = goes_on;
         self
     }
 
@@ -310,7 +320,7 @@ impl<'a> Inquiry<'a> {
             return self.reason(told(Message::new("why.special")), None, moment.scan, Vec::new());
         }
         let last = moment.scan.min(self.session.machine().scans());
-        let changed = self.session.last_switching(last, subject.variable);
+        let changed = self.session.last_switching(last, subject.variable, self.goes_on);
         let how = match changed.filter(|_| since.is_none()) {
             Some(scan) => Message::new("why.input-since")
                 .with("scan", scan.saturating_sub(1))
@@ -336,7 +346,8 @@ impl<'a> Inquiry<'a> {
         told: &dyn Fn(Message) -> Message,
         asked: &mut Vec<Subject>,
     ) -> Reason {
-        let of = |machine: &Machine<u8>| machine.value_inside(subject.variable, 0);
+        let variable = subject.variable;
+        let of = move |machine: &Machine<u8>| machine.value_inside(variable, 0);
         // The scan itself is over for what was executed before this moment only.
         let last = (moment.scan - 1).max(self.session.first_scan());
         let is_new = self.session.at(last).is_none_or(|machine| of(&machine) != *value);
@@ -344,7 +355,12 @@ impl<'a> Inquiry<'a> {
             return self.reason(told(self.hand(subject, moment.scan)), None, moment.scan, Vec::new());
         }
         let idle = self.writers_of(subject);
-        match self.session.last_change(last, of) {
+        let mut search = ChangeSearch::new(last, of);
+        let Some(changed) = search.look(self.session, self.goes_on) else {
+            let since = self.since(Message::new("why.at-least"), search.end());
+            return self.reason(told(since), None, moment.scan, Vec::new());
+        };
+        match changed {
             Some(scan) if scan < moment.scan => {
                 let at = self.seen(scan).map(|seen| Moment { scan, before: seen.len() });
                 let before = at.and_then(|at| Some((self.writer(subject, value, at)?, at)));

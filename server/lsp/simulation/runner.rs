@@ -83,7 +83,7 @@ enum Task {
     /// So many scans.
     Steps(u64),
     /// To before the last change of a variable.
-    BackTo(Box<ChangeSearch>),
+    BackTo(Box<ChangeSearch<Value>>),
 }
 
 /// The other end of a simulation's thread.
@@ -509,7 +509,9 @@ impl Running {
                 self.go_back(scans.saturating_sub(count));
             }
             Some(name) => {
-                let search = ChangeSearch::new(&self.session, self.variable(&name)?);
+                let variable = self.variable(&name)?;
+                let now = self.session.machine().scans();
+                let search = ChangeSearch::new(now, move |machine| machine.value(variable, 0));
                 self.task = Some(Task::BackTo(Box::new(search)));
             }
         }

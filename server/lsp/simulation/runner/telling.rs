@@ -13,8 +13,13 @@ use crate::simulate::{Drivers, Inquiry};
 use crate::text::{Language, Message};
 use serde_json::{Value as Json, json};
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use tower_lsp::ls_types::Uri;
+
+/// So long the history is looked through for one answer to why, while scans wait.
+const PATIENCE: Duration = Duration::from_millis(1_000);
+/// The same for the short one, which a hover begins with.
+const BRIEF_PATIENCE: Duration = Duration::from_millis(100);
 
 impl Running {
     /// Answers a question.
@@ -155,7 +160,10 @@ impl Running {
         }
         let documents: Vec<&Document> = self.files.iter().map(|(_, _, document)| document).collect();
         let drivers = self.drivers.get_or_insert_with(|| Drivers::of(&documents));
-        let reason = Inquiry::new(&self.session, &watched, &documents, drivers).why(&name, scan);
+        let (asked, patience) = (Instant::now(), if is_brief { BRIEF_PATIENCE } else { PATIENCE });
+        let goes_on = || asked.elapsed() < patience;
+        let inquiry = Inquiry::new(&self.session, &watched, &documents, drivers).patient(&goes_on);
+        let reason = inquiry.why(&name, scan);
         let reason = reason.ok_or_else(|| Message::new("why.unknown").with("name", &name))?;
         Ok(match is_brief {
             true => why::brief(&reason, here.language).into(),
