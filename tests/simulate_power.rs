@@ -28,7 +28,7 @@ fn shown(document: &Document, inputs: &[(&str, bool)]) -> Vec<Energised> {
 /// The text with what is energised marked below each line: `=` for wires, `#` for contacts and outputs.
 #[track_caller]
 fn check(expected: &str, notation: Notation, inputs: &str) {
-    let is_text = |line: &&str| !line.is_empty() && line.trim_matches([' ', '=', '#']) != "";
+    let is_text = |line: &&str| !line.trim_matches([' ', '=', '#']).is_empty();
     let text: String =
         expected.lines().filter(|line| is_text(line)).map(|line| format!("{line}\n")).collect();
     let document = document(&text, notation);
@@ -141,7 +141,6 @@ END
 
 /// The wires of a drawing as electricity sees them: those that touch are one.
 struct Wires {
-    width: usize,
     cells: Vec<u8>,
     /// For each cell of a wire the first cell of those that it is one with.
     one_with: Vec<usize>,
@@ -155,7 +154,7 @@ impl Wires {
             cells[element.span.start as usize..element.span.end as usize].fill(b' ');
         }
         let width = text.lines().next().expect("a line").len() + 1;
-        let mut wires = Wires { width, one_with: (0..cells.len()).collect(), cells };
+        let mut wires = Wires { one_with: (0..cells.len()).collect(), cells };
         for at in 0..wires.cells.len() {
             let is =
                 |at: usize, wire: &str| wires.cells.get(at).is_some_and(|cell| wire.contains(*cell as char));
