@@ -129,6 +129,44 @@ fn a_proof_of_other_structures_is_not_decided() {
 }
 
 #[test]
+fn a_project_in_several_files_is_proved_as_the_one_program_that_it_is() {
+    let manifest = "target = \"fx2n\"\nfiles = [\"main.il\", \"called.lad\"]\n";
+    let main = "LD X0\nCALL P1\nFEND\n";
+    let called = "P1:\n|   X1       Y0 |\n+---| |-----( )-+\n\n+--[SRET]-------+\n\n+--[END]--------+\n";
+    let files = folder(&[
+        ("line/rungwise.toml", manifest),
+        ("line/main.il", main),
+        ("line/called.lad", called),
+        ("same.il", &format!("{main}P1\nLD X1\nOUT Y0\nSRET\nEND\n")),
+        ("other.il", &format!("{main}P1\nLDI X1\nOUT Y0\nSRET\nEND\n")),
+    ]);
+    let (code, out, err) = run(&files, &["prove", "line", "same.il"]);
+    assert_eq!((code, err.as_str()), (0, ""), "{out}");
+    let (code, out, _) = run(&files, &["prove", "other.il", "line", "--scenario", "other.test.toml"]);
+    assert!(code == 1 && out.starts_with("different: Y0"), "{out}");
+    let (code, out, _) = run(&files, &["test", "other.test.toml"]);
+    assert_eq!(code, 0, "{out}");
+}
+
+#[test]
+fn a_folder_of_several_programs_is_taken_for_none() {
+    let files = folder(&[("two/a.il", "LD X0\nOUT Y0\nEND\n"), ("two/b.il", "LD X1\nOUT Y1\nEND\n")]);
+    let verbs = [
+        vec!["encode", "two"],
+        vec!["run", "two"],
+        vec!["prove", "two/a.il", "two"],
+        vec!["prove", "two", "two/b.il"],
+        vec!["translate", "two", "--to", "ladder"],
+        vec!["download", "two", "--yes", "--port", "tcp://127.0.0.1:1"],
+    ];
+    for verb in verbs {
+        let (code, out, err) = run(&files, &verb);
+        assert_eq!((code, out.as_str()), (2, ""), "{verb:?}\n{err}");
+        assert!(err.starts_with("error[several-programs]: two: several programs"), "{verb:?}\n{err}");
+    }
+}
+
+#[test]
 fn symbols_of_a_project_stay_and_are_proved() {
     let manifest = "target = \"fx2n\"\ncomments = \"devices.csv\"\nfiles = [\"main.il\"]\n";
     let main = "LD Start\nAND> Level K10\nOUT Motor\nEND\n";

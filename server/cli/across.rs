@@ -139,11 +139,12 @@ fn shown_path(file: &File, programs: &[Program]) -> String {
     path.display().to_string()
 }
 
-/// The files that are one program with the one at `path`, or those in the folder there; nothing after complaints.
+/// The files that are one program with the one at `path`, or those of the one program in the folder there; nothing
+/// after complaints.
 pub(super) fn whole_program(path: &Path, language: Language) -> Option<Vec<Program>> {
     let alone = || programs(&[path.to_path_buf()], None, language);
     let around = match Surroundings::of(path) {
-        Ok(around) if around.here.is_some() && around.files.len() > 1 => around,
+        Ok(around) if around.files.len() > 1 => around,
         Err(reason) if path.exists() => {
             let help = Message::new("cli.check-path").render(language);
             let reason = format!("{}: {reason}", path.display());
@@ -154,7 +155,21 @@ pub(super) fn whole_program(path: &Path, language: Language) -> Option<Vec<Progr
     };
     let all = programs(&around.files, None, language)?;
     let documents: Vec<&Document> = all.iter().map(|program| &program.document).collect();
-    let numbers = around.programs(&documents).into_iter().flatten();
-    let mut all: Vec<Option<Program>> = all.into_iter().map(Some).collect();
-    Some(numbers.filter_map(|number| all.get_mut(number).and_then(Option::take)).collect())
+    match around.programs(&documents).as_slice() {
+        [numbers] => {
+            let mut all: Vec<Option<Program>> = all.into_iter().map(Some).collect();
+            Some(numbers.iter().filter_map(|number| all.get_mut(*number).and_then(Option::take)).collect())
+        }
+        _ => {
+            several_programs(path, language);
+            None
+        }
+    }
+}
+
+/// Complains of a folder in which each file, or each few of them, is a program of its own.
+pub(super) fn several_programs(path: &Path, language: Language) {
+    let reason = Message::new("cli.one-program").with("path", path.display());
+    let help = Message::new("cli.name-one-file").render(language);
+    complain("several-programs", &reason.render(language), &help, language);
 }

@@ -1,8 +1,11 @@
 //! `rungwise prove`
 
-use super::across::linked;
-use super::input::{Program, complain, programs, put, remark, say};
+use super::across::{linked, several_programs, whole_program};
+use super::encode::encoded;
+use super::input::{Program, programs, put, remark, say};
 use super::{Outcome, translate};
+use crate::document::{Document, Notation};
+use crate::machine_code::decode;
 use crate::scenario::{of_counterexample, shown};
 use crate::text::{Language, Message};
 use crate::translate::{Counterexample, Proof, prove, told};
@@ -11,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub(super) struct Arguments {
-    /// A program.
+    /// A program, or a project.
     left: PathBuf,
     /// Another program for the same PLC.
     right: PathBuf,
@@ -33,8 +36,7 @@ enum ProofFormat {
 }
 
 pub(super) fn run(arguments: &Arguments, language: Language) -> Outcome {
-    let [Some(left), Some(right)] =
-        [&arguments.left, &arguments.right].map(|path| translate::read(path, language))
+    let [Some(left), Some(right)] = [&arguments.left, &arguments.right].map(|path| side(path, language))
     else {
         return Outcome::Unusable;
     };
@@ -70,14 +72,28 @@ fn scenario(found: &Counterexample, names: &[String; 2], path: &Path, language: 
     of_counterexample(found, &[left, names[1].clone()], language)
 }
 
+/// The program or project at `path`; nothing after a complaint. The files of an FX project that are one program are the
+/// list that a PLC with their machine code has.
+fn side(path: &Path, language: Language) -> Option<Program> {
+    let mut files = match path.is_dir() {
+        true => whole_program(path, language)?,
+        false => Vec::new(),
+    };
+    if files.len() < 2 || files.iter().any(|file| !file.document.target().is_fx()) {
+        return translate::read(path, language);
+    }
+    let encoded = encoded(path, None, language).ok()?;
+    let listing = decode(&encoded.words(), encoded.target.model);
+    let document = Document::new(&listing.text, Notation::FxIl, encoded.target);
+    files.pop().map(|file| Program { path: path.to_path_buf(), document, ..file })
+}
+
 /// The one program at `path`, which knows what the other files of its project declare; nothing after a complaint.
 pub(super) fn read(path: &Path, language: Language) -> Option<Program> {
     let mut programs = programs(&[path.to_path_buf()], None, language)?;
     if programs.len() == 1 {
         return programs.pop().map(linked);
     }
-    let reason = Message::new("cli.one-program").with("path", path.display());
-    let help = Message::new("cli.name-one-file").render(language);
-    complain("several-programs", &reason.render(language), &help, language);
+    several_programs(path, language);
     None
 }

@@ -7,6 +7,7 @@ import { CHART_FILES, CHART_TESTS } from './page_chart.mjs';
 import { DEBUGGING_FILES, DEBUGGING_TESTS } from './page_debugging.mjs';
 import { DEVICE_FILES, DEVICE_TESTS } from './page_devices.mjs';
 import { DRAWING_TESTS } from './page_drawing.mjs';
+import { EXAMPLE_TESTS } from './page_examples.mjs';
 import { LINE_TESTS } from './page_line.mjs';
 import { PANEL_FILES, PANEL_TESTS } from './page_panel.mjs';
 import { PLC_FILES, PLC_TESTS } from './page_plc.mjs';
@@ -30,7 +31,7 @@ export async function runPageTests(server, workspace, home, report, artefacts) {
     const workbench = new Workbench(await browser.newPage(), artefacts);
     await report.check('page: the workbench opens', () => workbench.load(`http://${server.authority}/?folder=${workspace}`));
     // The last one leaves VS Code without a server.
-    const tests = { ...FIRST_TESTS, ...DRAWING_TESTS, ...VIEW_TESTS, ...DEVICE_TESTS, ...TRANSLATION_TESTS, ...SIMULATION_TESTS, ...PLC_TESTS, ...LINE_TESTS, ...PANEL_TESTS, ...CHART_TESTS, ...TESTING_TESTS, ...DEBUGGING_TESTS, ...LAST_TESTS };
+    const tests = { ...FIRST_TESTS, ...DRAWING_TESTS, ...VIEW_TESTS, ...DEVICE_TESTS, ...TRANSLATION_TESTS, ...SIMULATION_TESTS, ...PLC_TESTS, ...LINE_TESTS, ...EXAMPLE_TESTS, ...PANEL_TESTS, ...CHART_TESTS, ...TESTING_TESTS, ...DEBUGGING_TESTS, ...LAST_TESTS };
     const chosen = new RegExp(process.env.RUNGWISE_TESTS_NAMED ?? '');
     for (const [name, test] of Object.entries(tests).filter(([name]) => chosen.test(name))) {
       await report.check(`page: ${name}`, async () => {
