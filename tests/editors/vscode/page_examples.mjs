@@ -42,7 +42,7 @@ function rungwise(...words) {
 /** What a simulated PLC shows when it has come to rest after the first deeds, a second apart. */
 function simulated(folder, deeds, outputs) {
   const sets = deeds.flatMap((deed, at) => ['--set', `${deed}@${at}s`]);
-  const rows = JSON.parse(rungwise('run', folder, ...sets, '--for', `${deeds.length}s`, '--watch', outputs.join(','), '--format', 'json'));
+  const rows = JSON.parse(rungwise('run', folder, ...sets, '--time', `${deeds.length}s`, '--watch', outputs.join(','), '--format', 'json'));
   return rows.scans.at(-1).values;
 }
 
@@ -60,13 +60,13 @@ async function thereAndBack(workbench, workspace, name, { model, file, deeds, ou
   const { plc, port } = await virtualPlc('--model', model);
   try {
     await workbench.clear();
-    await workbench.openByName(file);
+    await workbench.openByName(`examples/${name}/${file}`, file);
     await connect(workbench, port);
     await workbench.status(`${model.toUpperCase()} RUN`);
     await workbench.command('Rungwise: PLC: Download');
     await button(workbench, 'Download and Start').click();
     await told(workbench, 'read back and compared; the PLC is in RUN');
-    await workbench.openByName(file);
+    await workbench.openByName(`examples/${name}/${file}`, file);
     await workbench.command('Rungwise: PLC: Compare with the Program');
     await told(workbench, 'The program in the PLC is the same.');
     await workbench.command('Rungwise: PLC: Monitor the Program');
@@ -81,7 +81,7 @@ async function thereAndBack(workbench, workspace, name, { model, file, deeds, ou
     await workbench.command('Rungwise: PLC: Stop');
     await workbench.status(`${model.toUpperCase()} STOP`);
     await workbench.command('Rungwise: PLC: Disconnect');
-    proved(folder, file, uploaded, model);
+    proved(folder, uploaded);
     await workbench.clear();
   } finally {
     plc.kill();
@@ -118,27 +118,37 @@ async function drive(workbench, folder, deeds, outputs) {
     for (const output of outputs) {
       await workbench.until(`${output} = ${expected[output]} after ${deeds.slice(0, done)}`, async () => {
         const shown = row(output);
+        // Only what is on the screen is read.
+        await shown.scrollIntoViewIfNeeded();
         return typeof expected[output] === 'boolean'
           ? (await shown.getAttribute('data-on')) === String(expected[output])
-          : (await shown.innerText()).includes(String(expected[output]));
+          : (await shownNumber(shown)) === expected[output];
       });
     }
   }
 }
 
+/** The number that a row shows: that of a timer or counter stands before its preset. */
+async function shownNumber(row) {
+  const box = row.locator('.number');
+  return Number.parseFloat((await box.count()) > 0 ? await box.inputValue() : (await row.innerText()).split('\n').at(-1));
+}
+
 /** Saves the document that is open under another name. */
 async function save(workbench, path) {
-  await workbench.command('File: Save As...');
+  await workbench.page.keyboard.press('Control+Shift+S');
   const box = workbench.page.locator('.quick-input-widget:visible input').first();
-  await box.waitFor(WAIT);
+  await workbench.until('a name that is proposed', async () => (await box.inputValue()).endsWith('.il'));
   await box.fill(path);
   await box.press('Enter');
   await workbench.until(path, () => existsSync(path) && readFileSync(path, 'utf8').includes('END'));
+  await workbench.page.locator('.tab.active', { hasText: 'uploaded.il' }).first().waitFor(WAIT);
+  await workbench.page.waitForSelector('.quick-input-widget', { state: 'hidden', ...WAIT });
 }
 
-/** The list from the PLC, also drawn, has the words of the example, and is proved equal to it. */
-function proved(folder, file, uploaded, model) {
+/** The list from the PLC, drawn as a ladder, is proved equal to the example. */
+function proved(folder, uploaded) {
   const drawn = join(folder, 'uploaded.lad');
-  rungwise('translate', uploaded, '--to', 'ladder', '-o', drawn, '--target', model);
-  rungwise('prove', join(folder, file), drawn, '--target', model);
+  rungwise('translate', uploaded, '--to', 'ladder', '-o', drawn);
+  rungwise('prove', folder, drawn);
 }

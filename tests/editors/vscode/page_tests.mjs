@@ -38,7 +38,7 @@ export async function runPageTests(server, workspace, home, report, artefacts) {
         try {
           await test(workbench, workspace, server);
         } catch (error) {
-          await workbench.screenshot(`failed-${test.name}`);
+          await workbench.screenshot(`failed-${test.name || name.replaceAll(/\W+/g, '-')}`);
           await workbench.calm();
           throw error;
         }

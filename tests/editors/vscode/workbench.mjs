@@ -35,14 +35,15 @@ export class Workbench {
     await this.page.waitForSelector('.editor-instance .view-line', { timeout: SHORT_MS });
   }
 
-  async openByName(name) {
+  /** Opens a file by what is typed for it, where the list shows its name. */
+  async openByName(typed, name = typed) {
     // The list of files that were open lately stands there before it is filtered: Enter takes the row that is focused.
     const row = this.page.locator('.quick-input-list .monaco-list-row.focused', { hasText: name });
     const deadline = Date.now() + SHORT_MS;
     for (;;) {
       await this.page.keyboard.press('Control+p');
       await this.page.waitForSelector('.quick-input-widget:visible', { timeout: SHORT_MS });
-      await this.page.keyboard.type(name);
+      await this.page.keyboard.type(typed);
       if (await row.waitFor({ timeout: 5_000 }).then(() => true, () => false)) {
         break;
       }
