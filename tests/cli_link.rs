@@ -28,7 +28,8 @@ struct Example {
     target: &'static Target,
 }
 
-fn copied(from: &Path, to: &Path) {
+/// Copies the files of a folder.
+pub(crate) fn copied(from: &Path, to: &Path) {
     std::fs::create_dir_all(to).unwrap();
     for entry in std::fs::read_dir(from).unwrap().flatten().filter(|entry| entry.path().is_file()) {
         std::fs::copy(entry.path(), to.join(entry.file_name())).unwrap();

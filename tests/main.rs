@@ -75,6 +75,7 @@ mod lsp_prove;
 mod lsp_refactor;
 mod lsp_robust;
 mod lsp_simulation;
+mod lsp_simulation_files;
 mod lsp_streaming;
 mod lsp_test;
 mod lsp_tokens;

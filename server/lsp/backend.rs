@@ -89,7 +89,7 @@ impl LanguageServer for Backend {
         });
         let Some(mut hover) = hover else { return Ok(None) };
         // While the program runs beside its text, what it does comes first.
-        if let Some(why) = self.simulations.brief(&at.text_document.uri, at.position).await
+        if let Some(why) = self.simulations.brief(&at.text_document.uri, at.position, &self.workspace).await
             && let HoverContents::Markup(content) = &mut hover.contents
         {
             content.value = format!("{why}\n\n---\n\n{}", content.value);

@@ -1,7 +1,8 @@
 //! `rungwise.simulate.…`: programs run on a simulated PLC beside the editor.
 //!
-//! Commands (`workspace/executeCommand`), each with one argument, an object with `uri`, the address of a program; files
-//! of a project that are one program with it run with it. The members that each takes besides:
+//! Commands (`workspace/executeCommand`), each with one argument, an object with `uri`, the address of a program. Files
+//! of a project that are one program with it run with it, in one simulation, whichever of them is named; `watch` is
+//! about the one that is. The members that each takes besides:
 //!
 //! ```text
 //! rungwise.simulate.start     { scanTime?: ms = 10, speed?: number = 1, paused?: boolean }   // speed 0: no limit
@@ -35,12 +36,13 @@
 //! Each of the others answers the state, `panel`, `trace` and `export` with more members:
 //!
 //! ```text
-//! { uri, mode: "running" | "paused" | "stopped", scan, first_scan, time_ms, scan_ms, speed, edition, branch,
+//! { uri, files: Uri[], mode: "running" | "paused" | "stopped", scan, first_scan, time_ms, scan_ms, speed, edition, branch,
 //!   forced: string[], values: { device, value, forced, wired? }[], errors: { range, message }[] }
 //! ```
 //!
 //! `values` are those of `names`, or of what is watched; `wired` is what an input will be in the next scan, if that is
-//! something else. `edition` is another number whenever the program is another,
+//! something else. `files` are all those of the program, in the order of execution, and `errors` and what is watched are of
+//! the one at `uri`. `edition` is another number whenever the program is another,
 //! as by an edit, and `branch` whenever scans of before have been taken back.
 //!
 //! `panel` says with `rows` what belongs on a panel of the program, group by group:
@@ -68,8 +70,8 @@
 //!
 //! `export` has the `text` of a file with every change, and `from` and `to`, which scans it tells of.
 //!
-//! While a simulation runs, the notification `rungwise/monitor`
-//! tells what is watched, at most thirty times a second, when something may have changed:
+//! While a simulation runs, the notification `rungwise/monitor` tells what is watched, of each file in which something
+//! is, at most thirty times a second, when something may have changed:
 //!
 //! ```text
 //! { uri, version, source: "simulator", mode, scan, time_ms, edition, branch,
@@ -83,8 +85,8 @@
 //! Values that a variable cannot have are refused, and scan times other than 0.001 to 60000 ms and speeds below 0.
 //!
 //! A step of many scans and a search for the last change end where they are as soon as another order comes; `state`,
-//! `watch`, `panel`, `trace`, `export`, `record` and `why` are answered meanwhile. A simulation stops when its document
-//! is closed; the last `rungwise/monitor` then has `mode: "stopped"`, as after `stop`.
+//! `watch`, `panel`, `trace`, `export`, `record` and `why` are answered meanwhile. A simulation stops when the last
+//! document of its program is closed; the last `rungwise/monitor` then has `mode: "stopped"`, as after `stop`.
 //!
 //! `scan` counts from 0. What an edit made of the program is taken over as soon as it can be run; until then the old
 //! program goes on and `elements` is empty. An edit after which the program does the same leaves its history; any other
@@ -100,6 +102,8 @@ mod panel;
 
 mod runner;
 
+mod screens;
+
 mod why;
 
 use super::answering::{refused, snapshot, wrong_argument};
@@ -110,7 +114,6 @@ pub(super) use monitor::{Monitor, MonitorMethod, Picture};
 pub(super) use panel::rows as panel_rows;
 use runner::{About, Deed, Order, Question, Runner};
 pub(super) use runner::{compiled, files_around};
-use rustc_hash::FxHashMap;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -143,9 +146,9 @@ struct Asked {
     scan: Option<u64>,
 }
 
-/// The simulations that run.
+/// The simulations that run, one for a program, of however many files it is.
 #[derive(Default)]
-pub(super) struct Simulations(Mutex<FxHashMap<Uri, Runner>>);
+pub(super) struct Simulations(Mutex<Vec<Runner>>);
 
 impl Simulations {
     /// Answers a command.
@@ -165,19 +168,15 @@ impl Simulations {
         }
         let is_state = matches!(order, Order::Do(Deed::Stop) | Order::Ask(Question::State { .. }));
         let stopped = || json!({ "uri": uri, "mode": "stopped" });
-        let runner = {
-            let mut running = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-            running.retain(|_, runner| runner.is_alive());
-            match order {
-                Order::Start { .. } => Some(
-                    running.entry(uri.clone()).or_insert_with(|| Runner::new(uri.clone(), workspace)).clone(),
-                ),
-                Order::Do(Deed::Stop) => running.remove(&uri),
-                _ => running.get(&uri).cloned(),
+        let runner = match order {
+            Order::Start { .. } => {
+                Some(self.of(&uri, workspace).unwrap_or_else(|| self.begin(&uri, workspace)))
             }
+            Order::Do(Deed::Stop) => self.take(&uri, workspace),
+            _ => self.of(&uri, workspace),
         };
         match runner {
-            Some(runner) => match runner.ask(order).await {
+            Some(runner) => match runner.ask(uri.clone(), order).await {
                 // It ended meanwhile.
                 Err(_) if is_state && !runner.is_alive() => Ok(Some(stopped())),
                 answer => answer.map(Some).map_err(refused),
@@ -189,12 +188,40 @@ impl Simulations {
 }
 
 impl Simulations {
-    /// Why what stands at a position is on or off, in Markdown; nothing unless its program is being simulated.
-    pub(super) async fn brief(&self, uri: &Uri, position: Position) -> Option<String> {
-        let runner = self.0.lock().unwrap_or_else(PoisonError::into_inner).get(uri).cloned()?;
-        let order = Order::Ask(Question::Why { about: About::At(position), scan: None, is_brief: true });
-        runner.ask(order).await.ok()?.as_str().map(str::to_string)
+    /// The simulation of the program that the file at `uri` is a part of.
+    fn of(&self, uri: &Uri, workspace: &Workspace) -> Option<Runner> {
+        let running = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        found(&running, uri, workspace).map(|at| running[at].clone())
     }
+
+    /// The same, which is one of them no more.
+    fn take(&self, uri: &Uri, workspace: &Workspace) -> Option<Runner> {
+        let mut running = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        found(&running, uri, workspace).map(|at| running.swap_remove(at))
+    }
+
+    /// A new one.
+    fn begin(&self, uri: &Uri, workspace: &Arc<Workspace>) -> Runner {
+        let files = files_around(workspace, uri).unwrap_or_default().into_iter().map(|(file, ..)| file);
+        let mut running = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        running.retain(Runner::is_alive);
+        let runner = Runner::new(files.collect(), workspace);
+        running.push(runner.clone());
+        runner
+    }
+
+    /// Why what stands at a position is on or off, in Markdown; nothing unless its program is being simulated.
+    pub(super) async fn brief(&self, uri: &Uri, position: Position, workspace: &Workspace) -> Option<String> {
+        let runner = self.of(uri, workspace)?;
+        let order = Order::Ask(Question::Why { about: About::At(position), scan: None, is_brief: true });
+        runner.ask(uri.clone(), order).await.ok()?.as_str().map(str::to_string)
+    }
+}
+
+/// Which of them runs the program of the file at `uri`, which may have been opened a moment ago.
+fn found(running: &[Runner], uri: &Uri, workspace: &Workspace) -> Option<usize> {
+    let runs = |uri: &Uri| running.iter().position(|runner| runner.is_alive() && runner.runs(uri));
+    runs(uri).or_else(|| files_around(workspace, uri)?.iter().find_map(|(file, ..)| runs(file)))
 }
 
 fn order(command: &str, asked: Asked) -> std::result::Result<Order, Message> {

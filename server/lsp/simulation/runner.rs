@@ -5,11 +5,10 @@ mod program;
 mod telling;
 
 use super::super::alarms::Watchman;
-use super::super::to_proto::Place;
 use super::super::workspace::Workspace;
 use super::chart::Wanted;
-use super::monitor::{Monitor, MonitorMethod};
-use crate::document::Document;
+use super::monitor::MonitorMethod;
+use super::screens::{File, Screens};
 use crate::scenario::{InputKind, Recording};
 use crate::simulate::{
     ChangeSearch, Code, Drivers, Error, HistoryLimit, NamesOfCode, Recorder, Session, Sight, Touch, Value,
@@ -21,7 +20,7 @@ pub(in crate::lsp) use program::{compiled, files_around};
 use serde_json::Value as Json;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, Weak};
+use std::sync::{Arc, PoisonError, RwLock, Weak};
 use std::time::{Duration, Instant};
 use tokio::sync::oneshot;
 use tower_lsp::ls_types::{Position, Range, Uri};
@@ -89,23 +88,33 @@ enum Task {
 /// The other end of a simulation's thread.
 #[derive(Clone)]
 pub(super) struct Runner {
-    sender: Sender<(Order, oneshot::Sender<Reply>)>,
+    sender: Sender<Asked>,
     is_alive: Arc<AtomicBool>,
+    files: Arc<RwLock<Vec<Uri>>>,
+}
+
+/// What somebody who looks at a file of the program orders, and where the answer goes.
+struct Asked {
+    uri: Uri,
+    order: Order,
+    reply: oneshot::Sender<Reply>,
 }
 
 impl Runner {
-    /// A simulation that was not started yet.
-    pub(super) fn new(uri: Uri, workspace: &Arc<Workspace>) -> Runner {
+    /// A simulation that was not started yet, of the program that consists of these files.
+    pub(super) fn new(files: Vec<Uri>, workspace: &Arc<Workspace>) -> Runner {
         let (sender, receiver) = channel();
         let is_alive = Arc::new(AtomicBool::new(true));
         let (alive, workspace) = (Arc::clone(&is_alive), Arc::downgrade(workspace));
+        let files = Arc::new(RwLock::new(files));
+        let shared = Arc::clone(&files);
         let tokio = tokio::runtime::Handle::current();
         std::thread::spawn(move || {
-            let mut thread = Thread { uri, workspace, tokio, running: None, waiting: None };
+            let mut thread = Thread { files: shared, workspace, tokio, running: None, waiting: None };
             let _mark = Mark(alive);
             thread.run(&receiver);
         });
-        Runner { sender, is_alive }
+        Runner { sender, is_alive, files }
     }
 
     /// Whether it still listens.
@@ -113,22 +122,28 @@ impl Runner {
         self.is_alive.load(Ordering::Acquire)
     }
 
-    /// Tells it something, and gives its answer.
-    pub(super) async fn ask(&self, order: Order) -> Reply {
+    /// Whether a file is one of those of its program.
+    pub(super) fn runs(&self, uri: &Uri) -> bool {
+        self.files.read().unwrap_or_else(PoisonError::into_inner).contains(uri)
+    }
+
+    /// Tells it something for who looks at the file at `uri`, and gives its answer.
+    pub(super) async fn ask(&self, uri: Uri, order: Order) -> Reply {
         let (reply, answer) = oneshot::channel();
         let gone = || Message::new("simulate.not-running");
-        self.sender.send((order, reply)).map_err(|_| gone())?;
+        self.sender.send(Asked { uri, order, reply }).map_err(|_| gone())?;
         answer.await.map_err(|_| gone())?
     }
 }
 
 struct Thread {
-    uri: Uri,
+    /// The files of the program that runs, for who looks for it.
+    files: Arc<RwLock<Vec<Uri>>>,
     workspace: Weak<Workspace>,
     tokio: tokio::runtime::Handle,
     running: Option<Running>,
-    /// Who waits until the task is done.
-    waiting: Option<oneshot::Sender<Reply>>,
+    /// Who waits until the task is done, looking at which file.
+    waiting: Option<(Uri, oneshot::Sender<Reply>)>,
 }
 
 /// A program that runs, or pauses.
@@ -136,15 +151,15 @@ struct Running {
     session: Session,
     /// Code that says what it sees, once somebody has looked: it takes as long to make as the code that runs.
     watched: Option<Arc<Code>>,
-    /// The version of each file that was compiled, and the documents.
-    files: Vec<(Uri, i32, Document)>,
+    /// The files that were compiled.
+    files: Vec<File>,
+    /// One of them that the editor has, through which the program is found.
+    uri: Uri,
     /// Whether the text is no longer what runs.
     is_outdated: bool,
     is_paused: bool,
     /// Whether nothing follows.
     is_over: bool,
-    /// Whether the editor had the document.
-    is_open: bool,
     task: Option<Task>,
     /// Simulated time for each unit of real time; 0 for as fast as can be.
     speed: f64,
@@ -153,7 +168,7 @@ struct Running {
     since: (Instant, i64),
     /// What was done since the program began, for a scenario test.
     recording: Recording,
-    monitor: Monitor,
+    screens: Screens,
     recorder: Recorder,
     alarms: Watchman<Variable>,
     /// How often the program was made into code.
@@ -179,21 +194,21 @@ const TOO_LATE: Duration = Duration::from_millis(500);
 const IDLE: Duration = Duration::from_millis(100);
 
 impl Thread {
-    fn run(&mut self, receiver: &Receiver<(Order, oneshot::Sender<Reply>)>) {
+    fn run(&mut self, receiver: &Receiver<Asked>) {
         loop {
             let wait = self.running.as_ref().map_or(Duration::from_secs(60), Running::wait);
             match receiver.recv_timeout(wait) {
-                Ok((order, reply)) => {
+                Ok(Asked { uri, order, reply }) => {
                     if !matches!(order, Order::Ask(_)) {
                         // What takes long ends where it is when something else is wanted.
                         self.end_task();
                     }
-                    let answer = self.obey(order);
+                    let answer = self.obey(order, &uri);
                     // The last picture comes before the answer, behind which another simulation may begin.
                     self.show();
                     let has_task = self.running.as_ref().is_some_and(|running| running.task.is_some());
                     if has_task && self.waiting.is_none() && answer.is_ok() {
-                        self.waiting = Some(reply);
+                        self.waiting = Some((uri, reply));
                     } else {
                         // Who asked may have gone.
                         let _ = reply.send(answer);
@@ -206,8 +221,8 @@ impl Thread {
                 Err(RecvTimeoutError::Disconnected) => return,
             }
             let Some(workspace) = self.workspace.upgrade() else { return };
+            self.follow(&workspace);
             if let Some(running) = &mut self.running {
-                running.follow(&workspace, &self.uri);
                 running.advance();
                 if running.task.is_none() {
                     self.end_task();
@@ -220,17 +235,38 @@ impl Thread {
         }
     }
 
+    /// Takes over what edits made of the program, and lets others know which files it has.
+    fn follow(&mut self, workspace: &Workspace) {
+        let Some(running) = &mut self.running else { return };
+        running.follow(workspace);
+        let is_known = {
+            let known = self.files.read().unwrap_or_else(PoisonError::into_inner);
+            known.iter().eq(running.files.iter().map(|(uri, ..)| uri))
+        };
+        if !is_known {
+            let files = running.files.iter().map(|(uri, ..)| uri.clone()).collect();
+            *self.files.write().unwrap_or_else(PoisonError::into_inner) = files;
+        }
+    }
+
     /// Tells the client what it shows, if it is time for that.
     fn show(&mut self) {
         let (Some(running), Some(workspace)) = (&mut self.running, self.workspace.upgrade()) else { return };
         if running.is_over {
             running.alarms.end(running.session.machine().now_ns());
         }
-        running.alarms.tell(&self.tokio, &workspace, &self.uri);
-        let Some(picture) = running.picture(&workspace, &self.uri) else { return };
+        running.alarms.tell(&self.tokio, &workspace, &running.uri);
+        let pictures = running.pictures(&workspace);
+        if pictures.is_empty() {
+            return;
+        }
         let client = workspace.client.clone();
         let is_last = running.is_over;
-        let sent = async move { client.send_notification::<MonitorMethod>(picture).await };
+        let sent = async move {
+            for picture in pictures {
+                client.send_notification::<MonitorMethod>(picture).await;
+            }
+        };
         if is_last {
             self.tokio.block_on(sent);
         } else {
@@ -242,36 +278,39 @@ impl Thread {
     fn end_task(&mut self) {
         let (Some(running), Some(workspace)) = (&mut self.running, self.workspace.upgrade()) else { return };
         running.task = None;
-        if let Some(waiting) = self.waiting.take() {
-            let _ = waiting.send(Ok(running.state(&workspace, &self.uri, None)));
+        if let Some((uri, waiting)) = self.waiting.take() {
+            let _ = waiting.send(Ok(running.state(&workspace, &uri, None)));
         }
     }
 
-    fn obey(&mut self, order: Order) -> Reply {
+    fn obey(&mut self, order: Order, uri: &Uri) -> Reply {
         let gone = || Message::new("simulate.not-running");
         let workspace = self.workspace.upgrade().ok_or_else(gone)?;
         if let Order::Start { scan_ms, speed, is_paused } = order {
-            self.start(&workspace, scan_ms, speed, is_paused)?;
+            self.start(&workspace, uri, scan_ms, speed, is_paused)?;
         }
+        // Who has just opened a file of the program is to be known.
+        self.follow(&workspace);
         let running = self.running.as_mut().ok_or_else(gone)?;
         match order {
-            Order::Ask(question) => return running.answer(question, &workspace, &self.uri),
+            Order::Ask(question) => return running.answer(question, &workspace, uri),
             Order::Do(deed) => running.obey(deed)?,
             Order::Start { .. } => {}
         }
-        running.locate(&workspace, &self.uri);
-        Ok(running.state(&workspace, &self.uri, None))
+        running.locate(&workspace);
+        Ok(running.state(&workspace, uri, None))
     }
 
     /// Begins to run the program as it is now, in the place of the one that ran before.
     fn start(
         &mut self,
         workspace: &Workspace,
+        uri: &Uri,
         scan_ms: Option<f64>,
         speed: Option<f64>,
         is_paused: bool,
     ) -> Result<(), Message> {
-        let mut running = Running::start(workspace, &self.uri)?;
+        let mut running = Running::start(workspace, uri)?;
         if let Some(scan_ms) = scan_ms {
             if !SCAN_MS.contains(&scan_ms) {
                 return Err(Message::new("simulate.scan-time").with("value", scan_ms));
@@ -282,10 +321,10 @@ impl Thread {
         running.is_paused = is_paused;
         if let Some(before) = self.running.take() {
             running.session.take_over(before.session.machine());
-            (running.monitor, running.alarms) = (before.monitor, before.alarms);
+            (running.screens, running.alarms) = (before.screens, before.alarms);
             (running.edition, running.branch) = (before.edition + 1, before.branch + 1);
         }
-        running.watch_alarms(workspace, &self.uri);
+        running.watch_alarms(workspace);
         // The first scan is there as soon as it is asked for.
         running.scan();
         running.resume();
@@ -307,13 +346,13 @@ impl Running {
             is_outdated: false,
             is_paused: false,
             is_over: false,
-            is_open: workspace.snapshot().open(uri).is_some(),
+            uri: uri.clone(),
             task: None,
             speed: 1.0,
             scan_ns: 10_000_000,
             since: (Instant::now(), 0),
             recording: Recording::default(),
-            monitor: Monitor::default(),
+            screens: Screens::default(),
             recorder: Recorder::default(),
             alarms: Watchman::new("simulator"),
             edition: 0,
@@ -424,14 +463,14 @@ impl Running {
 
     fn scan(&mut self) {
         let next = self.next_ns();
-        let is_picture = !self.is_outdated && self.monitor.has_text() && self.since_picture() >= PICTURE;
+        let is_picture = !self.is_outdated && self.screens.has_text() && self.since_picture() >= PICTURE;
         let outcome = match self.watched.as_ref().filter(|_| is_picture) {
             Some(watched) => {
                 let sights = &mut self.sights;
-                let shown = self.monitor.instructions(watched);
+                let shown = self.screens.instructions(watched);
                 sights.clear();
                 self.session.scan_seen(next, watched, |sight| {
-                    if shown.contains(&sight.instruction) {
+                    if shown.iter().any(|part| part.contains(&sight.instruction)) {
                         sights.push(sight);
                     }
                 })
@@ -554,14 +593,20 @@ impl Running {
     }
 
     /// Takes over what edits made of the program, if that can be run.
-    fn follow(&mut self, workspace: &Workspace, uri: &Uri) {
-        // Nobody sees any more what a program does whose document is closed.
-        if self.is_open && workspace.snapshot().open(uri).is_none() {
-            (self.is_over, self.is_news) = (true, true);
+    fn follow(&mut self, workspace: &Workspace) {
+        let snapshot = workspace.snapshot();
+        if snapshot.open(&self.uri).is_none() {
+            let mut others = self.files.iter().map(|(uri, ..)| uri);
+            match others.find(|uri| snapshot.open(uri).is_some()) {
+                Some(other) => self.uri = other.clone(),
+                // Nobody sees any more what a program does of which no document is open.
+                None => (self.is_over, self.is_news) = (true, true),
+            }
         }
+        let uri = &self.uri.clone();
         self.session.set_limit(history_limit(workspace, uri));
         let Some(around) = around(workspace, uri) else { return };
-        let is_same = |(uri, version, document): &(Uri, i32, Document)| {
+        let is_same = |(uri, version, document): &File| {
             around.files().iter().any(|open| {
                 // Whoever closes a document and opens it again may count its versions from the same number.
                 open.uri == *uri && open.version == *version && open.document.is_instance(document)
@@ -569,7 +614,7 @@ impl Running {
         };
         if self.files.iter().all(is_same) {
             if self.alarms.is_outdated(workspace, uri) {
-                self.watch_alarms(workspace, uri);
+                self.watch_alarms(workspace);
             }
             return;
         }
@@ -584,12 +629,12 @@ impl Running {
                 self.edition += 1;
                 (self.watched, self.is_outdated) = (None, false);
                 self.sights.clear();
-                self.watch_alarms(workspace, uri);
+                self.watch_alarms(workspace);
             }
             Err(_) => self.is_outdated = true,
         }
         (self.files, self.drivers) = (files, None);
-        self.locate(workspace, uri);
+        self.locate(workspace);
     }
 
     /// Code that says what it sees; what could be compiled without that can be with it.
@@ -601,15 +646,14 @@ impl Running {
     }
 
     /// Watches the alarms of the project in the program as it is now.
-    fn watch_alarms(&mut self, workspace: &Workspace, uri: &Uri) {
+    fn watch_alarms(&mut self, workspace: &Workspace) {
         let names = NamesOfCode { code: self.session.machine().code(), instruction: None };
-        self.alarms.follow(workspace, uri, &names);
+        self.alarms.follow(workspace, &self.uri, &names);
     }
 
     /// Finds what the client shows in the text as it is now.
-    fn locate(&mut self, workspace: &Workspace, uri: &Uri) {
-        let Some(number) = self.files.iter().position(|(file, ..)| file == uri) else { return };
-        self.monitor.place(number as u32, Place::new(&self.files[number].2, workspace.snapshot().manner));
+    pub(super) fn locate(&mut self, workspace: &Workspace) {
+        self.screens.place(&self.files, workspace.snapshot().manner);
     }
 }
 

@@ -32,12 +32,14 @@ pub(in crate::lsp) fn compiled(
     compile(&documents, is_watched).map(Arc::new).map_err(|problems| {
         let first = problems.first();
         let place = first.and_then(|problem| {
-            let document = documents.get(problem.place.document as usize)?;
-            Some(document.line_of(problem.place.span.start as usize) + 1)
+            let (uri, _, document) = files.get(problem.place.document as usize)?;
+            let line = document.line_of(problem.place.span.start as usize) + 1;
+            let name = uri.path().as_str().rsplit('/').next().unwrap_or_default();
+            Some(if files.len() > 1 { format!("{line} ({name})") } else { line.to_string() })
         });
         let reason = first.map(|problem| problem.obstacle.message());
         Message::new("simulate.refused")
-            .with("line", place.unwrap_or(0))
+            .with("line", place.unwrap_or_default())
             .with_messages("reason", reason.into_iter().collect())
     })
 }

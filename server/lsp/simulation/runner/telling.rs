@@ -1,15 +1,15 @@
 //! What a simulation tells of the program that it runs.
 
 use super::super::super::projects::file_path;
-use super::super::super::to_proto::Place;
+use super::super::super::to_proto::{Manner, Place};
 use super::super::super::workspace::Workspace;
-use super::super::monitor::Picture;
+use super::super::monitor::{Monitor, Picture};
 use super::super::{chart, panel, why};
 use super::program::around;
 use super::{About, PICTURE, Question, Reply, Running};
 use crate::document::Document;
 use crate::scenario::Bench;
-use crate::simulate::{Drivers, Inquiry};
+use crate::simulate::{Code, Drivers, Inquiry};
 use crate::text::{Language, Message};
 use serde_json::{Value as Json, json};
 use std::sync::Arc;
@@ -28,11 +28,11 @@ impl Running {
         let (names, more) = match question {
             Question::State { names } => (names, None),
             Question::Watch { ranges, names } => {
-                self.monitor.watch(ranges, names);
+                self.screens.of_mut(uri).watch(ranges, names);
                 // What was seen was of other lines.
                 self.sights.clear();
                 self.is_news = true;
-                self.locate(workspace, uri);
+                self.locate(workspace);
                 (None, None)
             }
             Question::Panel { more } => {
@@ -85,32 +85,39 @@ impl Running {
         }
     }
 
-    /// What the client is to show, if it is time for that.
-    pub(super) fn picture(&mut self, workspace: &Workspace, uri: &Uri) -> Option<Picture> {
+    /// What the client is to show of each file, if it is time for that.
+    pub(super) fn pictures(&mut self, workspace: &Workspace) -> Vec<Picture> {
         let is_time = self.is_over || self.since_picture() >= PICTURE;
-        if !self.is_news || !is_time || self.monitor.is_empty() {
-            return None;
+        if !self.is_news || !is_time || self.screens.shown().next().is_none() {
+            return Vec::new();
         }
         (self.is_news, self.shown) = (false, Some(Instant::now()));
-        let scans = self.session.machine().scans();
-        let watched = match self.monitor.has_text() && !self.is_outdated {
+        let has_text = self.screens.has_text() && !self.is_outdated;
+        let watched = match has_text {
             true => self.watched(),
             false => Arc::clone(self.session.machine().code()),
         };
-        if !self.is_outdated && self.sights.is_empty() && self.monitor.has_text() {
+        if has_text && self.sights.is_empty() {
+            let scans = self.session.machine().scans();
             self.sights = self.session.sights(scans, &watched).unwrap_or_default();
         }
+        let manner = workspace.snapshot().manner;
+        let shown = self.screens.shown();
+        shown.filter_map(|(uri, monitor)| self.picture(uri, monitor, &watched, manner)).collect()
+    }
+
+    fn picture(&self, uri: &Uri, monitor: &Monitor, watched: &Code, manner: Manner) -> Option<Picture> {
         let number = self.files.iter().position(|(file, ..)| file == uri)?;
         let (_, version, document) = &self.files[number];
-        let place = Place::new(document, workspace.snapshot().manner);
+        let place = Place::new(document, manner);
+        let machine = self.session.machine();
         let elements = match self.is_outdated {
             true => Vec::new(),
             false => {
-                let machine = self.session.machine();
-                let mut elements = self.monitor.elements(place, &watched, &self.sights, machine);
+                let mut elements = monitor.elements(place, watched, &self.sights, machine);
                 if machine.is_any_forced() {
                     let held = |own| machine.is_forced(own).then(|| machine.value(own, 0));
-                    elements.extend(self.monitor.forced(place, &watched, &held));
+                    elements.extend(monitor.forced(place, watched, &held));
                 }
                 elements
             }
@@ -120,13 +127,13 @@ impl Running {
             version: *version,
             source: "simulator",
             mode: self.mode(),
-            scan: scans.saturating_sub(1),
-            time_ms: self.session.machine().now_ns() as f64 / 1e6,
+            scan: machine.scans().saturating_sub(1),
+            time_ms: machine.now_ns() as f64 / 1e6,
             edition: self.edition,
             branch: self.branch,
             exchanges: 1,
             elements,
-            values: self.monitor.values(None, self.session.machine()),
+            values: monitor.values(None, machine),
             errors: self.errors_of(place, number as u32),
         })
     }
@@ -182,12 +189,15 @@ impl Running {
 
     pub(super) fn state(&self, workspace: &Workspace, uri: &Uri, names: Option<Vec<String>>) -> Json {
         let machine = self.session.machine();
+        let unwatched = Monitor::default();
+        let monitor = self.screens.of(uri).unwrap_or(&unwatched);
         let number = self.files.iter().position(|(file, ..)| file == uri).unwrap_or(0);
         let errors = self.files.get(number).map(|(_, _, document)| {
             self.errors_of(Place::new(document, workspace.snapshot().manner), number as u32)
         });
         json!({
             "uri": uri,
+            "files": self.files.iter().map(|(file, ..)| file).collect::<Vec<_>>(),
             "mode": self.mode(),
             "scan": machine.scans().saturating_sub(1),
             "first_scan": self.session.first_scan().saturating_sub(1),
@@ -197,7 +207,7 @@ impl Running {
             "edition": self.edition,
             "branch": self.branch,
             "forced": machine.forced(),
-            "values": self.monitor.values(names, machine),
+            "values": monitor.values(names, machine),
             "errors": errors,
         })
     }
