@@ -20,6 +20,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Weak};
 use std::time::Duration;
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
+use tokio::sync::oneshot;
 use tower_lsp::ls_types::{Diagnostic, MessageType, Uri};
 
 /// Changes in quick succession are taken together.
@@ -44,6 +45,8 @@ enum Order {
     Changed { key: Arc<Path>, uri: Uri },
     /// A document was closed, and its publisher has said its last word.
     Closed { key: Arc<Path>, uri: Uri },
+    /// Somebody waits until all that was ordered before is done.
+    Settle(oneshot::Sender<()>),
 }
 
 impl Keeper {
@@ -84,6 +87,14 @@ impl Keeper {
         self.send(Order::Closed { key, uri });
     }
 
+    /// Waits until projects are known as they were when this was asked.
+    pub(super) async fn settled(self) {
+        let (done, settled) = oneshot::channel();
+        self.send(Order::Settle(done));
+        // A task that has ended has nothing left to do.
+        let _ = settled.await;
+    }
+
     fn send(&self, order: Order) {
         // Without the task there is no workspace either.
         let _ = self.orders.send(order);
@@ -107,6 +118,7 @@ struct Batch {
     changed: FxHashMap<Arc<Path>, Vec<Uri>>,
     folders: Vec<PathBuf>,
     forgotten: Vec<Arc<Path>>,
+    waiting: Vec<oneshot::Sender<()>>,
 }
 
 impl Task {
@@ -143,6 +155,8 @@ impl Task {
                 let is_changed = !by.is_empty() || changed.contains(key);
                 self.link(&workspace, key, if is_known { by } else { &[] }, is_changed).await;
             }
+            // Who waits may have gone.
+            batch.waiting.into_iter().for_each(|waiting| _ = waiting.send(()));
         }
     }
 
@@ -157,6 +171,7 @@ impl Task {
             }
             Order::Search { folder } => batch.folders.push(folder),
             Order::Forget { key } => batch.forgotten.push(key),
+            Order::Settle(waiting) => batch.waiting.push(waiting),
             Order::Closed { key, uri } => {
                 // What the editor's text made be published is not known here, so it is replaced in any case.
                 self.published.insert(uri, (key.clone(), Some(0)));

@@ -36,13 +36,13 @@
 //! Each of the others answers the state, `panel`, `trace` and `export` with more members:
 //!
 //! ```text
-//! { uri, files: Uri[], mode: "running" | "paused" | "stopped", scan, first_scan, time_ms, scan_ms, speed, edition, branch,
-//!   forced: string[], values: { device, value, forced, wired? }[], errors: { range, message }[] }
+//! { uri, files: Uri[], mode: "running" | "paused" | "stopped", scan, first_scan, time_ms, scan_ms, speed, edition,
+//!   branch, forced: string[], values: { device, value, forced, wired? }[], errors: { range, message }[] }
 //! ```
 //!
 //! `values` are those of `names`, or of what is watched; `wired` is what an input will be in the next scan, if that is
-//! something else. `files` are all those of the program, in the order of execution, and `errors` and what is watched are of
-//! the one at `uri`. `edition` is another number whenever the program is another,
+//! something else. `files` are all those of the program, in the order of execution, and `errors` and what is watched
+//! are of the one at `uri`. `edition` is another number whenever the program is another,
 //! as by an edit, and `branch` whenever scans of before have been taken back.
 //!
 //! `panel` says with `rows` what belongs on a panel of the program, group by group:

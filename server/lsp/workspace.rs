@@ -441,6 +441,14 @@ impl Workspace {
         }
     }
 
+    /// Waits until the projects of the documents that are open are read.
+    pub(super) async fn settled(&self) {
+        let keeper = self.state().keeper.clone();
+        if let Some(keeper) = keeper {
+            keeper.settled().await;
+        }
+    }
+
     /// A panic while the lock was held leaves whole values behind it: each is put in one assignment.
     pub(super) fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)

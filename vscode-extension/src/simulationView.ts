@@ -43,8 +43,8 @@ export class SimulationView implements vscode.Disposable {
     overviewRulerColor: new vscode.ThemeColor('editorOverviewRuler.errorForeground'),
   });
   private readonly status = vscode.window.createStatusBarItem('rungwise.simulation', vscode.StatusBarAlignment.Left, 5);
-  /** Programs that are simulated, by the server's address. */
-  private readonly running = new Map<string, { uri: vscode.Uri; mode: Mode; source: Source }>();
+  /** Files of programs that run, by the server's address. */
+  private readonly running = new Map<string, Running>();
   private readonly pictures = new vscode.EventEmitter<{ readonly document: vscode.Uri; readonly params: unknown }>();
   private readonly changes = new vscode.EventEmitter<vscode.Uri>();
   /** The server's pictures of a program. */
@@ -84,9 +84,9 @@ export class SimulationView implements vscode.Disposable {
       registerCommand('rungwise.simulation.record', here((program) => this.record(program))),
       registerCommand('rungwise.simulation.setValue', atCursor((editor) => this.setValue(editor))),
       vscode.window.onDidChangeTextEditorVisibleRanges(() => this.scroll()),
-      vscode.window.onDidChangeVisibleTextEditors(() => this.scroll()),
+      vscode.window.onDidChangeVisibleTextEditors(() => void this.join().catch(() => undefined)),
       vscode.window.onDidChangeActiveTextEditor(() => this.showContext()),
-      vscode.workspace.onDidCloseTextDocument((document) => void this.stop(document.uri)),
+      vscode.workspace.onDidCloseTextDocument((document) => void this.close(document.uri)),
       server.onNotification(MONITOR, (params) => this.take(params)),
       server.onDidStart(() => this.forgetAll()),
     ];
@@ -132,19 +132,37 @@ export class SimulationView implements vscode.Disposable {
   }
 
   async start(document: vscode.Uri): Promise<void> {
-    const uri = this.server.protocolUri(document);
-    await this.tell(document, 'start');
-    this.running.set(uri, { uri: document, mode: 'running', source: 'simulator' });
+    this.add(document, (await this.tell(document, 'start')) as State);
+    await this.join();
+    await this.watch();
+  }
+
+  private add(document: vscode.Uri, { mode, files }: State): void {
+    const own = this.server.protocolUri(document);
+    this.running.set(own, { uri: document, mode: mode === 'paused' ? mode : 'running', source: 'simulator', files: files ?? [own] });
     this.showContext();
     this.changes.fire(document);
-    await this.watch();
+  }
+
+  /** Shows what runs also in other files of its program that are on the screen. */
+  private async join(): Promise<void> {
+    const isSimulating = [...this.running.values()].some(({ source }) => source === 'simulator');
+    const shown = vscode.window.visibleTextEditors.map(({ document }) => document);
+    const others = shown.filter(({ uri, languageId }) => LANGUAGES.includes(languageId) && this.source(uri) === undefined);
+    for (const { uri } of isSimulating ? others : []) {
+      const state = (await this.tell(uri, 'state')) as State;
+      if (state.mode !== 'stopped' && this.source(uri) === undefined) {
+        this.add(uri, state);
+      }
+    }
+    this.scroll();
   }
 
   /** Shows what a program does in the PLC that is connected. */
   async followPlc(document: vscode.Uri): Promise<void> {
     await this.stop(document);
     this.unfollowAll();
-    this.running.set(this.server.protocolUri(document), { uri: document, mode: 'running', source: 'plc' });
+    this.running.set(this.server.protocolUri(document), { uri: document, mode: 'running', source: 'plc', files: [] });
     await this.watch();
     this.changes.fire(document);
   }
@@ -170,20 +188,34 @@ export class SimulationView implements vscode.Disposable {
   }
 
   async stop(document: vscode.Uri): Promise<void> {
-    if (this.isRunning(document) && this.forget(document)) {
+    if (this.isRunning(document)) {
+      this.forgetAllOf(document);
       await this.tell(document, 'stop');
     }
   }
 
-  /** Shows nothing more of it; whether it was simulated. */
-  private forget(document: vscode.Uri): boolean {
-    if (!this.running.delete(this.server.protocolUri(document))) {
-      return false;
+  /** What is closed is shown no more; the simulation goes on while another file of the program is open. */
+  private async close(document: vscode.Uri): Promise<void> {
+    const files = this.running.get(this.server.protocolUri(document))?.files ?? [];
+    const isLast = !vscode.workspace.textDocuments.some(({ uri }) => files.includes(this.server.protocolUri(uri)));
+    await (isLast ? this.stop(document) : this.forget(document));
+  }
+
+  /** Shows nothing more of any file of a program. */
+  private forgetAllOf(document: vscode.Uri): void {
+    const files = this.running.get(this.server.protocolUri(document))?.files ?? [];
+    this.forget(document);
+    const others = files.map((file) => this.running.get(file)).filter((running) => running?.source === 'simulator');
+    others.forEach((running) => running && this.forget(running.uri));
+  }
+
+  /** Shows nothing more of a file. */
+  private forget(document: vscode.Uri): void {
+    if (this.running.delete(this.server.protocolUri(document))) {
+      this.clear(document);
+      this.showContext();
+      this.changes.fire(document);
     }
-    this.clear(document);
-    this.showContext();
-    this.changes.fire(document);
-    return true;
   }
 
   private async pause(program: vscode.Uri): Promise<void> {
@@ -255,7 +287,7 @@ export class SimulationView implements vscode.Disposable {
     const watched = [...this.running.values()].map(({ uri, source }) => {
       const editors = editorsOf(uri);
       const ranges = editors.flatMap(({ visibleRanges }) => visibleRanges.map(({ start, end }) => ({ start, end })));
-      return source === 'plc' ? this.tellPlc(uri, 'monitor', { ranges }) : this.tell(uri, 'watch', { ranges });
+      return source === 'plc' ? this.tellPlc(uri, 'monitor', { ranges }) : this.tell(uri, 'watch', { ranges }).catch(() => this.forget(uri));
     });
     await Promise.all(watched);
   }
@@ -268,8 +300,8 @@ export class SimulationView implements vscode.Disposable {
         return;
       }
       if (picture.mode === 'stopped' && picture.source === 'simulator') {
-        // Its document was closed.
-        this.forget(running.uri);
+        // The last of its documents was closed.
+        this.forgetAllOf(running.uri);
         return;
       }
       this.paint(picture, running);
@@ -277,7 +309,7 @@ export class SimulationView implements vscode.Disposable {
     }
   }
 
-  private paint(picture: Picture, running: { readonly uri: vscode.Uri; mode: Mode }): void {
+  private paint(picture: Picture, running: Running): void {
     if (running.mode !== picture.mode) {
       running.mode = picture.mode;
       this.showContext();
@@ -345,7 +377,18 @@ export class SimulationView implements vscode.Disposable {
   }
 }
 
+/** A file of a program that runs. */
+interface Running {
+  readonly uri: vscode.Uri;
+  mode: Mode;
+  readonly source: Source;
+  /** All files of the program, where it is simulated. */
+  readonly files: readonly string[];
+}
+
 interface State {
+  readonly mode?: Mode;
+  readonly files?: readonly string[];
   readonly values?: readonly { readonly value?: unknown; readonly wired?: boolean }[];
 }
 

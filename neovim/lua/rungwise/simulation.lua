@@ -9,7 +9,8 @@ local SPACE = vim.api.nvim_create_namespace('rungwise_simulation')
 --- The window is told when it stands still.
 local SCROLL_MS = 50
 
---- What runs, by URI: { buffer, mode, scan }; `watch` tells the ranges that are shown where it runs in a PLC.
+--- What runs, by the URI of each file of it: { buffer, mode, scan, files }; `files` are the URIs of all files of its
+--- program, `watch` tells the ranges that are shown where it runs in a PLC.
 M.running = {}
 local timer
 
@@ -74,6 +75,18 @@ local function forget(buffer)
   end
 end
 
+--- Shows nothing more of any file of the program of a buffer.
+local function forget_all_of(buffer)
+  local running = M.running[vim.uri_from_bufnr(buffer)] or {}
+  for _, uri in ipairs(running.files or {}) do
+    local other = M.running[uri]
+    if other and not other.watch then
+      forget(other.buffer)
+    end
+  end
+  forget(buffer)
+end
+
 --- The text of a range within a line.
 local function name_in(buffer, range, server)
   local text = vim.api.nvim_buf_get_lines(buffer, range.start.line, range.start.line + 1, false)[1] or ''
@@ -93,7 +106,7 @@ function M.on_monitor(_, picture, context)
     return
   end
   if picture.mode == 'stopped' and not is_plc then
-    return forget(running.buffer)
+    return forget_all_of(running.buffer)
   end
   running.mode, running.scan, running.time_ms = picture.mode, picture.scan, picture.time_ms
   panel.on_picture(running.buffer, picture)
@@ -140,11 +153,38 @@ function M.on_monitor(_, picture, context)
   vim.cmd.redrawstatus()
 end
 
+local function add(buffer, state)
+  M.running[vim.uri_from_bufnr(buffer)] = { buffer = buffer, mode = state.mode, files = state.files }
+  watch(buffer)
+end
+
+--- Shows what is simulated also in a buffer with another file of the program.
+local function join(buffer)
+  local uri = vim.uri_from_bufnr(buffer)
+  local is_simulating = vim.iter(pairs(M.running)):any(function(_, running)
+    return not running.watch
+  end)
+  if not is_simulating or M.running[uri] or #client.clients(buffer) == 0 then
+    return
+  end
+  M.tell(buffer, 'state', {}, function(state)
+    if state.mode ~= 'stopped' and not M.running[uri] and vim.api.nvim_buf_is_loaded(buffer) then
+      add(buffer, state)
+    end
+  end)
+end
+
 --- Tells what windows show from now on, until the buffer goes.
 local function follow()
   local group = vim.api.nvim_create_augroup('rungwise_simulation', { clear = true })
   local events = { 'WinScrolled', 'BufWinEnter', 'TextChanged', 'TextChangedI' }
   vim.api.nvim_create_autocmd(events, { group = group, callback = scrolled })
+  vim.api.nvim_create_autocmd({ 'BufWinEnter', 'LspAttach' }, {
+    group = group,
+    callback = function(event)
+      join(event.buf)
+    end,
+  })
   vim.api.nvim_create_autocmd('BufUnload', {
     group = group,
     callback = function(event)
@@ -156,11 +196,13 @@ local function follow()
 end
 
 local function start(buffer)
-  M.tell(buffer, 'start', {}, function()
-    M.running[vim.uri_from_bufnr(buffer)] = { buffer = buffer, mode = 'running' }
+  M.tell(buffer, 'start', {}, function(state)
     follow()
-    watch(buffer)
+    add(buffer, state)
     panel.on_start(buffer)
+    for _, window in ipairs(vim.api.nvim_list_wins()) do
+      join(vim.api.nvim_win_get_buf(window))
+    end
   end)
 end
 
@@ -200,7 +242,7 @@ M.verbs = {
   end,
   start = start,
   stop = function(buffer)
-    forget(buffer)
+    forget_all_of(buffer)
     M.tell(buffer, 'stop')
   end,
   pause = function(buffer)

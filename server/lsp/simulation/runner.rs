@@ -287,6 +287,8 @@ impl Thread {
         let gone = || Message::new("simulate.not-running");
         let workspace = self.workspace.upgrade().ok_or_else(gone)?;
         if let Order::Start { scan_ms, speed, is_paused } = order {
+            // The files that belong to the program are to be known.
+            self.tokio.block_on(workspace.settled());
             self.start(&workspace, uri, scan_ms, speed, is_paused)?;
         }
         // Who has just opened a file of the program is to be known.

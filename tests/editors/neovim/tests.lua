@@ -415,6 +415,60 @@ check('nvim-dap is told of the adapter, and the adapter answers', function()
   assert(answer.code == 0 and answer.stdout:find('"supportsStepBack":true', 1, true), vim.inspect(answer))
 end)
 
+check('each file of a program shows the one simulation of it, in two windows at once', function()
+  local simulation = require('rungwise.simulation')
+  vim.fn.mkdir('line', 'p')
+  vim.fn.writefile({ 'target = "fx2n"', 'files = ["first.il", "second.lad"]' }, 'line/rungwise.toml')
+  vim.fn.writefile({ 'LD X0', 'CALL P1', 'FEND' }, 'line/first.il')
+  vim.fn.writefile({
+    'P1:', '|   X1       Y0 |', '+---| |-----( )-+', '', '+--[SRET]-------+', '', '+--[END]--------+',
+  }, 'line/second.lad')
+  vim.cmd('silent edit line/first.il')
+  local first = vim.api.nvim_get_current_buf()
+  until_true('the first file', function()
+    return #vim.lsp.get_clients({ bufnr = first, name = 'rungwise' }) == 1
+  end)
+  vim.cmd('Rungwise simulate')
+  until_true('the simulation', function()
+    return simulation.running[vim.uri_from_bufnr(first)] ~= nil
+  end)
+  -- A file that is opened later belongs to it.
+  vim.cmd('silent split line/second.lad')
+  local second = vim.api.nvim_get_current_buf()
+  until_true('the other file', function()
+    return simulation.running[vim.uri_from_bufnr(second)] ~= nil
+  end)
+  vim.cmd('Rungwise simulate set X0 1')
+  vim.cmd('Rungwise simulate set X1 1')
+  local function has_power(buffer, line)
+    local space = vim.api.nvim_get_namespaces().rungwise_simulation
+    local marks = vim.api.nvim_buf_get_extmarks(buffer, space, { line, 0 }, { line, -1 }, { details = true })
+    return vim.iter(marks):any(function(mark)
+      return mark[4].hl_group == 'RungwiseEnergised' and mark[4].end_col > 5
+    end)
+  end
+  until_true('power in both', function()
+    return has_power(first, 1) and has_power(second, 2)
+  end)
+  -- Without the first file it goes on, and it is stopped from the other one.
+  vim.cmd('bdelete! ' .. first)
+  vim.cmd('Rungwise simulate set X1 0')
+  until_true('the coil off', function()
+    return not vim.iter(vim.api.nvim_buf_get_extmarks(second, vim.api.nvim_get_namespaces().rungwise_simulation, { 2, 0 }, { 2, -1 }, { details = true }))
+      :any(function(mark)
+        return mark[4].hl_group == 'RungwiseEnergised' and mark[4].end_col > 13
+      end)
+  end)
+  vim.cmd('silent split line/first.il')
+  first = vim.api.nvim_get_current_buf()
+  until_true('the first file again', function()
+    return simulation.running[vim.uri_from_bufnr(first)] ~= nil and has_power(first, 1)
+  end)
+  vim.cmd('Rungwise simulate stop')
+  assert(next(simulation.running) == nil, vim.inspect(simulation.running))
+  vim.cmd('silent! bdelete! ' .. first .. ' ' .. second)
+end)
+
 check('a program runs, holds itself, shows its power and goes back', function()
   open('motor.lad')
   local simulation = require('rungwise.simulation')

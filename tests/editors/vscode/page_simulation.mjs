@@ -1,10 +1,14 @@
 // A program runs beside its text: started from the palette, switched at the cursor, stopped, looked back into.
 
+import { mkdirSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+
 /** The files of these checks, and the fixtures of which they are copies. */
 export const SIMULATION_FILES = { 'running.lad': 'motor.lad' };
 
 export const SIMULATION_TESTS = {
   'a simulation paints power, holds a seal-in, and goes back past the click': simulation,
+  'a program in two files is one simulation, painted side by side and stopped from either': sideBySide,
 };
 
 /** The pieces of the editor's text that are bold: what is energised. */
@@ -49,5 +53,34 @@ async function simulation(workbench) {
   await workbench.screenshot('34-simulation-reset');
   await workbench.command('Rungwise: Stop Simulation');
   await workbench.until('a text without power', async () => (await energised(workbench)).length === 0);
+  await workbench.clear();
+}
+
+/** A program in two files, side by side: what is done in the one is seen in the other, and it is stopped from either. */
+async function sideBySide(workbench, workspace) {
+  const folder = join(workspace, 'side-by-side');
+  mkdirSync(folder, { recursive: true });
+  writeFileSync(join(folder, 'rungwise.toml'), 'target = "fx2n"\nfiles = ["calling.il", "called.lad"]\n');
+  writeFileSync(join(folder, 'calling.il'), 'LD X0\nCALL P1\nFEND\n');
+  writeFileSync(join(folder, 'called.lad'), 'P1:\n|   X1       Y0 |\n+---| |-----( )-+\n\n+--[SRET]-------+\n\n+--[END]--------+\n');
+  const has = async (words) => (await energised(workbench)).join('\n').includes(words);
+  await workbench.clear();
+  await workbench.openByName('calling.il');
+  await workbench.status('steps');
+  await workbench.goTo(1, 4);
+  await workbench.command('Rungwise: Start Simulation');
+  await workbench.status('scan ');
+  await workbench.command('Rungwise: Toggle Device at Cursor');
+  await workbench.until('the call', () => has('CALL'));
+  // A file that is opened beside it belongs to it, as do the keys there.
+  await workbench.command('View: Split Editor Right');
+  await workbench.openByName('called.lad');
+  await workbench.goTo(2, 6);
+  await workbench.until('power at the rail of the other file', () => has('---'));
+  await workbench.command('Rungwise: Toggle Device at Cursor');
+  await workbench.until('the coil, beside the call', async () => (await has('( )')) && (await has('CALL')));
+  await workbench.screenshot('35-simulation-side-by-side');
+  await workbench.command('Rungwise: Stop Simulation');
+  await workbench.until('no power in either', async () => (await energised(workbench)).length === 0);
   await workbench.clear();
 }
