@@ -33,6 +33,7 @@ mod dap_iec;
 mod document;
 mod drawing_redrawn;
 mod extremes;
+mod fewest_steps;
 mod fuzz;
 mod grammar;
 mod ide;

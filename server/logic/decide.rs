@@ -119,7 +119,6 @@ impl Diagrams {
                 Node::Atom(number) => variables.mk_var(*places.get(number)?),
                 Node::Not(inner) => of.get(inner)?.not(),
                 Node::And(inner) => joined(&of, inner, variables.mk_true(), op_function::and, work)?,
-                Node::Or(inner) => joined(&of, inner, variables.mk_false(), op_function::or, work)?,
             };
             of.insert(part, diagram);
         }

@@ -1,5 +1,5 @@
-//! Formulas in an arena: equal ones have equal numbers as far as commuting and associating goes, so that most proofs
-//! are done when they are written down.
+//! Formulas in an arena: equal ones have equal numbers as far as commuting, associating and De Morgan's laws go, so that
+//! most proofs are done when they are written down. For that, a sum is the inverse of a product of inverses.
 
 use super::effort;
 use crate::document::Limits;
@@ -113,7 +113,6 @@ pub(super) enum Node {
     Atom(u32),
     Not(Formula),
     And(Box<[Formula]>),
-    Or(Box<[Formula]>),
 }
 
 /// An arena of formulas. Parts have smaller numbers than what they are part of.
@@ -239,14 +238,11 @@ impl Formulas {
         }
     }
 
-    /// Where all parts hold.
-    pub fn and(&mut self, parts: impl IntoIterator<Item = Formula>) -> Formula {
-        self.join(parts, true)
-    }
-
     /// Where one of the parts holds.
     pub fn or(&mut self, parts: impl IntoIterator<Item = Formula>) -> Formula {
-        self.join(parts, false)
+        let inverses: Vec<Formula> = parts.into_iter().map(|part| self.not(part)).collect();
+        let none = self.and(inverses);
+        self.not(none)
     }
 
     /// The atom with this number.
@@ -279,7 +275,6 @@ impl Formulas {
                 Node::Atom(number) => value(*number),
                 Node::Not(inner) => !of(inner),
                 Node::And(parts) => parts.iter().all(of),
-                Node::Or(parts) => parts.iter().any(of),
             };
             values.insert(part, own);
         }
@@ -301,7 +296,6 @@ impl Formulas {
                 Node::Atom(number) => other(self, number),
                 Node::Not(inner) => self.not(of(&inner)),
                 Node::And(parts) => self.and(parts.iter().map(of)),
-                Node::Or(parts) => self.or(parts.iter().map(of)),
             };
             made.insert(part, new);
         }
@@ -324,7 +318,7 @@ impl Formulas {
             match self.node(formula) {
                 Node::Constant(_) | Node::Atom(_) => {}
                 Node::Not(part) => waiting.push(*part),
-                Node::And(parts) | Node::Or(parts) => waiting.extend(parts.iter()),
+                Node::And(parts) => waiting.extend(parts.iter()),
             }
         }
         let mut parts: Vec<Formula> = seen.into_iter().collect();
@@ -336,31 +330,29 @@ impl Formulas {
         &self.nodes[formula.0 as usize]
     }
 
-    fn join(&mut self, parts: impl IntoIterator<Item = Formula>, and: bool) -> Formula {
-        let (neutral, ruling) = (Formulas::constant(and), Formulas::constant(!and));
+    /// Where all parts hold.
+    pub fn and(&mut self, parts: impl IntoIterator<Item = Formula>) -> Formula {
         let mut flat = Vec::new();
         for part in parts {
-            match (self.node(part), and) {
-                (Node::And(inner), true) | (Node::Or(inner), false) => flat.extend(inner.iter().copied()),
+            match self.node(part) {
+                Node::And(inner) => flat.extend(inner.iter().copied()),
                 _ => flat.push(part),
             }
         }
         flat.sort_unstable();
         flat.dedup();
-        flat.retain(|part| *part != neutral);
-        let is_ruled = flat.first().is_some_and(|first| *first == ruling) || flat.contains(&ruling);
+        flat.retain(|part| *part != Formulas::TRUE);
         let is_contrary = |part: &Formula| match self.node(*part) {
             Node::Not(inner) => flat.binary_search(inner).is_ok(),
             _ => false,
         };
-        if is_ruled || flat.iter().any(is_contrary) {
-            return ruling;
+        if flat.first() == Some(&Formulas::FALSE) || flat.iter().any(is_contrary) {
+            return Formulas::FALSE;
         }
-        match flat.len() {
-            0 => neutral,
-            1 => flat[0],
-            _ if and => self.number(Node::And(flat.into())),
-            _ => self.number(Node::Or(flat.into())),
+        match flat[..] {
+            [] => Formulas::TRUE,
+            [only] => only,
+            _ => self.number(Node::And(flat.into())),
         }
     }
 

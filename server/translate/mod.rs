@@ -28,6 +28,7 @@ mod reached;
 
 mod units;
 
+mod turning;
 mod types;
 
 mod prove;

@@ -3,11 +3,14 @@
 use std::collections::VecDeque;
 use std::sync::LazyLock;
 
+/// What cannot be; so small that it can be added to.
+pub(super) const NEVER: usize = usize::MAX / 8;
+
 /// What a drive wants the current result to be.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) struct Wants {
-    /// The inverse of the power behind the gates: a negated coil, or what stands behind an inverter.
-    pub inverse: bool,
+    /// The instructions that it takes if it gets the power behind the gates, and if it gets the inverse of that.
+    pub costs: [usize; 2],
     /// It loses the current result: a conditional path. Outputs leave it there.
     pub for_good: bool,
 }
@@ -79,39 +82,42 @@ static WAYS: LazyLock<Ways> = LazyLock::new(|| {
 
 /// What is done between the drives of a path.
 pub(super) struct Moves {
+    /// What all of it costs, with the path before it.
+    pub cost: usize,
     /// Whether the path has to begin with the inverse of its power.
     pub is_turned: bool,
-    /// The instructions before each drive.
-    pub before: Vec<Vec<&'static str>>,
+    /// The instructions before each drive, and whether it gets the inverse of the power.
+    pub before: Vec<(&'static [&'static str], bool)>,
 }
 
-/// The instructions before each drive that give it what it wants; the fewest in all, with nothing kept at the end. If
-/// `may_turn`, the path may begin with the inverse of its power as well.
-pub(super) fn moves(wanted: &[Wants], may_turn: bool) -> Moves {
+/// The instructions before each drive that give it what it wants; the fewest in all, with nothing kept at the end, where
+/// it costs so much that the path begins with its power, and with the inverse of that.
+pub(super) fn moves(wanted: &[Wants], begins: [usize; 2]) -> Moves {
     // Mostly outputs alone, and perhaps a conditional path behind them.
-    let is_plain =
-        |(number, wants): (usize, &Wants)| !wants.inverse && (!wants.for_good || number + 1 == wanted.len());
-    if wanted.iter().enumerate().all(is_plain) {
-        return Moves { is_turned: false, before: vec![Vec::new(); wanted.len()] };
+    let is_plain = |(number, wants): (usize, &Wants)| {
+        wants.costs[1] >= NEVER && (!wants.for_good || number + 1 == wanted.len())
+    };
+    if begins[1] >= NEVER && wanted.iter().enumerate().all(is_plain) {
+        let cost = begins[0] + wanted.iter().map(|wants| wants.costs[0]).sum::<usize>();
+        return Moves { cost, is_turned: false, before: vec![(&[], false); wanted.len()] };
     }
-    // For each drive and state behind it the least number of instructions, and the state behind the drive before.
+    // For each drive and state behind it the least number of instructions, and the states behind the drive before, and
+    // before this one.
     let start = State { current: Held::Power, kept: Held::Other }.number();
     let turned = State { current: Held::Inverse, kept: Held::Other }.number();
-    let mut costs = [usize::MAX; STATES];
-    costs[start] = 0;
-    if may_turn {
-        costs[turned] = 0;
-    }
-    let mut table: Vec<[usize; STATES]> = Vec::with_capacity(wanted.len());
+    let mut costs = [NEVER; STATES];
+    costs[start] = begins[0];
+    costs[turned] = begins[1];
+    let mut table: Vec<[(usize, usize); STATES]> = Vec::with_capacity(wanted.len());
     for wants in wanted {
-        let (mut next_costs, mut origins) = ([usize::MAX; STATES], [start; STATES]);
-        for from in (0..STATES).filter(|from| costs[*from] != usize::MAX) {
+        let (mut next_costs, mut origins) = ([NEVER; STATES], [(start, start); STATES]);
+        for from in (0..STATES).filter(|from| costs[*from] < NEVER) {
             for (to, way) in WAYS[from].iter().enumerate() {
-                let (Some(way), Some(behind)) = (way, behind(*wants, State::of(to))) else { continue };
-                let cost = costs[from] + way.len();
+                let (Some(way), Some((behind, own))) = (way, behind(*wants, State::of(to))) else { continue };
+                let cost = costs[from] + way.len() + own;
                 if cost < next_costs[behind] {
                     next_costs[behind] = cost;
-                    origins[behind] = from;
+                    origins[behind] = (from, to);
                 }
             }
         }
@@ -120,22 +126,25 @@ pub(super) fn moves(wanted: &[Wants], may_turn: bool) -> Moves {
     }
     let is_end = |state: &usize| State::of(*state).kept == Held::Other;
     let mut state = (0..STATES).filter(is_end).min_by_key(|state| costs[*state]).unwrap_or(start);
+    let cost = costs[state];
     let mut before = Vec::with_capacity(wanted.len());
-    for (wants, origins) in wanted.iter().zip(&table).rev() {
-        let from = origins[state];
-        let ways =
-            WAYS[from].iter().enumerate().filter(|(to, _)| behind(*wants, State::of(*to)) == Some(state));
-        let way = ways.filter_map(|(_, way)| way.as_ref()).min_by_key(|way| way.len());
-        before.push(way.cloned().unwrap_or_default());
+    for origins in table.iter().rev() {
+        let (from, to) = origins[state];
+        let way = WAYS[from][to].as_deref().unwrap_or_default();
+        before.push((way, State::of(to).current == Held::Inverse));
         state = from;
     }
     before.reverse();
-    Moves { is_turned: state == turned, before }
+    Moves { cost, is_turned: state == turned, before }
 }
 
-/// The state behind a drive that starts in `state`; nothing if that is not what it wants.
-fn behind(wants: Wants, state: State) -> Option<usize> {
-    let wanted = if wants.inverse { Held::Inverse } else { Held::Power };
+/// The state behind a drive that starts in `state`, and what the drive costs; nothing if it cannot start there.
+fn behind(wants: Wants, state: State) -> Option<(usize, usize)> {
+    let cost = match state.current {
+        Held::Power => wants.costs[0],
+        Held::Inverse => wants.costs[1],
+        Held::Other => NEVER,
+    };
     let left = if wants.for_good { State { current: Held::Other, ..state } } else { state };
-    (state.current == wanted).then(|| left.number())
+    (cost < NEVER).then(|| (left.number(), cost))
 }

@@ -1,11 +1,12 @@
 //! Writes a path of power as FX instruction list, in as few steps as its order of contacts and outputs allows.
 //!
 //! A contact costs its own instruction in any place, normally open or closed: contacts are turned over where that saves
-//! an inverter. Joining costs an instruction more for each connection that is not the first part of the one around it,
-//! and branching one for each conditional path behind which the power is wanted again; the exhaustive search in the
-//! tests finds no shorter list.
+//! an inverter, see `turning`. Joining costs an instruction more for each connection that is not the first part of the
+//! one around it, and branching one for each conditional path behind which the power is wanted again, see `stack`; the
+//! exhaustive search in the tests finds no shorter list.
 
-use super::stack::{self, Moves, Wants};
+use super::stack::{self, Moves, NEVER, Wants};
+use super::turning::{Chain, Joins, Sense, Turns, Writes};
 use crate::document::coil_form;
 use crate::ladder::{CoilKind, ContactKind};
 use crate::logic::{
@@ -13,7 +14,6 @@ use crate::logic::{
 };
 use crate::target::{Device, Form, Limits, Role, Target};
 use crate::text::{Message, Span};
-use std::borrow::Cow;
 use std::fmt;
 
 /// An instruction with its operands.
@@ -59,10 +59,21 @@ pub fn lines(path: &Path, target: &Target) -> Result<Vec<Line>, Message> {
 const TOO_MANY_BRANCHES: &str = "translate.branches";
 
 fn written(paths: &[Path], target: &Target) -> Result<Vec<Line>, Message> {
-    let mut writer = Writer { lines: Vec::new(), branches: 0, limits: target.limits };
-    paths.iter().try_for_each(|path| writer.path(&path.gates, &path.drives, true))?;
-    Ok(writer.lines)
+    let write = |paths: &[Path]| -> Result<Vec<Line>, Message> {
+        let mut writer = Writer { lines: Vec::new(), blocks: 0, branches: 0, limits: target.limits };
+        paths.iter().try_for_each(|path| writer.rung(path))?;
+        Ok(writer.lines)
+    };
+    match write(paths) {
+        // The drawn order stays where it can.
+        Err(reason) if reason.key() == TOO_MANY_BLOCKS => {
+            write(&paths.iter().map(deepest_first).collect::<Vec<_>>()).map_err(|_| reason)
+        }
+        written => written,
+    }
 }
+
+const TOO_MANY_BLOCKS: &str = "translate.blocks";
 
 /// A path for each output, with all that leads to it; nothing where power goes through something on the way.
 fn one_by_one(path: &Path, before: &mut Vec<Gate>, found: &mut Vec<Path>) -> Option<()> {
@@ -103,68 +114,99 @@ pub fn on_model(lines: Vec<Line>, target: &Target) -> Result<Vec<Line>, Message>
 
 struct Writer {
     lines: Vec<Line>,
+    /// How many blocks are open.
+    blocks: u32,
     /// How many powers are kept on the branch stack.
     branches: u32,
     limits: Limits,
 }
 
-impl Writer {
-    /// `is_first` if nothing is loaded yet.
-    fn path(&mut self, gates: &[Gate], drives: &[Drive], is_first: bool) -> Result<(), Message> {
-        let mut is_first = is_first;
-        let (gates, is_inverted) = inverters(gates, <[Gate]>::split_last);
+/// A path with the fewest instructions for it, behind either sense of the power that it leaves.
+struct Plan<'p> {
+    /// Up to the last gate that is no condition.
+    head: &'p [Gate],
+    /// What is asked behind that, for each sense of the power before it; nothing where there is no current result.
+    ways: Vec<(Turns<'p>, Moves)>,
+    stops: Vec<Stop<'p>>,
+    /// What the first drive gets is called the power, so that a list does not depend on how its contacts were turned.
+    is_turned: bool,
+}
+
+impl<'p> Plan<'p> {
+    /// `is_first` if nothing is loaded before `gates`.
+    fn of(gates: &'p [Gate], drives: &'p [Drive], is_first: bool) -> Plan<'p> {
+        let through = gates.iter().rposition(|gate| matches!(gate, Gate::Through(_)));
+        let (head, gates) = gates.split_at(through.map_or(0, |last| last + 1));
+        let begins = match head.last() {
+            Some(Gate::Through(action)) => is_step(action),
+            _ => is_first,
+        };
         let mut stops = Vec::with_capacity(drives.len());
-        add_stops(drives, is_inverted, &mut stops);
-        let mut wanted: Vec<Wants> = stops.iter().map(|stop| stop.wants).collect();
-        let (mut front, gates) = if is_first { front(gates, &wanted) } else { (None, gates) };
-        let may_turn = front.is_some() && gates.is_empty();
-        // What the first output wants is the power, so that a list does not depend on how its contacts were turned.
-        if may_turn && wanted.first().is_some_and(|wants| wants.inverse) {
-            wanted.iter_mut().for_each(|wants| wants.inverse = !wants.inverse);
-            front = front.map(|front| front.negated());
+        let is_empty = begins && !matches!(gates.first(), Some(Gate::Pass(_)));
+        add_stops(drives, is_empty && head.is_empty(), is_empty && !gates.is_empty(), &mut stops);
+        if is_empty {
+            return Plan { head, ways: Vec::new(), stops, is_turned: false };
         }
-        let moves = stack::moves(&wanted, may_turn);
-        if let Some(front) = front {
-            self.pass(&if moves.is_turned { front.negated() } else { front }, true)?;
-            is_first = false;
-        }
-        // Behind a step there is no current result: outputs may follow, and contacts begin anew.
-        let mut is_at_step = false;
-        for gate in gates {
+        let is_turned = stops.first().is_some_and(|stop| stop.is_inverse);
+        let wanted: Vec<Wants> = stops.iter().map(|stop| stop.wants(is_turned)).collect();
+        // Behind nothing there is but one way, and what decides by itself whether power goes on takes no inverse.
+        let senses = if begins || !head.is_empty() { 1 } else { 2 };
+        let ways = (0..senses).map(|before: Sense| {
+            let mut costs = [NEVER; 2];
+            costs[before] = 0;
+            let turns = Turns::of(Chain::of(gates, begins), (!begins).then_some(costs));
+            let [power, inverse] = turns.costs;
+            let moves = stack::moves(&wanted, if is_turned { [inverse, power] } else { [power, inverse] });
+            (turns, moves)
+        });
+        Plan { head, ways: ways.collect(), stops, is_turned }
+    }
+
+    /// What it costs behind the power, and behind the inverse of that.
+    fn costs(&self) -> [usize; 2] {
+        let cost = |sense: Sense| self.ways.get(sense).map_or(NEVER, |(_, moves)| moves.cost.min(NEVER));
+        if self.ways.is_empty() { [0, NEVER] } else { [cost(0), cost(1)] }
+    }
+}
+
+impl Writer {
+    fn rung(&mut self, path: &Path) -> Result<(), Message> {
+        self.blocks = 0;
+        self.path(&Plan::of(&path.gates, &path.drives, true), None)
+    }
+
+    /// Writes what `plan` says behind this sense of the power that it leaves, if there is any.
+    fn path(&mut self, plan: &Plan<'_>, before: Option<Sense>) -> Result<(), Message> {
+        let mut is_first = before.is_none();
+        for gate in plan.head {
             match gate {
-                Gate::Pass(expression) => self.pass(expression, is_first || is_at_step)?,
-                Gate::Invert if is_at_step => return Err(Message::new("translate.step-branch")),
+                Gate::Pass(expression) => {
+                    let gates = [Gate::Pass(expression.clone())];
+                    let before = (!is_first).then_some([0, NEVER]);
+                    Turns::of(Chain::of(&gates, is_first), before).write(
+                        0,
+                        (!is_first).then_some(0),
+                        self,
+                    )?;
+                }
                 Gate::Invert => self.bare("INV")?,
                 Gate::Through(action) => self.action(action)?,
             }
-            is_at_step = matches!(gate, Gate::Through(action) if is_step(action));
-            is_first = false;
+            // Behind a step there is no current result: outputs may follow, and contacts begin anew.
+            is_first = matches!(gate, Gate::Through(action) if is_step(action));
+            if is_first {
+                self.blocks = 0;
+            }
         }
-        if is_at_step && wanted.iter().any(|wants| wants.inverse || wants.for_good) {
-            return Err(Message::new("translate.step-branch"));
-        }
-        if is_first {
-            return drives.iter().try_for_each(|drive| match drive {
-                Drive::Action(action) if action.deed.stands_alone() => self.action(action),
-                Drive::Action(_) => Err(Message::new("translate.no-condition")),
-                // What begins at the left rail is a rung of its own.
-                Drive::Path(path) => self.path(&path.gates, &path.drives, true),
-            });
-        }
-        self.drives(&stops, moves)
-    }
-
-    fn pass(&mut self, expression: &Expression, is_first: bool) -> Result<(), Message> {
-        let ways = self.limits.blocks as usize - usize::from(!is_first);
-        let expression = within_blocks(expression, ways.max(1))?;
-        self.expression(&expression, if is_first { Role::Load } else { Role::Series })
-    }
-
-    fn drives(&mut self, stops: &[Stop<'_>], moves: Moves) -> Result<(), Message> {
-        for (stop, moves) in stops.iter().zip(moves.before) {
-            for mnemonic in moves {
+        let Some((turns, moves)) = plan.ways.get(before.unwrap_or(0)) else {
+            return self.without_condition(plan);
+        };
+        let sense = usize::from(moves.is_turned != plan.is_turned);
+        turns.write(sense, (!is_first).then_some(before.unwrap_or(0)), self)?;
+        for (stop, (mnemonics, is_inverse)) in plan.stops.iter().zip(&moves.before) {
+            for mnemonic in *mnemonics {
                 self.bare(mnemonic)?;
-                match mnemonic {
+                match *mnemonic {
                     "MPS" => self.branches += 1,
                     "MPP" => self.branches -= 1,
                     _ => {}
@@ -173,49 +215,31 @@ impl Writer {
                     return Err(Message::new(TOO_MANY_BRANCHES).with("limit", self.limits.branches));
                 }
             }
-            match stop.drive {
-                Drive::Action(action) => self.action(action)?,
-                Drive::Path(path) => self.path(stop.gates, &path.drives, false)?,
+            let sense = usize::from(*is_inverse != (plan.is_turned != stop.is_inverse));
+            match &stop.drive {
+                Driven::Action(action) => self.action(action)?,
+                Driven::Path(plan) => self.path(plan, Some(sense))?,
             }
         }
         Ok(())
     }
 
-    /// Writes `expression` as `role` says: as a block of its own, or joined with the current result.
-    fn expression(&mut self, expression: &Expression, role: Role) -> Result<(), Message> {
-        match (expression, role) {
-            (Expression::Contact(contact), _) => self.contact(contact, role),
-            (Expression::Constant(value), _) => self.contact(&always(*value), role),
-            (Expression::And(parts), Role::Series) | (Expression::Or(parts), Role::Parallel) => {
-                parts.iter().try_for_each(|part| self.expression(part, role))
-            }
-            (Expression::And(parts) | Expression::Or(parts), Role::Load) => {
-                let joined =
-                    if matches!(expression, Expression::And(_)) { Role::Series } else { Role::Parallel };
-                parts.iter().enumerate().try_for_each(|(number, part)| {
-                    self.expression(part, if number == 0 { Role::Load } else { joined })
-                })
-            }
-            (Expression::Not(part), _) if is_turnable(part) => self.expression(&part.negated(), role),
-            (Expression::Not(part), Role::Load) => {
-                self.expression(part, Role::Load)?;
-                self.bare("INV")
-            }
-            (_, Role::Series) => {
-                self.expression(expression, Role::Load)?;
-                self.bare("ANB")
-            }
-            _ => {
-                self.expression(expression, Role::Load)?;
-                self.bare("ORB")
+    /// Writes the drives of a path that asks for nothing: behind a step, or at the left rail.
+    fn without_condition(&mut self, plan: &Plan<'_>) -> Result<(), Message> {
+        let is_at_step = !plan.head.is_empty();
+        for stop in &plan.stops {
+            match &stop.drive {
+                Driven::Action(action) if is_at_step && !stop.is_inverse => self.action(action)?,
+                _ if is_at_step => return Err(Message::new("translate.step-branch")),
+                Driven::Action(action) if action.deed.stands_alone() => self.action(action)?,
+                Driven::Action(_) => return Err(Message::new("translate.no-condition")),
+                // What begins at the left rail is a rung of its own.
+                Driven::Path(plan) => {
+                    self.blocks = 0;
+                    self.path(plan, None)?;
+                }
             }
         }
-    }
-
-    fn contact(&mut self, contact: &Contact, role: Role) -> Result<(), Message> {
-        let form = contact.test.form().and_then(|load| load.placed(role));
-        let form = form.ok_or_else(|| Message::new("translate.no-instruction"))?;
-        self.lines.push(Line { form, terms: contact.terms.clone() });
         Ok(())
     }
 
@@ -237,68 +261,94 @@ impl Writer {
     }
 }
 
-/// The contacts at the left rail together with the inverters behind them, where turning these contacts over saves
-/// inverters; and the gates that are left.
-fn front<'g>(gates: &'g [Gate], wanted: &[Wants]) -> (Option<Expression>, &'g [Gate]) {
-    let [Gate::Pass(expression), behind @ ..] = gates else { return (None, gates) };
-    let (left, inverts) = inverters(behind, <[Gate]>::split_first);
-    let wants_inverse = wanted.iter().any(|wants| wants.inverse);
-    if left.len() == behind.len() && !wants_inverse || !is_turnable(expression) {
-        return (None, gates);
+impl Writes for Writer {
+    type Error = Message;
+
+    fn contact(&mut self, contact: &Contact, is_opposite: bool, joins: Joins) -> Result<(), Message> {
+        let role = match joins {
+            Joins::Loaded => Role::Load,
+            Joins::InSeries => Role::Series,
+            Joins::InParallel => Role::Parallel,
+        };
+        if role == Role::Load {
+            self.blocks += 1;
+            if self.blocks > self.limits.blocks {
+                return Err(Message::new(TOO_MANY_BLOCKS).with("limit", self.limits.blocks));
+            }
+        }
+        let test = if is_opposite { contact.test.opposite() } else { Some(contact.test) };
+        let form = test.and_then(Test::form).and_then(|load| load.placed(role));
+        let form = form.ok_or_else(|| Message::new("translate.no-instruction"))?;
+        self.lines.push(Line { form, terms: contact.terms.clone() });
+        Ok(())
     }
-    (Some(if inverts { expression.negated() } else { expression.clone() }), left)
+
+    fn join(&mut self, in_series: bool) -> Result<(), Message> {
+        self.blocks -= 1;
+        self.bare(if in_series { "ANB" } else { "ORB" })
+    }
+
+    fn invert(&mut self) -> Result<(), Message> {
+        self.bare("INV")
+    }
 }
 
 fn is_step(action: &Action) -> bool {
     matches!(action.deed, Deed::Instruction(form) if form.instruction.role == Role::StepLoad)
 }
 
-/// Whether there is an inverse instruction for each contact; edges have none.
-fn is_turnable(expression: &Expression) -> bool {
-    match expression {
-        Expression::Constant(_) => true,
-        Expression::Contact(contact) => contact.test.opposite().is_some(),
-        Expression::Not(_) => false,
-        Expression::And(parts) | Expression::Or(parts) => parts.iter().all(is_turnable),
+/// Something that the power behind the gates of a path comes to.
+struct Stop<'p> {
+    drive: Driven<'p>,
+    /// It stands behind inverters, and so wants the inverse.
+    is_inverse: bool,
+}
+
+enum Driven<'p> {
+    Action(&'p Action),
+    Path(Box<Plan<'p>>),
+}
+
+impl Stop<'_> {
+    /// What it wants; of the inverse of the power if `is_turned`.
+    fn wants(&self, is_turned: bool) -> Wants {
+        let [power, inverse] = match &self.drive {
+            Driven::Action(_) => [0, NEVER],
+            Driven::Path(plan) => plan.costs(),
+        };
+        let costs = if self.is_inverse == is_turned { [power, inverse] } else { [inverse, power] };
+        Wants { costs, for_good: matches!(self.drive, Driven::Path(_)) }
     }
 }
 
-/// Something that the power behind the gates of a path comes to.
-struct Stop<'p> {
-    wants: Wants,
-    drive: &'p Drive,
-    /// What power passes before the outputs of a conditional path, but for the inverters that `wants` tells of.
-    gates: &'p [Gate],
-}
-
-/// What power comes to behind the gates of a path. Paths that are but inverters are passed over: what they drive wants
-/// the inverse.
-fn add_stops<'p>(drives: &'p [Drive], is_inverted: bool, stops: &mut Vec<Stop<'p>>) {
+/// What power comes to behind the gates of a path, which loads nothing if `is_first`. Paths that are but inverters are
+/// passed over: what they drive wants the inverse.
+fn add_stops<'p>(drives: &'p [Drive], is_first: bool, is_inverse: bool, stops: &mut Vec<Stop<'p>>) {
     for drive in drives {
         match drive {
             Drive::Action(action) => {
-                let inverse = is_inverted != (action.deed == Deed::Coil(CoilKind::Negated));
-                stops.push(Stop { wants: Wants { inverse, for_good: false }, drive, gates: &[] });
+                let is_inverse = is_inverse != (action.deed == Deed::Coil(CoilKind::Negated));
+                stops.push(Stop { drive: Driven::Action(action), is_inverse });
             }
             Drive::Path(path) => {
-                let (gates, turns) = inverters(&path.gates, <[Gate]>::split_first);
-                let inverse = is_inverted != turns;
+                let (gates, turns) = inverters(&path.gates);
+                let is_inverse = is_inverse != turns;
                 match gates.is_empty() {
-                    true => add_stops(&path.drives, inverse, stops),
-                    false => stops.push(Stop { wants: Wants { inverse, for_good: true }, drive, gates }),
+                    true => add_stops(&path.drives, is_first, is_inverse, stops),
+                    false => {
+                        let plan = Plan::of(gates, &path.drives, is_first);
+                        stops.push(Stop { drive: Driven::Path(Box::new(plan)), is_inverse });
+                    }
                 }
             }
         }
     }
 }
 
-/// `gates` without the inverters at the end where `split` takes one off, and whether these invert.
-fn inverters<'g>(
-    mut gates: &'g [Gate],
-    split: impl Fn(&'g [Gate]) -> Option<(&'g Gate, &'g [Gate])>,
-) -> (&'g [Gate], bool) {
+/// `gates` without the inverters before them, and whether these invert.
+fn inverters(mut gates: &[Gate]) -> (&[Gate], bool) {
     let mut inverts = false;
-    while let Some((Gate::Invert, rest)) = split(gates) {
+    while let [Gate::Invert, rest @ ..] = gates {
         (gates, inverts) = (rest, !inverts);
     }
     (gates, inverts)
@@ -314,17 +364,17 @@ pub(super) fn always(value: bool) -> Contact {
     }
 }
 
-/// `expression`, with its parts in such an order that at most `most` blocks are open at a time. The drawn order stays
-/// where it can.
-fn within_blocks(expression: &Expression, most: usize) -> Result<Cow<'_, Expression>, Message> {
-    if blocks(expression) <= most {
-        return Ok(Cow::Borrowed(expression));
-    }
-    let sorted = deepest_first(expression);
-    match blocks(&sorted) <= most {
-        true => Ok(Cow::Owned(sorted)),
-        false => Err(Message::new("translate.blocks").with("limit", most)),
-    }
+/// `path` with the parts of its conditions in such an order that the fewest blocks are open at a time.
+fn deepest_first(path: &Path) -> Path {
+    let gates = path.gates.iter().map(|gate| match gate {
+        Gate::Pass(expression) => Gate::Pass(sorted(expression)),
+        gate => gate.clone(),
+    });
+    let drives = path.drives.iter().map(|drive| match drive {
+        Drive::Path(path) => Drive::Path(deepest_first(path)),
+        drive => drive.clone(),
+    });
+    Path { gates: gates.collect(), drives: drives.collect() }
 }
 
 /// How many blocks are open at a time when `expression` is written as a block.
@@ -342,18 +392,18 @@ fn blocks(expression: &Expression) -> usize {
     }
 }
 
-fn deepest_first(expression: &Expression) -> Expression {
-    let sorted = |parts: &[Expression]| {
-        let mut parts: Vec<Expression> = parts.iter().map(deepest_first).collect();
+fn sorted(expression: &Expression) -> Expression {
+    let all = |parts: &[Expression]| {
+        let mut parts: Vec<Expression> = parts.iter().map(sorted).collect();
         let deepest = (0..parts.len()).max_by_key(|number| (blocks(&parts[*number]), usize::MAX - number));
         let first = parts.remove(deepest.unwrap_or(0));
         parts.insert(0, first);
         parts
     };
     match expression {
-        Expression::And(parts) => Expression::And(sorted(parts)),
-        Expression::Or(parts) => Expression::Or(sorted(parts)),
-        Expression::Not(part) => Expression::Not(Box::new(deepest_first(part))),
+        Expression::And(parts) => Expression::And(all(parts)),
+        Expression::Or(parts) => Expression::Or(all(parts)),
+        Expression::Not(part) => Expression::Not(Box::new(sorted(part))),
         leaf => leaf.clone(),
     }
 }

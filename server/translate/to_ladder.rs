@@ -85,7 +85,10 @@ impl Planner {
                 Ok(vec![parallel(branches?)])
             }
             Expression::And(parts) => {
-                let is_inverted = |part: &Expression| matches!(part, Expression::Not(_));
+                let is_inverted = |part: &Expression| match part {
+                    Expression::Not(part) => matches!(part.negated(), Expression::Not(_)),
+                    _ => false,
+                };
                 let first = parts.iter().position(is_inverted).filter(|_| starts).unwrap_or(0);
                 let mut row = self.condition(&parts[first], starts)?;
                 for part in parts[..first].iter().chain(&parts[first + 1..]) {
