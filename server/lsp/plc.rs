@@ -59,6 +59,8 @@
 
 mod answers;
 
+mod connected;
+
 mod desk;
 
 mod drift;

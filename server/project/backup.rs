@@ -27,6 +27,9 @@ pub struct Backup {
     /// Whether it was a program that the PLC had taken over, and not one that was written in part.
     #[serde(default)]
     pub whole: bool,
+    /// Whether the download before which it was read is known to have ended. Older files do not say.
+    #[serde(default = "yes")]
+    pub ended: bool,
     steps: usize,
     /// Parameters, in words as they lie in memory.
     parameters: Vec<u16>,
@@ -77,17 +80,41 @@ impl Backup {
             version: from.version.clone(),
             replaced_by: Some(from.replaced_by),
             whole: is_whole,
+            ended: false,
             steps: image.program().len(),
             parameters: image.parameters().to_words().to_vec(),
             words: image.program().to_vec(),
         };
-        let mut file = tempfile::NamedTempFile::new_in(&folder)?;
-        serde_json::to_writer_pretty(&mut file, &backup)?;
+        let path = folder.join(format!("{}-{}.json", time.strftime("%Y%m%dT%H%M%S%.3fZ"), from.target.name));
+        backup.write(&path)?;
+        Ok(path)
+    }
+
+    fn write(&self, path: &Path) -> io::Result<()> {
+        let mut file = tempfile::NamedTempFile::new_in(path.parent().unwrap_or(Path::new(".")))?;
+        serde_json::to_writer_pretty(&mut file, self)?;
         file.flush()?;
         file.as_file().sync_all()?;
-        let path = folder.join(format!("{}-{}.json", time.strftime("%Y%m%dT%H%M%S%.3fZ"), from.target.name));
-        file.persist(&path)?;
-        Ok(path)
+        file.persist(path)?;
+        Ok(())
+    }
+
+    /// Notes in the backups at `paths` that a download has ended, so that what is in the PLC is whole.
+    ///
+    /// # Errors
+    /// If that cannot be written.
+    pub fn note_end<'a>(paths: impl IntoIterator<Item = &'a Path>) -> io::Result<()> {
+        for path in paths {
+            if let Some(backup) = Backup::read(path).filter(|backup| !backup.ended) {
+                Backup { ended: true, ..backup }.write(path)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// What a download began to replace that is not known to have ended.
+    pub fn replaced(&self) -> Option<&[u16]> {
+        (!self.ended).then_some(&self.words[..])
     }
 
     /// The newest file among the backups of the project of `beside` that is newer than `known` and cannot be read.
@@ -105,6 +132,10 @@ impl Backup {
         let backups = files.filter_map(|path| Backup::read(&path).map(|backup| (path, backup)));
         backups.filter(|(_, backup)| backup.whole).max_by(|(_, one), (_, other)| one.time.cmp(&other.time))
     }
+}
+
+fn yes() -> bool {
+    true
 }
 
 fn folder(beside: &Path) -> PathBuf {
