@@ -55,6 +55,32 @@ impl Backup {
         serde_json::from_str(&std::fs::read_to_string(path).ok()?).ok()
     }
 
+    /// Why what a file holds makes no sense as a backup, with the place in it; nothing if it does.
+    pub fn fault(path: &Path) -> Option<String> {
+        let text = match std::fs::read_to_string(path) {
+            Ok(text) => text,
+            Err(error) => return Some(error.to_string()),
+        };
+        match serde_json::from_str::<Backup>(&text) {
+            Ok(backup) => backup.senseless_member().map(|member| format!("`{member}`")),
+            Err(error) => Some(error.to_string()),
+        }
+    }
+
+    /// The first member that no PLC can have had.
+    fn senseless_member(&self) -> Option<&'static str> {
+        let target = Target::named(&self.model).filter(|target| target.is_fx());
+        let most = target.map_or(0, |target| target.limits.steps_at_most);
+        let capacity = self.parameters().capacity();
+        let is_wrong = [
+            ("model", target.is_none()),
+            ("parameters", self.parameters.len() != ParameterBlock::WORDS || !(1..=most).contains(&capacity)),
+            ("words", self.words.is_empty() || self.words.len() > capacity as usize),
+            ("steps", self.steps != self.words.len()),
+        ];
+        is_wrong.into_iter().find(|(_, is_wrong)| *is_wrong).map(|(member, _)| member)
+    }
+
     /// The parameters.
     pub fn parameters(&self) -> ParameterBlock {
         ParameterBlock::from_words(&self.parameters)

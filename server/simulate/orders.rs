@@ -40,6 +40,11 @@ const WATCHDOG_MS: (i64, i64) = (200, 2_000);
 /// Annunciators are no steps.
 const ANNUNCIATORS: std::ops::RangeInclusive<u32> = 900..=999;
 
+/// Whether a register is among those in which the CPU says what it is, which nobody can change.
+pub fn is_identity(device: Device) -> bool {
+    device.kind == DeviceKind::D && TYPES.iter().chain(&MEMORY).any(|number| *number == device.number)
+}
+
 impl<L: Lanes> Machine<L> {
     /// What the CPU says of itself when it gets power, in special registers.
     pub fn identify(&mut self) {

@@ -78,11 +78,17 @@ fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Resul
     if arguments.dry_run {
         return Ok(if plan.bytes() == 0 { Outcome::Clean } else { Outcome::Findings });
     }
-    let question =
-        Message::new(if arguments.start { "link.ask-download-start" } else { "link.ask-download" })
-            .with("bytes", plan.bytes())
-            .with("model", host.identity().target.title);
-    if !confirmed(&question, arguments.yes, &mut host, language) {
+    let question = match (plan.is_same(), arguments.start) {
+        // Nothing stops, and nothing starts.
+        (true, false) => None,
+        (true, true) => Some("link.ask-start"),
+        (false, false) => Some("link.ask-download"),
+        (false, true) => Some("link.ask-download-start"),
+    };
+    let question = question.map(|question| {
+        Message::new(question).with("bytes", plan.bytes()).with("model", host.identity().target.title)
+    });
+    if question.is_some_and(|question| !confirmed(&question, arguments.yes, &mut host, language)) {
         return Err(Outcome::Findings);
     }
     // What changes nothing leaves nothing to go back to.

@@ -141,6 +141,11 @@ impl Plan {
         self.wanted.changed_chunks(&self.before, MOST_DATA).iter().map(|chunk| chunk.bytes.len()).sum()
     }
 
+    /// Whether the PLC has taken over this very program, so that nothing need be written.
+    pub fn is_same(&self) -> bool {
+        self.is_whole && self.bytes() == 0
+    }
+
     /// The same with other parameters, where the program fits then.
     pub fn with_parameters(mut self, parameters: impl FnOnce(ParameterBlock) -> ParameterBlock) -> Plan {
         if let Some(wanted) = self.wanted.with_parameters(parameters(*self.wanted.parameters())) {
@@ -230,7 +235,7 @@ impl<T: Transport> Host<T> {
     }
 
     /// Carries a plan out: stop, write what has changed, read all of it back, compare the sum, and start if
-    /// `is_started` says so.
+    /// `is_started` says so. A program that is there already is only compared, and what runs goes on.
     ///
     /// # Errors
     /// With what has become of the program. The same download, planned again, finishes the job.
@@ -310,13 +315,23 @@ impl<T: Transport> Host<T> {
         fate: &mut Fate,
         tell: &mut dyn FnMut(Progress),
     ) -> Result<Report, LinkError> {
+        let mut written = 0;
+        let mut compared = 0;
+        // What is there word for word need not be written, and nothing stops for it.
+        let is_there = plan.is_same()
+            && first_difference(&self.read_back(plan, &mut compared, tell)?, &plan.wanted).is_none();
+        if is_there {
+            if is_started {
+                *fate = Fate::Verified;
+                self.start()?;
+            }
+            return Ok(Report { written, compared, mode: self.mode()? });
+        }
         if self.mode()? == Mode::Run {
             *fate = Fate::Stopped;
             self.halt()?;
         }
         let mut held = plan.before.clone();
-        let mut written = 0;
-        let mut compared = 0;
         for round in 0..=MOST_MENDS {
             written += self.write_changes(&held, &plan.wanted, fate, tell)?;
             // What was sent may have come otherwise, and with a sum that is right by chance.
