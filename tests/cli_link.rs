@@ -93,7 +93,7 @@ impl Example {
         let requests = Arc::<AtomicUsize>::default();
         // Each request is a scan of a stepped PLC.
         let counted = Arc::clone(&requests);
-        let hear = move || _ = counted.fetch_add(1, Ordering::Relaxed);
+        let hear = move |_: &[u8]| _ = counted.fetch_add(1, Ordering::Relaxed);
         let line = Overheard { line: transport::open(port).unwrap(), hear };
         // A machine with much to do may be slow, and a request that is sent anew would be a scan too many.
         let patience = Patience { answer: Duration::from_secs(60), tries: 1 };

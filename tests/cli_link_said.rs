@@ -45,6 +45,32 @@ fn a_newer_backup_that_cannot_be_read_is_not_passed_over_in_silence() {
 }
 
 #[test]
+fn a_rollback_leads_behind_what_a_download_left_though_the_sums_are_equal() {
+    let fill: String = (0..60).map(|n| format!("LD M{n}\nOUT M{}\n", n + 1)).collect();
+    let list = |[first, second]: [&str; 2], last: &str| {
+        format!("LD {first}\nOUT Y0\nLD {second}\nOUT Y1\n{fill}LD {last}\nOUT Y5\nEND\n")
+    };
+    let (old, new) = (list(["X0", "X2"], "X5"), list(["X2", "X0"], "X6"));
+    let folder = folder(&[("old.il", &old), ("new.il", &new)]);
+    let plc = VirtualPlc::start(folder.path(), &["--program", "old.il"]);
+    let mut writes = 0;
+    let cut = proxy(plc.address(), move |body| {
+        writes += usize::from(body.starts_with("E11"));
+        if writes > 1 { Pass::Cut } else { Pass::On }
+    });
+    check(&folder, &["download", "new.il", "--yes", "--port", &cut], 3);
+    check(&folder, &["download", "new.il", "--yes", "--port", &plc.port], 0);
+    check(&folder, &["download", "--rollback", "--yes", "--port", &plc.port], 0);
+    check(&folder, &["verify", "old.il", "--port", &plc.port], 0);
+    // All downloads have ended, so what is in the PLC is whole, whoever has written it.
+    let kept = std::fs::read_dir(folder.path().join(".rungwise/backup")).unwrap().flatten();
+    let kept: Vec<String> = kept.map(|file| std::fs::read_to_string(file.path()).unwrap()).collect();
+    let count = |word: &str| kept.iter().filter(|kept| kept.contains(word)).count();
+    assert_eq!((kept.len(), count("\"ended\": true")), (3, 3), "{kept:?}");
+    assert_eq!(count("\"whole\": false"), 1, "{kept:?}");
+}
+
+#[test]
 fn what_changes_is_drawn_for_a_drawing() {
     let folder = folder(&[("motor.lad", DRAWN), ("other.il", OTHER), ("motor.il", MOTOR)]);
     let plc = VirtualPlc::start(folder.path(), &["--program", "other.il"]);

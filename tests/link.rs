@@ -222,7 +222,7 @@ fn what_was_downloaded_is_there_word_for_word_and_runs() {
         let mut stages = Vec::new();
         let report = host.download(&plan, true, &mut |progress| stages.push(progress)).unwrap();
         assert_eq!(report.mode, Mode::Run, "{model:?}");
-        assert_eq!(host.upload(&mut |_| {}).unwrap().program(), program, "{model:?}");
+        assert_eq!(host.upload(&mut |_| {}).unwrap().image.program(), program, "{model:?}");
         let last = stages.last().unwrap();
         assert_eq!(last.done, last.total, "{stages:?}");
         let point = |name: &str| Point::named(name, Target::of(model)).unwrap();
@@ -251,7 +251,7 @@ fn only_what_has_changed_is_written() {
     assert_eq!(plan.bytes(), 2, "one word");
     let report = host.download(&plan, false, &mut |_| {}).unwrap();
     assert_eq!((report.written, report.compared), (2, 2 * (after.len() + ParameterBlock::WORDS)));
-    assert_eq!(host.upload(&mut |_| {}).unwrap().program(), after);
+    assert_eq!(host.upload(&mut |_| {}).unwrap().image.program(), after);
     // A shorter program leaves nothing of the longer one behind it.
     let short = words("LD X0\nOUT Y0\nEND\n", Model::Fx2n);
     let plan = host.plan(&short, Target::of(Model::Fx2n), &mut |_| {}).unwrap();
@@ -259,7 +259,7 @@ fn only_what_has_changed_is_written() {
     assert_eq!(Image::from_bytes(&memory(&line)).unwrap(), Image::of(&short, Model::Fx2n).unwrap());
     // And what was there before comes back.
     host.download(&plan.undone(), false, &mut |_| {}).unwrap();
-    assert_eq!(host.upload(&mut |_| {}).unwrap().program(), after);
+    assert_eq!(host.upload(&mut |_| {}).unwrap().image.program(), after);
 }
 
 #[test]
@@ -310,6 +310,33 @@ fn what_is_read_again_after_a_download_that_did_not_end_is_what_it_may_have_writ
             assert_eq!(Image::from_bytes(&memory(&line)).unwrap(), Image::of(&after, Model::Fx2n).unwrap());
         }
     }
+}
+
+#[test]
+fn what_a_download_left_is_no_whole_program_though_its_sum_is_that_of_the_old_one() {
+    let target = Target::of(Model::Fx2n);
+    let between: String = (0..60).map(|n| format!("LD M{n}\nOUT M{}\n", n + 1)).collect();
+    let list = |[first, second]: [&str; 2], last: &str| {
+        let list = format!("LD {first}\nOUT Y0\nLD {second}\nOUT Y1\n{between}LD {last}\nOUT Y5\nEND\n");
+        words(&list, Model::Fx2n)
+    };
+    let (before, after) = (list(["X0", "X2"], "X5"), list(["X2", "X0"], "X6"));
+    let mut plc = Plc::new(target, 10_000_000);
+    plc.load(&before);
+    let line = Loopback::with(Server::new(plc), Faults::default());
+    let cancel = Arc::<AtomicBool>::default();
+    let mut host = Host::connect(Line::new(line.clone(), Patience::default(), Arc::clone(&cancel))).unwrap();
+    let plan = host.plan_behind(Some(&before), &after, target, &mut |_| {}).unwrap();
+    assert!(plan.is_whole, "nothing was begun");
+    let failure = host.download(&plan, false, &mut |_| cancel.store(true, Ordering::Relaxed)).unwrap_err();
+    assert_eq!(failure.fate, Fate::Partial);
+    let mut host = line.host().unwrap();
+    let plan = host.plan_behind(Some(&before), &after, target, &mut |_| {}).unwrap();
+    assert_eq!(plan.found, plan.before.parameters().sum(), "the sums are equal");
+    assert!(!plan.is_whole && plan.before.program() != before);
+    // Whoever knows that no download was begun has read a whole program.
+    host.download(&plan, false, &mut |_| {}).unwrap();
+    assert!(host.plan(&after, target, &mut |_| {}).unwrap().is_whole);
 }
 
 /// All of the program memory, as a host that reads all of it sees it.

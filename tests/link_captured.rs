@@ -131,7 +131,7 @@ fn check_host(model: Model, text: &'static str) {
         assert_eq!(host.poll(&mut watch).unwrap(), [0, 0, 0, 1, 0, 0, 1]);
     }
     host.stop().unwrap();
-    assert_eq!(host.upload(&mut |_| {}).unwrap().program(), program);
+    assert_eq!(host.upload(&mut |_| {}).unwrap().image.program(), program);
     assert_eq!(
         left.lock().unwrap().iter().map(|row| row.request).collect::<Vec<_>>(),
         [""; 0],

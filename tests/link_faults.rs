@@ -2,7 +2,7 @@
 
 use crate::loopback::{Loopback, Overheard, words};
 use rungwise::link::plc::{Faults, Plc, Server};
-use rungwise::link::{Fate, Host, Line, LinkError, Mode, Patience, Switch};
+use rungwise::link::{DownloadFailure, Fate, Host, Line, LinkError, Mode, Patience, Switch, Uploaded};
 use rungwise::machine_code::{BLANK, END};
 use rungwise::simulate::Value;
 use rungwise::target::{Model, Target};
@@ -92,15 +92,19 @@ impl Case {
     }
 
     /// Whether what a host says of a download that has failed is so.
-    fn is_true(&self, line: &Loopback, fate: Fate) -> bool {
+    fn is_true(&self, line: &Loopback, failure: &DownloadFailure) -> bool {
         let [before, after] = &self.programs;
         let (program, is_running) = (program_in(line), Case::is_running(line));
-        match fate {
-            Fate::Untouched => program == *before && is_running,
-            Fate::Stopped => program == *before,
-            Fate::Partial | Fate::Unverified => !is_running,
-            Fate::Verified => program == *after,
-        }
+        let is_told = failure.mode.is_none_or(|mode| (mode == Mode::Run) == is_running);
+        is_told
+            && match failure.fate {
+                Fate::Untouched => program == *before && is_running,
+                Fate::Stopped => program == *before,
+                Fate::Doubtful => !is_running,
+                Fate::Partial => !is_running && program != *before,
+                Fate::Unverified => !is_running,
+                Fate::Verified => program == *after,
+            }
     }
 
     fn is_running(line: &Loopback) -> bool {
@@ -144,14 +148,14 @@ impl Case {
                         let is_right = program_in(&line) == *after;
                         (Fate::Verified, is_right && Case::is_running(&line) == is_running)
                     }
-                    Err(failure) => (failure.fate, self.is_true(&line, failure.fate)),
+                    Err(failure) => (failure.fate, self.is_true(&line, failure)),
                 };
                 if !is_true {
                     wrong.push(format!("{end:?} is not true"));
                 }
                 match fate {
                     Fate::Untouched | Fate::Stopped => tally.untouched += 1,
-                    Fate::Partial => tally.partial += 1,
+                    Fate::Doubtful | Fate::Partial => tally.partial += 1,
                     Fate::Unverified => tally.unverified += 1,
                     Fate::Verified => tally.done += 1,
                 }
@@ -220,8 +224,9 @@ fn what_an_upload_brings_is_what_is_in_the_plc() {
         let case = &cases[seed as usize % 2];
         let line = Loopback::with(Server::new(case.plc(seed / 2)), faults_of(seed));
         let image = line.host().and_then(|mut host| host.upload(&mut |_| {}));
-        if let Ok(image) = image {
+        if let Ok(Uploaded { image, is_whole }) = image {
             brought += 1;
+            assert!(is_whole, "seed {seed}");
             assert_eq!(image.program(), case.programs[0], "seed {seed}");
             assert_eq!(image.memory(), line.ends().server.plc().words(), "seed {seed}");
         }
@@ -244,7 +249,7 @@ fn a_download_that_is_ended_at_any_request_is_told_truly_and_can_be_finished() {
             let line = Loopback::with(Server::new(case.plc(0)), Faults::default());
             let cancel = Arc::<AtomicBool>::default();
             let (ending, mut left) = (Arc::clone(&cancel), requests);
-            let hear = move || match left {
+            let hear = move |_: &[u8]| match left {
                 0 => ending.store(true, Ordering::Relaxed),
                 _ => left -= 1,
             };
@@ -274,7 +279,8 @@ fn a_download_that_is_ended_at_any_request_is_told_truly_and_can_be_finished() {
             assert_eq!(failure.cause, LinkError::Cancelled, "{requests}");
             // What lets hosts write the program is taken back in any case.
             assert_eq!(line.ends().server.plc().shown("M8118"), Some(Value::Bit(false)), "{requests}");
-            let is_true = case.is_true(&line, failure.fate);
+            let is_true = case.is_true(&line, &failure);
+            assert!(failure.mode.is_some(), "{requests}");
             assert!(is_true, "{requests}: {failure:?}, and it runs: {}", is_running());
             fates.push(failure.fate);
             let again = line.host().and_then(|mut host| {
@@ -304,7 +310,7 @@ fn a_line_that_breaks_at_any_frame_leaves_no_partial_program_running() {
             let line = Loopback::with(Server::new(case.plc(1)), Faults::default());
             let has_run_partly = case.watched(&line);
             let (broken, mut left) = (line.clone(), frames);
-            let hear = move || match left {
+            let hear = move |_: &[u8]| match left {
                 0 => broken.cut(is_answer),
                 _ => left -= 1,
             };
@@ -326,7 +332,7 @@ fn a_line_that_breaks_at_any_frame_leaves_no_partial_program_running() {
             };
             let Err(failure) = ended else { break };
             assert!(matches!(failure.cause, LinkError::Gone { .. }), "{frames}: {failure:?}");
-            assert!(case.is_true(&line, failure.fate), "{frames}: {failure:?}");
+            assert!(case.is_true(&line, &failure), "{frames}: {failure:?}");
             fates.push(failure.fate);
             line.reconnect(Faults::default());
             let again = line.host().and_then(|mut host| {
@@ -338,7 +344,100 @@ fn a_line_that_breaks_at_any_frame_leaves_no_partial_program_running() {
             assert!(!has_run_partly.load(Ordering::Relaxed), "{frames}");
         }
         fates.dedup();
-        let all = [Fate::Untouched, Fate::Stopped, Fate::Partial, Fate::Unverified, Fate::Verified];
+        let all =
+            [Fate::Untouched, Fate::Stopped, Fate::Doubtful, Fate::Partial, Fate::Unverified, Fate::Verified];
         assert_eq!(fates, all, "{model:?}, answers: {is_answer}");
+    }
+}
+
+/// What is lost of a line: the requests that begin so, or the answers to them.
+#[derive(Clone, Copy)]
+struct Lost {
+    requests: &'static str,
+    is_answer: bool,
+}
+
+/// Downloads the second program of a case, while `hear` hears the requests without what is around them.
+fn overheard(
+    case: &Case,
+    line: &Loopback,
+    mut hear: impl FnMut(&str) + Send,
+) -> Result<Mode, DownloadFailure> {
+    let hear = move |frame: &[u8]| hear(&String::from_utf8_lossy(&frame[1..frame.len() - 3]));
+    let heard = Overheard { line: line.clone(), hear };
+    let mut host = Host::connect(Line::new(heard, Patience::default(), Arc::default())).unwrap();
+    let plan = host.plan(&case.programs[1], case.target, &mut |_| {}).unwrap();
+    host.download(&plan, false, &mut |_| {}).map(|report| report.mode)
+}
+
+#[test]
+fn what_is_not_heard_of_a_write_or_an_order_is_asked_for_afterwards() {
+    let lost = |requests, is_answer| Lost { requests, is_answer };
+    for (model, lost, fate, mode) in [
+        // Written, and never acknowledged.
+        (Model::Fx2n, lost("E11", true), Fate::Partial, Mode::Stop),
+        (Model::Fx1s, lost("1", true), Fate::Partial, Mode::Stop),
+        // Never written.
+        (Model::Fx2n, lost("E11", false), Fate::Stopped, Mode::Stop),
+        (Model::Fx1s, lost("1", false), Fate::Stopped, Mode::Stop),
+        // The order to stop.
+        (Model::Fx2n, lost("E7250E", true), Fate::Stopped, Mode::Stop),
+        (Model::Fx2n, lost("E7250E", false), Fate::Stopped, Mode::Run),
+    ] {
+        let case = Case::new(model);
+        let line = Loopback::with(Server::new(case.plc(1)), Faults::default());
+        let wire = line.clone();
+        let ended = overheard(&case, &line, move |body| {
+            let drop = if body.starts_with(lost.requests) { 1.0 } else { 0.0 };
+            wire.spoil(lost.is_answer, Faults { drop, ..Faults::default() });
+        });
+        let failure = ended.unwrap_err();
+        assert_eq!((failure.fate, failure.mode), (fate, Some(mode)), "{model:?} {}", lost.requests);
+        assert!(case.is_true(&line, &failure), "{failure:?}");
+    }
+}
+
+#[test]
+fn whoever_turns_the_switch_under_a_download_makes_nothing_of_it_untrue() {
+    for model in [Model::Fx2n, Model::Fx1s] {
+        let case = Case::new(model);
+        let mut fates = Vec::new();
+        for requests in 0.. {
+            let line = Loopback::with(Server::new(case.plc(1)), Faults::default());
+            let has_run_partly = case.watched(&line);
+            let (plc, mut heard) = (line.clone(), 0);
+            let is_over = Arc::<AtomicBool>::default();
+            let is_turned = Arc::clone(&is_over);
+            let ended = overheard(&case, &line, move |_| {
+                if heard == requests {
+                    let mut ends = plc.ends();
+                    let now_ns = ends.now_ns;
+                    ends.server.plc_mut().turn(Switch::Run, now_ns);
+                    is_turned.store(true, Ordering::Relaxed);
+                }
+                heard += 1;
+            });
+            if !is_over.load(Ordering::Relaxed) {
+                break;
+            }
+            let (program, is_running) = (program_in(&line), Case::is_running(&line));
+            match ended {
+                Ok(mode) => {
+                    assert_eq!(program, case.programs[1], "{requests}");
+                    assert_eq!(mode == Mode::Run, is_running, "{requests}");
+                }
+                Err(failure) => {
+                    assert_eq!(failure.mode.map(|mode| mode == Mode::Run), Some(is_running), "{requests}");
+                    let is_old = program == case.programs[0];
+                    let is_told_old = matches!(failure.fate, Fate::Untouched | Fate::Stopped);
+                    assert_eq!(is_told_old, is_old, "{requests}: {failure:?}");
+                    fates.push((failure.fate, is_running));
+                }
+            }
+            assert!(!has_run_partly.load(Ordering::Relaxed), "{requests}");
+        }
+        fates.dedup();
+        // The old program runs again before anything of the new one was written; half of one does not run.
+        assert!(fates.contains(&(Fate::Stopped, true)), "{model:?}: {fates:?}");
     }
 }

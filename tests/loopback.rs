@@ -66,9 +66,13 @@ impl Loopback {
 
     /// From the next byte on one direction is dead: that to the PLC, or that of its answers.
     pub fn cut(&self, is_answer: bool) {
+        self.spoil(is_answer, Faults { disconnect: 1.0, ..Faults::default() });
+    }
+
+    /// From the next byte on one direction has these faults: that to the PLC, or that of its answers.
+    pub fn spoil(&self, is_answer: bool, faults: Faults) {
         let mut ends = self.ends();
-        let dead = Faults { disconnect: 1.0, ..Faults::default() };
-        if is_answer { ends.to_host.set_faults(dead) } else { ends.to_plc.set_faults(dead) }
+        if is_answer { ends.to_host.set_faults(faults) } else { ends.to_plc.set_faults(faults) }
     }
 
     /// The line is put together again, and goes on with these faults. The PLC does not learn of that, as on a serial
@@ -181,16 +185,16 @@ impl Transport for Loopback {
     }
 }
 
-/// A line on which somebody hears when a request is sent.
+/// A line on which somebody hears the requests, each before it is sent.
 pub struct Overheard<T, F> {
     pub line: T,
     pub hear: F,
 }
 
-impl<T: Transport, F: FnMut() + Send> Transport for Overheard<T, F> {
+impl<T: Transport, F: FnMut(&[u8]) + Send> Transport for Overheard<T, F> {
     fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         if bytes.first() == Some(&STX) {
-            (self.hear)();
+            (self.hear)(bytes);
         }
         self.line.send(bytes)
     }

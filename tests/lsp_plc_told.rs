@@ -1,7 +1,10 @@
 //! What an editor is told beside the answers about a PLC: the status of programs, and how far something is.
 
 use super::lsp_plc::Connected;
+use crate::virtual_plc::{Pass, proxy};
 use serde_json::{Value, json};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 const LIST: &str = "LD X0\nOUT Y0\nEND\n";
 
@@ -100,6 +103,44 @@ fn the_port_of_the_project_is_among_the_ports() {
     assert_eq!(editor.tell("ports", json!({}))["project"], "tcp://127.0.0.1:5551");
     let nameless = editor.answer("write", json!({ "name": "", "value": 1 }));
     assert!(nameless["error"]["message"].as_str().unwrap().contains("no device is named"), "{nameless}");
+}
+
+#[test]
+fn what_was_shown_is_what_is_downloaded_and_is_not_read_again() {
+    let reads = Arc::<AtomicUsize>::default();
+    let counted = Arc::clone(&reads);
+    let long: String = (0..200).map(|n| format!("LD M{n}\nOUT M{}\n", n + 1)).collect();
+    let mut editor = Connected::open_with(&format!("{long}END\n"), "", |plc| {
+        proxy(plc.address(), move |body| {
+            counted.fetch_add(usize::from(body.starts_with("E01805C")), Ordering::Relaxed);
+            Pass::On
+        })
+    });
+    let confirmed = |plan: &Value| json!({ "confirmed": true, "sum": plan["sum"] });
+    let plan = editor.tell("plan", json!({}));
+    // The text moves on while somebody looks.
+    editor.client.change(&editor.uri.clone(), 2, (0, 0), (0, 2), "LDI");
+    editor.client.diagnostics(&editor.uri.clone(), 2);
+    let answer = editor.answer("download", confirmed(&plan));
+    assert!(answer["error"]["message"].as_str().unwrap().contains("what was shown"), "{answer}");
+    let plan = editor.tell("plan", json!({}));
+    let before = reads.swap(0, Ordering::Relaxed);
+    assert_eq!(before, 2, "one for each plan");
+    let done = editor.tell("download", confirmed(&plan));
+    assert_eq!(reads.load(Ordering::Relaxed), 1, "read back, and not before");
+    // All have ended.
+    let backup = std::fs::read_to_string(done["backup"].as_str().unwrap()).unwrap();
+    assert!(backup.contains("\"ended\": true"), "{backup}");
+    // What was shown once is downloaded once.
+    let plan = editor.tell("plan", json!({}));
+    editor.tell("download", confirmed(&plan));
+}
+
+#[test]
+fn a_command_that_there_is_not_is_refused() {
+    let mut editor = Connected::open(LIST);
+    let answer = editor.answer("explode", json!({}));
+    assert!(answer["error"]["message"].as_str().unwrap().contains("rungwise.plc.explode"), "{answer}");
 }
 
 #[test]

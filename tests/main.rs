@@ -16,6 +16,7 @@ mod cli;
 mod cli_link;
 mod cli_link_drift;
 mod cli_link_ended;
+mod cli_link_left;
 mod cli_link_refused;
 mod cli_link_said;
 mod cli_link_setup;

@@ -170,6 +170,14 @@ fn plc_of(arguments: &Arguments, language: Language) -> Option<Plc> {
         bad_state(path, &reason, language);
         return None;
     }
+    let most = target.limits.steps_at_most / 1000;
+    if let Some(thousands) = arguments.memory.filter(|thousands| u32::from(*thousands) > most) {
+        let reason = Message::new("link.memory-too-large").with("model", target.title);
+        let reason = reason.with("asked", thousands).with("most", most);
+        unusable("memory-too-large", &reason, "link.help-memory", language);
+        return None;
+    }
+    let is_kept = saved.is_some();
     let mut plc = saved.unwrap_or_else(|| {
         let plc = Plc::new(target, arguments.scan_time);
         match arguments.memory {
@@ -178,12 +186,17 @@ fn plc_of(arguments: &Arguments, language: Language) -> Option<Plc> {
         }
     });
     if let Some(program) = program {
-        plc.load(&program.words());
+        let words = program.words();
+        if let Some(path) = arguments.state.as_deref().filter(|_| is_kept && !plc.words().starts_with(&words))
+        {
+            remark(&Message::new("link.program-not-kept").with("path", path.display()).render(language));
+        }
+        plc.load(&words);
     }
     // What cannot be kept is said before somebody relies on it.
     if let Some(path) = &arguments.state {
         plc.forget_saving();
-        let kept = plc.save().map_or(Ok(()), |saved| written(path, &saved));
+        let kept = plc.save().map_or(Ok(()), |saved| written(path, &saved, true));
         if let Err(error) = kept {
             let reason = format!("{}: {error}", path.display());
             complain("unwritable", &reason, &Message::new("cli.make-room").render(language), language);
@@ -288,8 +301,10 @@ impl Person {
 
     fn keep(&mut self, server: &mut Server) {
         let Some(path) = &self.state else { return };
+        // A program that was taken over outlasts the loss of power as well.
+        let is_synced = server.plc().is_taken_over() || self.end.load(Ordering::Relaxed);
         let Some(saved) = server.plc_mut().save() else { return };
-        let kept = written(path, &saved);
+        let kept = written(path, &saved, is_synced);
         if let Err(error) = &kept {
             server.plc_mut().forget_saving();
             if !self.is_unkept {
@@ -300,12 +315,15 @@ impl Person {
     }
 }
 
-/// Puts the memory into a file that is whole at any time, for nobody else to read.
-fn written(path: &Path, saved: &Saved) -> std::io::Result<()> {
+/// Puts the memory into a file that is whole at any time, for nobody else to read; on the disk itself if `is_synced`.
+fn written(path: &Path, saved: &Saved, is_synced: bool) -> std::io::Result<()> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut file = tempfile::NamedTempFile::new_in(folder)?;
     serde_json::to_writer(&mut file, saved)?;
     file.flush()?;
+    if is_synced {
+        file.as_file().sync_all()?;
+    }
     file.persist(path)?;
     Ok(())
 }

@@ -20,6 +20,7 @@ mod status;
 pub use status::{Status, StatusError};
 
 mod program;
+pub use program::Uploaded;
 
 mod comparison;
 pub use comparison::Comparison;

@@ -27,7 +27,7 @@ pub use mode::{Mode, Switch};
 mod host;
 pub use host::{
     Comparison, DownloadFailure, Drift, DriftNews, Fate, Holds, Host, Identity, NamesOfPlc, Plan, Point,
-    Progress, Report, Stage, Status, StatusError, Watch,
+    Progress, Report, Stage, Status, StatusError, Uploaded, Watch,
 };
 
 mod logbook;

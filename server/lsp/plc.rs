@@ -59,6 +59,8 @@
 
 mod answers;
 
+mod connected;
+
 mod desk;
 
 mod drift;
@@ -70,6 +72,7 @@ mod shown;
 mod watching;
 
 use super::answering::{refused, snapshot, wrong_argument};
+use super::capabilities::COMMANDS;
 use super::workspace::Workspace;
 use crate::link::transport::ports;
 use crate::text::Message;
@@ -143,6 +146,9 @@ impl Plcs {
             "export" => return self.recording.export(&asked).map(Some).map_err(refused),
             _ => {}
         }
+        if !COMMANDS.contains(&command) {
+            return Err(refused(Message::new("request.no-command").with("command", command)));
+        }
         let desk = self.desk(verb, workspace);
         let Some(desk) = desk else {
             return match verb {
@@ -201,7 +207,8 @@ fn order(command: &str, verb: &str, asked: &Asked) -> std::result::Result<Order,
         "hold" => set(Way::Hold)?,
         "release" => Order::Release { name: asked.name.clone() },
         "panel" => Order::Panel { more: asked.names.clone().unwrap_or_default() },
-        _ => Order::State { uri: asked.uri.clone() },
+        "state" => Order::State { uri: asked.uri.clone() },
+        _ => return Err(Message::new("request.no-command").with("command", command)),
     })
 }
 

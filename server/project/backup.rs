@@ -27,6 +27,9 @@ pub struct Backup {
     /// Whether it was a program that the PLC had taken over, and not one that was written in part.
     #[serde(default)]
     pub whole: bool,
+    /// Whether the download before which it was read is known to have ended. Older files do not say.
+    #[serde(default = "yes")]
+    pub ended: bool,
     steps: usize,
     /// Parameters, in words as they lie in memory.
     parameters: Vec<u16>,
@@ -50,6 +53,32 @@ impl Backup {
     /// The backup in a file; nothing if there is none, or none that can be read.
     pub fn read(path: &Path) -> Option<Backup> {
         serde_json::from_str(&std::fs::read_to_string(path).ok()?).ok()
+    }
+
+    /// Why what a file holds makes no sense as a backup, with the place in it; nothing if it does.
+    pub fn fault(path: &Path) -> Option<String> {
+        let text = match std::fs::read_to_string(path) {
+            Ok(text) => text,
+            Err(error) => return Some(error.to_string()),
+        };
+        match serde_json::from_str::<Backup>(&text) {
+            Ok(backup) => backup.senseless_member().map(|member| format!("`{member}`")),
+            Err(error) => Some(error.to_string()),
+        }
+    }
+
+    /// The first member that no PLC can have had.
+    fn senseless_member(&self) -> Option<&'static str> {
+        let target = Target::named(&self.model).filter(|target| target.is_fx());
+        let most = target.map_or(0, |target| target.limits.steps_at_most);
+        let capacity = self.parameters().capacity();
+        let is_wrong = [
+            ("model", target.is_none()),
+            ("parameters", self.parameters.len() != ParameterBlock::WORDS || !(1..=most).contains(&capacity)),
+            ("words", self.words.is_empty() || self.words.len() > capacity as usize),
+            ("steps", self.steps != self.words.len()),
+        ];
+        is_wrong.into_iter().find(|(_, is_wrong)| *is_wrong).map(|(member, _)| member)
     }
 
     /// The parameters.
@@ -77,17 +106,41 @@ impl Backup {
             version: from.version.clone(),
             replaced_by: Some(from.replaced_by),
             whole: is_whole,
+            ended: false,
             steps: image.program().len(),
             parameters: image.parameters().to_words().to_vec(),
             words: image.program().to_vec(),
         };
-        let mut file = tempfile::NamedTempFile::new_in(&folder)?;
-        serde_json::to_writer_pretty(&mut file, &backup)?;
+        let path = folder.join(format!("{}-{}.json", time.strftime("%Y%m%dT%H%M%S%.3fZ"), from.target.name));
+        backup.write(&path)?;
+        Ok(path)
+    }
+
+    fn write(&self, path: &Path) -> io::Result<()> {
+        let mut file = tempfile::NamedTempFile::new_in(path.parent().unwrap_or(Path::new(".")))?;
+        serde_json::to_writer_pretty(&mut file, self)?;
         file.flush()?;
         file.as_file().sync_all()?;
-        let path = folder.join(format!("{}-{}.json", time.strftime("%Y%m%dT%H%M%S%.3fZ"), from.target.name));
-        file.persist(&path)?;
-        Ok(path)
+        file.persist(path)?;
+        Ok(())
+    }
+
+    /// Notes in the backups at `paths` that a download has ended, so that what is in the PLC is whole.
+    ///
+    /// # Errors
+    /// If that cannot be written.
+    pub fn note_end<'a>(paths: impl IntoIterator<Item = &'a Path>) -> io::Result<()> {
+        for path in paths {
+            if let Some(backup) = Backup::read(path).filter(|backup| !backup.ended) {
+                Backup { ended: true, ..backup }.write(path)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// What a download began to replace that is not known to have ended.
+    pub fn replaced(&self) -> Option<&[u16]> {
+        (!self.ended).then_some(&self.words[..])
     }
 
     /// The newest file among the backups of the project of `beside` that is newer than `known` and cannot be read.
@@ -105,6 +158,10 @@ impl Backup {
         let backups = files.filter_map(|path| Backup::read(&path).map(|backup| (path, backup)));
         backups.filter(|(_, backup)| backup.whole).max_by(|(_, one), (_, other)| one.time.cmp(&other.time))
     }
+}
+
+fn yes() -> bool {
+    true
 }
 
 fn folder(beside: &Path) -> PathBuf {

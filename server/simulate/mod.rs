@@ -39,6 +39,7 @@ mod clock;
 mod forces;
 
 mod orders;
+pub use orders::is_identity;
 
 mod execution;
 

@@ -58,6 +58,11 @@ impl CpuError {
     pub(super) const OPERATION: CpuError = CpuError { relay: 8067, memory: Some(8068) };
 }
 
+/// Whether a register is among those in which the CPU says what it is, which nobody can change.
+pub fn is_identity(device: Device) -> bool {
+    device.kind == DeviceKind::D && TYPES.iter().chain(&MEMORY).any(|number| *number == device.number)
+}
+
 impl<L: Lanes> Machine<L> {
     /// Tells the program of an error in special relays and registers.
     pub(super) fn tell(&mut self, code: &Code, lanes: L, error: CpuError, number: i64) {

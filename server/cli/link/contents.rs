@@ -18,9 +18,12 @@ pub(super) fn words_at(path: &Path, language: Language) -> Result<(Vec<u16>, &'s
         let encoded = encoded(path, None, language)?;
         return Ok((executed(&encoded.words()).to_vec(), encoded.target));
     }
-    let backup = Backup::read(path).and_then(|backup| Some((backup.words, Target::named(&backup.model)?)));
+    let fault = Backup::fault(path);
+    let backup = Backup::read(path).filter(|_| fault.is_none());
+    let backup = backup.and_then(|backup| Some((backup.words, Target::named(&backup.model)?)));
     backup.ok_or_else(|| {
-        let reason = Message::new("link.no-backup-file").with("path", path.display()).render(language);
+        let reason = Message::new("link.no-backup-file").with("path", path.display());
+        let reason = reason.with("fault", fault.unwrap_or_default()).render(language);
         complain("bad-backup", &reason, &Message::new("link.help-backup").render(language), language);
         Outcome::Unusable
     })

@@ -62,7 +62,7 @@ fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Resul
     let (words, target) = words_at(backup.map_or(beside, |(path, _)| path), language)?;
     let mut host = arguments.connection.open(beside, language)?;
     let mut bar = Bar::new(language);
-    let replaced = last.as_ref().map(|(_, backup)| &backup.words[..]);
+    let replaced = last.as_ref().and_then(|(_, backup)| backup.replaced());
     let plan = host.plan_behind(replaced, &words, target, &mut |progress| bar.show(progress));
     bar.clear();
     let plan = plan.map_err(|error| failed(&error, language))?;
@@ -78,26 +78,37 @@ fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Resul
     if arguments.dry_run {
         return Ok(if plan.bytes() == 0 { Outcome::Clean } else { Outcome::Findings });
     }
-    let question =
-        Message::new(if arguments.start { "link.ask-download-start" } else { "link.ask-download" })
-            .with("bytes", plan.bytes())
-            .with("model", host.identity().target.title);
-    if !confirmed(&question, arguments.yes, &mut host, language) {
+    let question = match (plan.is_same(), arguments.start) {
+        // Nothing stops, and nothing starts.
+        (true, false) => None,
+        (true, true) => Some("link.ask-start"),
+        (false, false) => Some("link.ask-download"),
+        (false, true) => Some("link.ask-download-start"),
+    };
+    let question = question.map(|question| {
+        Message::new(question).with("bytes", plan.bytes()).with("model", host.identity().target.title)
+    });
+    if question.is_some_and(|question| !confirmed(&question, arguments.yes, &mut host, language)) {
         return Err(Outcome::Findings);
     }
     // What changes nothing leaves nothing to go back to.
+    let mut kept = None;
     if plan.bytes() > 0 {
         let port = arguments.connection.port(beside).unwrap_or_default();
         let identity = host.identity();
         let replaced_by = plan.wanted.parameters().sum();
         let version = identity.version();
         let origin = Origin { target: identity.target, port: &port, version, replaced_by };
-        back_up(beside, &origin, &plan, language)?;
+        kept = Some(back_up(beside, &origin, &plan, language)?);
     }
     let report = host.download(&plan, arguments.start, &mut |progress| bar.show(progress));
     bar.clear();
     match report {
         Ok(report) => {
+            let known = [kept.as_deref(), last.as_ref().map(|(path, _)| path.as_path())];
+            if let Err(error) = Backup::note_end(known.into_iter().flatten()) {
+                remark(&Message::new("link.end-not-noted").with("reason", error).render(language));
+            }
             let done = Message::new("link.downloaded")
                 .with("steps", words.len())
                 .with("written", report.written)
@@ -110,7 +121,7 @@ fn carry_out(arguments: &Arguments, colour: Colour, language: Language) -> Resul
         }
         Err(failure) => {
             let outcome = failed(&failure.cause, language);
-            remark(&failure.state().render(language));
+            failure.state().iter().for_each(|sentence| remark(&sentence.render(language)));
             Err(outcome)
         }
     }
@@ -166,11 +177,11 @@ pub(super) fn changes(plan: &Plan, is_drawn: bool, colour: Colour, language: Lan
     unified([&own, &new], &before, &after, colour)
 }
 
-fn back_up(beside: &Path, from: &Origin<'_>, plan: &Plan, language: Language) -> Result<(), Outcome> {
+fn back_up(beside: &Path, from: &Origin<'_>, plan: &Plan, language: Language) -> Result<PathBuf, Outcome> {
     match Backup::keep(beside, from, (&plan.before, plan.is_whole)) {
         Ok(path) => {
             remark(&Message::new("link.backed-up").with("path", path.display()).render(language));
-            Ok(())
+            Ok(path)
         }
         Err(error) => {
             let reason = Message::new("link.cannot-back-up").with("reason", error).render(language);

@@ -37,7 +37,11 @@ impl<'a> ProgramWatch<'a> {
         if found.model != target.model {
             return Err(LinkError::WrongModel { wanted: target.title, found: found.title });
         }
-        watch.drift = Drift::from(words, host.status()?.parameters);
+        watch.drift = match host.status() {
+            Ok(status) => Drift::from(words, status.parameters),
+            Err(LinkError::Refused { .. }) => Drift::unreadable(),
+            Err(error) => return Err(error),
+        };
         watch.file = Some(file);
         Ok(watch)
     }

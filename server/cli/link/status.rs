@@ -94,5 +94,5 @@ pub(in crate::cli) fn run(arguments: &Arguments, language: Language) -> Outcome 
 }
 
 fn same(host: &mut AnyHost, words: &[u16]) -> Result<bool, LinkError> {
-    Ok(host.upload(&mut |_| {})?.program() == words)
+    Ok(host.upload(&mut |_| {})?.image.program() == words)
 }

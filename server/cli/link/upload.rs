@@ -4,7 +4,8 @@ use super::Connection;
 use super::connection::{Bar, failed};
 use super::contents::is_drawn;
 use crate::cli::Outcome;
-use crate::cli::input::{complain, put, remark};
+use crate::cli::input::{caution, complain, put, remark};
+use crate::link::Uploaded;
 use crate::machine_code::decode;
 use crate::text::{Language, Message};
 use crate::translate::from_machine_code::drawn;
@@ -35,9 +36,9 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
     }
     let mut host = arguments.connection.open(output.unwrap_or(Path::new(".")), language)?;
     let mut bar = Bar::new(language);
-    let image = host.upload(&mut |progress| bar.show(progress));
+    let uploaded = host.upload(&mut |progress| bar.show(progress));
     bar.clear();
-    let image = image.map_err(|error| failed(&error, language))?;
+    let Uploaded { image, is_whole } = uploaded.map_err(|error| failed(&error, language))?;
     let target = host.identity().target;
     let listing = decode(image.program(), target.model);
     let unread = listing.lines.iter().filter(|line| !line.is_read).count();
@@ -52,5 +53,9 @@ fn carry_out(arguments: &Arguments, language: Language) -> Result<Outcome, Outco
     if unread > 0 {
         remark(&Message::new("link.unread").with("count", unread).render(language));
     }
-    Ok(if unread == 0 { Outcome::Clean } else { Outcome::Findings })
+    if !is_whole {
+        let reason = Message::new("link.not-whole").render(language);
+        caution("sum", &reason, &Message::new("link.help-not-whole").render(language), language);
+    }
+    Ok(if unread == 0 && is_whole { Outcome::Clean } else { Outcome::Findings })
 }

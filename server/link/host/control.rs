@@ -110,7 +110,7 @@ impl<T: Transport> Host<T> {
         Ok(())
     }
 
-    fn comes_to(&mut self, mode: Mode) -> Result<bool, LinkError> {
+    pub(super) fn comes_to(&mut self, mode: Mode) -> Result<bool, LinkError> {
         let end = self.line.now() + LONGEST_SCAN;
         loop {
             if self.mode()? == mode {

@@ -89,11 +89,13 @@ pub enum Fate {
     Untouched,
     /// It is the old one; the CPU was told to stop, which it may not have heard.
     Stopped,
-    /// Part of it was sent. The PLC stood still before that, and may have written it.
+    /// The first part of the new one was sent, and nobody has heard whether the PLC has written it.
+    Doubtful,
+    /// Part of it is the new one.
     Partial,
-    /// All of it has been written, but not found to be right. The PLC stood still before that.
+    /// All of it has been written, but not found to be right.
     Unverified,
-    /// It is the new one, word for word; whether the PLC runs is not known.
+    /// It is the new one, word for word.
     Verified,
 }
 
@@ -104,18 +106,27 @@ pub struct DownloadFailure {
     pub cause: LinkError,
     /// What has become of the program.
     pub fate: Fate,
+    /// What the CPU does, where it could still be asked.
+    pub mode: Option<Mode>,
 }
 
 impl DownloadFailure {
-    /// The sentence that says in which state the PLC is.
-    pub fn state(&self) -> Message {
-        Message::new(match self.fate {
+    /// The sentences that say in which state the PLC is: its program, and its CPU.
+    pub fn state(&self) -> [Message; 2] {
+        let program = match self.fate {
             Fate::Untouched => "link.fate-untouched",
             Fate::Stopped => "link.fate-stopped",
+            Fate::Doubtful => "link.fate-doubtful",
             Fate::Partial => "link.fate-partial",
             Fate::Unverified => "link.fate-unverified",
             Fate::Verified => "link.fate-verified",
-        })
+        };
+        let mode = match self.mode {
+            Some(Mode::Run) => "link.runs",
+            Some(Mode::Stop) => "link.stands-still",
+            None => "link.mode-unknown",
+        };
+        [program, mode].map(Message::new)
     }
 }
 
@@ -128,6 +139,11 @@ impl Plan {
     /// Bytes that are written.
     pub fn bytes(&self) -> usize {
         self.wanted.changed_chunks(&self.before, MOST_DATA).iter().map(|chunk| chunk.bytes.len()).sum()
+    }
+
+    /// Whether the PLC has taken over this very program, so that nothing need be written.
+    pub fn is_same(&self) -> bool {
+        self.is_whole && self.bytes() == 0
     }
 
     /// The same with other parameters, where the program fits then.
@@ -182,8 +198,8 @@ impl<T: Transport> Host<T> {
         self.plan_behind(None, program, target, tell)
     }
 
-    /// The same, where somebody knows the program that the last download began to replace: if that one did not end,
-    /// less is read.
+    /// The same, where somebody knows the program that a download began to replace which is not known to have ended:
+    /// if it did not, less is read, and what it left is no whole program, whatever its sum.
     ///
     /// # Errors
     /// See [`Host::plan`].
@@ -219,7 +235,7 @@ impl<T: Transport> Host<T> {
     }
 
     /// Carries a plan out: stop, write what has changed, read all of it back, compare the sum, and start if
-    /// `is_started` says so.
+    /// `is_started` says so. A program that is there already is only compared, and what runs goes on.
     ///
     /// # Errors
     /// With what has become of the program. The same download, planned again, finishes the job.
@@ -231,12 +247,65 @@ impl<T: Transport> Host<T> {
     ) -> Result<Report, DownloadFailure> {
         let mut fate = Fate::Untouched;
         // Whoever was asked may have taken time, in which somebody else came.
-        match self.sum() {
-            Ok(sum) if sum == plan.found => {}
-            Ok(_) => return Err(DownloadFailure { cause: LinkError::Changed, fate }),
-            Err(cause) => return Err(DownloadFailure { cause, fate }),
+        let done = match self.sum() {
+            Ok(sum) if sum == plan.found => self.carry_out(plan, is_started, &mut fate, tell),
+            Ok(_) => Err(LinkError::Changed),
+            Err(cause) => Err(cause),
+        };
+        done.map_err(|cause| self.look_after(plan, is_started, cause, fate))
+    }
+
+    /// Asks the PLC what has become of it, though what was under way has failed or was ended by the user.
+    fn look_after(&mut self, plan: &Plan, is_started: bool, cause: LinkError, fate: Fate) -> DownloadFailure {
+        if matches!(cause, LinkError::Gone { .. }) {
+            return DownloadFailure { cause, fate, mode: None };
         }
-        self.carry_out(plan, is_started, &mut fate, tell).map_err(|cause| DownloadFailure { cause, fate })
+        let cancel = self.line.set_cancel(Arc::default());
+        // An order that was heard may not be obeyed yet.
+        let mode = match fate {
+            Fate::Stopped => self.settled(Mode::Stop),
+            Fate::Verified if is_started => self.settled(Mode::Run),
+            _ => self.mode(),
+        };
+        // A line that has said nothing to this is not asked for more.
+        let fate = match mode {
+            Ok(_) if fate == Fate::Doubtful => self.is_begun(plan).map_or(fate, |is_begun| match is_begun {
+                true => Fate::Partial,
+                false => Fate::Stopped,
+            }),
+            _ => fate,
+        };
+        self.line.set_cancel(cancel);
+        DownloadFailure { cause, fate, mode: mode.ok() }
+    }
+
+    /// What the CPU does when it has had time to come to `mode`.
+    fn settled(&mut self, mode: Mode) -> Result<Mode, LinkError> {
+        if self.comes_to(mode)? { Ok(mode) } else { self.mode() }
+    }
+
+    /// Whether the PLC has written any of the first piece that a plan sends.
+    fn is_begun(&mut self, plan: &Plan) -> Result<bool, LinkError> {
+        let Some(first) = plan.wanted.changed_chunks(&plan.before, MOST_DATA).into_iter().next() else {
+            return Ok(false);
+        };
+        let parameters = plan.before.parameters().with_sum(plan.found).to_words();
+        let place = first.address.saturating_sub(PARAMETER_ADDRESS) as usize;
+        let old = parameters.iter().chain(plan.before.memory()).flat_map(|word| word.to_le_bytes());
+        let old: Vec<u8> = old.skip(place).take(first.bytes.len()).collect();
+        // What is neither the old nor the new counts if it comes twice: a line that has failed is not to be trusted.
+        let mut last = None;
+        for _ in 0..=MOST_MENDS {
+            let held = self.read_program(first.address, first.bytes.len(), &mut |_, _| {})?;
+            if held == old {
+                return Ok(false);
+            }
+            if held == first.bytes || last.as_ref() == Some(&held) {
+                return Ok(true);
+            }
+            last = Some(held);
+        }
+        Err(LinkError::Noise)
     }
 
     fn carry_out(
@@ -246,13 +315,23 @@ impl<T: Transport> Host<T> {
         fate: &mut Fate,
         tell: &mut dyn FnMut(Progress),
     ) -> Result<Report, LinkError> {
+        let mut written = 0;
+        let mut compared = 0;
+        // What is there word for word need not be written, and nothing stops for it.
+        let is_there = plan.is_same()
+            && first_difference(&self.read_back(plan, &mut compared, tell)?, &plan.wanted).is_none();
+        if is_there {
+            if is_started {
+                *fate = Fate::Verified;
+                self.start()?;
+            }
+            return Ok(Report { written, compared, mode: self.mode()? });
+        }
         if self.mode()? == Mode::Run {
             *fate = Fate::Stopped;
             self.halt()?;
         }
         let mut held = plan.before.clone();
-        let mut written = 0;
-        let mut compared = 0;
         for round in 0..=MOST_MENDS {
             written += self.write_changes(&held, &plan.wanted, fate, tell)?;
             // What was sent may have come otherwise, and with a sum that is right by chance.
@@ -305,8 +384,11 @@ impl<T: Transport> Host<T> {
             self.order(WRITE_ENABLE, true)?;
         }
         for chunk in chunks {
-            *fate = Fate::Partial;
+            if matches!(fate, Fate::Untouched | Fate::Stopped) {
+                *fate = Fate::Doubtful;
+            }
             self.write_program(chunk.address, &chunk.bytes)?;
+            *fate = Fate::Partial;
             teller.add(chunk.bytes.len(), self.line.now());
         }
         Ok(())

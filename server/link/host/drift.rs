@@ -18,6 +18,8 @@ pub struct Drift {
     sum: Option<u16>,
     is_same: Option<bool>,
     is_refused: bool,
+    /// Whether nobody was told of that yet.
+    is_untold: bool,
 }
 
 /// What was found of the program in a PLC.
@@ -37,6 +39,11 @@ impl Drift {
     /// From the program of these words, in a PLC with these parameters. The default is from whatever is there.
     pub fn from(wanted: &[u16], parameters: ParameterBlock) -> Drift {
         Drift { wanted: Image::new(parameters, wanted), is_wanted: true, ..Drift::default() }
+    }
+
+    /// From a program that the PLC does not even let anybody read the parameters of.
+    pub fn unreadable() -> Drift {
+        Drift { is_wanted: true, is_refused: true, is_untold: true, ..Drift::default() }
     }
 
     /// Whether the program is the one that should be there, as far as is known.
@@ -85,7 +92,7 @@ impl<T: Transport> Host<T> {
     /// If the line fails.
     pub fn look_at_program(&mut self, drift: &mut Drift) -> Result<Option<DriftNews>, LinkError> {
         if drift.is_refused {
-            return Ok(None);
+            return Ok(std::mem::take(&mut drift.is_untold).then_some(DriftNews::Unreadable));
         }
         let found = match &mut drift.comparison {
             Some(comparison) => self.compare(comparison).map(|compared| match compared {

@@ -15,10 +15,20 @@ const MOST_STEPS: u32 = 16_000;
 /// A download that may not have ended.
 #[derive(Clone, Copy)]
 pub(super) struct Cut<'a> {
-    /// The program that it began to replace. It was cut if the PLC still has the sum of that one, and other words.
+    /// The program that it began to replace. It was cut if the PLC still has the sum of that one, and other words,
+    /// which may have the same sum.
     pub(super) replaced: &'a [u16],
     /// Steps that it may have written.
     pub(super) steps: usize,
+}
+
+/// What was read from a PLC.
+#[derive(Clone, PartialEq, Eq, Debug)]
+pub struct Uploaded {
+    /// Parameters and program.
+    pub image: Image,
+    /// Whether their sum is the one that the PLC keeps. That of a download that did not end is not.
+    pub is_whole: bool,
 }
 
 /// What was read once.
@@ -63,11 +73,12 @@ impl<T: Transport> Host<T> {
     ///
     /// # Errors
     /// See [`Host::read_memory`].
-    pub fn upload(&mut self, tell: &mut dyn FnMut(Progress)) -> Result<Image, LinkError> {
-        self.read_memory(None, tell).map(|(image, _)| image)
+    pub fn upload(&mut self, tell: &mut dyn FnMut(Progress)) -> Result<Uploaded, LinkError> {
+        self.read_memory(None, tell).map(|(image, is_whole)| Uploaded { image, is_whole })
     }
 
-    /// Parameters and program of the PLC, and whether they are whole: their sum is the one that the PLC has computed.
+    /// Parameters and program of the PLC, and whether they are whole: their sum is the one that the PLC has computed,
+    /// and they are not what a download left that did not end.
     ///
     /// What is behind END is read only if the sum is another: that of memory with something behind END, or of a
     /// download that did not end. Where `cut` knows what the latter had begun to replace, only what it may have
@@ -89,7 +100,7 @@ impl<T: Transport> Host<T> {
             let is_quiet = self.line().troubles() == troubles;
             let is_enough = is_summed || is_all || reading.is_cut;
             if (is_quiet && is_enough) || last.as_ref() == Some(&reading.image) {
-                return Ok((reading.image, is_summed));
+                return Ok((reading.image, is_summed && !reading.is_cut));
             }
             is_all |= !is_enough;
             last = Some(reading.image);
@@ -129,7 +140,7 @@ impl<T: Transport> Host<T> {
             if end.is_none() {
                 end = words.iter().position(|word| *word == END).map(|end| end + 1);
                 // What is as it was is no download that did not end.
-                cut = cut.filter(|_| end.is_none_or(|end| sum_of(&words[..end]) != Some(sum)));
+                cut = cut.filter(|cut| end.is_none_or(|end| words[..end] != *cut.replaced));
             }
             let is_enough = match cut {
                 Some(cut) => is_blank && words.len() >= cut.steps,

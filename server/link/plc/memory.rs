@@ -4,7 +4,7 @@ use super::cpu::{PARAMETER_BYTES, Plc, WRITE_ENABLE};
 use crate::link::address::{Extended, Lying, Map, Part, Plain};
 use crate::link::command::{Command, Reply, Space};
 use crate::link::{Mode, Point};
-use crate::simulate::{Value, Variable};
+use crate::simulate::{Value, Variable, is_identity};
 use crate::target::{Device, DeviceKind, Model};
 use std::sync::Arc;
 
@@ -136,7 +136,9 @@ impl Plc {
                         put_byte(&mut word, place, **byte);
                         bytes.next();
                     }
-                    self.machine.set_word(device, word);
+                    if !is_identity(device) {
+                        self.machine.set_word(device, word);
+                    }
                     self.is_changed = true;
                 }
                 _ => {

@@ -104,7 +104,8 @@ impl<'a> Service<'a> {
             // One that cannot be served has gone meanwhile.
             let transport = stream.and_then(|stream| {
                 stream.set_nonblocking(false).ok()?;
-                TcpTransport::over(stream).ok()
+                // Scans do not wait for a host that does not read its answers.
+                TcpTransport::over(stream).and_then(|line| line.with_patience(ATTENTION)).ok()
             });
             if let Some(mut transport) = transport {
                 match self.host(&mut transport, &mut || listener.accepted().ok().flatten()) {

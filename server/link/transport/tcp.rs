@@ -46,6 +46,17 @@ impl TcpTransport {
     }
 }
 
+impl TcpTransport {
+    /// With another time that the other end may take to make room for what is sent to it; then it counts as gone.
+    ///
+    /// # Errors
+    /// If the system does not know such a time.
+    pub fn with_patience(self, patience: Duration) -> io::Result<TcpTransport> {
+        self.stream.set_write_timeout(Some(patience))?;
+        Ok(self)
+    }
+}
+
 impl Transport for TcpTransport {
     fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.stream.write_all(bytes)

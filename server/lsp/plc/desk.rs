@@ -2,20 +2,17 @@
 //! watched meanwhile.
 
 use super::super::progress::Progress as Bar;
-use super::super::projects::file_path;
 use super::super::simulation::MonitorMethod;
 use super::super::status::LineStatus;
 use super::super::workspace::Workspace;
 use super::answers::{planned, word_of};
-use super::drift::{Encoded, drift, encoded, is_drawn};
+use super::connected::{Connected, told};
+use super::drift::{drift, encoded, is_drawn};
 use super::recording::SharedRecording;
 use super::shown::Shown;
 use super::watching::Watching;
 use crate::link::transport;
-use crate::link::{Host, Line, LinkError, Mode, Patience, Plan, Point, Stage, Status, Transport};
-use crate::machine_code::{Image, decode};
-use crate::project::{Backup, Origin};
-use crate::simulate::Value;
+use crate::link::{Host, Line, LinkError, Mode, Patience, Point, Stage, Status};
 use crate::text::Message;
 use serde_json::{Value as Json, json};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -99,7 +96,7 @@ impl Notification for StateMethod {
     const METHOD: &'static str = "rungwise/plc";
 }
 
-type Reply = Result<Json, Message>;
+pub(super) type Reply = Result<Json, Message>;
 
 /// An order, where it reports to, and who waits for its end.
 struct Job {
@@ -181,16 +178,6 @@ impl Desk {
     }
 }
 
-/// The PLC at the other end.
-struct Connected {
-    port: String,
-    host: Host<Box<dyn Transport>>,
-    status: Status,
-    /// What is in its program memory, as far as that was read.
-    image: Option<Image>,
-    watching: Option<Watching>,
-}
-
 struct Thread {
     workspace: Weak<Workspace>,
     tokio: tokio::runtime::Handle,
@@ -208,9 +195,12 @@ const STATUS: Duration = Duration::from_secs(2);
 impl Thread {
     fn run(&mut self, receiver: &Receiver<Job>, mark: Mark) {
         let mut asked = Instant::now();
+        let mut begun = Instant::now();
         loop {
             let is_watching = self.plc.as_ref().is_some_and(|plc| plc.watching.is_some());
-            match receiver.recv_timeout(if is_watching { PICTURE } else { STATUS }) {
+            // From the beginning of a look to that of the next.
+            let rest = if is_watching { PICTURE.saturating_sub(begun.elapsed()) } else { STATUS };
+            match receiver.recv_timeout(rest) {
                 Ok(Job { order, bar, reply, cancel }) => {
                     // What nobody waits for any more is not begun.
                     if cancel.load(Ordering::Relaxed) || reply.is_closed() {
@@ -244,6 +234,7 @@ impl Thread {
             if self.workspace.strong_count() == 0 {
                 return;
             }
+            begun = Instant::now();
             let looked = self.look(&mut asked);
             if let Err(error) = looked {
                 mark.0.store(false, Ordering::Release);
@@ -469,8 +460,9 @@ impl Thread {
             Order::Connect { .. } | Order::Disconnect => {}
             Order::State { uri } => return Ok(self.state(uri.as_ref())),
             Order::Plan { uri } => {
-                let (encoded, plan) = plc.plan(&workspace, &uri, &shown(Stage::Reading))?;
-                answer = Some(planned(&encoded, &plan, is_drawn(&workspace, &uri), language));
+                let (encoded, preview) = plc.plan(&workspace, &uri, &shown(Stage::Reading))?;
+                answer = Some(planned(&encoded, &preview.plan, is_drawn(&workspace, &uri), language));
+                plc.shown = Some(preview);
                 about = Some(uri);
             }
             Order::Download { uri, is_started, sum } => {
@@ -486,7 +478,13 @@ impl Thread {
                 )?);
                 about = Some(uri);
             }
-            Order::Upload => answer = Some(plc.upload(&shown(Stage::Reading))?),
+            Order::Upload => {
+                let uploaded = plc.upload(&shown(Stage::Reading))?;
+                if uploaded["whole"] == false {
+                    self.show_as(MessageType::WARNING, &Message::new("link.not-whole"));
+                }
+                answer = Some(uploaded);
+            }
             Order::Start => {
                 if !plc.host.start().map_err(|error| told(&error))? {
                     return Err(Message::new("link.does-not-run"));
@@ -552,128 +550,14 @@ impl Thread {
         let line = Line::new(transport::open(port)?, patience, Arc::clone(&self.cancel));
         let mut host = Host::connect(line)?;
         let status = host.status()?;
-        self.plc = Some(Connected { port: port.to_string(), host, status, image: None, watching: None });
-        Ok(())
-    }
-}
-
-impl Connected {
-    fn plan(
-        &mut self,
-        workspace: &Workspace,
-        uri: &Uri,
-        shown: &Shown<'_>,
-    ) -> Result<(Encoded, Plan), Message> {
-        let encoded = encoded(workspace, uri)?;
-        let last = file_path(uri).and_then(|path| Backup::latest(&path));
-        let replaced = last.as_ref().map(|(_, backup)| &backup.words[..]);
-        let (words, target) = (&encoded.words, encoded.target);
-        let plan = self.host.plan_behind(replaced, words, target, &mut |progress| shown.report(progress));
-        let plan = plan.map_err(|error| told(&error))?;
-        let manifest = workspace.snapshot().open(uri).map(|open| Arc::clone(&open.manifest));
-        let plan = plan
-            .with_parameters(|own| manifest.map_or(own, |manifest| manifest.plc.applied(own, target.model)));
-        self.image = Some(plan.before.clone());
-        Ok((encoded, plan))
-    }
-
-    fn download(
-        &mut self,
-        workspace: &Workspace,
-        uri: &Uri,
-        is_started: bool,
-        sum: Option<&str>,
-        shown: &Shown<'_>,
-    ) -> Reply {
-        let (encoded, plan) = self.plan(workspace, uri, shown)?;
-        if sum.is_some_and(|sum| sum != format!("{:04X}", plan.found)) {
-            return Err(told(&LinkError::Changed));
-        }
-        // What changes nothing leaves nothing to go back to.
-        let backup = match plan.bytes() {
-            0 => None,
-            _ => {
-                let path = file_path(uri).ok_or_else(|| Message::new("link.save-first"))?;
-                let identity = self.host.identity();
-                let from = Origin {
-                    target: identity.target,
-                    port: &self.port,
-                    version: identity.version(),
-                    replaced_by: plan.wanted.parameters().sum(),
-                };
-                let kept = Backup::keep(&path, &from, (&plan.before, plan.is_whole));
-                Some(kept.map_err(|error| Message::new("link.cannot-back-up").with("reason", error))?)
-            }
-        };
-        let report = self.host.download(&plan, is_started, &mut |progress| shown.report(progress));
-        match report {
-            Ok(report) => {
-                self.image = Some(plan.wanted);
-                Ok(json!({
-                    "written": report.written,
-                    "compared": report.compared,
-                    "steps": encoded.words.len(),
-                    "mode": word_of(report.mode),
-                    "backup": backup.map(|path| path.display().to_string()),
-                }))
-            }
-            Err(failure) => {
-                self.image = None;
-                let reasons = vec![failure.cause.message(), failure.state(), failure.cause.help()];
-                Err(Message::new("link.failed").with_messages("reasons", reasons))
-            }
-        }
-    }
-
-    fn upload(&mut self, shown: &Shown<'_>) -> Reply {
-        let image = self.host.upload(&mut |progress| shown.report(progress)).map_err(|error| told(&error))?;
-        let target = self.host.identity().target;
-        let listing = decode(image.program(), target.model);
-        let unread = listing.lines.iter().filter(|line| !line.is_read).count();
-        let answer = json!({
-            "text": listing.text,
-            "model": target.name,
-            "steps": image.program().len(),
-            "unread": unread,
+        self.plc = Some(Connected {
+            port: port.to_string(),
+            host,
+            status,
+            image: None,
+            shown: None,
+            watching: None,
         });
-        self.image = Some(image);
-        Ok(answer)
-    }
-
-    fn write(&mut self, name: &str, value: &Json, way: Way) -> Result<(), Message> {
-        let point = self.point(name)?;
-        if way == Way::Force && !point.is_bit() {
-            return Err(Message::new("link.no-relay").with("device", name));
-        }
-        let wrong = || Message::new("link.no-value").with("device", name).with("value", value);
-        let value = Value::of_json(value).ok_or_else(wrong)?;
-        let number = point.number(&value).ok_or_else(wrong)?;
-        let written = match (way, &mut self.watching) {
-            (Way::Hold, Some(watching)) => watching.holds.hold(&mut self.host, point, number),
-            (Way::Hold, None) => return Err(Message::new("link.not-monitored")),
-            _ => self.host.write(point, number),
-        };
-        written.map_err(|error| told(&error))
-    }
-
-    fn release(&mut self, name: &str) -> Result<(), Message> {
-        let point = self.point(name)?;
-        if let Some(watching) = &mut self.watching {
-            watching.holds.release(point);
-        }
         Ok(())
     }
-
-    fn point(&self, name: &str) -> Result<Point, Message> {
-        let unknown = || match name.trim() {
-            "" => Message::new("link.nameless"),
-            name => Message::new("link.no-device").with("device", name),
-        };
-        Point::named(name, self.host.identity().target).ok_or_else(unknown)
-    }
-}
-
-/// What went wrong on the line, and what helps.
-fn told(error: &LinkError) -> Message {
-    Message::new("link.failed").with_messages("reasons", vec![error.message(), error.help()])
 }
