@@ -66,6 +66,7 @@ async function sideBySide(workbench, workspace) {
   const has = async (words) => (await energised(workbench)).join('\n').includes(words);
   await workbench.clear();
   await workbench.openByName('calling.il');
+  await workbench.page.locator('.tab.active[data-resource-name="calling.il"]').waitFor({ timeout: 45_000 });
   await workbench.status('steps');
   await workbench.goTo(1, 4);
   await workbench.command('Rungwise: Start Simulation');
@@ -73,8 +74,10 @@ async function sideBySide(workbench, workspace) {
   await workbench.command('Rungwise: Toggle Device at Cursor');
   await workbench.until('the call', () => has('CALL'));
   // A file that is opened beside it belongs to it, as do the keys there.
-  await workbench.command('View: Split Editor Right');
+  await workbench.page.keyboard.press('Control+\\');
+  await workbench.until('two groups', async () => (await workbench.page.locator('.editor-group-container').count()) === 2);
   await workbench.openByName('called.lad');
+  await workbench.page.locator('.tab.active[data-resource-name="called.lad"]').waitFor({ timeout: 45_000 });
   await workbench.goTo(2, 6);
   await workbench.until('power at the rail of the other file', () => has('---'));
   await workbench.command('Rungwise: Toggle Device at Cursor');
