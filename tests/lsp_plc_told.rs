@@ -157,3 +157,21 @@ fn a_drawing_is_compared_as_a_drawing() {
     assert!(before.contains("| |") && after.contains("|/|"), "{plan}");
     assert_eq!(editor.tell("plan", json!({}))["form"], "fx");
 }
+
+#[test]
+fn a_file_that_was_just_opened_is_compared_with_all_files_of_its_program() {
+    let mut plc = Connected::open("LD X0\nOUT Y0\nEND\n");
+    let folder = plc.folder.path().canonicalize().unwrap().join("line");
+    std::fs::create_dir(&folder).unwrap();
+    let first = "LD X0\nCALL P1\nFEND\n";
+    // So much to read that the answer would come before it, if it did not wait.
+    let second = format!("P1\n{}SRET\nEND\n", "LD X1\nOUT Y1\n".repeat(500));
+    std::fs::write(folder.join("first.il"), first).unwrap();
+    std::fs::write(folder.join("second.il"), second).unwrap();
+    let manifest = "target = \"fx2n\"\nfiles = [\"first.il\", \"second.il\"]\n";
+    std::fs::write(folder.join("rungwise.toml"), manifest).unwrap();
+    plc.uri = format!("file://{}", folder.join("first.il").display());
+    plc.client.open(&plc.uri, "plc-il", first);
+    let plan = plc.tell("plan", json!({}));
+    assert!(plan.to_string().contains("SRET"), "{plan}");
+}

@@ -162,6 +162,10 @@ impl Plcs {
         {
             return Err(refused(Message::new("link.cancelled")));
         }
+        if matches!(order, Order::Plan { .. } | Order::Download { .. }) {
+            // A program is never downloaded without files of it that are not known yet.
+            workspace.settled().await;
+        }
         let answer = desk.ask(order, token).await;
         if verb == "disconnect" || !desk.is_alive() {
             self.desk.lock().unwrap_or_else(PoisonError::into_inner).take_if(|own| !own.is_alive());
