@@ -230,6 +230,21 @@ fn an_edit_is_taken_over_and_devices_keep_their_values() {
 }
 
 #[test]
+fn orders_that_nobody_understands_are_refused_and_say_what_it_was() {
+    let mut plc = Simulated::open(URI, "plc-il", LIST);
+    plc.tell("start", json!({ "paused": true }));
+    for (verb, more, said) in [
+        ("sttep", json!({}), "rungwise.simulate.sttep"),
+        ("export", json!({ "format": "svg" }), "format"),
+        ("export", json!({ "format": "csv", "names": ["Y0", "Q7"] }), "Q7"),
+    ] {
+        let answer = plc.answer(verb, more);
+        assert!(answer["error"]["message"].as_str().is_some_and(|told| told.contains(said)), "{answer}");
+    }
+    assert_eq!(plc.tell("state", json!({}))["scan"], json!(0));
+}
+
+#[test]
 fn what_cannot_be_run_is_refused_with_its_line() {
     let mut plc = Simulated::open(URI, "plc-il", "LD X0\nOUT Y0\nLD X1\nCJ P5\nEND\n");
     let answer = plc.answer("start", json!({}));

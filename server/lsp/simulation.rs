@@ -263,6 +263,7 @@ fn order(command: &str, asked: Asked) -> std::result::Result<Order, Message> {
         "export" => {
             Order::Ask(Question::Export { wanted, format: asked.format.ok_or_else(|| missing("format"))? })
         }
-        _ => Order::Ask(Question::State { names: asked.names }),
+        "state" => Order::Ask(Question::State { names: asked.names }),
+        _ => return Err(Message::new("request.no-command").with("command", command)),
     })
 }

@@ -1,5 +1,6 @@
 //! What variables were over time: for a chart that is drawn while the program runs, and for files.
 
+use super::super::answering::wrong_argument;
 use super::panel;
 use crate::document::ProjectView;
 use crate::simulate::{Change, Recorder, Session, Trace, is_affordable};
@@ -46,6 +47,9 @@ pub(super) fn changes(recorder: &mut Recorder, session: &Session, wanted: &Wante
 
 /// The variables that are wanted, all on the panel if none is named, as the text of a file: every change of the scans
 /// that are wanted, as far back as they can be run again in a moment.
+///
+/// # Errors
+/// For a name that the program does not know, and a format other than `vcd` and `csv`.
 pub(super) fn file(
     session: &Session,
     view: &ProjectView<'_>,
@@ -57,8 +61,11 @@ pub(super) fn file(
         false => wanted.names.clone(),
     };
     let code = session.machine().code();
-    let watched = names.into_iter().filter_map(|name| code.variable(&name).map(|variable| (name, variable)));
-    let mut trace = Trace::new(watched.collect());
+    let watched = names.into_iter().map(|name| match code.variable(&name) {
+        Some(variable) => Ok((name, variable)),
+        None => Err(Message::new("cli.run-unknown").with("name", name)),
+    });
+    let mut trace = Trace::new(watched.collect::<Result<_, _>>()?);
     let last = session.machine().scans();
     let to = wanted.to.map_or(last, |to| to.saturating_add(1)).min(last);
     let earliest = session.first_scan().max(1);
@@ -73,7 +80,7 @@ pub(super) fn file(
     trace.end();
     let text = match format {
         "csv" => trace.csv(),
-        _ => {
+        "vcd" => {
             let written = trace.vcd().map_err(|reason| {
                 Message::new("translating.argument")
                     .with("command", "export")
@@ -81,6 +88,7 @@ pub(super) fn file(
             })?;
             String::from_utf8_lossy(&written).into_owned()
         }
+        _ => return Err(wrong_argument("export", "format")),
     };
     Ok(json!({ "from": from.saturating_sub(1), "to": to.saturating_sub(1), "text": text }))
 }
