@@ -1,5 +1,5 @@
-//! Formulas in an arena: equal ones have equal numbers as far as commuting, associating and De Morgan's laws go, so that
-//! most proofs are done when they are written down. For that, a sum is the inverse of a product of inverses.
+//! Formulas in an arena: equal ones have equal numbers as far as commuting, associating and De Morgan's laws go, so
+//! that most proofs are done when they are written down. For that, a sum is the inverse of a product of inverses.
 
 use super::effort;
 use crate::document::Limits;

@@ -90,8 +90,8 @@ pub(super) struct Moves {
     pub before: Vec<(&'static [&'static str], bool)>,
 }
 
-/// The instructions before each drive that give it what it wants; the fewest in all, with nothing kept at the end, where
-/// it costs so much that the path begins with its power, and with the inverse of that.
+/// The instructions before each drive that give it what it wants; the fewest in all, with nothing kept at the end,
+/// where it costs so much that the path begins with its power, and with the inverse of that.
 pub(super) fn moves(wanted: &[Wants], begins: [usize; 2]) -> Moves {
     // Mostly outputs alone, and perhaps a conditional path behind them.
     let is_plain = |(number, wants): (usize, &Wants)| {
