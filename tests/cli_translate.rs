@@ -129,6 +129,22 @@ fn a_proof_of_other_structures_is_not_decided() {
 }
 
 #[test]
+fn a_rung_that_would_be_drawn_larger_than_can_be_read_is_carried_along() {
+    for (contact, count) in [("AND", 100_000), ("OR", 5_000)] {
+        let long = format!("LD X0\n{}OUT Y0\n", format!("{contact} X1\n").repeat(count));
+        let files = folder(&[("long.il", &format!("{long}LD X2\nOUT Y1\nEND\n"))]);
+        let (code, out, err) = run(&files, &["translate", "long.il", "--to", "ladder", "-o", "long.lad"]);
+        assert_eq!((code, out.as_str()), (0, ""), "{err}");
+        assert!(err.contains("long.il:1") && err.contains("has no drawing for it"), "{err}");
+        let drawn = std::fs::read_to_string(files.path().join("long.lad")).unwrap();
+        assert!(drawn.contains(&long) && drawn.contains("+---| |---"), "{} bytes", drawn.len());
+        assert_eq!(drawn.lines().map(str::len).max(), Some(48), "the other rung is as wide as ever");
+        let (code, out, err) = run(&files, &["prove", "long.il", "long.lad"]);
+        assert_eq!(code, 0, "{out}{err}");
+    }
+}
+
+#[test]
 fn a_project_in_several_files_is_proved_as_the_one_program_that_it_is() {
     let manifest = "target = \"fx2n\"\nfiles = [\"main.il\", \"called.lad\"]\n";
     let main = "LD X0\nCALL P1\nFEND\n";

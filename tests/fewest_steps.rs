@@ -381,7 +381,8 @@ fn no_list_that_branches_is_shorter() {
                 }
                 drive(&mut rung, letter, 0, blocks[0]);
             }
-            if rung.contacts.len() <= 5 {
+            // With more contacts there are too many lists to try.
+            if rung.contacts.len() <= if drives.len() < 3 { 5 } else { 4 } {
                 rung.check();
             }
         }

@@ -1,5 +1,6 @@
 //! Draws a series-parallel shape in the canonical form.
 
+use super::grid::{MOST_COLUMNS, MOST_ROWS};
 use super::layout::{BlockPlace, Layout, Place, lay_out};
 use super::reduce::Shape;
 use super::symbol::{Figure, FigurePin, Setting, Symbol};
@@ -80,7 +81,8 @@ struct Column {
 /// Draws `shape` of `graph`, whose words stand in `source`, one line of text for each line, ended by line feeds.
 ///
 /// Nothing if the notation has no drawing for it: an element lacks its operand, a line starts at a connector below
-/// other branches, or a function block's further wires would cross others.
+/// other branches, a function block's further wires would cross others, or it would be larger
+/// than what is read.
 pub fn print(shape: &Shape, graph: &Graph, source: &str, style: &Style) -> Option<String> {
     let drawing = Drawing::new(shape, graph, source, style.kind)?;
     let rail = drawing.rail_column_min().max(style.width.clamp(1, Style::WIDTH_MAX) - 1);
@@ -103,7 +105,12 @@ impl Drawing {
             Drawing { layout, symbols, columns: Vec::new(), slots: Vec::new(), kind, rail_min: 0 };
         drawing.measure_columns();
         drawing.measure_rail();
-        Some(drawing)
+        let is_readable = drawing.rail_min < MOST_COLUMNS && drawing.lines() < MOST_ROWS;
+        is_readable.then_some(drawing)
+    }
+
+    fn lines(&self) -> usize {
+        (self.layout.bottom - self.first_line() + 1).max(1) as usize
     }
 
     /// The least column, from 0, in which the right rail can stand.
@@ -202,7 +209,7 @@ impl Drawing {
     pub fn paint(&self, rail: u32) -> Option<Vec<String>> {
         let rail = (rail as usize).max(self.rail_min);
         let top = self.first_line();
-        let lines = (self.layout.bottom - top + 1).max(1) as usize;
+        let lines = self.lines();
         if lines.saturating_mul(rail) > Drawing::CELLS_MAX {
             return None;
         }
