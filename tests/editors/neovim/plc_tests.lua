@@ -117,10 +117,16 @@ check('lines that are not so in the PLC are marked, and the status line says so'
   until_true('a row', function()
     return table.concat(vim.api.nvim_buf_get_lines(0, 0, -1, false), '\n'):find('Y0', 1, true) ~= nil
   end)
-  require('rungwise.plc').tell(program, 'monitor', { names = vim.tbl_map(function(number)
+  local names = vim.tbl_map(function(number)
     return 'D' .. number
-  end, vim.fn.range(40)) })
+  end, vim.fn.range(40))
+  local told = 0
   until_true('the exchanges of a look', function()
+    -- What the table asks for when its rows have come takes the place of what was asked before.
+    if vim.uv.now() - told > 1000 then
+      told = vim.uv.now()
+      require('rungwise.plc').tell(program, 'monitor', { names = names })
+    end
     return (vim.api.nvim_buf_get_lines(0, 0, 1, false)[1] or ''):find('values of up to 2 scans', 1, true) ~= nil
   end)
   vim.cmd.close()
