@@ -7,6 +7,7 @@ use rungwise::ide::{self, Style};
 use rungwise::project::FormatStyle;
 use rungwise::target::{Model, Target};
 use rungwise::text::{Language, Span};
+use rungwise::translate::{Options, To, prove, translate};
 use std::time::Duration;
 
 /// Everything that an editor asks for, at both ends and in the middle, and after an edit there.
@@ -148,6 +149,27 @@ fn large_rungs_are_judged_in_linear_time() {
     check_linear("names in the wire", rows("", "|- X0 -| |- Y0 -( )-|\n"), judge);
     let wide = |count: usize| format!("+{}--(Y0)\n", "[X0]--+--".repeat(count / 4));
     check_linear("wide rows", wide, judge);
+}
+
+/// Lists that are one rung each, in every form that there is for them.
+#[test]
+fn large_rungs_are_translated_in_linear_time() {
+    let rung = |body: &'static str| move |count: usize| format!("LD X0\n{}OUT Y9\nEND\n", body.repeat(count));
+    for body in
+        ["AND X1\n", "OR X1\n", "LD X1\nORB\n", "OUT Y0\n", "AND X1\nOUT Y0\n", "AND X1\nOR X2\n", "INV\n"]
+    {
+        for to in To::ALL {
+            check_linear(&format!("{body:?} as {}", to.name()), rung(body), |text| {
+                translate(&open(Notation::FxIl, text), None, to, &Options::default());
+            });
+        }
+        check_linear(&format!("{body:?} proved"), rung(body), |text| {
+            prove(
+                &open(Notation::FxIl, text),
+                &open(Notation::FxIl, &text.replace("END", "LD X9\nOUT Y8\nEND")),
+            );
+        });
+    }
 }
 
 /// What is larger than a drawing can be is refused at once, in one finding.

@@ -9,6 +9,7 @@
 )]
 
 mod alarms;
+mod bad_programs;
 mod binary;
 mod box_pins;
 mod chinese;

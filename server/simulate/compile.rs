@@ -21,6 +21,10 @@ use std::sync::Arc;
 ///
 /// With `is_watched` the code says what each instruction saw; it does the same, slower.
 pub fn compile(documents: &[&Document], is_watched: bool) -> Result<Code, Vec<Problem>> {
+    let unread = unread(documents);
+    if !unread.is_empty() {
+        return Err(unread);
+    }
     let target = documents.first().map_or(Target::ALL[0], |document| document.target());
     if !target.is_fx() {
         return iec::compile(documents, target, is_watched);
@@ -38,6 +42,26 @@ pub fn compile(documents: &[&Document], is_watched: bool) -> Result<Code, Vec<Pr
         }
     }
     compiler.finish()
+}
+
+/// Rules whose findings leave open what the text says. Reading goes on behind them, but to run what it made of them
+/// would show a program that nobody wrote.
+const UNREAD: [&str; 3] = ["syntax-error", "unclosed-comment", "unclosed-parenthesis"];
+
+/// What could not be read of some documents.
+fn unread(documents: &[&Document]) -> Vec<Problem> {
+    let mut unread = Vec::new();
+    for (number, document) in (0..).zip(documents) {
+        for at in document.chunks() {
+            let reading = at.chunk.reading();
+            let found = reading.problems().iter().filter(|problem| UNREAD.contains(&problem.code));
+            unread.extend(found.map(|problem| Problem {
+                place: Place { document: number, span: problem.span.shifted(at.start) },
+                obstacle: Obstacle::Unread(problem.message.clone()),
+            }));
+        }
+    }
+    unread
 }
 
 /// Timers that go on when the scan ends, if it did not come to their coils.

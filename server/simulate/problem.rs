@@ -19,6 +19,8 @@ pub struct Problem {
 pub enum Obstacle {
     /// A rung that says nothing that could be run.
     Refusal(Refusal),
+    /// What stands there is no instruction, as this sentence says.
+    Unread(Message),
     /// A word or an operand that cannot be read, or that the instruction does not take.
     Unreadable,
     /// A contact without anything that it could be in series or in parallel with.
@@ -61,7 +63,7 @@ impl Obstacle {
             Obstacle::NoSimulation(form) => {
                 Message::new("simulate.no-simulation").with("word", form.mnemonic())
             }
-            Obstacle::Iec(message) => message.clone(),
+            Obstacle::Unread(message) | Obstacle::Iec(message) => message.clone(),
             Obstacle::TooLarge => Message::new("simulate.too-large"),
         }
     }

@@ -10,6 +10,7 @@ use crate::text::{Message, folded};
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::SmolStr;
 use std::borrow::Cow;
+use std::cell::LazyCell;
 
 /// What is known of a translated rung.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -61,13 +62,23 @@ pub(super) fn add(
         if is_cancelled() {
             return None;
         }
+        // One rung may become thousands of equations.
+        let places = LazyCell::new(|| places(source));
         let own = std::iter::from_fn(|| written.next_if(|rung| rung.start < translated.result.end));
         let paths: Option<Vec<Path>> = own
             .filter_map(|rung| match rung.path {
                 Some(None) => None,
                 path => Some(path.flatten()),
             })
-            .map(|path| if is_declared { path } else { path.map(|path| located(path, document, source)) })
+            .map(
+                |path| {
+                    if is_declared {
+                        path
+                    } else {
+                        path.map(|path| located(path, document, (source, &places)))
+                    }
+                },
+            )
             .collect();
         if translated.note.is_some() {
             // A list is carried along word by word; a drawing in a list is but a comment.
@@ -95,17 +106,22 @@ struct Written {
     path: Option<Option<Path>>,
 }
 
+/// Where the operands of a rung lie, by their words.
+fn places(source: &Source) -> FxHashMap<SmolStr, Storage> {
+    let terms = source.rung.path.iter().flatten().flat_map(Path::terms);
+    terms.map(|term| (folded(&term.text), term.storage)).collect()
+}
+
 /// The path of a result without declarations, where its variables lie as the source says: by its declarations, or as
 /// the variables do that stand for its devices.
-fn located(path: Path, document: &Document, source: &Source) -> Path {
+fn located(
+    mut path: Path,
+    document: &Document,
+    (source, places): (&Source, &FxHashMap<SmolStr, Storage>),
+) -> Path {
     if !document.target().is_fx() {
         return path.located(document.scopes(), source.pou);
     }
-    let mut places: FxHashMap<SmolStr, Storage> = FxHashMap::default();
-    for term in source.rung.path.iter().flatten().flat_map(Path::terms) {
-        places.insert(folded(&term.text), term.storage);
-    }
-    let mut path = path;
     path.each_term(&mut |term| {
         if term.operand == Operand::Variable
             && let Some(storage) = places.get(&folded(&term.text))

@@ -223,7 +223,7 @@ pub(super) fn convert(
     let guards = guarded::all(&program.rungs);
     let mut open = Open::default();
     for (source, own) in program.rungs.iter_mut().zip(guards) {
-        let guard = open.enter(source).map(guarded::reason);
+        let guard = open.enter(source);
         source.doubt = doubts.get(&source.span()).cloned();
         if target.is_fx() {
             source.rung.labels.iter_mut().for_each(|label| *label = names.of_label(label));
@@ -259,7 +259,7 @@ pub(super) fn keep_guarded(sources: &mut [Source], written: &[Translated]) -> bo
     let guards = guarded::all(sources);
     let mut open = Open::default();
     for ((source, own), written) in sources.iter_mut().zip(guards).zip(written) {
-        let guard = open.enter(source).map(guarded::reason);
+        let guard = open.enter(source);
         if let (Ok(Some(_)), Some(guard)) = (&source.rung.path, guard) {
             has_more |= !written.is_kept;
             source.note = Some(guard);

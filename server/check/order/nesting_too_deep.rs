@@ -131,14 +131,22 @@ fn calls(context: &ProgramContext<'_>, found: &mut Vec<Diagnostic>) {
 }
 
 fn too_deep(path: &[Device], span: Span, limit: u32) -> Diagnostic {
-    let distinct: FxHashSet<&Device> = path.iter().collect();
-    let key = match distinct.len() == path.len() {
-        true => "nesting-too-deep.calls",
-        false => "nesting-too-deep.recursion",
+    let cycle = first_cycle(path);
+    let key = match cycle {
+        None => "nesting-too-deep.calls",
+        Some(_) => "nesting-too-deep.recursion",
     };
-    let names: Vec<String> = path.iter().map(Device::to_string).collect();
+    let names: Vec<String> = cycle.unwrap_or(path).iter().map(Device::to_string).collect();
     let message = Message::new(key).with("limit", limit).with("path", names.join(" → "));
     Diagnostic::new(RULE.code, span, message)
+}
+
+/// The part of a path of calls from a routine to its next call, both ends included; `None` where none comes back.
+fn first_cycle(path: &[Device]) -> Option<&[Device]> {
+    path.iter().enumerate().find_map(|(to, routine)| {
+        let from = path[..to].iter().position(|earlier| earlier == routine)?;
+        Some(&path[from..=to])
+    })
 }
 
 /// The calls outside of subroutines, and those in each subroutine that is called.

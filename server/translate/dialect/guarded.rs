@@ -7,12 +7,12 @@ use crate::target::Flow;
 use crate::text::{Message, folded};
 use crate::translate::Source;
 use rustc_hash::FxHashMap;
-use smol_str::{SmolStr, format_smolstr};
+use smol_str::SmolStr;
 
 /// Something that decides whether, or how often, the rungs behind it are done.
 pub(super) struct Guard {
-    /// As it is said in a message.
-    word: SmolStr,
+    /// Why a rung is kept that depends on this guard, where that is kept.
+    reason: Message,
     until: Until,
 }
 
@@ -60,26 +60,21 @@ pub(super) struct Open {
 }
 
 impl Open {
-    /// Comes to the next rung; gives the word of the guard that decides about it, if there is one.
-    pub(super) fn enter(&mut self, source: &Source) -> Option<SmolStr> {
+    /// Comes to the next rung; gives why it is kept, if there is a guard that decides about it.
+    pub(super) fn enter(&mut self, source: &Source) -> Option<Message> {
         if self.unit.replace(source.pou) != Some(source.pou) {
             self.guards.clear();
         }
         close_before(&mut self.guards, source);
-        let word = self.guards.last().map(|guard| guard.word.clone());
+        let reason = self.guards.last().map(|guard| guard.reason.clone());
         close_with(&mut self.guards, source);
-        word
+        reason
     }
 
     /// Opens the guards of the rung that was entered.
     pub(super) fn set_up(&mut self, guards: Vec<Guard>) {
         self.guards.extend(guards);
     }
-}
-
-/// Why a rung is kept that depends on a guard which is: `word` is that of the guard.
-pub(super) fn reason(word: SmolStr) -> Message {
-    Message::new("translate.guarded").with("word", word)
 }
 
 fn of(source: &Source) -> Vec<Guard> {
@@ -127,14 +122,20 @@ fn guard(action: &Action) -> Option<Guard> {
         _ => return None,
     };
     let word = match &action.deed {
-        Deed::Instruction(form) => form.mnemonic().into(),
-        _ => "RET".into(),
+        Deed::Instruction(form) => form.mnemonic(),
+        _ => "RET".to_string(),
     };
-    Some(Guard { word, until })
+    // Whoever reads of a rung of a subroutine looks for its call.
+    let key = match &action.deed {
+        Deed::Instruction(form) if form.instruction.flow() == Flow::MainEnd => "translate.behind-main",
+        _ => "translate.guarded",
+    };
+    Some(Guard { reason: Message::new(key).with("word", word), until })
 }
 
 fn jump(word: &str, label: &str) -> Guard {
-    Guard { word: format_smolstr!("{word} {label}"), until: Until::Label(folded(label)) }
+    let reason = Message::new("translate.guarded").with("word", format_args!("{word} {label}"));
+    Guard { reason, until: Until::Label(folded(label)) }
 }
 
 fn flow(action: &Action) -> Option<Flow> {
