@@ -109,7 +109,7 @@ fn addresses_share_bits_and_images_change_between_scans() {
 
 #[test]
 fn tasks_run_by_priority_time_and_edge() {
-    let text = "CONFIGURATION Plant\nVAR_GLOBAL\nlog : DINT;\ngo : BOOL;\nEND_VAR\nRESOURCE PLC ON Any\n\
+    let text = "CONFIGURATION Plant\nVAR_GLOBAL\nlog : DINT;\ngo : BOOL;\nEND_VAR\nRESOURCE PLC ON CPU\n\
                 TASK Slow(SINGLE := FALSE, INTERVAL := T#50ms, PRIORITY := 2);\nTASK Fast(INTERVAL := T#20ms, PRIORITY := 1);\n\
                 TASK Edge(SINGLE := go, PRIORITY := 0);\nPROGRAM A WITH Slow : Two;\nPROGRAM B WITH Fast : One;\n\
                 PROGRAM C WITH Edge : Three;\nPROGRAM D : Four;\nEND_RESOURCE\nEND_CONFIGURATION\n\

@@ -21,10 +21,13 @@ use std::sync::Arc;
 ///
 /// With `is_watched` the code says what each instruction saw; it does the same, slower.
 pub fn compile(documents: &[&Document], is_watched: bool) -> Result<Code, Vec<Problem>> {
+    let code = compiled(documents, is_watched)?;
     let unread = unread(documents);
-    if !unread.is_empty() {
-        return Err(unread);
-    }
+    if unread.is_empty() { Ok(code) } else { Err(unread) }
+}
+
+/// The same of what could be read of them.
+fn compiled(documents: &[&Document], is_watched: bool) -> Result<Code, Vec<Problem>> {
     let target = documents.first().map_or(Target::ALL[0], |document| document.target());
     if !target.is_fx() {
         return iec::compile(documents, target, is_watched);

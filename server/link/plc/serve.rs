@@ -68,6 +68,8 @@ enum End {
 
 /// Who looks after the PLC is asked at least so often.
 const ATTENTION: Duration = Duration::from_millis(20);
+/// How long after the beginning of a connection the end of the one before may arrive.
+const OVERTAKEN: Duration = Duration::from_millis(5);
 /// Hosts at a time that are told to go away; more are left without a word.
 const MOST_REFUSED: usize = 8;
 /// How long such a host is told so.
@@ -153,8 +155,9 @@ impl<'a> Service<'a> {
         loop {
             let Some(wait) = self.between() else { return End::Quit };
             let other = others();
-            // The other one may be who has just ended this connection: then it is served.
-            let wait = if other.is_some() { Duration::ZERO } else { wait };
+            // The other one may be who has just ended this connection: then it is served. On a machine at work its
+            // end may arrive a little after the beginning of the next one.
+            let wait = if other.is_some() { OVERTAKEN } else { wait };
             let Ok(count) = transport.receive(&mut buffer, wait) else { return End::Gone(other) };
             if let Some(other) = other {
                 self.refuse_other(other);
