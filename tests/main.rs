@@ -113,6 +113,7 @@ mod rules_sense_fixes;
 mod scenario_mutants;
 mod scenario_schema;
 mod simulate;
+mod simulate_boxed;
 mod simulate_devices;
 mod simulate_faults;
 mod simulate_iec;

@@ -75,6 +75,32 @@ fn power_is_where_it_flowed_when_contacts_were_executed() {
 }
 
 #[test]
+fn power_is_shown_in_the_lines_of_a_list_that_a_drawing_carries_along() {
+    check(
+        "\
+{il
+LDI Y0
+######
+OUT Y0
+######
+OR X1
+#####
+OUT Y1
+######
+LD X2
+ANB
+OUT Y2
+}
+|   X1        Y3 |
++---| |------( )-+
+ ===
+",
+        Notation::Ladder,
+        "",
+    );
+}
+
+#[test]
 fn behind_a_master_control_without_power_there_is_none() {
     // Neither behind contacts that conduct, nor behind an inversion of what does not.
     let dark = "LD X7\nMC N0 M100\nLD X0\nOR X1\nINV\nOUT Y0\nLD M8000\nOUT Y1\nMCR N0\nEND\n";

@@ -272,8 +272,8 @@ fn judge_page(
                 chunk.keep_proofs(key, Proofs::default());
             }
             for (start, list) in boxes {
-                let own = judge_box(&list, document, pou_number.checked_sub(1));
-                found.extend(own.iter().map(|diagnostic| diagnostic.shifted(start)));
+                let own = judge_box(list, document, pou_number.checked_sub(1));
+                found.extend(own.iter().map(|diagnostic| diagnostic.shifted(*start)));
             }
             found
         });

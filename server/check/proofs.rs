@@ -92,8 +92,8 @@ impl Walk<'_> {
         let mut prover = Prover::new(thrift, self.is_cancelled);
         judge(&ChunkContext::new(&reading, self.document, pou), &mut prover);
         for (start, list) in chunk.boxes() {
-            let context = ChunkContext::of_box(&list, self.document, pou);
-            prover.inside(start, |prover| judge(&context, prover));
+            let context = ChunkContext::of_box(list, self.document, pou);
+            prover.inside(*start, |prover| judge(&context, prover));
         }
         let proofs = prover.finished()?;
         chunk.keep_proofs(key, proofs.clone());

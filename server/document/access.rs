@@ -231,17 +231,17 @@ pub(super) fn of_chunk(chunk: &Chunk) -> OwnAccesses {
         Tree::Ladder(tree) => {
             let label = tree.header.as_ref().and_then(|header| header.label);
             own.joint(label, JointKind::Label);
-            let mut boxes = chunk.boxes().into_iter().peekable();
+            let mut boxes = chunk.boxes().iter().peekable();
             let mut number = 0;
             for rung in &tree.rungs {
                 while let Some((start, list)) = boxes.next_if(|(start, _)| *start < rung.span.start as usize)
                 {
-                    own.boxed(start, &list, &mut number);
+                    own.boxed(*start, list, &mut number);
                 }
                 rung.graph.elements.iter().for_each(|element| own.element(element, number));
                 number = number.saturating_add(1);
             }
-            boxes.for_each(|(start, list)| own.boxed(start, &list, &mut number));
+            boxes.for_each(|(start, list)| own.boxed(*start, list, &mut number));
         }
         Tree::Iec(tree) => own.iec(tree),
     }

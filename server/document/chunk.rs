@@ -33,6 +33,8 @@ struct Known {
     keeps_tree: bool,
     /// Where a drawing has its names, as far as its edges tell.
     habit: NameHabit,
+    /// The lists that a drawing carries along, with their starts.
+    boxes: OnceLock<Box<[(usize, Chunk)]>>,
     outline: OnceLock<Outline>,
     mentions: OnceLock<Box<[Mention]>>,
     tokens: OnceLock<Box<[Token]>>,
@@ -171,6 +173,7 @@ impl Chunk {
             // Rules about whole programs look at trees of IEC 61131-3.
             habit: if kind == Kind::Ladder { ladder::habit_of(text) } else { NameHabit::default() },
             keeps_tree: keeps_tree || matches!(kind, Kind::Iec | Kind::Tables),
+            boxes: OnceLock::new(),
             outline: OnceLock::new(),
             mentions: OnceLock::new(),
             tokens: OnceLock::new(),
@@ -228,11 +231,19 @@ impl Chunk {
 
     /// The lists in the boxes `{il … }` of a drawing in the order of the text, each with its start, as chunks of their
     /// own.
-    pub fn boxes(&self) -> Vec<(usize, Chunk)> {
+    pub fn boxes(&self) -> &[(usize, Chunk)] {
         match self.known.kind {
-            Kind::Ladder => boxes::of_chunk(self, &self.known.dialect),
-            Kind::Fx | Kind::Iec | Kind::Tables => Vec::new(),
+            Kind::Ladder => {
+                self.known.boxes.get_or_init(|| boxes::of_chunk(self, &self.known.dialect).into())
+            }
+            Kind::Fx | Kind::Iec | Kind::Tables => &[],
         }
+    }
+
+    /// The list in the box in which a byte of a drawing stands, with its start.
+    pub fn box_at(&self, offset: usize) -> Option<(usize, &Chunk)> {
+        let (start, list) = self.boxes().iter().rfind(|(start, _)| *start <= offset)?;
+        (offset < start + list.len()).then_some((*start, list))
     }
 
     /// Whether it is IEC declarations or statements, told without reading it.

@@ -94,7 +94,7 @@ pub(super) fn of_chunk(chunk: &Chunk) -> Vec<Mention> {
         Tree::Ladder(tree) => {
             of_ladder(chunk.text(), tree, &mut mentions);
             for (start, list) in chunk.boxes() {
-                let moved = |own: &Mention| Mention { span: own.span.shifted(start), ..own.clone() };
+                let moved = |own: &Mention| Mention { span: own.span.shifted(*start), ..own.clone() };
                 mentions.extend(list.mentions().iter().map(moved));
             }
         }

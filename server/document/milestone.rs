@@ -83,18 +83,18 @@ pub(super) fn of_chunk(chunk: &Chunk) -> Vec<Milestone> {
             {
                 add(&mut milestones, MilestoneKind::Label(device), label, label, None);
             }
-            let mut boxes = chunk.boxes().into_iter().peekable();
+            let mut boxes = chunk.boxes().iter().peekable();
             for rung in &tree.rungs {
                 while let Some((start, list)) = boxes.next_if(|(start, _)| *start < rung.span.start as usize)
                 {
-                    add_box(&mut milestones, start, &list);
+                    add_box(&mut milestones, *start, list);
                 }
                 rung.graph
                     .elements
                     .iter()
                     .for_each(|element| add_drawn(&mut milestones, element, chunk.text()));
             }
-            boxes.for_each(|(start, list)| add_box(&mut milestones, start, &list));
+            boxes.for_each(|(start, list)| add_box(&mut milestones, *start, list));
         }
         Tree::Iec(_) => {}
     }

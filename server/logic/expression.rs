@@ -179,6 +179,21 @@ impl Expression {
         }
     }
 
+    /// Moves it later in the text by so many bytes.
+    pub fn shift(&mut self, start: usize) {
+        match self {
+            Expression::Constant(_) => {}
+            Expression::Contact(contact) => {
+                contact.span = contact.span.shifted(start);
+                contact.terms.iter_mut().for_each(|term| term.span = term.span.shifted(start));
+            }
+            Expression::Not(part) => part.shift(start),
+            Expression::And(parts) | Expression::Or(parts) => {
+                parts.iter_mut().for_each(|part| part.shift(start));
+            }
+        }
+    }
+
     /// The contacts, left to right and top to bottom.
     pub fn contacts(&self) -> Vec<&Contact> {
         let mut contacts = Vec::new();

@@ -41,6 +41,24 @@ fn path(text: &str, tree: &FxTree) -> Result<Option<Path>, Refusal> {
     reader.finish()
 }
 
+/// What the instructions of a list do that is no rung, in order: all but its contacts.
+pub fn actions(text: &str, tree: &FxTree) -> Vec<Action> {
+    let action = |line: &FxLine| match line.kind {
+        LineKind::Instruction(form) if Test::of_form(form).is_none() => Some(action(text, tree, form, line)),
+        _ => None,
+    };
+    tree.lines.iter().filter_map(action).collect()
+}
+
+fn action(text: &str, tree: &FxTree, form: Form, line: &FxLine) -> Action {
+    Action { deed: Deed::of_form(form), terms: terms(text, tree, line), span: line.span }
+}
+
+fn terms(text: &str, tree: &FxTree, line: &FxLine) -> Vec<Term> {
+    let term = |operand: &Spanned<Operand>| Term::new(operand.value, operand.span.of(text), operand.span);
+    tree.operands(line).iter().map(term).collect()
+}
+
 /// The state of the PLC while it runs the rung, with what led there in place of bits.
 struct Reader<'a> {
     text: &'a str,
@@ -162,18 +180,11 @@ impl Reader<'_> {
 
     fn contact(&self, form: Form, line: &FxLine) -> Result<Contact, Refusal> {
         let test = Test::of_form(form).ok_or(Refusal::Unreadable)?;
-        Ok(Contact { test, terms: self.terms(line), span: line.span })
+        Ok(Contact { test, terms: terms(self.text, self.tree, line), span: line.span })
     }
 
     fn action(&self, form: Form, line: &FxLine) -> Action {
-        Action { deed: Deed::of_form(form), terms: self.terms(line), span: line.span }
-    }
-
-    fn terms(&self, line: &FxLine) -> Vec<Term> {
-        let operands = self.tree.operands(line).iter();
-        let term =
-            |operand: &Spanned<Operand>| Term::new(operand.value, operand.span.of(self.text), operand.span);
-        operands.map(term).collect()
+        action(self.text, self.tree, form, line)
     }
 
     fn finish(mut self) -> Result<Option<Path>, Refusal> {

@@ -84,9 +84,10 @@ fn list_rung(
         Model::Iec => iec_rung(list, target, declared),
         _ => from_fx::rung(list, &fx::parse(list, target)),
     };
-    let span = rung.span.shifted(comment.start as usize + start);
-    // Its own spans would be places in the list alone.
-    Rung { comments, span, path: rung.path, ..rung }
+    let start = comment.start as usize + start;
+    let path = rung.path.map(|path| path.map(|path| path.shifted(start)));
+    // Its own comments are part of the box.
+    Rung { comments, span: rung.span.shifted(start), path, ..rung }
 }
 
 /// The rung that a list of IEC 61131-3 is as a whole.

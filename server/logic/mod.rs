@@ -29,6 +29,7 @@ mod block;
 mod builder;
 
 mod from_fx;
+pub use from_fx::actions as actions_of_list;
 
 mod from_iec;
 pub use from_iec::{FALLS, HELPER, declarations, is_fall_name, is_helper_name, pulse_name};

@@ -211,6 +211,32 @@ impl Path {
         }
     }
 
+    /// The same in a text in which it begins later by so many bytes.
+    pub fn shifted(mut self, start: usize) -> Path {
+        self.shift(start);
+        self
+    }
+
+    fn shift(&mut self, start: usize) {
+        let shift_action = |action: &mut Action| {
+            action.span = action.span.shifted(start);
+            action.terms.iter_mut().for_each(|term| term.span = term.span.shifted(start));
+        };
+        for gate in &mut self.gates {
+            match gate {
+                Gate::Pass(expression) => expression.shift(start),
+                Gate::Invert => {}
+                Gate::Through(through) => shift_action(through),
+            }
+        }
+        for drive in &mut self.drives {
+            match drive {
+                Drive::Action(driven) => shift_action(driven),
+                Drive::Path(path) => path.shift(start),
+            }
+        }
+    }
+
     /// Calls `action` and `condition` with what the path consists of, in the order of execution.
     pub fn visit<'p>(
         &'p self,

@@ -137,6 +137,14 @@ impl Compiler {
         self.builder.at(place, 1);
     }
 
+    /// Compiles with places in a text that begins here within the present one.
+    pub(super) fn inside(&mut self, start: usize, compile: impl FnOnce(&mut Compiler)) {
+        let outside = self.offset;
+        self.offset.1 += start;
+        compile(self);
+        self.offset = outside;
+    }
+
     fn place(&self, span: Span) -> Place {
         let (document, start) = self.offset;
         Place { document, span: span.shifted(start) }

@@ -3,8 +3,9 @@
 use super::Obstacle;
 use super::builder::{Builder, Position};
 use super::compile::Compiler;
+use super::from_list;
 use super::row::Row;
-use crate::document::Chunk;
+use crate::document::{Chunk, Tree};
 use crate::logic::{self, Action, Contact, Deed, Drive, Expression, Gate, Path};
 use crate::target::{Flow, Operand, Role, Target};
 use crate::text::Span;
@@ -12,6 +13,14 @@ use crate::text::Span;
 /// Compiles a chunk of a drawing for an FX.
 pub(super) fn compile(compiler: &mut Compiler, chunk: &Chunk, target: &'static Target) {
     for rung in logic::rungs(chunk, target) {
+        // What a drawing carries along runs as the list that it is.
+        if rung.is_list
+            && let Some((start, list)) = chunk.box_at(rung.span.start as usize)
+            && let Tree::Fx(tree) = list.tree()
+        {
+            compiler.inside(start, |compiler| from_list::compile(compiler, list.text(), tree));
+            continue;
+        }
         // What is called in the middle of a rung leaves its cells alone.
         let calls = |action: &&Action| match &action.deed {
             Deed::Instruction(form) => form.instruction.flow() == Flow::Call,
@@ -28,12 +37,10 @@ pub(super) fn compile(compiler: &mut Compiler, chunk: &Chunk, target: &'static T
                 compiler.label(label);
             }
         }
-        // Places within a list that a drawing carries along are not known; the list is.
-        let whole = rung.is_list.then_some(rung.span);
         match rung.path {
             Ok(Some(path)) => {
                 compiler.rail_seen(rung.span);
-                let done = Circuit { dialect: &mut Fx { compiler, whole } }.path(&path);
+                let done = Circuit { dialect: &mut Fx { compiler } }.path(&path);
                 if let Err((span, obstacle)) = done {
                     compiler.refuse(span, obstacle);
                 }
@@ -69,8 +76,6 @@ pub(super) trait Dialect {
 /// Rungs of the FX family.
 struct Fx<'a> {
     compiler: &'a mut Compiler,
-    /// The place of a list that a drawing carries along.
-    whole: Option<Span>,
 }
 
 impl Dialect for Fx<'_> {
@@ -79,7 +84,6 @@ impl Dialect for Fx<'_> {
     }
 
     fn at(&mut self, span: Span) -> Span {
-        let span = self.whole.unwrap_or(span);
         self.compiler.at(span);
         span
     }

@@ -1,7 +1,7 @@
 //! Where power flowed in a scan: contacts, wires and outputs of the text as they were when they were executed.
 
 use super::{Code, Sight};
-use crate::document::{Document, Tree};
+use crate::document::{Chunk, Document, Tree};
 use crate::ladder::{Element, ElementKind, Graph, LadderTree, VertexId, VertexKind};
 use crate::target::Role;
 use crate::text::Span;
@@ -53,18 +53,26 @@ pub fn power_flow(
         }
         let reading = at.chunk.reading();
         match reading.tree() {
-            Tree::Ladder(tree) => drawn(tree, at.start, &seen, &mut shown),
-            Tree::Fx(tree) => {
-                let spans = tree.lines.iter().map(|line| line.span.shifted(at.start));
-                shown.extend(spans.filter_map(|span| seen.line(span)));
+            Tree::Ladder(tree) => {
+                drawn(tree, at.start, &seen, &mut shown);
+                let lists = at.chunk.boxes().iter();
+                lists.for_each(|(start, list)| listed(list, at.start + start, &seen, &mut shown));
             }
-            Tree::Iec(_) => {
-                let end = at.start + at.chunk.len();
-                shown.extend(seen.lines_within(at.start..end));
-            }
+            Tree::Fx(_) | Tree::Iec(_) => listed(at.chunk, at.start, &seen, &mut shown),
         }
     }
     shown
+}
+
+/// The lines of a list that begins at `start`.
+fn listed(list: &Chunk, start: usize, seen: &Seen, shown: &mut Vec<Energised>) {
+    match list.reading().tree() {
+        Tree::Fx(tree) => {
+            let spans = tree.lines.iter().map(|line| line.span.shifted(start));
+            shown.extend(spans.filter_map(|span| seen.line(span)));
+        }
+        _ => shown.extend(seen.lines_within(start..start + list.len())),
+    }
 }
 
 /// What was seen of one document, by place.

@@ -36,16 +36,19 @@ impl Compiler<'_> {
         self.renew(number);
         let parts = self.declared.units[unit].body.clone();
         for part in &parts {
-            if let Part::List { source, items } = part {
-                self.find_labels(*source, items.clone());
+            match part {
+                Part::List { source, items } => self.find_labels(*source, items.clone()),
+                Part::Drawing { lists, .. } => {
+                    lists.clone().for_each(|source| self.find_labels(source, self.declared.items(source)));
+                }
             }
         }
         let mut current = Current::Nothing;
         for part in parts {
             current = match part {
                 Part::List { source, items } => self.list(source, items, current),
-                Part::Drawing { document, chunk, scopes, pous } => {
-                    self.drawing(document, chunk, scopes, pous);
+                Part::Drawing { document, chunk, scopes, pous, lists } => {
+                    self.drawing(document, chunk, (scopes, pous), lists);
                     Current::Nothing
                 }
             };

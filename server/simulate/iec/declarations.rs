@@ -47,7 +47,8 @@ pub(super) enum Part<'a> {
     /// Instructions of a source.
     List { source: usize, items: Range<usize> },
     /// A drawing; `pous` units have started before it in its document.
-    Drawing { document: u32, chunk: ChunkRef<'a>, scopes: &'a Scopes, pous: usize },
+    /// `lists` are the sources of its boxes `{il … }`, in their order.
+    Drawing { document: u32, chunk: ChunkRef<'a>, scopes: &'a Scopes, pous: usize, lists: Range<usize> },
 }
 
 /// A TASK, or a PROGRAM of a configuration, by its place in the tree of its source.
@@ -88,7 +89,13 @@ impl<'a> Declarations<'a> {
                     }
                     None if matches!(at.chunk.reading().tree(), Tree::Ladder(_)) => {
                         let (scopes, pous) = (&**document.scopes(), reader.pous);
-                        let part = Part::Drawing { document: number, chunk: at, scopes, pous };
+                        let first = reader.found.sources.len();
+                        reader.found.sources.extend(at.chunk.boxes().iter().filter_map(|(start, list)| {
+                            let (start, text, tree) = (at.start + start, list.text(), list.iec()?);
+                            Some(Source { document: number, start, text, tree })
+                        }));
+                        let lists = first..reader.found.sources.len();
+                        let part = Part::Drawing { document: number, chunk: at, scopes, pous, lists };
                         if drawn(&at) {
                             reader.unit().body.push(part);
                         }
@@ -107,6 +114,19 @@ impl<'a> Declarations<'a> {
     pub(super) fn unit(&self, name: &str, kind: PouKind) -> Option<usize> {
         let number = *self.numbers.get(&folded(name))?;
         (self.units[number].kind == Some(kind)).then_some(number)
+    }
+
+    /// The numbers of all items of a source.
+    pub(super) fn items(&self, source: usize) -> Range<usize> {
+        0..self.sources[source].tree.items.len()
+    }
+
+    /// The one of some sources in which something begins.
+    pub(super) fn source_at(&self, mut some: Range<usize>, place: Place) -> Option<usize> {
+        some.find(|source| {
+            let Source { start, text, .. } = self.sources[*source];
+            (start..start + text.len()).contains(&(place.span.start as usize))
+        })
     }
 
     pub(super) fn place(&self, source: usize, span: Span) -> Place {

@@ -2,7 +2,7 @@
 
 use super::arguments::Arguments;
 use super::compile::Compiler;
-use super::current::Given;
+use super::current::{Current, Given};
 use super::operand::{cell_spot, said};
 use super::place::Place as Variable;
 use crate::document::{ChunkRef, Scopes};
@@ -16,11 +16,19 @@ use crate::simulate::{Cell, Obstacle};
 use crate::target::Target;
 use crate::target::iec::{ENO, ElementaryType, Formula, Function};
 use crate::text::Span;
+use std::ops::Range;
 use std::sync::Arc;
 
 impl Compiler<'_> {
-    /// Compiles a chunk of a drawing that stands in the body that is being compiled.
-    pub(super) fn drawing(&mut self, document: u32, at: ChunkRef<'_>, scopes: &Scopes, pous: usize) {
+    /// Compiles a chunk of a drawing that stands in the body that is being compiled; `lists` are the sources of the
+    /// lists that it carries along.
+    pub(super) fn drawing(
+        &mut self,
+        document: u32,
+        at: ChunkRef<'_>,
+        (scopes, pous): (&Scopes, usize),
+        lists: Range<usize>,
+    ) {
         let reading = at.chunk.reading();
         let target: &'static Target = self.builder.target;
         for rung in logic::rungs_with(&reading, target, Declared { scopes, pous }) {
@@ -29,18 +37,24 @@ impl Compiler<'_> {
                 self.label(label);
             }
             let place = |span: Span| Place { document, span: span.shifted(at.start) };
+            // What a drawing carries along runs as the list that it is.
+            if rung.is_list
+                && let Some(source) = self.declared.source_at(lists.clone(), place(rung.span))
+            {
+                self.list(source, self.declared.items(source), Current::Nothing);
+                self.builder.forget_power();
+                continue;
+            }
             match rung.path {
                 Ok(Some(path)) => {
                     if self.builder.is_watched() {
                         self.builder.at(place(rung.span), 0);
                         self.builder.saw(Row::RAIL);
                     }
-                    let whole = rung.is_list.then_some(rung.span);
                     let mut drawing = Drawing {
                         compiler: self,
                         document,
                         start: at.start,
-                        whole,
                         jumps: Vec::new(),
                         returns: Vec::new(),
                     };
@@ -62,8 +76,6 @@ struct Drawing<'c, 'a> {
     compiler: &'c mut Compiler<'a>,
     document: u32,
     start: usize,
-    /// The place of a list that a drawing carries along, whose instructions have none.
-    whole: Option<Span>,
     /// Jumps take effect when the whole rung is done: their power, labels and places.
     jumps: Vec<(Cell, String, Span)>,
     returns: Vec<Cell>,
@@ -75,7 +87,6 @@ impl Dialect for Drawing<'_, '_> {
     }
 
     fn at(&mut self, span: Span) -> Span {
-        let span = self.whole.unwrap_or(span);
         let place = self.place(span);
         self.compiler.builder.at(place, 1);
         span
@@ -234,7 +245,7 @@ impl Drawing<'_, '_> {
                 },
             }
         }
-        let place = self.place(self.whole.unwrap_or(span));
+        let place = self.place(span);
         self.compiler.called_block(&variable, arguments, place)?;
         self.compiler.builder.set_power(power);
         if let Some(output) = call.output(terms) {
@@ -306,7 +317,7 @@ impl Drawing<'_, '_> {
                 },
             }
         }
-        let place = self.place(self.whole.unwrap_or(span));
+        let place = self.place(span);
         let off = self.compiler.inverse(power);
         let skip = self.compiler.builder.op(Op::Jump { power: off, to: 0 });
         let made = self.compiler.called_function(unit, arguments, 0, place)?;

@@ -95,7 +95,9 @@ impl Inquiry<'_> {
 
     fn reading(&self, place: Place) -> Option<Reading<'_>> {
         let at = self.documents.get(place.document as usize)?.chunk_at(place.span.start as usize)?;
-        Some(Reading { tree: at.chunk.iec()?, text: at.chunk.text(), start: at.start })
+        let boxed = at.chunk.box_at((place.span.start as usize).checked_sub(at.start)?);
+        let (start, chunk) = boxed.map_or((at.start, &**at.chunk), |(start, list)| (at.start + start, list));
+        Some(Reading { tree: chunk.iec()?, text: chunk.text(), start })
     }
 
     /// What the instructions before one have read for it, since the current result began.

@@ -1,6 +1,6 @@
 //! Which instructions drive a device, under which rails.
 
-use crate::document::{ChunkRef, Document, Tree};
+use crate::document::{Chunk, ChunkRef, Document, Tree};
 use crate::il::iec::ItemKind;
 use crate::logic::{self, Action, Declared, Deed, Drive, Expression, Gate, Path, Rung};
 use crate::simulate::{Code, Place, Variable};
@@ -67,6 +67,7 @@ impl Drivers {
             step: None,
             document: 0,
             start: 0,
+            is_list: false,
         };
         for (number, document) in (0..).zip(documents) {
             (reader.document, reader.is_fx) = (number, document.target().is_fx());
@@ -76,9 +77,8 @@ impl Drivers {
                 let is_open = reader.enter(document, at, pous);
                 let declared = Declared { scopes: document.scopes(), pous };
                 let reading = at.chunk.reading();
-                let is_drawn = matches!(reading.tree(), Tree::Ladder(_));
                 for rung in logic::rungs_with(&reading, document.target(), declared) {
-                    reader.rung(&rung, is_drawn);
+                    reader.rung(&rung, &reading);
                 }
                 if !is_open {
                     reader.unit = SmolStr::default();
@@ -184,6 +184,8 @@ struct Reader {
     step: Option<(Place, Device)>,
     document: u32,
     start: usize,
+    /// Whether the present rung is written as a list.
+    is_list: bool,
 }
 
 impl Reader {
@@ -205,19 +207,29 @@ impl Reader {
         is_open
     }
 
-    fn rung(&mut self, rung: &Rung, is_drawn: bool) {
-        let Ok(Some(path)) = &rung.path else { return };
-        // Of a list that a drawing carries along the places within are not known.
-        let whole = (is_drawn && rung.is_list).then_some(rung.span);
-        self.path(path, Some(Vec::new()), whole);
+    fn rung(&mut self, rung: &Rung, chunk: &Chunk) {
+        match &rung.path {
+            Ok(Some(path)) => {
+                self.is_list = rung.is_list;
+                self.path(path, Some(Vec::new()));
+            }
+            Ok(None) => {}
+            Err(_) => {
+                let (start, list) = chunk.box_at(rung.span.start as usize).unwrap_or((0, chunk));
+                let Tree::Fx(tree) = list.tree() else { return };
+                for action in logic::actions_of_list(list.text(), tree) {
+                    let span = action.span.shifted(start);
+                    self.action(&Action { span, ..action }, None);
+                }
+            }
+        }
     }
 
     fn place(&self, span: Span) -> Place {
         Place { document: self.document, span: span.shifted(self.start) }
     }
 
-    fn path(&mut self, path: &Path, wires: Option<Vec<Wire>>, whole: Option<Span>) {
-        let mut wires = wires.filter(|_| whole.is_none());
+    fn path(&mut self, path: &Path, mut wires: Option<Vec<Wire>>) {
         for gate in &path.gates {
             match gate {
                 Gate::Pass(expression) => {
@@ -227,21 +239,21 @@ impl Reader {
                     wires = wires.map(|wires| vec![Wire::Not(Box::new(Wire::Series(wires)))]);
                 }
                 Gate::Through(action) => {
-                    self.action(action, wires.clone(), whole);
+                    self.action(action, wires.clone());
                     wires = wires.map(|_| vec![Wire::Through(Box::new(action.clone()))]);
                 }
             }
         }
         for drive in &path.drives {
             match drive {
-                Drive::Action(action) => self.action(action, wires.clone(), whole),
-                Drive::Path(path) => self.path(path, wires.clone(), whole),
+                Drive::Action(action) => self.action(action, wires.clone()),
+                Drive::Path(path) => self.path(path, wires.clone()),
             }
         }
     }
 
-    fn action(&mut self, action: &Action, wires: Option<Vec<Wire>>, whole: Option<Span>) {
-        let place = self.place(whole.unwrap_or(action.span));
+    fn action(&mut self, action: &Action, wires: Option<Vec<Wire>>) {
+        let place = self.place(action.span);
         let step = self.step.map(|(place, _)| place);
         let rail = step.or_else(|| self.sections.last().map(|(_, place)| *place));
         let driver = Driver {
@@ -259,7 +271,7 @@ impl Reader {
             self.drivers.leaving.insert(ending(place), driver.clone());
         }
         if !self.is_fx {
-            if whole.is_none() && matches!(action.deed, Deed::Compute(_)) {
+            if self.is_list && matches!(action.deed, Deed::Compute(_)) {
                 self.drivers.lines.insert(ending(place), place);
             }
             return self.drivers.all.push(driver);
