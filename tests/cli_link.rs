@@ -230,12 +230,13 @@ fn a_download_starts_the_plc_if_asked_and_status_tells_of_it() {
         ("capacity", json!(8000)),
         ("title", json!("")),
         ("keyword", json!(false)),
-        ("scan_time_ms", json!(10.0)),
         ("errors", json!([])),
         ("same", json!(true)),
     ] {
         assert_eq!(status[key], value, "{key}: {out}");
     }
+    // On a machine at work a scan comes late.
+    assert!(status["scan_time_ms"].as_f64().is_some_and(|scan| scan >= 10.0), "{out}");
     check(&folder, &["status", "other.il", "--port", port], 1);
     let (out, _) = check(&folder, &["status", "--port", port], 0);
     assert!(out.contains("FX2N 3.10, RUN"), "{out}");
