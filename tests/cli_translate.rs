@@ -225,3 +225,60 @@ fn a_list_for_another_model_says_what_that_lacks() {
         assert_eq!((code, err.contains("no model for")), (2, true), "{err}");
     }
 }
+
+/// Behind an inverter at the left rail there is no power; beside it there is.
+#[test]
+fn an_inverter_at_the_left_rail_is_not_lost() {
+    let drawings = [
+        "|             X0         Y0 |\n+---[INV]-----| |-------( )-+\n",
+        "|             X0         Y0 |\n+---[INV]-+---| |-------( )-+\n|         |   X1         Y1 |\n\
+         |         +---| |-------( )-+\n",
+        "|             X0         Y0 |\n+-+-[INV]-----| |-------( )-+\n| |           X1         Y1 |\n\
+         | +-----------| |-------( )-+\n",
+        "|             X0         Y0 |\n+---[INV]-----| |---+---( )-+\n|   X1              |       |\n\
+         +---| |-------------+       |\n",
+        "|                        Y0 |\n+---[INV]-----------+---( )-+\n|   X1              |    Y1 |\n\
+         +---| |-------------+---( )-+\n",
+        "|                        Y0 |\n+-+-[INV]---------------( )-+\n| |           X1         Y1 |\n\
+         | +-----------| |-------( )-+\n",
+        "|                   X0   Y0 |\n+---[INV]---[INV]---| |-( )-+\n",
+    ];
+    // What both outputs are for no input, X0, X1 and both.
+    let expected = [
+        "00 00 00 00",
+        "00 00 00 00",
+        "00 00 01 01",
+        "00 00 10 10",
+        "00 00 11 11",
+        "00 00 01 01",
+        "00 10 00 10",
+    ];
+    for (drawing, expected) in drawings.into_iter().zip(expected) {
+        let folder = folder(&[("a.lad", drawing)]);
+        for (to, file) in [("ladder", "b.lad"), ("fx", "b.il"), ("iec", "c.il"), ("boolean", "b.bool")] {
+            let (code, _, err) = run(&folder, &["translate", "a.lad", "--to", to, "--prove", "-o", file]);
+            assert_eq!(code, 0, "{drawing}{to}: {err}");
+        }
+        for file in ["a.lad", "b.lad", "b.il", "c.il"] {
+            let shown = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|inputs| {
+                let names = if drawing.contains("X1") { vec!["X0", "X1"] } else { vec!["X0"] };
+                let set: Vec<String> = names
+                    .iter()
+                    .zip(inputs)
+                    .filter(|(name, _)| drawing.contains(**name))
+                    .flat_map(|(name, value)| ["--set".to_string(), format!("{name}={value}")])
+                    .collect();
+                let words = ["run", file, "--scans", "1", "--format", "json"];
+                let words: Vec<&str> = words.into_iter().chain(set.iter().map(String::as_str)).collect();
+                let (code, out, err) = run(&folder, &words);
+                assert_eq!(code, 0, "{drawing}{file}: {err}");
+                let values = serde_json::from_str::<Value>(&out).unwrap()["scans"][0]["values"].clone();
+                ["Y0", "Y1"]
+                    .map(|name| if values[name] == true { '1' } else { '0' })
+                    .iter()
+                    .collect::<String>()
+            });
+            assert_eq!(shown.join(" "), expected, "{drawing}{file}");
+        }
+    }
+}

@@ -38,6 +38,11 @@ impl Builder {
         only.path.gates.is_empty() && only.path.drives.is_empty()
     }
 
+    /// Whether all the power of the left rail is here.
+    pub(super) fn is_at_rail(&self) -> bool {
+        self.open.iter().all(|open| open.path.gates.is_empty())
+    }
+
     /// Power must pass `expression`.
     pub(super) fn pass(&mut self, expression: Expression) -> Option<()> {
         let path = self.ready()?;

@@ -144,11 +144,12 @@ struct Reader<'a> {
 impl Reader<'_> {
     /// Goes through `shape`; behind the last one of the rung nothing follows but the right rail.
     fn shape(&mut self, shape: &Shape, is_last: bool) -> Result<(), Refusal> {
-        if self.is_invert(shape) {
+        let is_at_rail = self.builder.is_at_rail();
+        if self.is_invert(shape) && !is_at_rail {
             return self.builder.invert().ok_or(Refusal::TooDeep);
         }
         if !self.acts(shape) {
-            let condition = self.condition(shape)?;
+            let condition = self.condition(shape, is_at_rail)?;
             return self.builder.pass(condition).ok_or(Refusal::TooDeep);
         }
         match shape {
@@ -189,25 +190,29 @@ impl Reader<'_> {
         matches!(shape, Shape::Element(id) if self.graph.element(*id).kind == ElementKind::Invert)
     }
 
-    /// What must hold for power to pass `shape`. An inverter in it inverts what stands before it in its own branch, as
-    /// INV does with the block that it belongs to.
-    fn condition(&self, shape: &Shape) -> Result<Expression, Refusal> {
+    /// What must hold for power to pass `shape`, which begins at the left rail or behind something. An inverter in it
+    /// inverts what stands before it in its own branch, as INV does with the block that it belongs to; at the left rail
+    /// that is the power of the rail itself, and none is behind it.
+    fn condition(&self, shape: &Shape, is_at_rail: bool) -> Result<Expression, Refusal> {
         match shape {
             Shape::Series(parts) => {
                 let mut series = Expression::Constant(true);
-                for part in parts {
+                for (number, part) in parts.iter().enumerate() {
                     match self.is_invert(part) {
-                        true if series == Expression::Constant(true) => return Err(Refusal::NoCurrentResult),
-                        true => series = Expression::Not(Box::new(series)),
-                        false => series.and_with(self.condition(part)?),
+                        true if number > 0 => series = Expression::Not(Box::new(series)),
+                        _ => series.and_with(self.condition(part, is_at_rail && number == 0)?),
                     }
                 }
                 Ok(series)
             }
             Shape::Parallel(parts) => {
-                let branches: Result<Vec<_>, _> = parts.iter().map(|part| self.condition(part)).collect();
-                branches.map(Expression::or)
+                let branch = |part| self.condition(part, is_at_rail);
+                parts.iter().map(branch).collect::<Result<Vec<_>, _>>().map(Expression::or)
             }
+            Shape::Element(_) if self.is_invert(shape) => match is_at_rail {
+                true => Ok(Expression::Constant(false)),
+                false => Err(Refusal::NoCurrentResult),
+            },
             Shape::Element(id) => contact(self.text, self.graph.element(*id)).map(Expression::Contact),
             Shape::Block(_) => Err(Refusal::Element),
             Shape::Wire => Err(Refusal::ShortCircuit),
