@@ -282,3 +282,24 @@ fn an_inverter_at_the_left_rail_is_not_lost() {
         }
     }
 }
+
+#[test]
+fn a_list_in_a_box_is_the_list_that_it_was_and_edges_beside_it_are_the_same() {
+    let head = "PROGRAM p\nVAR d, x : BOOL; j : INT; r : R_TRIG; END_VAR\n";
+    let text = format!("{head}CAL r(CLK := d)\nLD r.Q\nR x\nLD j\nADD( j\nMUL 2\n)\nST j\nEND_PROGRAM\n");
+    let folder = folder(&[("a.il", &text)]);
+    let (code, _, err) = run(&folder, &["translate", "a.il", "--to", "ladder", "--prove", "-o", "a.lad"]);
+    assert_eq!(code, 0, "{err}");
+    let (code, out, _) = run(&folder, &["prove", "a.il", "a.lad"]);
+    assert!(code == 0 && out.starts_with("equal: "), "{out}");
+}
+
+#[test]
+fn jumps_of_iec_programs_are_proved_in_equations() {
+    let head = "PROGRAM p\nVAR a, b, x, y : BOOL; END_VAR\n";
+    let text =
+        format!("{head}LDN a\nJMPC L1\nLD b\nST y\nL1:\nLDN b\nST x\nLD a\nRETC\nLD b\nST y\nEND_PROGRAM\n");
+    let folder = folder(&[("a.il", &text)]);
+    let (code, out, err) = run(&folder, &["translate", "a.il", "--to", "boolean", "--prove"]);
+    assert_eq!((code, out.as_str()), (0, "JMP L1 = [a]\ny = b\nL1:\nx = [b]\nRET = a\ny = b\n"), "{err}");
+}

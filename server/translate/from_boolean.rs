@@ -156,8 +156,16 @@ impl<'a> Reader<'a> {
         let inverted = if self.take("[") { Some("]") } else { self.take("¬").then_some("") };
         let first = self.word()?;
         let form = Form::named(first).filter(|_| inverted.is_none());
+        // Where a program of IEC 61131-3 goes on is no instruction of the FX family.
+        let is_iec = !self.target.is_fx() && inverted.is_none();
+        let leaves = match first {
+            _ if !is_iec => None,
+            "JMP" => Some(Deed::Jump),
+            "RET" => Some(Deed::Return),
+            _ => None,
+        };
         let mut terms = Vec::new();
-        if form.is_none() {
+        if form.is_none() && leaves.is_none() {
             terms.push(self.term(first));
         }
         if let Some(close) = inverted {
@@ -170,10 +178,11 @@ impl<'a> Reader<'a> {
                 terms.push(self.term(word));
             }
         }
-        let deed = match form {
-            Some(form) => Deed::of_form(form),
-            None if inverted.is_some() => Deed::Coil(CoilKind::Negated),
-            None => Deed::Coil(CoilKind::Plain),
+        let deed = match (leaves, form) {
+            (Some(leaves), _) => leaves,
+            (None, Some(form)) => Deed::of_form(form),
+            (None, None) if inverted.is_some() => Deed::Coil(CoilKind::Negated),
+            (None, None) => Deed::Coil(CoilKind::Plain),
         };
         let span = Span::new(self.start + start, self.start + self.at);
         if let Some(term) = terms.iter().find(|term| matches!(term.operand, Operand::Invalid(_))) {

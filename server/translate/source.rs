@@ -55,7 +55,8 @@ impl Source {
     /// Its words in one spelling, comments aside.
     pub(super) fn words(&self) -> SmolStr {
         let (text, span) = (self.chunk.text(), self.rung.span);
-        match self.chunk.tree() {
+        let boxed = self.chunk.box_at(span.start as usize).map(|(_, list)| list.tree());
+        match boxed.unwrap_or_else(|| self.chunk.tree()) {
             Tree::Iec(_) => words_of_body(text, span),
             _ => span.of(text).split_whitespace().collect::<Vec<_>>().join(" ").into(),
         }
